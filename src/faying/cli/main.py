@@ -1,0 +1,56 @@
+"""The group of commands. A command's module is imported only when the command is called for."""
+
+import sys
+from importlib import import_module
+from typing import Any
+
+import click
+
+# command -> (module, one line for `faying --help`)
+COMMANDS = {
+    "init": ("init", "Write a commented study file to start from."),
+    "law": ("law", "Curves of a contact law: area, stiffness and loss against pressure."),
+    "run": ("run", "Run a study: from the surface and the preload to the modes."),
+    "surface": ("surface", "Roughness, fractal dimension D and roughness G of a scan."),
+}
+
+
+class _Commands(click.Group):
+    """Lists the commands from COMMANDS without importing them."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in COMMANDS:
+            return None
+        command: click.Command = import_module(f"faying.cli.{COMMANDS[cmd_name][0]}").command
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, text) for name, (_, text) in COMMANDS.items()])
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="faying")
+def cli() -> None:
+    """From a measured rough surface and a bolt preload to the vibration modes of the bolted structure."""
+
+
+def main(argv: list[str] | None = None) -> None:
+    """Entry point of the command `faying`. Exit codes: 0 done, 1 failed on its input or its mathematics, 2 wrong usage."""
+    from faying.errors import FayingError
+
+    try:
+        code: Any = cli.main(args=argv, prog_name="faying", standalone_mode=False)
+    except FayingError as fault:
+        click.echo(f"faying: {fault}", err=True)
+        sys.exit(1)
+    except click.exceptions.Abort:
+        click.echo("faying: interrupted", err=True)
+        sys.exit(1)
+    except click.ClickException as fault:
+        fault.show()
+        sys.exit(fault.exit_code)
+    sys.exit(code if isinstance(code, int) else 0)

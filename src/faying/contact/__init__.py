@@ -1,0 +1,1 @@
+"""Contact laws: pressure in; real area, stiffness and loss out."""

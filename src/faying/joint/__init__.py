@@ -1,0 +1,1 @@
+"""A contact law on the faying faces of a structure."""

@@ -1,0 +1,122 @@
+"""Materials and the pair of them that meets in a joint."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf, isfinite, isnan, pi
+
+from faying.errors import InputError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Material:
+    """One isotropic material.
+
+    Parameters (SI): name; E Young's modulus [Pa]; nu Poisson's ratio [-]; density [kg/m3]; yield_strength [Pa];
+    hardness [Pa], 2.8 times the yield strength where not given (Tabor 1951); friction, static coefficient [-].
+
+    Raises InputError for values that no isotropic material can have.
+    """
+
+    name: str
+    E: float
+    nu: float
+    density: float | None = None
+    yield_strength: float | None = None
+    hardness: float | None = None
+    friction: float | None = None
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        if isnan(self.E) or self.E <= 0:
+            raise InputError(f"material {self.name!r}: E = {self.E} Pa; it must be positive, for example 200e9")
+        if not -1 < self.nu <= 0.5:
+            raise InputError(f"material {self.name!r}: nu = {self.nu}; it must lie in (-1, 0.5], for example 0.3")
+        for field in ("density", "yield_strength", "hardness"):
+            value = getattr(self, field)
+            if value is not None and (isnan(value) or value <= 0):
+                raise InputError(f"material {self.name!r}: {field} = {value}; it must be positive, or left out")
+        if self.friction is not None and not (isfinite(self.friction) and self.friction >= 0):
+            raise InputError(f"material {self.name!r}: friction = {self.friction}; it must be 0 or more, or left out")
+        if self.hardness is None and self.yield_strength is not None:
+            object.__setattr__(self, "hardness", 2.8 * self.yield_strength)
+
+    @property
+    def G(self) -> float:
+        """Shear modulus [Pa]."""
+        return self.E / (2 * (1 + self.nu))
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether this is the rigid plane."""
+        return self.E == inf
+
+
+RIGID = Material(name="rigid", E=inf, nu=0.0)
+
+
+@dataclass(frozen=True)
+class ContactPair:
+    """The two materials that meet. Either may be RIGID, not both; hardness is that of the softer one."""
+
+    first: Material
+    second: Material
+
+    def __post_init__(self) -> None:
+        if self.first.is_rigid and self.second.is_rigid:
+            raise InputError("both materials of the pair are rigid; at least one must be deformable")
+
+    @cached_property
+    def E_star(self) -> float:
+        """Contact modulus [Pa]: 1/E* = sum (1 - nu^2)/E."""
+        return 1 / sum((1 - m.nu**2) / m.E for m in (self.first, self.second))
+
+    @cached_property
+    def G_star(self) -> float:
+        """Contact shear modulus [Pa]: 1/G* = sum (2 - nu)/G."""
+        return 1 / sum((2 - m.nu) / m.G for m in (self.first, self.second))
+
+    @cached_property
+    def softer(self) -> Material:
+        """The body that yields first: the one of lower hardness."""
+        known = [m for m in (self.first, self.second) if m.hardness is not None]
+        if not known:
+            names = " and ".join(repr(m.name) for m in (self.first, self.second) if not m.is_rigid)
+            raise InputError(f"neither hardness nor yield_strength is known for {names}; give one of them")
+        return min(known, key=lambda m: m.hardness or inf)
+
+    @property
+    def hardness(self) -> float:
+        """Hardness H of the softer body [Pa]."""
+        return self.softer.hardness or inf
+
+    @property
+    def hardness_coefficient(self) -> float:
+        """K = 0.454 + 0.41 nu of the softer body [-]."""
+        return 0.454 + 0.41 * self.softer.nu
+
+    @cached_property
+    def friction(self) -> float:
+        """Static friction coefficient [-]: the smaller of those given."""
+        given = [m.friction for m in (self.first, self.second) if m.friction is not None]
+        if not given:
+            raise InputError("no friction coefficient is known for the pair; give one to either material")
+        return min(given)
+
+    @property
+    def bulk_stiffness_factor(self) -> float:
+        """2/sqrt(pi): bulk stiffness of the equal-area circle is this times E* sqrt(A0)."""
+        return 2 / pi**0.5
+
+
+CATALOGUE = {
+    m.name: m
+    for m in (
+        Material(name="45 steel", E=200e9, nu=0.3, density=7800.0, yield_strength=355e6, hardness=994e6,
+                 friction=0.25, source="Zhang et al. 2024, doi:10.3390/fractalfract8100611, Table 2"),
+        Material(name="S355", E=210e9, nu=0.3, density=7850.0, yield_strength=355e6,
+                 source="EN 1993-1-1, 3.2.6 and Table 3.1; EN 1991-1-1, Table A.4"),
+        Material(name="EN AW-6082 T6", E=70e9, nu=0.3, density=2700.0, yield_strength=260e6,
+                 source="EN 1999-1-1, 3.2.5 and Table 3.2b (extrusions, 5 < t <= 15 mm)"),
+    )
+}  # fmt: skip
+"""A few materials with their sources. Friction depends on the pair and its finish: give your own."""

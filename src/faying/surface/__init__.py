@@ -1,0 +1,1 @@
+"""Measured heights in, numbers out."""
