@@ -21,7 +21,16 @@ EXAMPLES = {
     "N/m": "1 kN/mm",
 }
 
-_PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n"), (1e-12, "p"))
+_PREFIXES = (
+    (1e9, "G"),
+    (1e6, "M"),
+    (1e3, "k"),
+    (1.0, ""),
+    (1e-3, "m"),
+    (1e-6, "u"),
+    (1e-9, "n"),
+    (1e-12, "p"),
+)
 
 
 @cache
@@ -48,7 +57,9 @@ def parse(text: object, unit: str, *, name: str = "value") -> float:
         quantity = _registry().Quantity(text)
     except (pint.errors.PintError, ValueError, TypeError, AttributeError, SyntaxError, AssertionError, KeyError,
             ZeroDivisionError, OverflowError) as fault:  # fmt: skip
-        raise InputError(f'{name} = "{text}" is not a quantity ({fault}); write for example "{example}"') from None
+        raise InputError(
+            f'{name} = "{text}" is not a quantity ({fault}); write for example "{example}"'
+        ) from None
     except Exception as fault:  # pint's tokenizer lets other kinds through
         raise InputError(f'{name} = "{text}" is not a quantity; write for example "{example}"') from fault
     if not hasattr(quantity, "units") or (quantity.dimensionless and unit != ""):

@@ -1,0 +1,304 @@
+"""The JK model of a rough surface: Zhang, Wu, Liu and Jiang 2024, Fractal Fract. 8, 611.
+
+Each asperity is a cap of radius R (set by the largest island) pressed by delta_a = 1.06 lam a'/(2 pi R). With
+y = delta_a/d1c, the interference over that of first yield, its law is a power of y in each of three regimes, and the
+surface is the sum over the island distribution.
+
+Where the print is ambiguous or wrong we read it so:
+- every upper limit of integration is the smaller of itself and al' (the print integrates beyond the largest asperity);
+- stiffness is cut off below at `cutoff` times the smaller of a1c' and al' (the print takes a1c'/100, also when that is
+  above al', where nothing is left to integrate);
+- closure="printed" keeps 76.8, 1.38, 1.16, regime borders at a1c', a2c' and strain energies integrated from zero, so
+  that force jumps by .7 % at the borders; "consistent" takes the exponents that make the law continuous for any
+  Poisson's ratio (upper end x_p = 400 K/3, those of Lin and Lin), borders where y = 1 and y = x_p, and energies that
+  carry on from the regime before;
+- loss="literal" evaluates eqs. 49-53 at every load, so that damping vanishes in the large stage; "held" keeps the loss
+  factor that the small stage ends with, as the text and its Fig. 13 say;
+- the tangential load enters as shear_ratio X = T/(mu F); at X = 0 the loss factor is the limit in which X cancels;
+- asperities at hardness add no stiffness, normal or tangential, as printed (eqs. A8, A14).
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import log, pi, sqrt
+from typing import ClassVar, Literal, Self, final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from faying.contact.islands import Array, Islands
+from faying.contact.law import ContactLaw, Response, checked
+from faying.contact.substrate import SHAPE, WeightedIslands, asperity_share, substrate_share
+from faying.errors import InputError
+from faying.materials import ContactPair
+
+Term = tuple[float, float]  # coefficient and power of y
+
+
+@dataclass(frozen=True)
+class AsperityRegime:
+    """One asperity between two borders, each quantity a sum of coefficient times power of y.
+
+    Units: force Pc = (2/3) K H pi R d1c, area Ac = pi R d1c, k_n Pc/d1c, k_t 8 G* sqrt(R d1c), energy_n Pc d1c,
+    energy_t 3 pi mu^2 Pc^2/(8 G* sqrt(R d1c)) times B(X).
+    """
+
+    force: tuple[Term, ...]
+    area: tuple[Term, ...]
+    k_n: tuple[Term, ...]
+    k_t: tuple[Term, ...]
+    energy_n: tuple[Term, ...]
+    energy_t: tuple[Term, ...]
+
+
+def asperity_regimes(K: float, *, printed: bool) -> tuple[float, tuple[AsperityRegime, ...]]:
+    """Return x_p, the y at which full plasticity begins, and the elastic, elastic-plastic and plastic regimes."""
+    x_p = 76.8 if printed else 400 * K / 3  # eq. (8)
+    n = 1.38 if printed else log(400) / log(x_p)  # eq. (15)
+    m = 1.16 if printed else 1 + log(2) / log(x_p)  # eq. (16)
+    hard = 3 / K  # 2 pi R d1c H in units of Pc
+    carry_1 = 0.0 if printed else 1 / 2.5 - 1 / (n + 1)
+    carry_2 = 0.0 if printed else carry_1 + x_p ** (n + 1) / (n + 1) - hard * x_p**2 / 2
+    elastic = AsperityRegime(
+        force=((1.0, 1.5),),  # eq. (12)
+        area=((1.0, 1.0),),  # eq. (13)
+        k_n=((1.5, 0.5),),  # eq. (A4)
+        k_t=((1.0, 0.5),),  # eq. (A11)
+        energy_n=((1 / 2.5, 2.5),),  # eq. (A15)
+        energy_t=((1.0, 2.5),),  # eq. (A22)
+    )
+    mixed = AsperityRegime(
+        force=((1.0, n),),  # eq. (15)
+        area=((1.0, m),),  # eq. (16)
+        k_n=((n, n - 1),),  # eq. (A6)
+        k_t=((1.0, m / 2),),  # eq. (A11)
+        energy_n=((1 / (n + 1), n + 1), (carry_1, 0.0)),  # eq. (A17)
+        energy_t=((1.0, 2 * n - m / 2),),  # eq. (A24)
+    )
+    plastic = AsperityRegime(
+        force=((hard, 1.0),),  # eq. (18)
+        area=((2.0, 1.0),),  # eq. (19)
+        k_n=(),  # eq. (A8)
+        k_t=(),  # eq. (A14)
+        energy_n=((hard / 2, 2.0), (carry_2, 0.0)),  # eq. (A19)
+        energy_t=((hard**2 / sqrt(2), 1.5),),  # eq. (A26)
+    )
+    return x_p, (elastic, mixed, plastic)
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class JK(ContactLaw):
+    """Contact of a fractal surface over its small, meso and large stage. doi:10.3390/fractalfract8100611.
+
+    D surface dimension, 2 < D < 3; G fractal roughness [m]; pair of materials; scan_area A0, the area that the scan
+    covers and to which al' belongs [m2]; gamma frequency index; alpha elastic-plastic load index, 0 to 1; closure,
+    loss and cutoff as in the module's text; substrate the share lam of the deformation that the asperity takes (a
+    constant), or "exact" for eq. (1) at every asperity with modulus_ratio E_asperity/E_substrate; shear_ratio
+    X = T/(mu F), 0 <= X < 1; psi the domain extension (solved where None).
+
+    Closure variable: the largest truncated area al' [m2]. Raises InputError for parameters out of these ranges.
+    Valid while real area <= 0.3, k_n below that of the bulk, al' <= al3', al1' < al2' < al3', 2.1 <= D <= 2.9.
+    """
+
+    D: float
+    G: float
+    pair: ContactPair
+    scan_area: float
+    gamma: float = 1.5
+    alpha: float = 0.2
+    closure: Literal["consistent", "printed"] = "consistent"
+    substrate: float | Literal["exact"] = 1.0
+    cutoff: float = 0.01
+    loss: Literal["held", "literal"] = "held"
+    shear_ratio: float = 0.0
+    psi: float | None = None
+    modulus_ratio: float = 1.0
+
+    name: ClassVar[str] = "JK"
+    source: ClassVar[str] = "doi:10.3390/fractalfract8100611"
+
+    def __post_init__(self) -> None:
+        def need(good: bool, text: str) -> None:
+            if not good:
+                raise InputError(f"JK: {text}")
+
+        need(
+            2 < self.D < 3, f"D = {self.D}; the dimension of a surface lies between 2 and 3, for example 2.4"
+        )
+        need(0 < self.G < np.inf, f"G = {self.G} m; it must be positive, for example 1.5e-10")
+        need(
+            0 < self.scan_area < np.inf,
+            f"scan_area = {self.scan_area} m2; it must be positive, for example 16e-6",
+        )
+        need(1 < self.gamma < np.inf, f"gamma = {self.gamma}; it must be above 1, for example 1.5")
+        need(0 <= self.alpha < 1, f"alpha = {self.alpha}; it must be at least 0 and below 1, for example 0.2")
+        need(
+            self.closure in ("consistent", "printed"),
+            f'closure = {self.closure!r}; use "consistent" or "printed"',
+        )
+        need(self.loss in ("held", "literal"), f'loss = {self.loss!r}; use "held" or "literal"')
+        need(0 < self.cutoff < 1, f"cutoff = {self.cutoff}; it must lie between 0 and 1, for example 0.01")
+        need(
+            self.psi is None or 1 <= self.psi < np.inf,
+            f"psi = {self.psi}; it must be 1 or more, or None to solve it",
+        )
+        need(0 < self.modulus_ratio < np.inf, f"modulus_ratio = {self.modulus_ratio}; it must be positive")
+        if isinstance(self.substrate, str):
+            need(
+                self.substrate == "exact",
+                f'substrate = {self.substrate!r}; use "exact" or a share such as 0.95',
+            )
+        else:
+            need(0 < self.substrate <= 1, f"substrate = {self.substrate}; a share lies above 0 and up to 1")
+        need(self.shear_ratio >= 0, f"shear_ratio = {self.shear_ratio}; it must be 0 or more, and below 1")
+        need(self.shear_ratio < 1, f"shear_ratio = {self.shear_ratio}: at T = mu F and above the joint slips as a whole "
+             "and has no stiffness; lower the shear load or raise the preload")  # fmt: skip
+        need(
+            np.isfinite(self.pair.hardness), "neither body yields; give the pair a hardness or yield_strength"
+        )
+
+    def with_(self, **changes: object) -> Self:
+        """Return the same law with some parameters changed."""
+        return replace(self, **changes)  # type: ignore[arg-type]
+
+    @cached_property
+    def _islands(self) -> Islands:
+        if self.substrate == "exact":
+            return WeightedIslands(self.D, self.psi, self.modulus_ratio)
+        return Islands(self.D, self.psi)
+
+    @cached_property
+    def _regimes(self) -> tuple[float, tuple[AsperityRegime, ...]]:
+        return asperity_regimes(self.pair.hardness_coefficient, printed=self.closure == "printed")
+
+    @property
+    def _yield_strain(self) -> float:
+        """pi K H/(2 E*): sqrt(d1c/R), eq. (7)."""
+        return pi * self.pair.hardness_coefficient * self.pair.hardness / (2 * self.pair.E_star)
+
+    def _cap(self, al: Array) -> tuple[Array, Array, Array]:
+        """Height h_a, radius R and yield interference d1c [m] of the asperities at largest truncated area al."""
+        r_a = np.sqrt(al / pi)
+        h_a = (
+            2 ** (3 - self.D) * self.G ** (self.D - 2) * sqrt(log(self.gamma)) * r_a ** (3 - self.D)
+        )  # eq. (4)
+        R = r_a**2 / (2 * h_a)  # eq. (6)
+        return h_a, R, self._yield_strain**2 * R  # eq. (7)
+
+    @cached_property
+    def limits(self) -> tuple[float, float, float]:
+        """al1', al2', al3': where the small, meso and large stage end [m2] (eqs. 26-28).
+
+        At al1' the largest asperity leaves full plasticity, at al2' it becomes elastic. In the consistent closure
+        that is where its delta_a is x_p d1c and d1c; in print where a2c' and a1c' reach al'.
+        """
+        KH, D = self.pair.hardness_coefficient * self.pair.hardness, self.D
+        x_p = self._regimes[0]
+        if self.closure == "printed":
+            reach = 1.0
+        elif isinstance(self.substrate, str):
+            reach = SHAPE * float(asperity_share(SHAPE, self.modulus_ratio))
+        else:
+            reach = SHAPE * self.substrate
+        base = KH**2 / (2 ** (9 - 2 * D) * pi ** (D - 4) * self.pair.E_star**2 * log(self.gamma)) / reach
+        log_al2 = (log(base) - 2 * (D - 2) * log(self.G)) / (2 - D)  # eqs. (26), (27)
+        log_al1 = log_al2 - log(x_p) / (D - 2)
+        al3 = self.scan_area * (3 - D) / (2 * self._islands.weight)  # eq. (28)
+        with np.errstate(over="ignore", under="ignore"):
+            return float(np.exp(log_al1)), float(np.exp(log_al2)), al3
+
+    @cached_property
+    def closure_range(self) -> tuple[float, float]:
+        """al' from next to nothing up to where the real area reaches the nominal area [m2]."""
+        from scipy.optimize import brentq
+
+        def excess(log_al: float) -> float:
+            return float(np.log(self._totals(np.array(np.exp(log_al)))["area"] / self.scan_area))
+
+        middle = log(self.scan_area)
+        top = float(np.exp(brentq(excess, middle - 80, middle + 40, xtol=1e-12)))
+        return top * 1e-36, top
+
+    def _totals(self, al: Array) -> dict[str, Array]:
+        """Sums over all islands, SI; energies also per regime (energy_n_0 ...)."""
+        h_a, R, d1c = self._cap(al)
+        x_p, regimes = self._regimes
+        share = 1.0 if isinstance(self.substrate, str) else self.substrate
+        scale = SHAPE * share * h_a / d1c  # y = scale * x, or scale * x * lam(x) with the exact substrate
+        if self.closure == "printed":
+            first = d1c / h_a  # a1c'/al', eq. (10)
+            second = x_p * first  # eq. (11)
+        elif self.substrate == "exact":
+            first = substrate_share(d1c / h_a, self.modulus_ratio)
+            second = substrate_share(x_p * d1c / h_a, self.modulus_ratio)
+        else:
+            first, second = 1 / scale, x_p / scale
+        first, second = np.minimum(first, 1.0), np.minimum(second, 1.0)
+        zero, one = np.zeros_like(first), np.ones_like(first)
+        borders = ((zero, first), (first, second), (second, one))
+
+        KH = self.pair.hardness_coefficient * self.pair.hardness
+        P_c, A_c, root = 2 / 3 * KH * pi * R * d1c, pi * R * d1c, np.sqrt(R * d1c)
+        G_star, X = self.pair.G_star, self.shear_ratio
+        units = {"force": P_c, "area": A_c, "k_n": P_c / d1c, "k_t": 8 * G_star * root * (1 - X) ** (1 / 3),
+                 "energy_n": P_c * d1c, "energy_t": 3 * pi * P_c**2 / (8 * G_star * root)}  # fmt: skip
+        out: dict[str, Array] = {}
+        for quantity, unit in units.items():
+            parts = []
+            for regime, (lower, upper) in zip(regimes, borders, strict=True):
+                if quantity in ("k_n", "k_t") and regime is regimes[0]:
+                    lower = self.cutoff * upper
+                part = np.zeros_like(al)
+                for coefficient, power in getattr(regime, quantity):
+                    part = part + coefficient * scale**power * self._islands.total(power, lower, upper)
+                parts.append(unit * part)
+            out[quantity] = sum(parts[1:], parts[0])
+            if quantity.startswith("energy"):
+                out |= {f"{quantity}_{i}": part for i, part in enumerate(parts)}
+        return out
+
+    def _loss(self, totals: dict[str, Array], quantity: str) -> Array:
+        elastic, mixed, plastic = (totals[f"{quantity}_{i}"] for i in range(3))
+        return (self.alpha * mixed + plastic) / (elastic + (1 - self.alpha) * mixed)  # eqs. (49), (58)
+
+    @cached_property
+    def _held(self) -> dict[str, float]:
+        """Loss factors with which the small stage ends."""
+        totals = self._totals(np.array(self.limits[0]))
+        return {q: float(self._loss(totals, q)) for q in ("energy_n", "energy_t")}
+
+    def _loss_factor(self, al: Array, totals: dict[str, Array], quantity: str) -> Array:
+        eta = self._loss(totals, quantity)
+        return eta if self.loss == "literal" else np.where(al >= self.limits[0], self._held[quantity], eta)
+
+    def at_closure(self, al: ArrayLike) -> Response:
+        """Return the response at largest truncated areas al' [m2], any shape. InputError unless positive."""
+        a = checked(al, name="al'", unit="m2", zero=False)
+        A0 = self.scan_area
+        totals = self._totals(a)
+        X = self.shear_ratio
+        B = 3 / 5 - (1 - X) ** (2 / 3) + 2 / 5 * (1 - X) ** (5 / 3)  # eq. (A21)
+        slip = 0.0 if X == 0 else self.pair.friction**2 * B
+        area, k_n = totals["area"] / A0, totals["k_n"] / A0
+        al1, al2, al3 = self.limits
+        flag = np.zeros(a.shape, dtype=bool)
+        return Response(
+            pressure=totals["force"] / A0,
+            area=area,
+            k_n=k_n,
+            k_t=totals["k_t"] / A0,
+            loss_n=self._loss_factor(a, totals, "energy_n"),
+            loss_t=self._loss_factor(a, totals, "energy_t"),
+            energy_n=totals["energy_n"] / A0,
+            energy_t=slip * totals["energy_t"] / A0,
+            reasons={
+                "real area above 0.3 of the nominal area": area > 0.3,
+                "k_n above the stiffness of the bulk, 1.129 E*/sqrt(A0)": k_n
+                > 2 / sqrt(pi * A0) * self.pair.E_star,
+                "al' above al3'": a > al3,
+                "the limits of the stages are not in the order al1' < al2' < al3'": flag
+                | (not al1 < al2 < al3),
+                "D outside 2.1 to 2.9": flag | (not 2.1 <= self.D <= 2.9),
+            },
+        )

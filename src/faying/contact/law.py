@@ -1,0 +1,150 @@
+"""What every contact law gives (Response) and how any of them is asked for a pressure (ContactLaw)."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
+from typing import ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from faying.errors import InputError, NotConverged
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+TABLE_POINTS = 500
+
+
+@dataclass(frozen=True, kw_only=True)
+class Response:
+    """What a contact law says at one load or many; all arrays share one shape, all quantities per nominal area.
+
+    pressure [Pa]; area, real over nominal [-]; k_n, k_t normal and tangential stiffness [Pa/m]; loss_n, loss_t
+    loss factors [-]; energy_n, energy_t strain energies [J/m2]. A quantity that the model does not define is None.
+    valid tells where the model stands on its own ground; `reasons` names, per sign of leaving it, where.
+    """
+
+    pressure: Array
+    area: Array
+    k_n: Array | None = None
+    k_t: Array | None = None
+    loss_n: Array | None = None
+    loss_t: Array | None = None
+    energy_n: Array | None = None
+    energy_t: Array | None = None
+    reasons: Mapping[str, Mask] = field(default_factory=dict)
+
+    @property
+    def valid(self) -> Mask:
+        """True where none of `reasons` holds."""
+        good = np.ones(np.shape(self.pressure), dtype=bool)
+        for mask in self.reasons.values():
+            good &= ~mask
+        return good
+
+    def quantities(self) -> dict[str, Array]:
+        """Return the defined quantities by name, in the order of the fields."""
+        return {f.name: v for f in fields(self) if isinstance(v := getattr(self, f.name), np.ndarray)}
+
+    def reshaped(self, shape: tuple[int, ...]) -> Self:
+        """Return the same response with every array in another shape."""
+        arrays = {name: value.reshape(shape) for name, value in self.quantities().items()}
+        reasons = {name: mask.reshape(shape) for name, mask in self.reasons.items()}
+        return replace(self, **arrays, reasons=reasons)
+
+
+def checked(values: ArrayLike, *, name: str, unit: str, zero: bool) -> Array:
+    """Return values as floats; InputError where one is NaN, infinite, negative, or zero unless `zero` allows it."""
+    array = np.asarray(values, dtype=float)
+    if not np.all(np.isfinite(array)):
+        raise InputError(f"{name}: {np.count_nonzero(~np.isfinite(array))} of {array.size} values are NaN or infinite; "
+                         f"give finite numbers in {unit}")  # fmt: skip
+    if np.any(array < 0) or (not zero and np.any(array == 0)):
+        raise InputError(
+            f"{name}: least value {array.min():.6g} {unit}; it must be {'0 or more' if zero else 'positive'}"
+        )
+    return array
+
+
+class ContactLaw(ABC):
+    """A law of rough contact. A model states its equations along its own closure variable; this class inverts them.
+
+    A model gives `at_closure`, `closure_range` (the closures of the least and of the greatest load that it covers,
+    between which pressure grows strictly) and says by `geometric` whether that variable wants a logarithmic scale.
+    """
+
+    name: ClassVar[str]
+    source: ClassVar[str]
+    geometric: ClassVar[bool] = True
+
+    @abstractmethod
+    def at_closure(self, closure: ArrayLike) -> Response:
+        """Return the response at given values of the model's own closure variable (any shape)."""
+
+    @property
+    @abstractmethod
+    def closure_range(self) -> tuple[float, float]:
+        """Closures at the least and at the greatest load that the law covers."""
+
+    def _from_parameter(self, u: Array) -> Array:
+        """Closure from the parameter u in [0, 1] that runs from the least to the greatest load."""
+        first, last = self.closure_range
+        if self.geometric:
+            return np.asarray(first * np.exp(u * np.log(last / first)))
+        return np.asarray(first + u * (last - first))
+
+    @cached_property
+    def _grid(self) -> tuple[Array, Array]:
+        """Parameter and ln(pressure) on a grid fine enough to bracket any root."""
+        u = np.linspace(0.0, 1.0, TABLE_POINTS)
+        log_p = np.log(self.at_closure(self._from_parameter(u)).pressure)
+        if not np.all(np.isfinite(log_p)) or np.any(np.diff(log_p) <= 0):
+            raise NotConverged(f"{self.name}: pressure does not grow with closure over {self.closure_range}; "
+                               "the parameters leave the ground of the model")  # fmt: skip
+        return u, log_p
+
+    @property
+    def greatest_pressure(self) -> float:
+        """The pressure at which the law ends [Pa]."""
+        return float(np.exp(self._grid[1][-1]))
+
+    def at_pressure(self, pressure: ArrayLike) -> Response:
+        """Return the response at nominal pressures [Pa], any shape; inverted to 1e-12 of the pressure.
+
+        At zero pressure nothing touches: every quantity is 0. Raises InputError for NaN or negative pressures and
+        for those above `greatest_pressure`.
+        """
+        p = checked(pressure, name="pressure", unit="Pa", zero=True)
+        if p.size and p.max() > self.greatest_pressure * (1 + 1e-12):
+            raise InputError(f"pressure {p.max():.4g} Pa is more than {self.name} covers with these parameters: at most "
+                             f"{self.greatest_pressure:.4g} Pa; lower the load or widen the joint")  # fmt: skip
+        flat = p.ravel()
+        at = self.at_closure(self._closure_at(np.where(flat > 0, flat, self.greatest_pressure)))
+        exact = {name: np.where(flat > 0, value, 0.0) for name, value in at.quantities().items()}
+        exact["pressure"] = flat.copy()
+        reasons = {name: mask & (flat > 0) for name, mask in at.reasons.items()}
+        return replace(at, **exact, reasons=reasons).reshaped(p.shape)  # type: ignore[arg-type]
+
+    def _closure_at(self, pressure: Array) -> Array:
+        """Invert pressures (flat, positive, within the law) for the closure variable."""
+        from scipy.optimize.elementwise import find_root
+
+        u, log_p = self._grid
+        target = np.clip(np.log(pressure), log_p[0], log_p[-1])
+        if pressure.size and np.log(pressure.min()) < log_p[0] - 1e-9:
+            raise InputError(f"pressure {pressure.min():.4g} Pa is below the least that {self.name} resolves with these "
+                             f"parameters, {np.exp(log_p[0]):.4g} Pa; use 0 for an open point")  # fmt: skip
+        cell = np.clip(np.searchsorted(log_p, target, side="right") - 1, 0, u.size - 2)
+        miss: Callable[[Array, Array], Array] = lambda v, t: (  # noqa: E731
+            np.log(self.at_closure(self._from_parameter(v)).pressure) - t
+        )
+        # the ends of the grid are exact roots up to rounding: give the bracket that much room
+        low, high = u[cell], u[cell + 1]
+        root = find_root(miss, (low - 1e-13, high + 1e-13), args=(target,),
+                         tolerances={"xatol": 1e-16, "xrtol": 1e-15, "fatol": 1e-14, "frtol": 0.0})  # fmt: skip
+        if not np.all(root.success | (np.abs(root.f_x) < 1e-11)):
+            worst = float(np.nanmax(np.abs(root.f_x)))
+            raise NotConverged(f"{self.name}: inversion for pressure stopped {worst:.1e} short (relative)")
+        return self._from_parameter(np.asarray(root.x))

@@ -1,0 +1,85 @@
+"""Asperity and substrate: how much of the applied deformation the asperity takes (eqs. 1 and 2 of Zhang et al. 2024).
+
+delta = delta_a (1 + Er xi sqrt(delta_a)) with xi = 1.5 sqrt(R)/r_a. Because r_a^2 = 2 R h_a, xi sqrt(h_a) is always
+1.5/sqrt(2), so the share lam = delta_a/delta depends on Er and on delta/h_a alone. In the JK model
+delta = 1.06 h_a a'/al'.
+"""
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from faying.contact.islands import Array, Islands
+
+SHAPE = 1.06  # 1 - cos(pi r/(2 r_a)) ~ 1.06 (r/r_a)^2, eq. (9)
+COUPLING = 1.5 / 2**0.5  # xi sqrt(h_a)
+
+
+def substrate_share(deformation: ArrayLike, modulus_ratio: float, coefficient: float = COUPLING) -> Array:
+    """Return a'/al' [-] of the asperity that is itself deformed by `deformation` = delta_a/h_a [-]: eq. (1) forwards."""
+    y = np.asarray(deformation, float)
+    return y * (1 + modulus_ratio * coefficient * np.sqrt(y)) / SHAPE
+
+
+def asperity_share(applied: ArrayLike, modulus_ratio: float, coefficient: float = COUPLING) -> Array:
+    """Return lam = delta_a/delta [-] at applied = delta/h_a [-]: eq. (1) solved, t^2 + q t^3 = 1 with lam = t^2.
+
+    q = Er xi sqrt(delta). Newton from above converges monotonically, since the left side is convex and growing.
+    """
+    q = modulus_ratio * coefficient * np.sqrt(np.asarray(applied, float))
+    t = np.ones_like(q)
+    for _ in range(60):
+        step = (t**2 + q * t**3 - 1) / (2 * t + 3 * q * t**2)
+        t = t - step
+        if np.all(np.abs(step) <= 2e-16 * t):
+            break
+    return t**2
+
+
+class WeightedIslands(Islands):
+    """Islands whose powers carry lam(x): total(p) sums (x lam(x))^p, by quadrature that is exact to rounding.
+
+    lam is analytic in sqrt(x). Ranges from 0 go by Gauss-Jacobi quadrature in z = sqrt(x/upper) with the weight
+    z^(2 e - 1); others by Gauss-Legendre in ln x, or, when long, as a difference of two ranges from 0.
+    """
+
+    def __init__(self, D: float, psi: float | None, modulus_ratio: float, nodes: int = 32) -> None:
+        super().__init__(D, psi)
+        self.modulus_ratio, self.nodes = modulus_ratio, nodes
+        self._jacobi: dict[float, tuple[Array, Array]] = {}
+
+    @cached_property
+    def _legendre(self) -> tuple[Array, Array]:
+        x, w = np.polynomial.legendre.leggauss(self.nodes)
+        return (x + 1) / 2, w / 2
+
+    def _lam(self, x: Array) -> Array:
+        return asperity_share(SHAPE * x, self.modulus_ratio)
+
+    def _from_zero(self, power: float, upper: Array) -> Array:
+        from scipy.special import roots_jacobi
+
+        exponent = power + (1 - self.D) / 2
+        if exponent not in self._jacobi:
+            nodes, weights = roots_jacobi(self.nodes, 0.0, 2 * exponent - 1)
+            self._jacobi[exponent] = ((nodes + 1) / 2, weights / 2 ** (2 * exponent))
+        z, w = self._jacobi[exponent]
+        inner = self._lam(upper[..., None] * z**2) ** power
+        return np.asarray(2 * upper**exponent * (inner @ w))
+
+    def total(self, power: float, lower: ArrayLike, upper: ArrayLike) -> Array:
+        """Sum of (x lam(x))^power over all islands with lower < x < upper [-]."""
+        if power == 0:
+            return super().total(power, lower, upper)
+        lo, hi = np.broadcast_arrays(np.asarray(lower, float), np.asarray(upper, float))
+        exponent = power + (1 - self.D) / 2
+        ratio = np.where(lo > 0, hi / np.where(lo > 0, lo, 1.0), np.inf)
+        if np.all(ratio < 1e3):
+            t, w = self._legendre
+            length = np.log(np.maximum(ratio, 1.0))
+            x = lo[..., None] * np.exp(length[..., None] * t)
+            inner = length * ((x**exponent * self._lam(x) ** power) @ w)
+            return np.asarray(self.weight * inner)
+        rest = self._from_zero(power, np.where(lo > 0, lo, 0.0)) if np.any(lo > 0) else 0.0
+        return np.asarray(self.weight * np.where(hi > lo, self._from_zero(power, hi) - rest, 0.0))
