@@ -28,23 +28,15 @@ class Material:
 
     def __post_init__(self) -> None:
         if isnan(self.E) or self.E <= 0:
-            raise InputError(
-                f"material {self.name!r}: E = {self.E} Pa; it must be positive, for example 200e9"
-            )
+            raise InputError(f"material {self.name!r}: E = {self.E} Pa; it must be positive, for example 200e9")
         if not -1 < self.nu <= 0.5:
-            raise InputError(
-                f"material {self.name!r}: nu = {self.nu}; it must lie in (-1, 0.5], for example 0.3"
-            )
+            raise InputError(f"material {self.name!r}: nu = {self.nu}; it must lie in (-1, 0.5], for example 0.3")
         for field in ("density", "yield_strength", "hardness"):
             value = getattr(self, field)
             if value is not None and (isnan(value) or value <= 0):
-                raise InputError(
-                    f"material {self.name!r}: {field} = {value}; it must be positive, or left out"
-                )
+                raise InputError(f"material {self.name!r}: {field} = {value}; it must be positive, or left out")
         if self.friction is not None and not (isfinite(self.friction) and self.friction >= 0):
-            raise InputError(
-                f"material {self.name!r}: friction = {self.friction}; it must be 0 or more, or left out"
-            )
+            raise InputError(f"material {self.name!r}: friction = {self.friction}; it must be 0 or more, or left out")
         if self.hardness is None and self.yield_strength is not None:
             object.__setattr__(self, "hardness", 2.8 * self.yield_strength)
 

@@ -57,9 +57,7 @@ def parse(text: object, unit: str, *, name: str = "value") -> float:
         quantity = _registry().Quantity(text)
     except (pint.errors.PintError, ValueError, TypeError, AttributeError, SyntaxError, AssertionError, KeyError,
             ZeroDivisionError, OverflowError) as fault:  # fmt: skip
-        raise InputError(
-            f'{name} = "{text}" is not a quantity ({fault}); write for example "{example}"'
-        ) from None
+        raise InputError(f'{name} = "{text}" is not a quantity ({fault}); write for example "{example}"') from None
     except Exception as fault:  # pint's tokenizer lets other kinds through
         raise InputError(f'{name} = "{text}" is not a quantity; write for example "{example}"') from fault
     if not hasattr(quantity, "units") or (quantity.dimensionless and unit != ""):
@@ -67,9 +65,7 @@ def parse(text: object, unit: str, *, name: str = "value") -> float:
     try:
         value = float(quantity.to(unit).magnitude)
     except pint.errors.DimensionalityError:
-        raise InputError(
-            f'{name} = "{text}" is not in a unit like {unit}; write for example "{example}"'
-        ) from None
+        raise InputError(f'{name} = "{text}" is not in a unit like {unit}; write for example "{example}"') from None
     if not isfinite(value):
         raise InputError(f'{name} = "{text}" is not a finite number; write for example "{example}"')
     return value

@@ -123,9 +123,7 @@ class JK(ContactLaw):
             if not good:
                 raise InputError(f"JK: {text}")
 
-        need(
-            2 < self.D < 3, f"D = {self.D}; the dimension of a surface lies between 2 and 3, for example 2.4"
-        )
+        need(2 < self.D < 3, f"D = {self.D}; the dimension of a surface lies between 2 and 3, for example 2.4")
         need(0 < self.G < np.inf, f"G = {self.G} m; it must be positive, for example 1.5e-10")
         need(
             0 < self.scan_area < np.inf,
@@ -154,9 +152,7 @@ class JK(ContactLaw):
         need(self.shear_ratio >= 0, f"shear_ratio = {self.shear_ratio}; it must be 0 or more, and below 1")
         need(self.shear_ratio < 1, f"shear_ratio = {self.shear_ratio}: at T = mu F and above the joint slips as a whole "
              "and has no stiffness; lower the shear load or raise the preload")  # fmt: skip
-        need(
-            np.isfinite(self.pair.hardness), "neither body yields; give the pair a hardness or yield_strength"
-        )
+        need(np.isfinite(self.pair.hardness), "neither body yields; give the pair a hardness or yield_strength")
 
     def with_(self, **changes: object) -> Self:
         """Return the same law with some parameters changed."""
@@ -180,9 +176,7 @@ class JK(ContactLaw):
     def _cap(self, al: Array) -> tuple[Array, Array, Array]:
         """Height h_a, radius R and yield interference d1c [m] of the asperities at largest truncated area al."""
         r_a = np.sqrt(al / pi)
-        h_a = (
-            2 ** (3 - self.D) * self.G ** (self.D - 2) * sqrt(log(self.gamma)) * r_a ** (3 - self.D)
-        )  # eq. (4)
+        h_a = 2 ** (3 - self.D) * self.G ** (self.D - 2) * sqrt(log(self.gamma)) * r_a ** (3 - self.D)  # eq. (4)
         R = r_a**2 / (2 * h_a)  # eq. (6)
         return h_a, R, self._yield_strain**2 * R  # eq. (7)
 
@@ -294,11 +288,9 @@ class JK(ContactLaw):
             energy_t=slip * totals["energy_t"] / A0,
             reasons={
                 "real area above 0.3 of the nominal area": area > 0.3,
-                "k_n above the stiffness of the bulk, 1.129 E*/sqrt(A0)": k_n
-                > 2 / sqrt(pi * A0) * self.pair.E_star,
+                "k_n above the stiffness of the bulk, 1.129 E*/sqrt(A0)": k_n > 2 / sqrt(pi * A0) * self.pair.E_star,
                 "al' above al3'": a > al3,
-                "the limits of the stages are not in the order al1' < al2' < al3'": flag
-                | (not al1 < al2 < al3),
+                "the limits of the stages are not in the order al1' < al2' < al3'": flag | (not al1 < al2 < al3),
                 "D outside 2.1 to 2.9": flag | (not 2.1 <= self.D <= 2.9),
             },
         )
