@@ -118,8 +118,10 @@ class ContactLaw(ABC):
         """
         p = checked(pressure, name="pressure", unit="Pa", zero=True)
         if p.size and p.max() > self.greatest_pressure * (1 + 1e-12):
-            raise InputError(f"pressure {p.max():.4g} Pa is more than {self.name} covers with these parameters: at most "
-                             f"{self.greatest_pressure:.4g} Pa; lower the load or widen the joint")  # fmt: skip
+            raise InputError(
+                f"pressure {p.max():.4g} Pa is more than {self.name} covers with these parameters: at most "
+                f"{self.greatest_pressure:.4g} Pa; lower the load or widen the joint"
+            )
         flat = p.ravel()
         at = self.at_closure(self._closure_at(np.where(flat > 0, flat, self.greatest_pressure)))
         exact = {name: np.where(flat > 0, value, 0.0) for name, value in at.quantities().items()}
@@ -134,8 +136,10 @@ class ContactLaw(ABC):
         u, log_p = self._grid
         target = np.clip(np.log(pressure), log_p[0], log_p[-1])
         if pressure.size and np.log(pressure.min()) < log_p[0] - 1e-9:
-            raise InputError(f"pressure {pressure.min():.4g} Pa is below the least that {self.name} resolves with these "
-                             f"parameters, {np.exp(log_p[0]):.4g} Pa; use 0 for an open point")  # fmt: skip
+            raise InputError(
+                f"pressure {pressure.min():.4g} Pa is below the least that {self.name} resolves with these parameters, "
+                f"{np.exp(log_p[0]):.4g} Pa; use 0 for an open point"
+            )
         cell = np.clip(np.searchsorted(log_p, target, side="right") - 1, 0, u.size - 2)
         miss: Callable[[Array, Array], Array] = lambda v, t: (  # noqa: E731
             np.log(self.at_closure(self._from_parameter(v)).pressure) - t

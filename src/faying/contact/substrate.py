@@ -17,7 +17,7 @@ COUPLING = 1.5 / 2**0.5  # xi sqrt(h_a)
 
 
 def substrate_share(deformation: ArrayLike, modulus_ratio: float, coefficient: float = COUPLING) -> Array:
-    """Return a'/al' [-] of the asperity that is itself deformed by `deformation` = delta_a/h_a [-]: eq. (1) forwards."""
+    """Return a'/al' [-] of the asperity that is itself deformed by delta_a/h_a = `deformation` [-]: eq. (1) forwards."""
     y = np.asarray(deformation, float)
     return y * (1 + modulus_ratio * coefficient * np.sqrt(y)) / SHAPE
 
