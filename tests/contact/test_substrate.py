@@ -1,5 +1,7 @@
 """Asperity and substrate: eq. (1) exactly, its share lam, and the surface summed with it."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,6 +10,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from faying.contact.substrate import COUPLING, SHAPE, WeightedIslands, asperity_share, substrate_share
+from faying.errors import InputError
 
 
 @pytest.mark.parametrize(
@@ -53,7 +56,7 @@ def test_weighted_islands_equal_brute_quadrature(D: float, power: float, ratio: 
 
     floor = -40 / exponent if whole else np.log(lower)
     cuts = np.linspace(floor, 0, 21)
-    brute = sum(quad(integrand, a, b, epsabs=0, epsrel=1e-11)[0] for a, b in zip(cuts, cuts[1:], strict=False))
+    brute = sum(quad(integrand, a, b, epsabs=0, epsrel=1e-11)[0] for a, b in pairwise(cuts))
     assert float(islands.total(power, start, 1.0)) == pytest.approx(islands.weight * brute, rel=1e-10)
 
 
@@ -61,3 +64,15 @@ def test_a_rigid_substrate_leaves_the_plain_islands() -> None:
     exact = WeightedIslands(2.39, None, 1e-14).total(1.0, 0.0, 0.7)
     assert float(exact) == pytest.approx(float(super(WeightedIslands, WeightedIslands(2.39, None, 1)).total(1, 0, 0.7)),
                                          rel=1e-12)  # fmt: skip
+
+
+def test_weighted_islands_take_ranges_from_zero_and_above_it_together() -> None:
+    islands = WeightedIslands(2.39, None, 1.0)
+    together = islands.total(1.0, [0.0, 0.1, 0.5], [0.5, 0.5, 0.2])
+    apart = [float(islands.total(1.0, 0.0, 0.5)), float(islands.total(1.0, 0.1, 0.5)), 0.0]
+    assert together.tolist() == pytest.approx(apart, rel=1e-14)
+
+
+def test_weighted_islands_say_where_the_sum_from_zero_diverges() -> None:
+    with pytest.raises(InputError, match="diverges"):
+        WeightedIslands(2.39, None, 1.0).total(0.5, 0.0, 1.0)

@@ -17,6 +17,8 @@ Where the print is ambiguous or wrong we read it so:
 - the tangential load enters as shear_ratio X = T/(mu F), or as shear_stress tau, with X = tau A/(mu F) in each regime
   (the paper gives tau no value); at X = 0 the loss factor is the limit in which X cancels; a regime whose X
   reaches 1 under tau slips: it adds no tangential stiffness, and the response says so;
+- stiffness grows with load throughout for 2.1 <= D <= 2.9 while cutoff <= .01; with a cutoff of .1 it falls over part
+  of the meso stage above D = 2.76, with .3 above D = 2.5: there the cut-off leaves too little of the elastic part;
 - asperities at hardness add no stiffness, normal or tangential, as printed (eqs. A8, A14).
 """
 
@@ -224,7 +226,7 @@ class JK(ContactLaw):
         base = KH**2 / (2 ** (9 - 2 * D) * pi ** (D - 4) * self.pair.E_star**2 * log(self.gamma)) / reach
         log_al2 = (log(base) - 2 * (D - 2) * log(self.G)) / (2 - D)  # eqs. (26), (27)
         log_al1 = log_al2 - log(x_p) / (D - 2)
-        al3 = self.scan_area * (3 - D) / (2 * self._islands.weight)  # eq. (28)
+        al3 = self.scan_area * (3 - D) / self._islands.weight  # eq. (28)
         with np.errstate(over="ignore", under="ignore"):
             return float(np.exp(log_al1)), float(np.exp(log_al2)), al3
 
@@ -297,7 +299,7 @@ class JK(ContactLaw):
     @cached_property
     def _held(self) -> tuple[float, float]:
         """Normal and tangential loss factor with which the small stage ends."""
-        parts = self._parts(np.array(min(max(self.limits[0], 1e-250), 1e250)))
+        parts = self._parts(np.array(min(max(self.limits[0], 1e-80), 1e80)))
         return float(self._loss(parts["energy_n"])), float(self._loss(self._energy_t(parts)))
 
     def _loss_factor(self, al: Array, energies: list[Array], held: float) -> Array:
