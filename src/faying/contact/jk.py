@@ -22,20 +22,22 @@ Where the print is ambiguous or wrong we read it so:
 - asperities at hardness add no stiffness, normal or tangential, as printed (eqs. A8, A14).
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from math import log, pi, sqrt
-from typing import ClassVar, Literal, Self, final
+from typing import ClassVar, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.islands import Array, Islands
-from faying.contact.law import ContactLaw, Response, checked
+from faying.contact.law import ContactLaw, Parameter, Response, checked
 from faying.contact.substrate import SHAPE, WeightedIslands, asperity_share, substrate_share
 from faying.errors import InputError
 from faying.materials import ContactPair
 
+QUANTITIES = ("force", "area", "k_n", "k_t", "energy_n", "energy_t")
 Term = tuple[float, float]  # coefficient and power of y
 
 
@@ -133,6 +135,24 @@ class JK(ContactLaw):
 
     name: ClassVar[str] = "JK"
     source: ClassVar[str] = "doi:10.3390/fractalfract8100611"
+    ground: ClassVar[str] = (
+        "real area up to 0.3, k_n below that of the bulk, al' <= al3', al1' < al2' < al3', 2.1 <= D <= 2.9"
+    )
+    parameters: ClassVar = {
+        "D": Parameter("", "fractal dimension of the surface", "between 2 and 3"),
+        "G": Parameter("m", "fractal roughness", "above 0"),
+        "scan_area": Parameter("m^2", "area that the scan covers, to which al' belongs", "above 0"),
+        "gamma": Parameter("", "frequency index of the surface", "above 1"),
+        "alpha": Parameter("", "elastic-plastic load index", "0 up to 1"),
+        "closure": Parameter("text", "exponents and borders of the elastic-plastic regime", "consistent or printed"),
+        "substrate": Parameter("", "share of the deformation that the asperity takes", "above 0 up to 1, or exact"),
+        "cutoff": Parameter("", "least area that adds stiffness, over the smaller of a1c' and al'", "between 0 and 1"),
+        "loss": Parameter("text", "loss factor beyond the small stage", "held or literal"),
+        "shear_ratio": Parameter("", "tangential load over mu times normal load", "0 up to 1"),
+        "psi": Parameter("", "domain extension", "1 or more; solved where not given"),
+        "modulus_ratio": Parameter("", "E of the asperity over that of its substrate", "above 0"),
+        "shear_stress": Parameter("Pa", "shear stress on the real area, in place of shear_ratio", "0 or more"),
+    }
 
     def __post_init__(self) -> None:
         def need(good: bool, text: str) -> None:
@@ -181,10 +201,6 @@ class JK(ContactLaw):
             "a tangential load needs friction above 0; give a material of the pair its friction",
         )
         need(np.isfinite(self.pair.hardness), "neither body yields; give the pair a hardness or yield_strength")
-
-    def with_(self, **changes: object) -> Self:
-        """Return the same law with some parameters changed."""
-        return replace(self, **changes)  # type: ignore[arg-type]
 
     @cached_property
     def _islands(self) -> Islands:
@@ -236,13 +252,13 @@ class JK(ContactLaw):
         from scipy.optimize import brentq
 
         def excess(log_al: float) -> float:
-            return float(np.log(sum(self._parts(np.array(np.exp(log_al)))["area"]) / self.scan_area))
+            return float(np.log(sum(self._parts(np.array(np.exp(log_al)), ("area",))["area"]) / self.scan_area))
 
         middle = log(self.scan_area)
         top = float(np.exp(brentq(excess, middle - 80, middle + 40, xtol=1e-12)))
         return top * 1e-36, top
 
-    def _parts(self, al: Array) -> dict[str, list[Array]]:
+    def _parts(self, al: Array, wanted: Sequence[str] = QUANTITIES) -> dict[str, list[Array]]:
         """Sums over the islands in each of the three regimes, SI, without tangential load; energy_t without mu^2 B."""
         h_a, R, d1c = self._cap(al)
         x_p, regimes = self._regimes
@@ -266,7 +282,7 @@ class JK(ContactLaw):
         units = {"force": P_c, "area": A_c, "k_n": P_c / d1c, "k_t": 8 * G_star * root,
                  "energy_n": P_c * d1c, "energy_t": 3 * pi * P_c**2 / (8 * G_star * root)}  # fmt: skip
         out: dict[str, list[Array]] = {}
-        for quantity, unit in units.items():
+        for quantity in wanted:
             out[quantity] = []
             for regime, (lower, upper) in zip(regimes, borders, strict=True):
                 if quantity in ("k_n", "k_t") and regime is regimes[0]:
@@ -274,7 +290,7 @@ class JK(ContactLaw):
                 part = np.zeros_like(al)
                 for coefficient, power in getattr(regime, quantity):
                     part = part + coefficient * scale**power * self._islands.total(power, lower, upper)
-                out[quantity].append(unit * part)
+                out[quantity].append(units[quantity] * part)
         return out
 
     def _shear(self, parts: dict[str, list[Array]]) -> list[Array]:
@@ -306,6 +322,9 @@ class JK(ContactLaw):
         eta = self._loss(energies)
         return eta if self.loss == "literal" else np.where(al >= self.limits[0], held, eta)
 
+    def _pressure_at(self, closure: Array) -> Array:
+        return np.asarray(sum(self._parts(closure, ("force",))["force"]) / self.scan_area)
+
     def at_closure(self, al: ArrayLike) -> Response:
         """Return the response at largest truncated areas al' [m2], any shape. InputError unless positive."""
         a = checked(al, name="al'", unit="m2", zero=False)
@@ -314,14 +333,14 @@ class JK(ContactLaw):
         shear = self._shear(parts)
         tangential = self._energy_t(parts)
         loaded = self.shear_stress > 0 or self.shear_ratio > 0
-        area, k_n = sum(parts["area"]) / A0, sum(parts["k_n"]) / A0
+        area, k_n = np.asarray(sum(parts["area"]) / A0), np.asarray(sum(parts["k_n"]) / A0)
         k_t = sum((1 - X) ** (1 / 3) * k for X, k in zip(shear, parts["k_t"], strict=True)) / A0  # eq. (A11)
         al1, al2, al3 = self.limits
         flag = np.zeros(a.shape, dtype=bool)
         return Response(
             pressure=np.asarray(sum(parts["force"]) / A0),
-            area=np.asarray(area),
-            k_n=np.asarray(k_n),
+            area=area,
+            k_n=k_n,
             k_t=np.asarray(k_t),
             loss_n=np.asarray(self._loss_factor(a, parts["energy_n"], self._held[0])),
             loss_t=np.asarray(self._loss_factor(a, tangential, self._held[1])),

@@ -21,7 +21,7 @@ COUPLING = 1.5 / 2**0.5  # xi sqrt(h_a)
 def substrate_share(deformation: ArrayLike, modulus_ratio: float, coefficient: float = COUPLING) -> Array:
     """Return a'/al' [-] of the asperity whose own delta_a/h_a is `deformation` [-]: eq. (1) forwards."""
     y = np.asarray(deformation, float)
-    return y * (1 + modulus_ratio * coefficient * np.sqrt(y)) / SHAPE
+    return np.asarray(y * (1 + modulus_ratio * coefficient * np.sqrt(y)) / SHAPE)
 
 
 def asperity_share(applied: ArrayLike, modulus_ratio: float, coefficient: float = COUPLING) -> Array:
@@ -36,7 +36,7 @@ def asperity_share(applied: ArrayLike, modulus_ratio: float, coefficient: float 
         t = t - step
         if np.all(np.abs(step) <= 2e-16 * t):
             break
-    return t**2
+    return np.asarray(t**2)
 
 
 class WeightedIslands(Islands):
