@@ -112,14 +112,37 @@ def rigid_motions(points: Array) -> Array:
     return modes.reshape(-1, 6)
 
 
-def face_load(points: Array, triangles: Index, direction: Array) -> Array:
-    """Nodal forces [N] (3n,) of a total force 1 N in `direction`, as a uniform traction over the triangles."""
+def face_load(points: Array, triangles: Index, axis_point: Array, direction: Array) -> Array:
+    """Nodal forces [N] (3n,) of a total force 1 N along `direction` whose line of action passes through `axis_point`.
+
+    The traction is uniform up to a linear part across the face, just enough to bring the resultant on the line: two such
+    loads on one line with opposite directions balance exactly, whatever the meshes of their faces.
+    """
     _, weights, values, gradients = reference("tri6", 4)
     _, area = surface_frame(points, triangles, gradients)
-    nodal = np.einsum("fq,qa->fa", area * weights, values)
+    unit = direction / np.linalg.norm(direction)
+    helper = np.eye(3)[np.argmin(np.abs(unit))]
+    across = np.stack([np.cross(unit, helper), np.cross(unit, np.cross(unit, helper))])
+    across /= np.linalg.norm(across, axis=1)[:, None]
+    place = np.einsum("fai,qa->fqi", points[triangles], values) - axis_point
+    radius = float(np.sqrt((area * weights).sum()))
+    basis = np.concatenate([np.ones((*area.shape, 1)), place @ across.T / radius], axis=2)
+    share = area * weights
+    gram = np.einsum("fq,fqi,fqj->ij", share, basis, basis)
+    traction = basis @ np.linalg.solve(gram, [1.0, 0.0, 0.0])
     total = np.zeros(len(points))
-    np.add.at(total, triangles.ravel(), nodal.ravel())
-    return np.asarray((total / total.sum())[:, None] * direction / np.linalg.norm(direction)).reshape(-1)
+    np.add.at(total, triangles.ravel(), np.einsum("fq,qa->fa", share * traction, values).ravel())
+    return np.asarray(total[:, None] * unit).reshape(-1)
+
+
+def face_centre(points: Array, triangles: Index) -> tuple[Array, Array, float]:
+    """Centre [m] (3,), mean unit normal (3,), and area [m2] of a face."""
+    _, weights, values, gradients = reference("tri6", 4)
+    normals, area = surface_frame(points, triangles, gradients)
+    share = area * weights
+    place = np.einsum("fai,qa->fqi", points[triangles], values)
+    normal = np.einsum("fq,fqi->i", share, normals)
+    return np.einsum("fq,fqi->i", share, place) / share.sum(), normal / np.linalg.norm(normal), float(share.sum())
 
 
 def surface_frame(points: Array, triangles: Index, gradients: Array) -> tuple[Array, Array]:

@@ -33,13 +33,18 @@ class _Pardiso:
         self._upper = csr_matrix(triu(matrix, format="csr"))
         self._upper.sort_indices()
         self._solver = PyPardisoSolver(mtype=2)
+        self._solver._check_A(self._upper)
+        self._solver.set_phase(12)
         try:
-            self._solver.factorize(self._upper)
+            self._solver._call_pardiso(self._upper, np.zeros((matrix.shape[0], 1)))
         except Exception as fault:
             raise NotConverged(f"PARDISO could not factorise the matrix ({fault}); is a part held by nothing?") from None
+        # pypardiso's solve() compares the whole matrix with the factorised one at every call, which costs more than
+        # solving; the phase is set here instead
+        self._solver.set_phase(33)
 
     def solve(self, right: Array) -> Array:
-        x: Array = self._solver.solve(self._upper, np.asfortranarray(right))
+        x: Array = self._solver._call_pardiso(self._upper, np.asfortranarray(right))
         return x.reshape(right.shape)
 
     def __del__(self) -> None:
