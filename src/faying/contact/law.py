@@ -9,7 +9,9 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from faying.contact.inputs import SurfaceInputs
 from faying.errors import InputError, NotConverged
+from faying.materials import ContactPair
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -36,7 +38,7 @@ class Response:
     """
 
     pressure: Array
-    area: Array
+    area: Array | None = None
     k_n: Array | None = None
     k_t: Array | None = None
     loss_n: Array | None = None
@@ -62,6 +64,12 @@ class Response:
         arrays = {name: value.reshape(shape) for name, value in self.quantities().items()}
         reasons = {name: mask.reshape(shape) for name, mask in self.reasons.items()}
         return replace(self, **arrays, reasons=reasons)
+
+
+def require(law: str, good: bool, text: str) -> None:
+    """Raise InputError with the law's name before the text unless good."""
+    if not good:
+        raise InputError(f"{law}: {text}")
 
 
 def checked(values: ArrayLike, *, name: str, unit: str, zero: bool) -> Array:
@@ -108,6 +116,11 @@ class ContactLaw(ABC):
         if unknown:
             raise InputError(f"{self.name} has no parameter {', '.join(unknown)}; it has {', '.join(own)}")
         return replace(self, **changes)  # type: ignore[type-var]
+
+    @classmethod
+    def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> Self:
+        """Return the law of a measured surface; InputError where the model cannot take its inputs from a scan."""
+        raise InputError(f"{cls.name} takes no input from a scan; give its parameters: {', '.join(cls.parameters)}")
 
     def _pressure_at(self, closure: Array) -> Array:
         """Pressure alone; a model overrides this where it is quicker than the whole response."""

@@ -19,7 +19,7 @@ def _found() -> tuple[tuple[str, type[ContactLaw]], ...]:
         module = import_module(f"faying.contact.{entry.name}")
         for name, value in vars(module).items():
             own = isclass(value) and issubclass(value, ContactLaw) and value.__module__ == module.__name__
-            if own and not isabstract(value) and not name.startswith("_"):
+            if own and not isabstract(value) and "name" in vars(value):
                 found[name] = value
     return tuple(sorted(found.items()))
 
