@@ -87,12 +87,15 @@ class GreenwoodWilliamson(ContactLaw):
     def _nodes(self) -> tuple[Array, Array]:
         """Interferences t in units of sigma, and the weighted values of force, area, k_n, energy there (n, 4).
 
-        Panels end where the asperity's formulas change and are a quarter of sigma at most; on each t = a + (b-a) s^2,
-        so that the square root at first touch is a polynomial in s.
+        Panels end where the asperity's formulas change and grow threefold from there, up to a quarter of sigma; on
+        each t = a + (b-a) s^2, so that the square root at first touch is a polynomial in s.
         """
         end = HIGHEST - NEAREST
         edges = [0.0, *(t for t, _ in self._jumps if t < end)]
-        cuts = np.unique(np.concatenate([np.linspace(0, end, int(4 * end) + 1), edges]))
+        even = np.linspace(0, end, int(4 * end) + 1)
+        first = min([*edges[1:], even[1]])
+        graded = np.geomspace(first, even[1], 1 + int(np.ceil(np.log(even[1] / first) / np.log(3))))[:-1]
+        cuts = np.unique(np.concatenate([even, edges, graded]))
         s, w = np.polynomial.legendre.leggauss(NODES)
         s, w = (s + 1) / 2, w / 2
         low, span = cuts[:-1, None], np.diff(cuts)[:, None]
