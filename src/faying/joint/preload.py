@@ -20,7 +20,8 @@ from faying.fe.solve import Factorisation, factorise
 from faying.joint.seat import Seat
 
 Array = NDArray[np.float64]
-AGED = 40  # conjugate-gradient steps after which a new factorisation is cheaper
+AGED = 15  # conjugate-gradient steps after which a new factorisation is cheaper
+SETTLED = 1e-4  # imbalance below which k_t is held
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,6 +92,8 @@ class Assembly:
             step, count = self._direction(u, force, shear, accuracy=min(1e-2, 0.1 * size))
             length = self._line_search(u, step, load, shear)
             u = u + length * step
+            if size > SETTLED:  # far off, k_t follows at once; near the end it is held so that Newton converges
+                shear = [self._shear_stiffness(joint, seat, u) for joint, seat in self.joints]
             newton, inner = newton + 1, inner + count
             if report:
                 report(f"Newton {newton}: imbalance {size:.1e}, {count} inner steps, step {length:.3g}")
