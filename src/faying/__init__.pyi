@@ -1,3 +1,12 @@
 # The public names. Each is imported when it is first used (lazy_loader reads this file).
+from .contact.jk import JK
+from .errors import FayingError, InputError, NotConverged, OutsideValidity, ReadError
+from .materials import CATALOGUE, RIGID, ContactPair, Material
+from .result import Result
+from .study import Study, run
+from .surface import synthesize
+from .surface.fractal import FractalFit, fit_fractal
+from .surface.read import read_scan
+from .surface.scan import Scan
 
 __version__: str

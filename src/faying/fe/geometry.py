@@ -1,0 +1,161 @@
+"""From a STEP file with named solids and faces to a mesh, through netgen (LGPL) and its OpenCASCADE kernel.
+
+Names are those that the CAD program gave to solids and faces. A face without a name can be named by a point: the face
+nearest to it takes the name.
+"""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.errors import InputError, ReadError
+from faying.fe.mesh import CORNERS, EDGES, Mesh, split_at_joints
+
+# netgen numbers the middle nodes by these edges; VTK, and so we, by those of EDGES
+_NETGEN_EDGES = {"tet10": ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)), "tri6": ((1, 2), (0, 2), (0, 1))}
+
+
+def _to_vtk(kind: str) -> list[int]:
+    edges = [_NETGEN_EDGES[kind].index(edge) for edge in EDGES[kind]]
+    return [*range(CORNERS[kind]), *(CORNERS[kind] + i for i in edges)]
+
+
+def read_step(path: Path) -> Any:
+    """Return the OpenCASCADE shape of a STEP file, in the file's millimetres."""
+    if not path.is_file():
+        raise ReadError(f"no file {path}; geometry.step names a STEP file relative to the study")
+    head = path.read_bytes()[:64]
+    if b"ISO-10303-21" not in head:
+        raise ReadError(f"{path} is not a STEP file (it does not begin with ISO-10303-21); export STEP AP214 or AP242")
+    from netgen.occ import OCCGeometry
+
+    try:
+        shape = OCCGeometry(str(path)).shape
+    except Exception as fault:
+        raise ReadError(f"{path} cannot be read as STEP ({fault}); export it again from the CAD program") from None
+    if not list(shape.solids):
+        raise ReadError(f"{path} holds no solid; export solids, not surfaces")
+    return shape
+
+
+def mesh_step(
+    path: Path,
+    *,
+    size: float,
+    local_size: Mapping[str, float] | None = None,
+    face_points: Mapping[str, tuple[str, Sequence[float]]] | None = None,
+) -> Mesh:
+    """Mesh the solids of a STEP file with second-order tetrahedra.
+
+    path: STEP file; size: largest edge [m]; local_size: face name -> largest edge there [m]; face_points: name to
+    give -> (part, point [m]) for faces that the file does not name. Faces that two parts share come out matched node
+    for node, one copy per part. Raises ReadError for unreadable files and InputError for names that do not exist.
+    """
+    from netgen.occ import Glue, OCCGeometry, Pnt, Vertex
+
+    shape = read_step(path)
+    solids = list(shape.solids)
+    for number, solid in enumerate(solids):
+        if not solid.name:
+            solid.name = f"part{number + 1}"
+    names = [solid.name for solid in solids]
+    if len(set(names)) != len(names):
+        raise InputError(f"{path}: two solids have the same name ({', '.join(names)}); name each of them once")
+    for label, (part, point) in (face_points or {}).items():
+        if part not in names:
+            raise InputError(f"face {label!r}: no part is called {part!r}; the parts are {', '.join(names)}")
+        here = Vertex(Pnt(*(1e3 * x for x in point)))
+        nearest = min(solids[names.index(part)].faces, key=lambda face: face.Distance(here))
+        nearest.name = label
+
+    # gluing merges touching faces and keeps one of their names: remember the geometry of every named face
+    marks = [
+        (face.name, names[i], _signature(face)) for i, solid in enumerate(solids) for face in solid.faces if face.name
+    ]
+    glued = Glue(solids) if len(solids) > 1 else shape
+    parts = list(glued.solids)
+    for face in glued.faces:
+        face.name = ""
+    by_signature: dict[tuple[float, ...], list[tuple[str, str]]] = {}
+    for label, part, signature in marks:
+        by_signature.setdefault(signature, []).append((label, part))
+    listed = list(glued.faces)
+    labels = [by_signature.get(_signature(face), []) for face in listed]
+    found = {label for pairs in labels for label, _ in pairs}
+    lost = {label for label, _, _ in marks} - found
+    for number, face in enumerate(listed):
+        face.name = f"{number}"
+    for label, size_here in (local_size or {}).items():
+        if label not in found:
+            raise InputError(f"size of face {label!r}: the faces are {', '.join(sorted(found))}")
+        for face, pairs in zip(listed, labels, strict=True):
+            if any(label == have for have, _ in pairs):
+                face.maxh = size_here * 1e3
+
+    mesh = OCCGeometry(glued).GenerateMesh(maxh=size * 1e3, grading=0.4, quad_dominated=False)
+    mesh.SecondOrder()
+    return _collect(mesh, [solid.name for solid in parts], labels, lost, source=path.name)
+
+
+def _signature(face: Any) -> tuple[float, ...]:
+    """Return the centre and area of a face [mm, mm2], rounded: what tells faces apart before and after gluing."""
+    centre = face.center
+    return tuple(round(float(v), 4) + 0.0 for v in (centre.x, centre.y, centre.z, face.mass))
+
+
+def _collect(
+    mesh: Any, parts: list[str], labels: list[list[tuple[str, str]]], lost: set[str], *, source: str
+) -> Mesh:
+    points = np.asarray(mesh.Coordinates(), float) * 1e-3
+    tets = mesh.Elements3D().NumPy()
+    cells = tets["nodes"][:, :10].astype(np.int64)[:, _to_vtk("tet10")] - 1
+    domain = tets["index"].astype(np.int64) - 1
+    corners = points[cells[:, :4]]
+    if np.mean(np.linalg.det(corners[:, 1:] - corners[:, :1])) < 0:
+        cells = cells[:, [1, 0, 2, 3, 4, 6, 5, 8, 7, 9]]
+    middle = points[cells[:, 4:]] - (points[cells[:, [0, 1, 0, 0, 1, 2]]] + points[cells[:, [1, 2, 2, 3, 3, 3]]]) / 2
+    if np.median(np.abs(middle)) > 1e-6 * np.ptp(points):
+        raise InputError("the mesher numbers the middle nodes of tetrahedra in an unknown order")
+
+    tris = mesh.Elements2D().NumPy()
+    face_of = tris["index"].astype(np.int64)
+    names = mesh.GetRegionNames(dim=2)
+    triangles: dict[str, NDArray[np.int64]] = {}
+    owner: dict[str, int] = {}
+    face_part: dict[str, str] = {}
+    for number in range(1, len(names) + 1):
+        for label, part in labels[int(names[number - 1])]:
+            tri = tris["nodes"][face_of == number][:, :6].astype(np.int64)[:, _to_vtk("tri6")] - 1
+            if face_part.setdefault(label, part) != part:
+                raise InputError(f"face {label!r} is on two parts, {face_part[label]!r} and {part!r}; name them apart")
+            owner[label] = parts.index(part)
+            triangles[label] = np.concatenate([triangles[label], tri]) if label in triangles else tri
+    new_points, new_cells, faces = split_at_joints(points, cells, domain, triangles, owner)
+    blocks = {name: new_cells[domain == i] for i, name in enumerate(parts)}
+    for label, tri in faces.items():
+        faces[label] = _outward(new_points, tri, blocks[face_part[label]])
+    made = Mesh(points=new_points, parts=blocks, faces=faces, face_part=face_part, source=source)
+    if lost:
+        raise InputError(f"{source}: the faces {', '.join(sorted(lost))} overlap others only in part, so that gluing cut "
+                         "them; split the larger face in the CAD program where the parts meet")  # fmt: skip
+    return made
+
+
+def _outward(points: Any, tri: NDArray[np.int64], cells: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Turn triangles so that their normals leave the part: the fourth corner of the element lies behind."""
+    faces = np.sort(cells[:, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]].reshape(-1, 3), axis=1)
+    opposite = cells[:, [3, 2, 1, 0]].reshape(-1)
+    n = len(points)
+    key = (faces[:, 0] * n + faces[:, 1]) * n + faces[:, 2]
+    order = np.argsort(key)
+    want = np.sort(tri[:, :3], axis=1)
+    place = np.searchsorted(key[order], (want[:, 0] * n + want[:, 1]) * n + want[:, 2])
+    behind = points[opposite[order[place]]] - points[tri[:, 0]]
+    normal = np.cross(points[tri[:, 1]] - points[tri[:, 0]], points[tri[:, 2]] - points[tri[:, 0]])
+    inward = np.einsum("ij,ij->i", normal, behind) > 0
+    turned = tri.copy()
+    turned[inward] = tri[inward][:, [1, 0, 2, 3, 5, 4]]
+    return turned

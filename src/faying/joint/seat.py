@@ -1,0 +1,135 @@
+"""A contact law laid on a joint: pressure from closing, and stiffness and loss at every point from its pressure."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from faying.errors import InputError
+
+Array = NDArray[np.float64]
+LEAST_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p(closing) goes on as a power
+
+
+class Law(Protocol):
+    """What a joint asks of a contact law."""
+
+    name: str
+
+    @property
+    def greatest_pressure(self) -> float:
+        """Where the law ends [Pa]."""
+
+    def at_pressure(self, pressure: ArrayLike) -> "Answer":
+        """Response at nominal pressures [Pa]."""
+
+
+class Answer(Protocol):
+    """What a joint reads from the response of a law."""
+
+    @property
+    def k_n(self) -> Array | None:
+        """Normal stiffness [Pa/m]."""
+
+    @property
+    def k_t(self) -> Array | None:
+        """Tangential stiffness [Pa/m]."""
+
+    @property
+    def loss_n(self) -> Array | None:
+        """Loss factor of the normal motion [-]."""
+
+    @property
+    def loss_t(self) -> Array | None:
+        """Loss factor of the tangential motion [-]."""
+
+    @property
+    def valid(self) -> NDArray[np.bool_]:
+        """Where the law stands on its own ground."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Seat:
+    """The law of one joint, with its pressure as a function of closing: w = integral of dp/k_n from 0 to p.
+
+    law; tangential: "law" takes its k_t, "mindlin" takes k_t = k_n 2(1-nu)/(2-nu) with the nu given (for laws that
+    define none); scale of stiffness [-], 1 unless a study of sensitivity asks otherwise. Raises InputError where the law
+    gives no k_n, or no k_t and tangential = "law".
+    """
+
+    law: Law
+    tangential: Literal["law", "mindlin"] = "law"
+    nu: float = 0.3
+    scale: float = 1.0
+    points: int = 600
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array, Array]:
+        """ln closing, ln pressure, and d ln p/d ln w, from the least pressure to where the law ends."""
+        p = np.geomspace(LEAST_PRESSURE, self.law.greatest_pressure, self.points)
+        k = self.stiffness(p)[0]
+        slope = np.gradient(np.log(k), np.log(p))
+        if np.any(k <= 0) or slope[0] >= 1:
+            raise InputError(f"{self.law.name}: stiffness does not grow from zero slower than pressure; the faces would "
+                             "never meet")  # fmt: skip
+        # between two points k_n is a power of p, so that the integral of dp/k_n is exact there
+        power = 1 - np.diff(np.log(k)) / np.diff(np.log(p))
+        pieces = np.where(np.abs(power) > 1e-9, (p[1:] / k[1:] - p[:-1] / k[:-1]) / power,
+                          p[:-1] / k[:-1] * np.diff(np.log(p)))  # fmt: skip
+        first = p[0] / k[0] / (1 - slope[0])
+        w = first + np.concatenate([[0.0], np.cumsum(pieces)])
+        return np.log(w), np.log(p), k * w / p
+
+    @cached_property
+    def _curve(self) -> object:
+        from scipy.interpolate import CubicHermiteSpline
+
+        log_w, log_p, slope = self._table
+        return CubicHermiteSpline(log_w, log_p, slope)
+
+    def stiffness(self, pressure: Array) -> tuple[Array, Array]:
+        """k_n and k_t [Pa/m] at pressures [Pa] of any shape; 0 where the pressure is 0."""
+        answer = self.law.at_pressure(pressure)
+        if answer.k_n is None:
+            raise InputError(f"{self.law.name} defines no normal stiffness; choose another law for the joint")
+        k_n = self.scale * answer.k_n
+        if self.tangential == "mindlin":
+            return k_n, k_n * 2 * (1 - self.nu) / (2 - self.nu)
+        if answer.k_t is None:
+            raise InputError(f'{self.law.name} defines no tangential stiffness; set tangential = "mindlin" in the study')
+        return k_n, self.scale * answer.k_t
+
+    def loss(self, pressure: Array) -> tuple[Array, Array]:
+        """Loss factors normal and tangential [-]; 0 where the law defines none."""
+        answer = self.law.at_pressure(pressure)
+        nothing = np.zeros(np.shape(pressure))
+        return (
+            nothing if answer.loss_n is None else answer.loss_n,
+            nothing if answer.loss_t is None else answer.loss_t,
+        )
+
+    def pressure(self, closing: Array) -> tuple[Array, Array]:
+        """Pressure [Pa] and its slope, the stiffness [Pa/m], at closings [m]; both 0 where the faces are apart.
+
+        Beyond the end of the law the curve goes on as a power, so that an iteration may pass through; whoever keeps a
+        result checks the pressure against `law.greatest_pressure`.
+        """
+        log_w, log_p, slope = self._table
+        shut = closing > 0
+        x = np.log(np.where(shut, closing, 1.0))
+        inside = np.clip(x, log_w[0], log_w[-1])
+        value = self._curve(inside)  # type: ignore[operator]
+        steep = self._curve(inside, 1)  # type: ignore[operator]
+        end = np.where(x > log_w[-1], slope[-1], slope[0])
+        beyond = x != inside
+        value = value + np.where(beyond, end * (x - inside), 0.0)
+        steep = np.where(beyond, end, steep)
+        p = np.where(shut, np.exp(value), 0.0)
+        return p, np.where(shut, p * steep / np.where(shut, closing, 1.0), 0.0)
+
+    def closing(self, pressure: float) -> float:
+        """Closing [m] at one pressure [Pa] between the least and the greatest of the law."""
+        log_w, log_p, _ = self._table
+        return float(np.exp(np.interp(np.log(pressure), log_p, log_w)))
