@@ -1,0 +1,1 @@
+"""Figures: one function per figure, data and Axes in, Axes out."""
