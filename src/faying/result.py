@@ -93,7 +93,9 @@ class Result:
         for name in UNITS:
             value = getattr(self, name)
             if not np.all(np.isfinite(value)):
-                raise InputError(f"the study gave NaN in {name}; this is a fault of its input or of Faying, please report it")
+                raise InputError(
+                    f"the study gave NaN in {name}; this is a fault of its input or of Faying, please report it"
+                )
             value.setflags(write=False)
 
     def to_dict(self) -> dict[str, Any]:
@@ -143,7 +145,9 @@ class Result:
                 nc.joints = "\n".join(self.joints)
                 for group in (self.surface, self.law):
                     for key, value in group.items():
-                        setattr(nc, key.replace(" ", "_"), value if isinstance(value, int | float) else str(value) or " ")
+                        setattr(
+                            nc, key.replace(" ", "_"), value if isinstance(value, int | float) else str(value) or " "
+                        )
                 sizes: dict[str, int] = {}
                 for name, names in dims.items():
                     sizes |= dict(zip(names, getattr(self, name).shape, strict=True))

@@ -111,15 +111,13 @@ def _labels(
     close = 1e-6 * float(np.ptp(places, axis=0).max())
     labels: list[list[tuple[str, str]]] = [[] for _ in faces]
     for label, part, signature in marks:
-        distance = np.linalg.norm(places - signature, axis=1)
-        if distance.min() < close:
-            labels[int(np.argmin(distance))].append((label, part))
+        # a face that two solids share is listed once for each of them
+        for number in np.flatnonzero(np.linalg.norm(places - signature, axis=1) < close):
+            labels[number].append((label, part))
     return labels
 
 
-def _collect(
-    mesh: Any, parts: list[str], labels: list[list[tuple[str, str]]], lost: set[str], *, source: str
-) -> Mesh:
+def _collect(mesh: Any, parts: list[str], labels: list[list[tuple[str, str]]], lost: set[str], *, source: str) -> Mesh:
     points = np.asarray(mesh.Coordinates(), float) * 1e-3
     tets = mesh.Elements3D().NumPy()
     cells = tets["nodes"][:, :10].astype(np.int64)[:, _to_vtk("tet10")] - 1

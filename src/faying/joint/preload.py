@@ -79,8 +79,7 @@ class Assembly:
             size = float(np.linalg.norm(force)) / scale
             if size < tolerance:
                 fresh = [self._shear_stiffness(joint, seat, u) for joint, seat in self.joints]
-                change = max(float(np.linalg.norm(new - old) / max(np.linalg.norm(new), 1e-300))
-                             for new, old in zip(fresh, shear, strict=True))  # fmt: skip
+                change = max(_relative_change(new, old) for new, old in zip(fresh, shear, strict=True))
                 shear = fresh
                 size = float(np.linalg.norm(self._out_of_balance(u, load, shear))) / scale
                 if size < tolerance or change < 1e-12:
@@ -221,3 +220,8 @@ class Assembly:
                 return middle
             low, high = (middle, high) if value < 0 else (low, middle)
         return (low + high) / 2
+
+
+def _relative_change(new: Array, old: Array) -> float:
+    size = float(np.linalg.norm(new))
+    return float(np.linalg.norm(new - old)) / size if size > 0 else 0.0

@@ -82,7 +82,7 @@ class Structure:
     def shift_frequency(self) -> float:
         """A frequency below the first elastic mode of any compact body of this size [Hz]: .02 c/size."""
         speeds = [(m.E / (m.density or np.inf)) ** 0.5 for m in self.materials.values()]
-        return 0.02 * max(speeds) / self.mesh.size
+        return float(0.02 * max(speeds) / self.mesh.size)
 
     def bolt_load(self, first: str, second: str) -> Array:
         """Nodal forces [N] (unknowns,) of a bolt that pulls the two faces towards each other with 1 N."""
@@ -110,7 +110,8 @@ class Structure:
         """Stiffness and loss of every joint at pressures [Pa], one array per joint at the points of its interface."""
         out = []
         for joint, pressure in zip(self.joints, pressures, strict=True):
-            interface, per_area = joint.interface, 1.0
+            interface = joint.interface
+            per_area: Array = np.ones(1)
             if joint.per_node:
                 # the paper's use: each node's force goes straight into the law as if the node were a whole scan
                 nodes = interface.at_nodes()
@@ -120,7 +121,9 @@ class Structure:
                 per_area = area / nodes.weights
             k_n, k_t = joint.seat.stiffness(pressure)
             loss_n, loss_t = joint.seat.loss(pressure)
-            out.append(Springs(interface=interface, k_n=k_n * per_area, k_t=k_t * per_area, loss_n=loss_n, loss_t=loss_t))
+            out.append(
+                Springs(interface=interface, k_n=k_n * per_area, k_t=k_t * per_area, loss_n=loss_n, loss_t=loss_t)
+            )
         return tuple(out)
 
     def tie(self) -> Any | None:

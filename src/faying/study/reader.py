@@ -139,5 +139,7 @@ def _text(value: Any, name: str, choices: tuple[str, ...] | None) -> str:
 
 def _texts(value: Any, name: str, size: int) -> list[str]:
     if not isinstance(value, list) or len(value) != size or not all(isinstance(v, str) for v in value):
-        raise InputError(f'{name} = {value!r} should be a list of {size} names, for example ["upper.joint", "lower.joint"]')
+        raise InputError(
+            f'{name} = {value!r} should be a list of {size} names, for example ["upper.joint", "lower.joint"]'
+        )
     return list(value)

@@ -36,7 +36,7 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     tell("surface")
     surface = _surface(study)
     tell("mesh")
-    structure = _structure(study, surface)
+    structure, laws = _structure(study, surface)
     K, M = structure.matrices
     loads = np.array(study.bolts[0].preload)
     notes: list[str] = list(surface["warnings"])
@@ -51,7 +51,10 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     damped = []
     for number, load in enumerate(loads):
         tell(f"preload {load / 1e3:g} kN")
-        force = sum((bolt.preload[number] * unit for bolt, unit in zip(study.bolts, units, strict=True)), np.zeros(len(K.indptr) - 1))
+        force = sum(
+            (bolt.preload[number] * unit for bolt, unit in zip(study.bolts, units, strict=True)),
+            np.zeros(len(K.indptr) - 1),
+        )
         preload = assembly.solve(np.asarray(force))
         springs = structure.springs(preload.pressures)
         tell(f"modes at {load / 1e3:g} kN")
@@ -73,7 +76,9 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     comparison = _compare(study, loads, structure, modes, np.stack([d.frequencies for d in damped]), notes)
     rigid = np.max([m.frequencies[:6] for m in modes], axis=0)
     if rigid.max() > 1e-2:
-        notes.append(f"a rigid-body motion comes out at {rigid.max():.2g} Hz instead of 0: the solution has lost digits")
+        notes.append(
+            f"a rigid-body motion comes out at {rigid.max():.2g} Hz instead of 0: the solution has lost digits"
+        )
     return Result(
         title=study.title,
         loads=loads,
@@ -95,7 +100,7 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         triangles=triangles,
         shapes=shapes,
         surface=surface["facts"],
-        law=_law_facts(structure),
+        law=_law_facts(laws[0]),
         convergence=tuple(_convergence(p, s) for p, s in zip(preloads, per_load, strict=True)),
         comparison=comparison,
         sources=_sources(study, surface),
@@ -114,15 +119,23 @@ def _surface(study: Study) -> dict[str, Any]:
     """D, G and scan area from the scan or as given, with facts for the report and warnings."""
     spec = study.surface
     if spec.scan is None:
-        facts = {"D": spec.D, "G [m]": spec.G, "scan_area [m2]": spec.scan_area, "origin": "given in the study"}
+        facts: dict[str, Any] = {
+            "D": spec.D,
+            "G [m]": spec.G,
+            "scan_area [m2]": spec.scan_area,
+            "origin": "given in the study",
+        }
         return {"D": spec.D, "G": spec.G, "scan_area": spec.scan_area, "facts": facts, "warnings": [], "source": ""}
     from faying.surface.fractal import fit_fractal
     from faying.surface.read import read_scan
+    from faying.surface.scan import Scan
 
     scan = read_scan(spec.scan, xy_unit=spec.xy_unit, z_unit=spec.z_unit)
+    if not isinstance(scan, Scan) and spec.scan_area is None:
+        raise InputError(f"{spec.scan.name} is a line scan, which covers no area; give surface.scan_area as well")
     fit = fit_fractal(scan, method=spec.method)
     D, G = spec.D or fit.D, spec.G or fit.G
-    area = spec.scan_area or float(np.prod(scan.size))
+    area = spec.scan_area or (scan.size[0] * scan.size[1] if isinstance(scan, Scan) else 0.0)
     facts = {
         "D": D,
         "D_interval": list(fit.D_interval),
@@ -137,13 +150,18 @@ def _surface(study: Study) -> dict[str, Any]:
         "origin": spec.scan.name,
     }
     return {"D": D, "G": G, "scan_area": area, "facts": facts, "warnings": list(getattr(fit, "warnings", ())),
-            "source": f"scan {spec.scan.name}: {scan.shape[0]} x {scan.shape[1]} points"}  # fmt: skip
+            "source": f"scan {spec.scan.name}: {' x '.join(map(str, scan.heights.shape))} points"}  # fmt: skip
 
 
-def _structure(study: Study, surface: dict[str, Any]) -> Structure:
+def _structure(study: Study, surface: dict[str, Any]) -> tuple[Structure, list[JK]]:
+    """Mesh, joints and the law of each joint; every name that does not fit the geometry is reported at once."""
     spec = study.geometry
     mesh = mesh_step(spec.step, size=spec.size, local_size=spec.face_size, face_points=spec.face_at)
-    faults = [f"[part] says nothing of {name!r}, which {spec.step.name} holds" for name in mesh.parts if name not in study.parts]
+    faults = [
+        f"[part] says nothing of {name!r}, which {spec.step.name} holds"
+        for name in mesh.parts
+        if name not in study.parts
+    ]
     faults += [f"part {name!r} is not in {spec.step.name}; it holds {', '.join(mesh.parts)}" for name in study.parts
                if name not in mesh.parts]  # fmt: skip
     known = ", ".join(sorted(mesh.faces))
@@ -153,11 +171,12 @@ def _structure(study: Study, surface: dict[str, Any]) -> Structure:
     if faults:
         raise InputError("the study does not fit its geometry:\n" + "\n".join(f"  - {line}" for line in faults))
     materials = {name: study.materials[study.parts[name]] for name in mesh.parts}
-    joints = []
+    joints, laws = [], []
     for joint in study.joints:
         rough, other = (materials[mesh.face_part[face]] for face in joint.faces)
         pair = ContactPair(rough, RIGID if study.law.counterbody == "rigid" else other)
         law = JK(D=surface["D"], G=surface["G"], scan_area=surface["scan_area"], pair=pair, **study.law.options)
+        laws.append(law)
         joints.append(
             Joint(
                 name=joint.name,
@@ -168,7 +187,7 @@ def _structure(study: Study, surface: dict[str, Any]) -> Structure:
                 scan_area=law.scan_area,
             )
         )
-    return Structure(mesh=mesh, materials=materials, joints=tuple(joints))
+    return Structure(mesh=mesh, materials=materials, joints=tuple(joints)), laws
 
 
 def _tied(structure: Structure, count: int, shift: float, solver: str | None, notes: list[str]) -> Modes:
@@ -176,7 +195,9 @@ def _tied(structure: Structure, count: int, shift: float, solver: str | None, no
     K, M = structure.matrices
     merge = structure.tie()
     if merge is not None:
-        return lowest_modes((merge.T @ K @ merge).tocsr(), (merge.T @ M @ merge).tocsr(), count, shift_frequency=shift, solver=solver)
+        return lowest_modes(
+            (merge.T @ K @ merge).tocsr(), (merge.T @ M @ merge).tocsr(), count, shift_frequency=shift, solver=solver
+        )
     notes.append("the faces of a joint do not match node for node: the tied modes use springs a thousand times as stiff as "
                  "the parts in place of grown-together faces")  # fmt: skip
     stiff = 1e3 * max(m.E for m in structure.materials.values()) / structure.mesh.size
@@ -209,16 +230,19 @@ def _maps(structure: Structure, preloads: list[Preload]) -> dict[str, Array]:
     }
 
 
-def _law_facts(structure: Structure) -> dict[str, Any]:
-    law = structure.joints[0].seat.law
-    facts: dict[str, Any] = {"name": law.name}
-    if isinstance(law, JK):
-        keys = ("closure", "loss", "cutoff", "alpha", "substrate", "gamma", "shear_ratio")
-        facts |= {key: getattr(law, key) for key in keys}
-        facts |= {"psi": law._islands.psi, "E_star [Pa]": law.pair.E_star, "G_star [Pa]": law.pair.G_star,
-                  "hardness [Pa]": law.pair.hardness, "limits [m2]": list(law.limits),
-                  "greatest_pressure [Pa]": law.greatest_pressure}  # fmt: skip
-    return facts
+def _law_facts(law: JK) -> dict[str, Any]:
+    keys = ("closure", "loss", "cutoff", "alpha", "substrate", "gamma", "shear_ratio")
+    return (
+        {"name": law.name}
+        | {key: getattr(law, key) for key in keys}
+        | {
+            "E_star [Pa]": law.pair.E_star,
+            "G_star [Pa]": law.pair.G_star,
+            "hardness [Pa]": law.pair.hardness,
+            "limits [m2]": list(law.limits),
+            "greatest_pressure [Pa]": law.greatest_pressure,
+        }
+    )
 
 
 def _convergence(preload: Preload, springs: tuple[Springs, ...]) -> dict[str, float]:

@@ -2,6 +2,7 @@
 
 import tomllib
 from dataclasses import dataclass, field
+from itertools import pairwise
 from math import isclose
 from pathlib import Path
 from typing import Any, Literal, Self
@@ -131,7 +132,9 @@ class Study:
         bolts = tuple(_bolt(t, i) for i, t in enumerate(top.tables("bolt", required=True)))
         counts = {len(b.preload) for b in bolts if b.preload}
         if len(counts) > 1:
-            faults.add(f"the bolts have {' and '.join(map(str, sorted(counts)))} preloads; give each bolt the same number")
+            faults.add(
+                f"the bolts have {' and '.join(map(str, sorted(counts)))} preloads; give each bolt the same number"
+            )
         modes = top.table("modes") or Table({}, "modes", faults)
         mode_count = modes.count("count", 10)
         solver = modes.text("solver", None, ("pardiso", "mumps", "cholmod", "superlu"))
@@ -283,7 +286,7 @@ def _bolt(table: Table, index: int) -> BoltSpec:
         for text, load in zip(items, loads, strict=True):
             if load <= 0:
                 raise InputError(f'{name} = "{text}": a preload pulls the joint together and must be positive')
-        if any(b <= a or isclose(a, b) for a, b in zip(loads, loads[1:], strict=False)):
+        if any(b <= a or isclose(a, b) for a, b in pairwise(loads)):
             raise InputError(f"{name} = {value!r}: preloads must rise, since the law is one of loading; the joint remembers "
                              "the greatest load it has seen")  # fmt: skip
         return tuple(loads)

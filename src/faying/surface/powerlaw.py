@@ -16,7 +16,6 @@ from faying.errors import NotConverged
 from faying.surface.scan import Array
 from faying.surface.spectrum import Spectrum
 
-
 LINES = 8.0  # misfit above which a spectrum is taken as one of separate lines
 BREADTH = 0.35  # standard deviation of the smoothing over ln(frequency); wide against ln(1.5), the usual line distance
 
