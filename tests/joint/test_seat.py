@@ -1,6 +1,5 @@
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 import faying
 from faying.joint.seat import Seat
@@ -10,10 +9,11 @@ LAW = faying.JK(D=2.39, G=1.53e-10, pair=faying.ContactPair(STEEL, STEEL), scan_
 
 
 def test_closing_is_the_integral_of_compliance():
-    """w(p2) - w(p1) is the integral of dp/k_n from p1 to p2, here by adaptive quadrature in ln p."""
+    """w(p2) - w(p1) is the integral of dp/k_n from p1 to p2, here by a fine trapezoidal sum in ln p (k_n has kinks)."""
     seat = Seat(law=LAW)
     for low, high in ((10.0, 1e3), (1e3, 1e5), (1e5, 1e6), (1e6, 4e7)):
-        exact, _ = quad(lambda s: np.exp(s) / float(LAW.at_pressure(np.exp(s)).k_n), np.log(low), np.log(high), epsrel=1e-9)
+        s = np.linspace(np.log(low), np.log(high), 20001)
+        exact = np.trapezoid(np.exp(s) / LAW.at_pressure(np.exp(s)).k_n, s)
         assert seat.closing(high) - seat.closing(low) == pytest.approx(exact, rel=1e-5)
 
 

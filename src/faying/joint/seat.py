@@ -65,7 +65,7 @@ class Seat:
     tangential: Literal["law", "mindlin"] = "law"
     nu: float = 0.3
     scale: float = 1.0
-    points: int = 600
+    points: int = 1000
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
