@@ -1,1 +1,1 @@
-"""Figures: data and axes in, axes out."""
+"""Figures: one function each, data and Axes in, Axes out."""
