@@ -35,7 +35,7 @@ def test_uniform_pressure(sections):
         found = structure.assembly().solve(squeeze(structure, force))
         p = force / 4e-4
         # where the meshes do not match, a kink of the second side runs through triangles of the first
-        tolerance = 1e-8 if sections[0] == sections[1] else 0.02
+        tolerance = 1e-8 if sections[0] == sections[1] else 0.05
         weights = structure.joints[0].interface.weights
         assert weights @ found.pressures[0] == pytest.approx(force, rel=1e-8)
         assert found.pressures[0] == pytest.approx(np.full_like(found.pressures[0], p), rel=tolerance)
@@ -109,9 +109,7 @@ def test_bolts_that_pull_nothing_together():
 
 def test_a_part_without_joint_is_refused():
     mesh = stack([0.05, 0.05, 0.05], [2, 2, 2], width=0.02, height=0.02, gap=1e-6)
-    joint = Joint(
-        name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), seat=Seat(law=law())
-    )
+    joint = Joint(name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), seat=Seat(law=law()))
     with pytest.raises(faying.InputError, match="part p2 has no joint"):
         Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=(joint,))
 
