@@ -113,6 +113,11 @@ class ContactLaw(ABC):
         """The pressure at which the law ends [Pa]."""
         return float(np.exp(self._grid[1][-1]))
 
+    @property
+    def least_pressure(self) -> float:
+        """The least pressure above 0 that the law resolves [Pa]."""
+        return float(np.exp(self._grid[1][0]))
+
     def at_pressure(self, pressure: ArrayLike, *, exact: bool | None = None) -> Response:
         """Return the response at nominal pressures [Pa], any shape.
 

@@ -12,13 +12,12 @@ from faying.errors import InputError
 @cache
 def _found() -> tuple[tuple[str, type[ContactLaw]], ...]:
     package = import_module("faying.contact")
+    # a module or a subpackage each; a class belongs to the one that it was written in
     found: dict[str, type[ContactLaw]] = {}
     for entry in iter_modules(package.__path__):
-        if entry.ispkg:
-            continue
         module = import_module(f"faying.contact.{entry.name}")
         for name, value in vars(module).items():
-            own = isclass(value) and issubclass(value, ContactLaw) and value.__module__ == module.__name__
+            own = isclass(value) and issubclass(value, ContactLaw) and value.__module__.startswith(module.__name__)
             if own and not isabstract(value) and "name" in vars(value):
                 found[name] = value
     return tuple(sorted(found.items()))

@@ -12,3 +12,27 @@ from .lin_lin import LinLin
 from .unloading import Brake, EtsionKligermanKadin, load_index
 from .zhao_maietta_chang import ZhaoMaiettaChang
 from .zx import ZX
+
+__all__ = [
+    "JK",
+    "ZX",
+    "AsperityModel",
+    "AsperityResponse",
+    "Brake",
+    "ChangEtsionBogy",
+    "EtsionKligermanKadin",
+    "Ghaednia",
+    "Hertz",
+    "JacksonGreen",
+    "KogutEtsion",
+    "LinLin",
+    "ZhaoMaiettaChang",
+    "cap_of_fractal",
+    "dimension_of_cap",
+    "gao_modulus",
+    "king_modulus",
+    "load_index",
+    "mixed_modulus",
+    "models",
+    "roughness_of_cap",
+]
