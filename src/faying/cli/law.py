@@ -64,6 +64,7 @@ def command(
     from faying.contact.registry import find_law
     from faying.errors import InputError
 
+    cls = find_law(model)
     pair = pair_of(options, against)
     if models or all_models:
         from faying.cli.compare import show
@@ -73,7 +74,6 @@ def command(
         names = None if all_models else [name for name in (models or "").split(",") if name.strip()]
         show(surface_of(scan, options), pair, names, pressures_of(pressure), as_json, csv_file, plot)
         return
-    cls = find_law(model)
     if scan is not None:
         law = cls.from_surface(surface_of(scan, options)[0], pair)
         changes = parameters_of(cls, options, settings, needed=False)

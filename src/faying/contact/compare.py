@@ -98,8 +98,8 @@ def compare(
 
 def _covered(law: ContactLaw, pressure: Array) -> Response:
     """Response with NaN where the law does not reach."""
-    beyond = pressure > law.greatest_pressure
-    below = pressure < law.least_pressure
+    beyond = pressure > law.greatest_pressure * (1 + 1e-9)
+    below = pressure < law.least_pressure * (1 - 1e-9)
     at = law.at_pressure(np.clip(pressure, law.least_pressure, law.greatest_pressure))
     out = beyond | below
     arrays = {name: np.where(out, np.nan, value) for name, value in at.quantities().items()}

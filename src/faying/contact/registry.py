@@ -29,9 +29,17 @@ def laws() -> dict[str, type[ContactLaw]]:
 
 
 def find_law(name: str) -> type[ContactLaw]:
-    """Return the law called `name`; case, hyphens and underscores do not matter. InputError lists the known ones."""
-    plain = {key.lower(): value for key, value in _found()}
-    law = plain.get(name.lower().replace("-", "").replace("_", ""))
+    """Return the law called `name`, by its class or its short name ("gw"), in any case, with or without hyphens.
+
+    InputError lists the known ones.
+    """
+
+    def plain(text: str) -> str:
+        return text.strip().lower().replace("-", "").replace("_", "")
+
+    known = {plain(law.name): law for _, law in _found()} | {plain(key): law for key, law in _found()}
+    law = known.get(plain(name))
     if law is None:
-        raise InputError(f"no contact law {name!r}; known are {', '.join(key for key, _ in _found())}")
+        listed = ", ".join(key if key == law.name else f"{key} ({law.name})" for key, law in _found())
+        raise InputError(f"no contact law {name!r}; known are {listed}")
     return law
