@@ -103,7 +103,7 @@ def figure_8(D: float = 2.4, G: float = 1e-11) -> Any:
         ax.text(value, 0.96, f" {name}", transform=ax.get_xaxis_transform(), va="top", fontsize=8)
     ax.set(xscale="log", yscale="log", ylim=(floor[0], al3 * 10), xlabel="largest truncated area al' [m2]",
            ylabel="truncated area a' [m2]", title=f"D {D:g}, G {G:.0e} m")  # fmt: skip
-    ax.legend(fontsize=8, loc="center left")
+    ax.legend(fontsize=8, loc="lower right", framealpha=1)
     return fig
 
 
