@@ -1,6 +1,7 @@
 """Factorisations behind one interface; the best one found at run time is taken and reported."""
 
 import os
+import sys
 from collections.abc import Callable
 from typing import Any, Protocol
 
@@ -51,7 +52,7 @@ class _Pardiso:
 
     def __del__(self) -> None:
         solver = getattr(self, "_solver", None)
-        if solver is not None:
+        if solver is not None and not sys.is_finalizing():
             solver.free_memory(everything=True)
 
 
