@@ -106,9 +106,7 @@ def _signature(face: Any) -> tuple[float, ...]:
     return tuple(round(float(v), 4) + 0.0 for v in (centre.x, centre.y, centre.z, face.mass))
 
 
-def _collect(
-    mesh: Any, parts: list[str], labels: list[list[tuple[str, str]]], lost: set[str], *, source: str
-) -> Mesh:
+def _collect(mesh: Any, parts: list[str], labels: list[list[tuple[str, str]]], lost: set[str], *, source: str) -> Mesh:
     points = np.asarray(mesh.Coordinates(), float) * 1e-3
     tets = mesh.Elements3D().NumPy()
     cells = tets["nodes"][:, :10].astype(np.int64)[:, _to_vtk("tet10")] - 1

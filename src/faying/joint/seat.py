@@ -98,7 +98,9 @@ class Seat:
         if self.tangential == "mindlin":
             return k_n, k_n * 2 * (1 - self.nu) / (2 - self.nu)
         if answer.k_t is None:
-            raise InputError(f'{self.law.name} defines no tangential stiffness; set tangential = "mindlin" in the study')
+            raise InputError(
+                f'{self.law.name} defines no tangential stiffness; set tangential = "mindlin" in the study'
+            )
         return k_n, self.scale * answer.k_t
 
     def loss(self, pressure: Array) -> tuple[Array, Array]:

@@ -1,4 +1,4 @@
-"""The estimators behind `fit_fractal` that rest on a fitted law: spectrum, structure function, moments of the band."""
+"""The estimators behind `fit_fractal` that rest on the spectrum: power law, and moments of the band."""
 
 from dataclasses import dataclass
 from math import log, pi
@@ -7,12 +7,13 @@ from typing import final
 import numpy as np
 
 from faying.errors import FayingError, NotConverged
-from faying.surface.convention import G_from_density, structure_coefficient
-from faying.surface.form import Mask, Prepared
+from faying.surface.convention import G_from_density
+from faying.surface.form import Prepared
+from faying.surface.lines import find_lines
 from faying.surface.moments import invert_ratio
 from faying.surface.powerlaw import PowerLaw, fit_band, smearing, supported_band
 from faying.surface.scan import Array, Profile, Scan
-from faying.surface.spectrum import Spectrum, spectrum, structure_function
+from faying.surface.spectrum import Spectrum, binned, periodogram
 
 Z95 = 1.959963984540054  # two-sided 95 % point of the normal distribution
 Limits = tuple[float, float] | None
@@ -64,12 +65,25 @@ def with_intervals(
 
 
 def _spectral_fit(ready: Prepared, limits: Limits) -> tuple[Spectrum, PowerLaw, tuple[str, ...]]:
-    s = spectrum(ready.scan)
+    s, notes = clean_spectrum(ready.scan)
     if limits is not None:
-        law, notes = fit_band(s, 1 / limits[1], 1 / limits[0], fixed=True)
+        law, more = fit_band(s, 1 / limits[1], 1 / limits[0], fixed=True)
     else:
-        law, notes = fit_band(s, *supported_band(s, resolution=ready.scan.instrument.resolution))
-    return s, law, notes
+        law, more = fit_band(s, *supported_band(s, resolution=ready.scan.instrument.resolution))
+    return s, law, notes + more
+
+
+def clean_spectrum(scan: Scan | Profile) -> tuple[Spectrum, tuple[str, ...]]:
+    """Return the spectrum without the sharp peaks of tool marks, and what was left out in words."""
+    power, frequency, axes = periodogram(scan)
+    if isinstance(scan, Profile):
+        return binned(scan, power, frequency, axes), ()
+    marked = find_lines(scan, power, frequency)
+    share = float(power[marked].sum() / power.sum())
+    if share < 1e-4:
+        return binned(scan, power, frequency, axes), ()
+    words = f"tool marks: {100 * share:.2g} % of the power lies in sharp peaks of the spectrum and was left out"
+    return binned(scan, power, frequency, axes, exclude=marked), (words,)
 
 
 def white_rms(ready: Prepared, noise: float) -> float:
@@ -146,97 +160,3 @@ def by_moments(ready: Prepared, limits: Limits, c: float) -> Estimate:
         misfit=law.misfit,
         notes=notes,
     )
-
-
-def _fit_structure(lag: Array, value: Array, weight: Array) -> tuple[float, float, float]:
-    """Fit value = exp(a) (lag/l0)^s + nugget in relative terms; returns (s, a, nugget/exp(a)), l0 the geometric mean."""
-    from scipy.optimize import least_squares
-
-    x = np.log(lag) - np.mean(np.log(lag))
-    line = np.polyfit(x, np.log(value), 1)
-    start = np.array([min(max(line[0], 0.05), 1.95), line[1], 0.0])
-
-    def residual(t: Array) -> Array:
-        model = np.exp(t[1]) * (np.exp(t[0] * x) + t[2])
-        return np.asarray(weight * (np.log(np.maximum(model, 1e-300)) - np.log(value)))
-
-    bounds = ([0.01, -np.inf, -20.0], [1.999, np.inf, 50.0])
-    found = least_squares(residual, start, bounds=bounds, x_scale=[0.1, 0.1, 0.05])
-    return float(found.x[0]), float(found.x[1]), float(found.x[2])
-
-
-def _tiles(ready: Prepared) -> list[tuple[Array, Mask]]:
-    """Cut a scan into 3 x 3 parts, a profile into 8, for the spread of an estimate between parts: (heights, known)."""
-    z, known = ready.scan.heights, ready.known
-    if z.ndim == 1:
-        return list(zip(np.array_split(z, 8), np.array_split(known, 8), strict=True))
-    out = []
-    for rows, krows in zip(np.array_split(z, 3), np.array_split(known, 3), strict=True):
-        out += list(zip(np.array_split(rows, 3, axis=1), np.array_split(krows, 3, axis=1), strict=True))
-    return out
-
-
-def by_structure(ready: Prepared, limits: Limits, c: float) -> Estimate:
-    """Fit SF = B lag^(6-2D) + constant to the structure function, each lag vector counting alike.
-
-    The constant is twice the variance of white noise, less twice the power of the wavelengths that the points cannot
-    hold (they lower the structure function at every lag alike), so it may be negative.
-
-    Band: from 3 spacings to 1/16 of the shortest side. The interval is from the spread between parts of the scan
-    (3 x 3, or 8 of a profile), Student's t.
-    """
-    from scipy.stats import t as student
-
-    scan = ready.scan
-    spacing = scan.spacing if isinstance(scan, Profile) else max(scan.spacing)
-    side = scan.length if isinstance(scan, Profile) else min(scan.size)
-    low, high = limits if limits is not None else (3 * spacing, side / 16)
-    # an instrument's resolution bounds the wavelengths; a lag of half of it is the shortest one that means anything
-    if limits is None and scan.instrument.resolution:
-        low = max(low, scan.instrument.resolution)
-
-    def one(part: Scan | Profile, known: Mask) -> tuple[float, float, float, Array]:
-        sf = structure_function(part, known=known, longest=min(0.5, high / _side(part)))
-        use = (sf.lag >= low) & (sf.lag <= high) & (sf.value > 0)
-        if use.sum() < 4:
-            raise NotConverged(f"only {int(use.sum())} lags between {low:.3g} and {high:.3g} m; give a wider band")
-        lag = sf.lag[use]
-        s, a, nugget = _fit_structure(lag, sf.value[use], 1 / lag**0.25)
-        return s, a - s * float(np.mean(np.log(lag))), nugget * np.exp(a), lag
-
-    s, level, nugget, lag = one(scan, ready.known)
-    spots = []
-    for z, known in _tiles(ready):
-        try:
-            part: Scan | Profile = scan.with_heights(z)
-            spots.append(one(part, known)[:2])
-        except FayingError:
-            continue
-    if len(spots) < 4:
-        raise NotConverged("the scan is too small for an interval of the structure function; use method psd")
-    pivot_lag = float(np.exp(np.mean(np.log(lag))))
-    cloud = np.array([(lv + sl * log(pivot_lag), 3 - sl / 2) for sl, lv in spots])
-    widen = (float(student.ppf(0.975, len(spots) - 1)) / Z95) ** 2
-    D = 3 - s / 2
-    # ln SF(pivot) -> ln S at the frequency 1/pivot: SF = 2 B k(D) lag^(6-2D), B = S f^(7-2D)
-    f = 1 / pivot_lag
-
-    def to_density(d: float, log_sf: float) -> float:
-        k = structure_coefficient(d) * 2
-        return log_sf - log(k) - (6 - 2 * d) * log(pivot_lag) - (7 - 2 * d) * log(f)
-
-    centre = to_density(D, level + s * log(pivot_lag))
-    moved = np.array([(to_density(min(max(d, 1.55), 2.99), v), d) for v, d in cloud])
-    return with_intervals(
-        D,
-        centre,
-        np.cov(moved.T) / len(spots) * widen,
-        f,
-        c,
-        band=(float(lag[0]), float(lag[-1])),
-        noise=(max(nugget, 0.0) / 2) ** 0.5,
-    )
-
-
-def _side(scan: Scan | Profile) -> float:
-    return scan.length if isinstance(scan, Profile) else min(scan.size)

@@ -7,12 +7,21 @@ import numpy as np
 
 from faying.errors import FayingError, InputError
 from faying.surface.convention import NAMES, cut_factor, implied_Rq, prefactor
-from faying.surface.estimate import Estimate, by_moments, by_psd, by_structure
+from faying.surface.estimate import Estimate, by_moments, by_psd
 from faying.surface.form import Prepared, prepared
 from faying.surface.roughness import roughness
+from faying.surface.scaling import by_box, by_higuchi, by_mfdfa, by_roughness_length, by_structure
 from faying.surface.scan import Profile, Scan
 
-ESTIMATORS = {"psd": by_psd, "structure": by_structure, "moments": by_moments}
+ESTIMATORS = {
+    "psd": by_psd,
+    "structure": by_structure,
+    "roughness-length": by_roughness_length,
+    "box": by_box,
+    "higuchi": by_higuchi,
+    "mfdfa": by_mfdfa,
+    "moments": by_moments,
+}
 METHODS = tuple(ESTIMATORS)
 
 
@@ -97,7 +106,8 @@ def _limits(ready: Prepared, band: tuple[float, float] | None) -> tuple[float, f
     low, high = float(min(band)), float(max(band))
     if not (shortest * (1 - 1e-9) <= low < high <= longest * (1 + 1e-9)):
         raise InputError(
-            f"band = {band}: wavelengths in metres between twice the spacing, {shortest:.4g}, and the side, {longest:.4g}"
+            f"band = {band}: give wavelengths in metres between twice the spacing, {shortest:.4g}, and the side, "
+            f"{longest:.4g}"
         )
     return low, high
 
@@ -122,11 +132,8 @@ def _result(ready: Prepared, e: Estimate, method: str, convention: str, gamma: f
             f"D and G imply Rq {implied:.3g} m over the scan's side, the scan's own is {rough.Rq:.3g} m: the law does "
             "not hold up to that length"
         )
-    if convention == NAMES[0]:
-        text = "Yan-Komvopoulos (JK), c = 1"
-    else:
-        text = f"Majumdar-Bhushan, c = 1/ln(gamma) = {c:.4f}"
-    text += "; S(f) = c G^(2Ds-2)/2 f^-(5-2Ds), D = Ds + 1"
+    name = "Yan-Komvopoulos (JK), c = 1" if convention == NAMES[0] else f"Majumdar-Bhushan, c = 1/ln(gamma) = {c:.4f}"
+    text = name + "; S(f) = c G^(2Ds-2)/2 f^-(5-2Ds), D = Ds + 1"
     if isinstance(scan, Profile):
         text += "; G of the profile itself"
         if 2 < e.D < 3:
