@@ -5,7 +5,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.fe.elasticity import surface_frame
