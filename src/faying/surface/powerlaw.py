@@ -254,3 +254,9 @@ def _predict(spectrum: Spectrum, law: PowerLaw, f: Array) -> tuple[Array, Array]
     mean = np.maximum(mean, 0.02 * power)
     jac = np.stack([np.ones(len(f)), power * (dsmear - smear * x) / mean, level * shape / mean], axis=1)
     return mean, np.sqrt(np.einsum("ij,jk,ik->i", jac, law.covariance, jac))
+
+
+def estimate_from(law: PowerLaw) -> tuple[float, float, Array]:
+    """Return D, ln S(pivot) and the covariance of (ln S(pivot), D), with D = (7 - slope)/2."""
+    turn = np.array([[1.0, 0.0], [0.0, -0.5]])
+    return (7 - law.slope) / 2, law.log_level, turn @ law.covariance[:2, :2] @ turn.T

@@ -252,7 +252,8 @@ def generalised_hurst(scan: Scan | Profile, q: Array, *, low: float, high: float
         else:
             y = [float(np.log(np.mean(np.exp(value * (v - v.max())))) / value + v.max()) for v in squares]
         out.append(_line(x, np.array(y))[0])
-    return np.asarray(np.reshape(out, np.shape(q)), float)
+    h: Array = np.array(out, dtype=np.float64)
+    return h.reshape(np.shape(q))
 
 
 def by_higuchi(ready: Prepared, limits: Limits, c: float) -> Estimate:
