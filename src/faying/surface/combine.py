@@ -63,7 +63,7 @@ def combine(
     low, high = max(b[0] for b in bands), min(b[1] for b in bands)
     if high < 4 * low:
         raise InputError(
-            f"the scans share wavelengths {1 / high:.3g} .. {1 / low:.3g} m only; measure both over like sizes and steps"
+            f"the scans share no band of wavelengths ({1 / high:.3g} .. {1 / low:.3g} m); measure both over like sizes"
         )
     inside = (sa.frequency >= sb.frequency[0]) & (sa.frequency <= sb.frequency[-1])
     f = sa.frequency[inside]

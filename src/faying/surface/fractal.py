@@ -36,7 +36,8 @@ class FractalFit:
     used [m]. `Rq` and `Ra` [m] are the scan's own after levelling, `implied_Rq` and `implied_Ra` [m] what D and G say
     of all wavelengths up to the side of the scan (Ra for Gaussian heights). `noise` [m] is the rms of the white part
     found, `misfit` the mean squared residual over its expectation (1 for a true power law). `missing` and `spikes`
-    count the points that were filled in. `bias` is what a self-test has taken off D (None without one). `warnings` says what the user ought to know.
+    count the points that were filled in. `bias` is what a self-test took off D, None without one. `warnings` says
+    what the user ought to know.
     """
 
     method: str
@@ -71,6 +72,7 @@ def fit_fractal(
     spikes: bool = True,
     convention: str = "yan-komvopoulos",
     gamma: float = 1.5,
+    self_test: bool = False,
 ) -> FractalFit:
     """Estimate D and G of a scan (or a profile) with 95 % intervals.
 
@@ -82,6 +84,7 @@ def fit_fractal(
     `convention` is "yan-komvopoulos" (the JK model's, c = 1) or "majumdar-bhushan" (c = 1/ln gamma). For a scan G is
     that of the surface: the power of all directions together. For a profile it is the profile's own, as if cut across
     parallel ridges; `convention` states the factor for a cut from an isotropic surface.
+    `self_test` corrects D and G by what the method makes of synthetic surfaces like this one (`selftest`; not with `band`).
     Raises InputError for unknown methods, bands outside the scan, and heights that carry no statistic.
     """
     if not isinstance(scan, (Scan, Profile)):
@@ -89,6 +92,12 @@ def fit_fractal(
     if method not in ESTIMATORS:
         raise InputError(f"method = {method!r}; allowed: {', '.join(METHODS)}")
     c = prefactor(convention, gamma)
+    if self_test:
+        from faying.surface import selftest
+
+        if band is not None:
+            raise InputError("self_test chooses the band itself; leave out band or self_test")
+        return selftest.self_test(scan, method, degree=degree, spikes=spikes, convention=convention, gamma=gamma)
     ready = prepared(scan, degree=degree, spikes=spikes)
     limits = _limits(ready, band)
     try:
@@ -147,9 +156,7 @@ def result(
     implied = implied_Rq(e.D, e.G, length, c) if sound else float("nan")
     words = list(e.notes)
     if not 2 < e.D < 3:
-        words.append(
-            f"D = {e.D:.3f} lies outside 2 .. 3: over this band the surface is not fractal and G means nothing"
-        )
+        words.append(f"D = {e.D:.3f} lies outside 2 .. 3: over this band the surface is not fractal, G means nothing")
     elif not 2.1 <= e.D <= 2.9:
         words.append(f"D = {e.D:.3f} lies outside 2.1 .. 2.9, where G is very uncertain and the JK model is unproven")
     if e.misfit > 3:

@@ -197,7 +197,7 @@ def _fluctuation(lines: Array, size: int, order: int) -> Array:
         w = part.reshape(-1, size)
         inside = w @ basis
         total.append((np.einsum("ij,ij->i", w, w) - np.einsum("ij,ij->i", inside, inside)) / size)
-    return np.maximum(np.concatenate(total), 1e-300)
+    return np.asarray(np.maximum(np.concatenate(total), 1e-300), float)
 
 
 def _windows(order: int, integrated: bool) -> Local:

@@ -1,4 +1,4 @@
-"""Self-test of an estimator on surfaces of known D and G made like the scan: its bias taken off, its spread measured."""
+"""Self-test: an estimator run on surfaces of known D and G made like the scan, its bias taken off."""
 
 from math import log
 from typing import Any
