@@ -1,6 +1,6 @@
 """Train the network of faying.surface.fpenn on exact moments of finite Weierstrass-Mandelbrot series.
 
-Run: python benchmarks/surface_fpenn_train.py [OUTPUT.npz]     (about five minutes on one core; the same numbers each time)
+Run: python benchmarks/surface_fpenn_train.py [OUTPUT.npz]     (five minutes on one core; same numbers each time)
 Full-batch L-BFGS in double precision from a seeded start, so the result depends on nothing but NumPy and SciPy.
 """
 

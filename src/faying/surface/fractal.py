@@ -84,7 +84,7 @@ def fit_fractal(
     `convention` is "yan-komvopoulos" (the JK model's, c = 1) or "majumdar-bhushan" (c = 1/ln gamma). For a scan G is
     that of the surface: the power of all directions together. For a profile it is the profile's own, as if cut across
     parallel ridges; `convention` states the factor for a cut from an isotropic surface.
-    `self_test` corrects D and G by what the method makes of synthetic surfaces like this one (`selftest`; not with `band`).
+    `self_test` corrects D and G by what the method makes of synthetic surfaces like this one; not with `band`.
     Raises InputError for unknown methods, bands outside the scan, and heights that carry no statistic.
     """
     if not isinstance(scan, (Scan, Profile)):

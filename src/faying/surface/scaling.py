@@ -7,6 +7,7 @@ the spread between parts of the scan, Student's t; it holds no bias, see `selfte
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from math import log, pi
 
 import numpy as np
@@ -154,10 +155,18 @@ def by_structure(ready: Prepared, limits: Limits, c: float) -> Estimate:
     return _estimate(ready, c, local, *_band(ready, limits, 3, 1 / 16), "the structure function")
 
 
-def _spherical(order: int, x: Array) -> Array:
+@cache
+def _share_left(order: int) -> tuple[Array, Array]:
+    """Cycles u per window, and the share T(u) of a wave's power left when the polynomial is removed."""
     from scipy.special import spherical_jn
 
-    return np.asarray(spherical_jn(order, x), float)
+    u = np.exp(np.linspace(log(1e-5), log(200.0), 40001))
+    x = pi * u
+    left = 1 - sum((2 * k + 1) * spherical_jn(k, x) ** 2 for k in range(order + 1))
+    # leading term of the series where the difference cancels; all orders together sum to 1
+    k = order + 1
+    double = float(np.prod(np.arange(2 * k + 1, 0, -2)))
+    return u, np.where(x < 0.05, (2 * k + 1) * x ** (2 * k) / double**2, left)
 
 
 def window_transfer(D: float, order: int, integrated: bool) -> float:
@@ -166,25 +175,12 @@ def window_transfer(D: float, order: int, integrated: bool) -> float:
     T(u) = 1 - sum_k (2k+1) j_k(pi u)^2 over k = 0 .. order, j_k the spherical Bessel functions. With `integrated` the
     wave has been summed first, which divides its power by (2 pi u)^2. In this unit the window has length 1.
     """
-    from scipy.integrate import quad
-
+    u, left = _share_left(order)
     power = 7 - 2 * D + (2 if integrated else 0)
-
-    def left(v: float) -> float:
-        u = np.exp(v)
-        x = np.pi * u
-        if x < 0.05:  # leading term of the series, sum_k (2k+1) j_k^2 = 1 over all k
-            k = order + 1
-            double = float(np.prod(np.arange(2 * k + 1, 0, -2)))
-            share = (2 * k + 1) * x ** (2 * k) / double**2
-        else:
-            share = 1 - sum((2 * k + 1) * float(_spherical(k, np.asarray(x))) ** 2 for k in range(order + 1))
-        return float(u ** (1 - power) * share)
-
-    total = quad(left, log(1e-6), log(30.0), limit=400)[0]
-    # beyond 30 cycles T is 1 but for 1/u^2
-    total += 30.0 ** (1 - power) / (power - 1)
-    return float(total / ((2 * pi) ** 2 if integrated else 1))
+    total = float(np.trapezoid(u ** (1 - power) * left, np.log(u)))
+    # beyond the last u, T is 1
+    total += float(u[-1]) ** (1 - power) / (power - 1)
+    return float(total / (2 * pi) ** 2) if integrated else total
 
 
 def _fluctuation(lines: Array, size: int, order: int) -> Array:
@@ -222,13 +218,13 @@ def _windows(order: int, integrated: bool) -> Local:
 def by_roughness_length(ready: Prepared, limits: Limits, c: float) -> Estimate:
     """Rms residual about a straight line in windows of w along x and y: Rq ~ w^(3-D) (Malinverno, doi:10.1029/
     GL017i011p01953)."""
-    return _estimate(ready, c, _windows(1, False), *_band(ready, limits, 10, 1 / 8), "the roughness length")
+    return _estimate(ready, c, _windows(1, False), *_band(ready, limits, 10, 1 / 4), "the roughness length")
 
 
 def by_mfdfa(ready: Prepared, limits: Limits, c: float) -> Estimate:
     """Fluctuation of the summed profiles about parabolas, q = 2: D = 4 - h(2) (Kantelhardt, doi:10.1016/
     S0378-4371(02)01383-3). `generalised_hurst` gives the other q."""
-    return _estimate(ready, c, _windows(2, True), *_band(ready, limits, 12, 1 / 8), "the detrended fluctuation")
+    return _estimate(ready, c, _windows(2, True), *_band(ready, limits, 10, 1 / 4), "the detrended fluctuation")
 
 
 def generalised_hurst(scan: Scan | Profile, q: Array, *, low: float, high: float) -> Array:
