@@ -1,1 +1,1 @@
-"""Figures: one function per figure, data and Axes in, Axes out."""
+"""Figures: one function each, data and Axes in, Axes out."""
