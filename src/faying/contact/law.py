@@ -17,6 +17,15 @@ Mask = NDArray[np.bool_]
 TABLE_POINTS = 500
 
 
+@dataclass(frozen=True)
+class Parameter:
+    """What one parameter of a law is: its SI unit ("" for a number, "text" for a word), meaning and allowed values."""
+
+    unit: str
+    meaning: str
+    allowed: str
+
+
 @dataclass(frozen=True, kw_only=True)
 class Response:
     """What a contact law says at one load or many; all arrays share one shape, all quantities per nominal area.
@@ -73,10 +82,14 @@ class ContactLaw(ABC):
 
     A model gives `at_closure`, `closure_range` (the closures of the least and of the greatest load that it covers,
     between which pressure grows strictly) and says by `geometric` whether that variable wants a logarithmic scale.
+    For people it states its `source`, its `parameters` (all but the pair of materials) and the `ground` on which it
+    stands.
     """
 
     name: ClassVar[str]
     source: ClassVar[str]
+    parameters: ClassVar[Mapping[str, Parameter]]
+    ground: ClassVar[str]
     geometric: ClassVar[bool] = True
 
     @abstractmethod
@@ -87,6 +100,18 @@ class ContactLaw(ABC):
     @abstractmethod
     def closure_range(self) -> tuple[float, float]:
         """Closures at the least and at the greatest load that the law covers."""
+
+    def with_(self, **changes: object) -> Self:
+        """Return the same law with some parameters changed; InputError where there is no such parameter."""
+        own = [f.name for f in fields(self) if f.init]  # type: ignore[arg-type]
+        unknown = sorted(set(changes) - set(own))
+        if unknown:
+            raise InputError(f"{self.name} has no parameter {', '.join(unknown)}; it has {', '.join(own)}")
+        return replace(self, **changes)  # type: ignore[type-var]
+
+    def _pressure_at(self, closure: Array) -> Array:
+        """Pressure alone; a model overrides this where it is quicker than the whole response."""
+        return self.at_closure(closure).pressure
 
     def _from_parameter(self, u: Array) -> Array:
         """Closure from the parameter u in [0, 1] that runs from the least to the greatest load."""
@@ -99,7 +124,7 @@ class ContactLaw(ABC):
     def _grid(self) -> tuple[Array, Array]:
         """Parameter and ln(pressure) on a grid fine enough to bracket any root."""
         u = np.linspace(0.0, 1.0, TABLE_POINTS)
-        log_p = np.log(self.at_closure(self._from_parameter(u)).pressure)
+        log_p = np.log(self._pressure_at(self._from_parameter(u)))
         if not np.all(np.isfinite(log_p)) or np.any(np.diff(log_p) <= 0):
             raise NotConverged(f"{self.name}: pressure does not grow with closure over {self.closure_range}; "
                                "the parameters leave the ground of the model")  # fmt: skip
@@ -118,14 +143,16 @@ class ContactLaw(ABC):
         """
         p = checked(pressure, name="pressure", unit="Pa", zero=True)
         if p.size and p.max() > self.greatest_pressure * (1 + 1e-12):
-            raise InputError(f"pressure {p.max():.4g} Pa is more than {self.name} covers with these parameters: at most "
-                             f"{self.greatest_pressure:.4g} Pa; lower the load or widen the joint")  # fmt: skip
+            raise InputError(
+                f"pressure {p.max():.4g} Pa is more than {self.name} covers with these parameters: at most "
+                f"{self.greatest_pressure:.4g} Pa; lower the load or widen the joint"
+            )
         flat = p.ravel()
         at = self.at_closure(self._closure_at(np.where(flat > 0, flat, self.greatest_pressure)))
         exact = {name: np.where(flat > 0, value, 0.0) for name, value in at.quantities().items()}
         exact["pressure"] = flat.copy()
         reasons = {name: mask & (flat > 0) for name, mask in at.reasons.items()}
-        return replace(at, **exact, reasons=reasons).reshaped(p.shape)  # type: ignore[arg-type]
+        return replace(at, **exact, reasons=reasons).reshaped(p.shape)
 
     def _closure_at(self, pressure: Array) -> Array:
         """Invert pressures (flat, positive, within the law) for the closure variable."""
@@ -134,11 +161,13 @@ class ContactLaw(ABC):
         u, log_p = self._grid
         target = np.clip(np.log(pressure), log_p[0], log_p[-1])
         if pressure.size and np.log(pressure.min()) < log_p[0] - 1e-9:
-            raise InputError(f"pressure {pressure.min():.4g} Pa is below the least that {self.name} resolves with these "
-                             f"parameters, {np.exp(log_p[0]):.4g} Pa; use 0 for an open point")  # fmt: skip
+            raise InputError(
+                f"pressure {pressure.min():.4g} Pa is below the least that {self.name} resolves with these parameters, "
+                f"{np.exp(log_p[0]):.4g} Pa; use 0 for an open point"
+            )
         cell = np.clip(np.searchsorted(log_p, target, side="right") - 1, 0, u.size - 2)
         miss: Callable[[Array, Array], Array] = lambda v, t: (  # noqa: E731
-            np.log(self.at_closure(self._from_parameter(v)).pressure) - t
+            np.log(self._pressure_at(self._from_parameter(v))) - t
         )
         # the ends of the grid are exact roots up to rounding: give the bracket that much room
         low, high = u[cell], u[cell + 1]

@@ -5,7 +5,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.fe.elasticity import surface_frame
@@ -133,7 +132,9 @@ def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> 
     """
     tri_a, tri_b = mesh.face(first), mesh.face(second)
     if mesh.face_part[first] == mesh.face_part[second]:
-        raise InputError(f"faces {first!r} and {second!r} are both on part {mesh.face_part[first]!r}; a joint needs two")
+        raise InputError(
+            f"faces {first!r} and {second!r} are both on part {mesh.face_part[first]!r}; a joint needs two"
+        )
     reach = 0.01 * mesh.size if reach is None else reach
     _, weights, values, gradients = reference("tri6", DEGREE)
     normals, area = surface_frame(mesh.points, tri_a, gradients)
