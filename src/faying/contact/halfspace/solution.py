@@ -81,7 +81,9 @@ class HalfSpaceContact:
         else:
             framed = np.pad(touching, 1)
             across, along = (int(np.count_nonzero(np.diff(framed, axis=axis))) for axis in (1, 0))
-        return float((across * self.spacing[1] + along * self.spacing[0]) / (nx * ny * self.spacing[0] * self.spacing[1]))
+        return float(
+            (across * self.spacing[1] + along * self.spacing[0]) / (nx * ny * self.spacing[0] * self.spacing[1])
+        )
 
     @property
     def area_corrected(self) -> float:

@@ -1,6 +1,6 @@
 """Contact of a height map with a rigid plane, both taken as one elastic half-space, by `solve_half_space`."""
 
-from math import isfinite, isnan, sqrt
+from math import isfinite, isnan
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -266,6 +266,12 @@ def _check_memory(shape: tuple[int, ...], periodic: bool) -> None:
                          f"{'' if periodic else ', or solve it as periodic (a quarter of the transform)'}")  # fmt: skip
 
 
+def halved_map(h: Array, spacing: tuple[float, float]) -> tuple[Array, tuple[float, float]]:
+    """The map on half as many points each way, with its spacing [m]."""
+    small = _halved(h)
+    return small, (spacing[0] * h.shape[1] / small.shape[1], spacing[1] * h.shape[0] / small.shape[0])
+
+
 def _halved(h: Array) -> Array:
     """The map on half as many points: block means, interpolated where a side is odd."""
     for axis in (0, 1):
@@ -291,8 +297,3 @@ def _spread(x: Array, shape: tuple[int, ...]) -> Array:
 def _frozen(a: Array) -> Array:
     a.setflags(write=False)
     return a
-
-
-def rms_height(h: Array) -> float:
-    """Root mean square of the heights about their mean, in their unit."""
-    return sqrt(float(np.var(h)))
