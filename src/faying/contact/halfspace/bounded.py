@@ -21,6 +21,7 @@ from math import isfinite
 from typing import final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from faying.contact.halfspace.conjugate import constrained_gradients
 from faying.contact.halfspace.kernels import Array, Kernel
@@ -45,7 +46,7 @@ class Minimum:
     applications: int
 
 
-def _at(bound: Bound, where: Array) -> Bound:
+def _at(bound: Bound, where: NDArray[np.intp]) -> Bound:
     return bound[where] if isinstance(bound, np.ndarray) else bound
 
 
@@ -179,7 +180,7 @@ class _Search:
             pace *= min(max(-down / curvature, 0.1), 0.7)
         return level
 
-    def _newton_step(self, free: Array, shift: float | None) -> bool:
+    def _newton_step(self, free: NDArray[np.bool_], shift: float | None) -> bool:
         """Solve on the working set, project, keep what lowers the energy; False where nothing did."""
         if free.any():
             level = -float(self.g[free].mean())

@@ -83,9 +83,9 @@ def transform_shape(shape: tuple[int, int], *, periodic: bool) -> tuple[int, int
 
 def wave_numbers(padded: tuple[int, int], aspect: float) -> tuple[Array, Array, Array]:
     """q_x (row), q_y (column) and |q| for spacings 1 along x and `aspect` along y; |q| = 1 stands at q = 0."""
-    qy = 2 * pi * np.fft.fftfreq(padded[0], aspect)[:, None]
-    qx = 2 * pi * np.fft.rfftfreq(padded[1])[None, :]
-    q = np.hypot(qy, qx)
+    qy: Array = 2 * pi * np.fft.fftfreq(padded[0], aspect)[:, None].astype(np.float64)
+    qx: Array = 2 * pi * np.fft.rfftfreq(padded[1])[None, :].astype(np.float64)
+    q: Array = np.hypot(qy, qx)
     q[0, 0] = 1.0
     return qx, qy, q
 
@@ -162,8 +162,8 @@ def _inverse(q: Array) -> Array:
 
 def _lags(padded: tuple[int, int], aspect: float) -> tuple[Array, Array]:
     """Signed distances of the cells of a padded map from its first cell, x as a row and y as a column."""
-    x = np.fft.fftfreq(padded[1], 1 / padded[1])[None, :]
-    y = np.fft.fftfreq(padded[0], 1 / padded[0])[:, None] * aspect
+    x: Array = np.fft.fftfreq(padded[1], 1 / padded[1])[None, :].astype(np.float64)
+    y: Array = np.fft.fftfreq(padded[0], 1 / padded[0])[:, None].astype(np.float64) * aspect
     return x, y
 
 

@@ -23,10 +23,14 @@ class HeightMap(Protocol):
     """What HalfSpace needs of a scan: heights [m], NaN where missing, and the distances (dx, dy) [m]."""
 
     @property
-    def heights(self) -> Array: ...
+    def heights(self) -> Array:
+        """Heights [m]."""
+        ...
 
     @property
-    def spacing(self) -> tuple[float, float]: ...
+    def spacing(self) -> tuple[float, float]:
+        """Distances (dx, dy) [m]."""
+        ...
 
 
 @final
@@ -152,7 +156,7 @@ class HalfSpace(ContactLaw):
         """The solved contacts, from the least to the greatest pressure."""
         contacts: list[HalfSpaceContact] = []
         for pressure in np.geomspace(*self.closure_range, self.points):
-            contacts.append(self.contact_at(float(pressure), start=contacts[-1] if contacts else None))  # noqa: PERF401
+            contacts.append(self.contact_at(float(pressure), start=contacts[-1] if contacts else None))
         return tuple(contacts)
 
     @cached_property

@@ -46,7 +46,7 @@ def slip_of(contact: HalfSpaceContact, shear_ratio: float, friction: float, *, t
     """
     if not (isfinite(friction) and friction > 0):
         raise InputError(f"friction = {friction}; the coefficient must be positive, for example 0.2")
-    if not 0 <= shear_ratio:
+    if not shear_ratio >= 0:
         raise InputError(f"shear_ratio = {shear_ratio}; it must be 0 or more, and below 1")
     if shear_ratio >= 1:
         raise InputError(f"shear_ratio = {shear_ratio}: at T = mu F and above the joint slips as a whole; "
@@ -54,7 +54,7 @@ def slip_of(contact: HalfSpaceContact, shear_ratio: float, friction: float, *, t
     shape, dx = contact.heights.shape, contact.spacing[0]
     touching = contact.traction > 0
     kernel = shear_kernel(shape, contact.spacing[1] / dx, contact.nu, periodic=contact.periodic, vector=False,
-                          workers=contact.workers)  # type: ignore[arg-type]  # fmt: skip
+                          workers=contact.workers)  # fmt: skip
     stuck_stiffness = float(stiffness_on(kernel, touching)[0, 0])
     bound = friction * contact.traction.ravel() / contact.E_star
     mean = shear_ratio * float(bound.mean())

@@ -77,7 +77,7 @@ class HalfSpaceContact:
         touching = self.traction > 0
         ny, nx = touching.shape
         if self.periodic:
-            across, along = (np.count_nonzero(touching ^ np.roll(touching, 1, axis)) for axis in (1, 0))
+            across, along = (int(np.count_nonzero(touching ^ np.roll(touching, 1, axis))) for axis in (1, 0))
         else:
             framed = np.pad(touching, 1)
             across, along = (int(np.count_nonzero(np.diff(framed, axis=axis))) for axis in (1, 0))
@@ -89,11 +89,11 @@ class HalfSpaceContact:
     def area_corrected(self) -> float:
         """Real area freed of the pixels' excess along the border [-].
 
-        A - (pi - 1 + ln 2)/24 S dx, with S the perimeter: Yastrebov, Anciaux and Molinari 2017, eq. (19),
+        A - (pi - 1 + ln 2)/24 S dx, with S the perimeter: Yastrebov, Anciaux and Molinari 2017,
         doi:10.1016/j.jmps.2017.07.016. For square cells; dx is the geometric mean of the spacings.
         """
         dx = (self.spacing[0] * self.spacing[1]) ** 0.5
-        return max(self.area - (pi - 1 + log(2)) / 24 * self.perimeter * dx, 0.0)
+        return max(0.0, self.area - (pi - 1 + log(2)) / 24 * self.perimeter * float(dx))
 
     @property
     def gap(self) -> Array:

@@ -5,7 +5,7 @@ from math import isfinite, isnan
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.halfspace.bounded import Minimum, Progress, minimise
+from faying.contact.halfspace.bounded import Minimum, Progress, best_level, duality_gap, minimise
 from faying.contact.halfspace.kernels import Array, normal_kernel, transform_shape
 from faying.contact.halfspace.solution import HalfSpaceContact
 from faying.errors import InputError, NotConverged
@@ -121,7 +121,7 @@ class _Problem:
         tol: float,
         progress: Progress | None,
     ) -> Minimum:
-        kernel = normal_kernel(h.shape, aspect, periodic=self.periodic, workers=self.workers)  # type: ignore[arg-type]
+        kernel = normal_kernel(h.shape, aspect, periodic=self.periodic, workers=self.workers)
         # a smooth flat has no roughness to measure by: take what its own load does to one cell
         scale = self.rms / unit if self.rms > 0 else mean
         return minimise(
@@ -161,6 +161,33 @@ class _Problem:
             applications=applications,
             workers=self.workers,
         )
+
+
+def certify(
+    heights: ArrayLike,
+    spacing: float | tuple[float, float],
+    traction: ArrayLike,
+    *,
+    E_star: float,
+    hardness: float | None = None,
+    periodic: bool = True,
+) -> float:
+    """Return the residual [-], as of `solve_half_space`, of any pressure map [Pa] (ny, nx), whoever made it.
+
+    Tractions outside 0 to hardness are cut to these bounds first. Raises InputError as `solve_half_space` does and for
+    a map of another shape or without any pressure.
+    """
+    h, (dx, dy) = _checked_map(heights, spacing)
+    _check_numbers(E_star, 0.3, hardness, 0.5)
+    limit = np.inf if hardness is None else hardness / E_star
+    x = np.clip(np.asarray(traction, dtype=np.float64) / E_star, 0.0, limit)
+    if x.shape != h.shape or not x.any():
+        raise InputError(f"traction of shape {x.shape}; give pressures above 0 on a map of shape {h.shape}")
+    kernel = normal_kernel((h.shape[0], h.shape[1]), dy / dx, periodic=periodic)
+    gradient = (kernel.apply(x[None])[0] - h / dx).ravel()
+    x = x.ravel()
+    gap = duality_gap(x, gradient, 0.0, limit, best_level(x, gradient, 0.0, limit))
+    return gap / float(x.sum() * h.std() / dx)
 
 
 def _at_displacement(problem: _Problem, displacement: float, start: Array | None) -> HalfSpaceContact:

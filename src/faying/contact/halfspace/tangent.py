@@ -76,8 +76,8 @@ def normal_and_shear_kernels(contact: HalfSpaceContact) -> tuple[Kernel, Kernel]
     shape = contact.heights.shape
     aspect = contact.spacing[1] / contact.spacing[0]
     return (
-        normal_kernel(shape, aspect, periodic=contact.periodic, workers=contact.workers),  # type: ignore[arg-type]
-        shear_kernel(shape, aspect, contact.nu, periodic=contact.periodic, workers=contact.workers),  # type: ignore[arg-type]
+        normal_kernel(shape, aspect, periodic=contact.periodic, workers=contact.workers),
+        shear_kernel(shape, aspect, contact.nu, periodic=contact.periodic, workers=contact.workers),
     )
 
 
