@@ -53,24 +53,26 @@ def _at(bound: Bound, where: NDArray[np.intp]) -> Bound:
 def project(v: Array, lower: Bound, upper: Bound, total: float) -> tuple[Array, float]:
     """Nearest point to v between the bounds whose sum is `total`, and the shift that gives it: clip(v + shift)."""
     scale = max(abs(total), float(np.abs(upper).sum()) if isinstance(upper, np.ndarray) else 0.0, 1e-300)
-    shift = (total - np.clip(v, lower, upper).sum()) / v.size
-    low, high = -np.inf, np.inf
+    low = float((lower - v).min())
+    high = float((upper - v).max()) if isinstance(upper, np.ndarray) or isfinite(upper) else total / v.size - float(v.min())
+    shift = min(max((total - float(np.clip(v, lower, upper).sum())) / v.size, low), high)
     clipped = v
-    for _ in range(200):
+    for turn in range(200):
         moved = v + shift
         clipped = np.clip(moved, lower, upper)
-        miss = total - clipped.sum()
+        miss = total - float(clipped.sum())
         if abs(miss) <= 1e-13 * scale:
             break
-        low, high = (max(low, shift), high) if miss > 0 else (low, min(high, shift))
-        free = np.count_nonzero((moved > lower) & (moved < upper))
-        trial = shift + miss / max(free, 1)
-        if not low < trial < high:
-            trial = (low + high) / 2 if isfinite(low + high) else shift + miss / v.size
-        if trial == shift:
+        low, high = (shift, high) if miss > 0 else (low, shift)
+        free = int(np.count_nonzero((moved > lower) & (moved < upper)))
+        trial = shift + miss / free if free else high
+        # Newton crawls where points leave their bounds: halve the bracket every third turn
+        if not low < trial < high or turn % 3 == 2:
+            trial = (low + high) / 2
+        if trial in (shift, low, high):
             break
         shift = trial
-    return clipped, float(shift)
+    return clipped, shift
 
 
 def duality_gap(x: Array, gradient: Array, lower: Bound, upper: Bound, level: float) -> float:
@@ -127,6 +129,11 @@ class _Search:
         self.applications += 1
         return self.kernel.apply(x.reshape(1, *self.kernel.shape)).reshape(-1)
 
+    def _imbalance(self) -> float:
+        """Miss of the total, which steps leave at rounding; relative, and nothing below 1e-10."""
+        miss = abs(float(self.x.sum()) - self.total) / max(abs(self.total), 1e-300)
+        return miss if miss > 1e-10 else 0.0
+
     def run(self, tol: float, start: Array | None, progress: Progress | None) -> Minimum:
         n = self.load.size
         first = np.full(n, self.total / n) if start is None else start
@@ -136,14 +143,14 @@ class _Search:
         for step in range(STEPS + 1):
             level = best_level(self.x, self.g, self.lower, self.upper)
             size = max(abs(self.total), float(np.abs(self.x).sum())) * self.scale
-            residual = duality_gap(self.x, self.g, self.lower, self.upper, level) / size
+            residual = max(duality_gap(self.x, self.g, self.lower, self.upper, level) / size, self._imbalance())
             if progress is not None:
                 progress(step, residual)
             if residual < tol:
                 # the gradient was updated step by step: certify the answer with a fresh one
                 self.g = self.apply(self.x) - self.load
                 level = best_level(self.x, self.g, self.lower, self.upper)
-                residual = duality_gap(self.x, self.g, self.lower, self.upper, level) / size
+                residual = max(duality_gap(self.x, self.g, self.lower, self.upper, level) / size, self._imbalance())
                 if residual < tol:
                     return Minimum(x=self.x, gradient=self.g, level=level, residual=residual, steps=step,
                                    applications=self.applications)  # fmt: skip
@@ -170,7 +177,8 @@ class _Search:
             level = -shift / pace
             v = y - self.x
             Av = self.apply(v)
-            down, curvature = float(self.g @ v), float(v @ Av)
+            # v sums to 0: taking the level out of g changes nothing but the rounding
+            down, curvature = float((self.g + level) @ v), float(v @ Av)
             if down + curvature / 2 < 0:
                 self.x = y
                 self.g += Av
@@ -210,7 +218,7 @@ class _Search:
             new = project(old + share * step, lower, upper, rest)[0]
             v[index] = new - old
             Av = self.apply(v)
-            if float(self.g @ v) + float(v @ Av) / 2 < 0:
+            if float(G @ v[index]) + float(v[index] @ Av[index]) / 2 < 0:
                 self.x[index] = new
                 self.g += Av
                 return True
