@@ -2,6 +2,6 @@
 
 from faying.contact.halfspace.law import HalfSpace
 from faying.contact.halfspace.solution import HalfSpaceContact
-from faying.contact.halfspace.solve import solve_half_space
+from faying.contact.halfspace.solve import certify, solve_half_space
 
-__all__ = ["HalfSpace", "HalfSpaceContact", "solve_half_space"]
+__all__ = ["HalfSpace", "HalfSpaceContact", "certify", "solve_half_space"]
