@@ -21,6 +21,9 @@ class Factorisation(Protocol):
     def solve(self, right: Array) -> Array:
         """Solve for one right-hand side (n,) or several (n, m)."""
 
+    def again(self, matrix: Any) -> "Factorisation":
+        """Factorise another matrix with the same pattern, both CSR with sorted indices; the analysis is kept if it can."""
+
 
 class _Pardiso:
     """Intel MKL's PARDISO through pypardiso, as Cholesky of the upper triangle."""
@@ -33,6 +36,7 @@ class _Pardiso:
 
         self._upper = csr_matrix(triu(matrix, format="csr"))
         self._upper.sort_indices()
+        self._kept: Any = None
         self._solver = PyPardisoSolver(mtype=2)
         self._solver._check_A(self._upper)
         self._solver.set_phase(12)
@@ -49,6 +53,18 @@ class _Pardiso:
     def solve(self, right: Array) -> Array:
         x: Array = self._solver._call_pardiso(self._upper, np.asfortranarray(right))
         return x.reshape(right.shape)
+
+    def again(self, matrix: Any) -> "_Pardiso":
+        if self._kept is None:
+            self._kept = matrix.indices >= np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
+        self._upper.data[:] = matrix.data[self._kept]
+        self._solver.set_phase(22)
+        try:
+            self._solver._call_pardiso(self._upper, np.zeros((matrix.shape[0], 1)))
+        except Exception as fault:
+            raise NotConverged(f"PARDISO could not factorise the matrix ({fault})") from None
+        self._solver.set_phase(33)
+        return self
 
     def __del__(self) -> None:
         solver = getattr(self, "_solver", None)
@@ -68,6 +84,9 @@ class _Mumps:
         self._context.set_matrix(matrix.tocoo(), symmetric=True)
         self._context.factor()
 
+    def again(self, matrix: Any) -> "_Mumps":
+        return _Mumps(matrix)
+
     def solve(self, right: Array) -> Array:
         if right.ndim == 2:
             return np.column_stack([self._context.solve(column.copy()) for column in right.T])
@@ -84,6 +103,9 @@ class _Cholmod:
         from sksparse.cholmod import cholesky
 
         self._factor = cholesky(csc_matrix(matrix))
+
+    def again(self, matrix: Any) -> "_Cholmod":
+        return _Cholmod(matrix)
 
     def solve(self, right: Array) -> Array:
         return np.asarray(self._factor(right))
@@ -104,6 +126,9 @@ class _SuperLU:
             raise NotConverged(
                 f"SuperLU could not factorise the matrix ({fault}); is a part held by nothing?"
             ) from None
+
+    def again(self, matrix: Any) -> "_SuperLU":
+        return _SuperLU(matrix)
 
     def solve(self, right: Array) -> Array:
         return np.asarray(self._factor.solve(right))
