@@ -146,7 +146,9 @@ def solve_asperity(
 class _Run:
     """One history being driven; every step is kept as it is found."""
 
-    def __init__(self, model: Model, steps: int, targets: list[float], progress: Callable[[float], None] | None) -> None:
+    def __init__(
+        self, model: Model, steps: int, targets: list[float], progress: Callable[[float], None] | None
+    ) -> None:
         self.model, self.steps, self.targets, self.progress = model, steps, targets, progress
         self.state: State = model.body.virgin
         self.at: Equilibrium | None = None

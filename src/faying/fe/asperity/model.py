@@ -195,7 +195,9 @@ def build(
     )
 
 
-def expected_radius(R: float, h_a: float, displacement: float, E_star: float, hardness: float | None, K: float) -> float:
+def expected_radius(
+    R: float, h_a: float, displacement: float, E_star: float, hardness: float | None, K: float
+) -> float:
     """Contact radius to mesh for [m]: Hertz's, growing to that of the truncated sphere as the cap turns plastic."""
     truncated = sqrt(2 * R * displacement - displacement**2)
     if hardness is None:
