@@ -2,6 +2,7 @@
 from . import asperity
 from .compare import Comparison, compare, laws_of_surface
 from .greenwood_williamson import GreenwoodWilliamson
+from .halfspace import HalfSpace, HalfSpaceContact, solve_half_space
 from .inputs import SurfaceInputs
 from .jackson_streator import JacksonStreator
 from .jk import JK
@@ -20,6 +21,8 @@ __all__ = [
     "Comparison",
     "ContactLaw",
     "GreenwoodWilliamson",
+    "HalfSpace",
+    "HalfSpaceContact",
     "JacksonStreator",
     "MajumdarBhushan",
     "MoragEtsion",
@@ -36,4 +39,5 @@ __all__ = [
     "find_law",
     "laws",
     "laws_of_surface",
+    "solve_half_space",
 ]
