@@ -1,6 +1,9 @@
 # The public names. Each is imported when it is first used (lazy_loader reads this file).
+from . import contact
+from .contact.halfspace import HalfSpace, solve_half_space
 from .contact.jk import JK
 from .errors import FayingError, InputError, NotConverged, OutsideValidity, ReadError
+from .fe.asperity import solve_asperity
 from .materials import CATALOGUE, RIGID, ContactPair, Material
 from .result import Result
 from .study import Study, run
