@@ -201,7 +201,7 @@ class _Run:
                 displacement, contact.force, pi * contact.radius**2, pi * low**2, pi * high**2, volume, found.iterations,
             )
         )  # fmt: skip
-        if not len(found.pressing):
+        if contact.force <= 1e-9 * max(row[1] for row in self.rows):
             moved = self.model.body.spread(found.unknowns)[self.model.body.surface, 1]
             highest = float(np.max(self.model.mesh.nodes[self.model.body.surface, 1] + moved))
             self.residual = self.model.h_a - highest
