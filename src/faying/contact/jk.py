@@ -14,24 +14,30 @@ Where the print is ambiguous or wrong we read it so:
   carry on from the regime before;
 - loss="literal" evaluates eqs. 49-53 at every load, so that damping vanishes in the large stage; "held" keeps the loss
   factor that the small stage ends with, as the text and its Fig. 13 say;
-- the tangential load enters as shear_ratio X = T/(mu F); at X = 0 the loss factor is the limit in which X cancels;
+- the tangential load enters as shear_ratio X = T/(mu F), or as shear_stress tau, with X = tau A/(mu F) in each regime
+  (the paper gives tau no value); at X = 0 the loss factor is the limit in which X cancels; a regime whose X
+  reaches 1 under tau slips: it adds no tangential stiffness, and the response says so;
+- stiffness grows with load throughout for 2.1 <= D <= 2.9 while cutoff <= .01; with a cutoff of .1 it falls over part
+  of the meso stage above D = 2.76, with .3 above D = 2.5: there the cut-off leaves too little of the elastic part;
 - asperities at hardness add no stiffness, normal or tangential, as printed (eqs. A8, A14).
 """
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
 from math import log, pi, sqrt
-from typing import ClassVar, Literal, Self, final
+from typing import ClassVar, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from faying.contact.inputs import SurfaceInputs
 from faying.contact.islands import Array, Islands
-from faying.contact.law import ContactLaw, Response, checked
+from faying.contact.law import ContactLaw, Parameter, Response, checked, require
 from faying.contact.substrate import SHAPE, WeightedIslands, asperity_share, substrate_share
-from faying.errors import InputError
 from faying.materials import ContactPair
 
+QUANTITIES = ("force", "area", "k_n", "k_t", "energy_n", "energy_t")
 Term = tuple[float, float]  # coefficient and power of y
 
 
@@ -86,6 +92,17 @@ def asperity_regimes(K: float, *, printed: bool) -> tuple[float, tuple[AsperityR
     return x_p, (elastic, mixed, plastic)
 
 
+def slip_share(X: ArrayLike) -> Array:
+    """Return B(X), the tangential energy of a sphere under T = X mu F over 3 pi mu^2 F^2/(8 G* r), eq. (A21) [-].
+
+    B = 3/5 - (1-X)^(2/3) + (2/5) (1-X)^(5/3) = (2/3) integral of s (1-s)^(-1/3) from 0 to X, an incomplete beta
+    function, which keeps its digits at small X.
+    """
+    from scipy.special import betainc
+
+    return np.asarray(3 / 5 * betainc(2.0, 2 / 3, np.asarray(X, float)))
+
+
 @final
 @dataclass(frozen=True, kw_only=True)
 class JK(ContactLaw):
@@ -95,7 +112,7 @@ class JK(ContactLaw):
     covers and to which al' belongs [m2]; gamma frequency index; alpha elastic-plastic load index, 0 to 1; closure,
     loss and cutoff as in the module's text; substrate the share lam of the deformation that the asperity takes (a
     constant), or "exact" for eq. (1) at every asperity with modulus_ratio E_asperity/E_substrate; shear_ratio
-    X = T/(mu F), 0 <= X < 1; psi the domain extension (solved where None).
+    X = T/(mu F), 0 <= X < 1, or in its place shear_stress tau [Pa]; psi the domain extension (solved where None).
 
     Closure variable: the largest truncated area al' [m2]. Raises InputError for parameters out of these ranges.
     Valid while real area <= 0.3, k_n below that of the bulk, al' <= al3', al1' < al2' < al3', 2.1 <= D <= 2.9.
@@ -114,15 +131,36 @@ class JK(ContactLaw):
     shear_ratio: float = 0.0
     psi: float | None = None
     modulus_ratio: float = 1.0
+    shear_stress: float = 0.0
 
     name: ClassVar[str] = "JK"
     source: ClassVar[str] = "doi:10.3390/fractalfract8100611"
+    ground: ClassVar[str] = (
+        "real area up to 0.3, k_n below that of the bulk, al' <= al3', al1' < al2' < al3', 2.1 <= D <= 2.9"
+    )
+    parameters: ClassVar = {
+        "D": Parameter("", "fractal dimension of the surface", "between 2 and 3"),
+        "G": Parameter("m", "fractal roughness", "above 0"),
+        "scan_area": Parameter("m^2", "area that the scan covers, to which al' belongs", "above 0"),
+        "gamma": Parameter("", "frequency index of the surface", "above 1"),
+        "alpha": Parameter("", "elastic-plastic load index", "0 up to 1"),
+        "closure": Parameter("text", "exponents and borders of the elastic-plastic regime", "consistent or printed"),
+        "substrate": Parameter("", "share of the deformation that the asperity takes", "above 0 up to 1, or exact"),
+        "cutoff": Parameter("", "least area that adds stiffness, over the smaller of a1c' and al'", "between 0 and 1"),
+        "loss": Parameter("text", "loss factor beyond the small stage", "held or literal"),
+        "shear_ratio": Parameter("", "tangential load over mu times normal load", "0 up to 1"),
+        "psi": Parameter("", "domain extension", "1 or more; solved where not given"),
+        "modulus_ratio": Parameter("", "E of the asperity over that of its substrate", "above 0"),
+        "shear_stress": Parameter("Pa", "shear stress on the real area, in place of shear_ratio", "0 or more"),
+    }
+
+    @classmethod
+    def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> "JK":
+        """Return the law of a measured surface, from its D and G."""
+        return cls(D=surface.D, G=surface.G, pair=pair, scan_area=surface.scan_area, gamma=surface.gamma)
 
     def __post_init__(self) -> None:
-        def need(good: bool, text: str) -> None:
-            if not good:
-                raise InputError(f"JK: {text}")
-
+        need = partial(require, "JK")
         need(2 < self.D < 3, f"D = {self.D}; the dimension of a surface lies between 2 and 3, for example 2.4")
         need(0 < self.G < np.inf, f"G = {self.G} m; it must be positive, for example 1.5e-10")
         need(
@@ -150,13 +188,21 @@ class JK(ContactLaw):
         else:
             need(0 < self.substrate <= 1, f"substrate = {self.substrate}; a share lies above 0 and up to 1")
         need(self.shear_ratio >= 0, f"shear_ratio = {self.shear_ratio}; it must be 0 or more, and below 1")
-        need(self.shear_ratio < 1, f"shear_ratio = {self.shear_ratio}: at T = mu F and above the joint slips as a whole "
-             "and has no stiffness; lower the shear load or raise the preload")  # fmt: skip
+        need(
+            self.shear_ratio < 1,
+            f"shear_ratio = {self.shear_ratio}: at T = mu F and above the joint slips as a whole and has no "
+            "stiffness; lower the shear load or raise the preload",
+        )
+        need(0 <= self.shear_stress < np.inf, f"shear_stress = {self.shear_stress} Pa; it must be 0 or more")
+        need(
+            self.shear_stress == 0 or self.shear_ratio == 0,
+            f"shear_ratio = {self.shear_ratio} and shear_stress = {self.shear_stress} Pa; give one of them",
+        )
+        need(
+            (self.shear_stress == 0 and self.shear_ratio == 0) or self.pair.friction > 0,
+            "a tangential load needs friction above 0; give a material of the pair its friction",
+        )
         need(np.isfinite(self.pair.hardness), "neither body yields; give the pair a hardness or yield_strength")
-
-    def with_(self, **changes: object) -> Self:
-        """Return the same law with some parameters changed."""
-        return replace(self, **changes)  # type: ignore[arg-type]
 
     @cached_property
     def _islands(self) -> Islands:
@@ -198,7 +244,7 @@ class JK(ContactLaw):
         base = KH**2 / (2 ** (9 - 2 * D) * pi ** (D - 4) * self.pair.E_star**2 * log(self.gamma)) / reach
         log_al2 = (log(base) - 2 * (D - 2) * log(self.G)) / (2 - D)  # eqs. (26), (27)
         log_al1 = log_al2 - log(x_p) / (D - 2)
-        al3 = self.scan_area * (3 - D) / (2 * self._islands.weight)  # eq. (28)
+        al3 = self.scan_area * (3 - D) / self._islands.weight  # eq. (28)
         with np.errstate(over="ignore", under="ignore"):
             return float(np.exp(log_al1)), float(np.exp(log_al2)), al3
 
@@ -208,14 +254,14 @@ class JK(ContactLaw):
         from scipy.optimize import brentq
 
         def excess(log_al: float) -> float:
-            return float(np.log(self._totals(np.array(np.exp(log_al)))["area"] / self.scan_area))
+            return float(np.log(sum(self._parts(np.array(np.exp(log_al)), ("area",))["area"]) / self.scan_area))
 
         middle = log(self.scan_area)
         top = float(np.exp(brentq(excess, middle - 80, middle + 40, xtol=1e-12)))
         return top * 1e-36, top
 
-    def _totals(self, al: Array) -> dict[str, Array]:
-        """Sums over all islands, SI; energies also per regime (energy_n_0 ...)."""
+    def _parts(self, al: Array, wanted: Sequence[str] = QUANTITIES) -> dict[str, list[Array]]:
+        """Sums over the islands in each of the three regimes, SI, without tangential load; energy_t without mu^2 B."""
         h_a, R, d1c = self._cap(al)
         x_p, regimes = self._regimes
         share = 1.0 if isinstance(self.substrate, str) else self.substrate
@@ -234,63 +280,81 @@ class JK(ContactLaw):
 
         KH = self.pair.hardness_coefficient * self.pair.hardness
         P_c, A_c, root = 2 / 3 * KH * pi * R * d1c, pi * R * d1c, np.sqrt(R * d1c)
-        G_star, X = self.pair.G_star, self.shear_ratio
-        units = {"force": P_c, "area": A_c, "k_n": P_c / d1c, "k_t": 8 * G_star * root * (1 - X) ** (1 / 3),
+        G_star = self.pair.G_star
+        units = {"force": P_c, "area": A_c, "k_n": P_c / d1c, "k_t": 8 * G_star * root,
                  "energy_n": P_c * d1c, "energy_t": 3 * pi * P_c**2 / (8 * G_star * root)}  # fmt: skip
-        out: dict[str, Array] = {}
-        for quantity, unit in units.items():
-            parts = []
+        out: dict[str, list[Array]] = {}
+        for quantity in wanted:
+            out[quantity] = []
             for regime, (lower, upper) in zip(regimes, borders, strict=True):
                 if quantity in ("k_n", "k_t") and regime is regimes[0]:
                     lower = self.cutoff * upper
                 part = np.zeros_like(al)
                 for coefficient, power in getattr(regime, quantity):
                     part = part + coefficient * scale**power * self._islands.total(power, lower, upper)
-                parts.append(unit * part)
-            out[quantity] = sum(parts[1:], parts[0])
-            if quantity.startswith("energy"):
-                out |= {f"{quantity}_{i}": part for i, part in enumerate(parts)}
+                out[quantity].append(units[quantity] * part)
         return out
 
-    def _loss(self, totals: dict[str, Array], quantity: str) -> Array:
-        elastic, mixed, plastic = (totals[f"{quantity}_{i}"] for i in range(3))
+    def _shear(self, parts: dict[str, list[Array]]) -> list[Array]:
+        """X = T/(mu F) of each regime, at most 1 (eq. A11)."""
+        if self.shear_stress == 0:
+            return [np.full_like(force, self.shear_ratio) for force in parts["force"]]
+        tau = self.shear_stress / self.pair.friction
+        pairs = zip(parts["area"], parts["force"], strict=True)
+        return [np.minimum(tau * area / np.where(force > 0, force, np.inf), 1.0) for area, force in pairs]
+
+    def _loss(self, energies: list[Array]) -> Array:
+        elastic, mixed, plastic = energies
         return (self.alpha * mixed + plastic) / (elastic + (1 - self.alpha) * mixed)  # eqs. (49), (58)
 
-    @cached_property
-    def _held(self) -> dict[str, float]:
-        """Loss factors with which the small stage ends."""
-        totals = self._totals(np.array(self.limits[0]))
-        return {q: float(self._loss(totals, q)) for q in ("energy_n", "energy_t")}
+    def _energy_t(self, parts: dict[str, list[Array]]) -> list[Array]:
+        """Tangential energies per regime [J]; without load over B mu^2, which cancels from their loss factor."""
+        if self.shear_stress == 0 and self.shear_ratio == 0:
+            return parts["energy_t"]
+        mu = self.pair.friction
+        return [mu**2 * slip_share(X) * w for X, w in zip(self._shear(parts), parts["energy_t"], strict=True)]
 
-    def _loss_factor(self, al: Array, totals: dict[str, Array], quantity: str) -> Array:
-        eta = self._loss(totals, quantity)
-        return eta if self.loss == "literal" else np.where(al >= self.limits[0], self._held[quantity], eta)
+    @cached_property
+    def _held(self) -> tuple[float, float]:
+        """Normal and tangential loss factor with which the small stage ends."""
+        parts = self._parts(np.array(min(max(self.limits[0], 1e-80), 1e80)))
+        return float(self._loss(parts["energy_n"])), float(self._loss(self._energy_t(parts)))
+
+    def _loss_factor(self, al: Array, energies: list[Array], held: float) -> Array:
+        eta = self._loss(energies)
+        return eta if self.loss == "literal" else np.where(al >= self.limits[0], held, eta)
+
+    def _pressure_at(self, closure: Array) -> Array:
+        return np.asarray(sum(self._parts(closure, ("force",))["force"]) / self.scan_area)
 
     def at_closure(self, al: ArrayLike) -> Response:
         """Return the response at largest truncated areas al' [m2], any shape. InputError unless positive."""
         a = checked(al, name="al'", unit="m2", zero=False)
         A0 = self.scan_area
-        totals = self._totals(a)
-        X = self.shear_ratio
-        B = 3 / 5 - (1 - X) ** (2 / 3) + 2 / 5 * (1 - X) ** (5 / 3)  # eq. (A21)
-        slip = 0.0 if X == 0 else self.pair.friction**2 * B
-        area, k_n = totals["area"] / A0, totals["k_n"] / A0
+        parts = self._parts(a)
+        shear = self._shear(parts)
+        tangential = self._energy_t(parts)
+        loaded = self.shear_stress > 0 or self.shear_ratio > 0
+        area, k_n = np.asarray(sum(parts["area"]) / A0), np.asarray(sum(parts["k_n"]) / A0)
+        k_t = sum((1 - X) ** (1 / 3) * k for X, k in zip(shear, parts["k_t"], strict=True)) / A0  # eq. (A11)
         al1, al2, al3 = self.limits
         flag = np.zeros(a.shape, dtype=bool)
         return Response(
-            pressure=totals["force"] / A0,
+            pressure=np.asarray(sum(parts["force"]) / A0),
             area=area,
             k_n=k_n,
-            k_t=totals["k_t"] / A0,
-            loss_n=self._loss_factor(a, totals, "energy_n"),
-            loss_t=self._loss_factor(a, totals, "energy_t"),
-            energy_n=totals["energy_n"] / A0,
-            energy_t=slip * totals["energy_t"] / A0,
+            k_t=np.asarray(k_t),
+            loss_n=np.asarray(self._loss_factor(a, parts["energy_n"], self._held[0])),
+            loss_t=np.asarray(self._loss_factor(a, tangential, self._held[1])),
+            energy_n=np.asarray(sum(parts["energy_n"]) / A0),
+            energy_t=np.asarray(sum(tangential) / A0) if loaded else np.zeros_like(a),
             reasons={
                 "real area above 0.3 of the nominal area": area > 0.3,
                 "k_n above the stiffness of the bulk, 1.129 E*/sqrt(A0)": k_n > 2 / sqrt(pi * A0) * self.pair.E_star,
                 "al' above al3'": a > al3,
                 "the limits of the stages are not in the order al1' < al2' < al3'": flag | (not al1 < al2 < al3),
                 "D outside 2.1 to 2.9": flag | (not 2.1 <= self.D <= 2.9),
+                "tau exceeds friction over the elastic or elastic-plastic asperities, which slip": flag
+                | ((shear[0] >= 1) | (shear[1] >= 1)),
             },
         )

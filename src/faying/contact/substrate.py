@@ -11,15 +11,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.islands import Array, Islands
+from faying.errors import InputError
 
 SHAPE = 1.06  # 1 - cos(pi r/(2 r_a)) ~ 1.06 (r/r_a)^2, eq. (9)
+PANEL = np.log(1e3)  # longest panel of a quadrature in ln x
 COUPLING = 1.5 / 2**0.5  # xi sqrt(h_a)
 
 
 def substrate_share(deformation: ArrayLike, modulus_ratio: float, coefficient: float = COUPLING) -> Array:
-    """Return a'/al' [-] of the asperity that is itself deformed by `deformation` = delta_a/h_a [-]: eq. (1) forwards."""
+    """Return a'/al' [-] of the asperity whose own delta_a/h_a is `deformation` [-]: eq. (1) forwards."""
     y = np.asarray(deformation, float)
-    return y * (1 + modulus_ratio * coefficient * np.sqrt(y)) / SHAPE
+    return np.asarray(y * (1 + modulus_ratio * coefficient * np.sqrt(y)) / SHAPE)
 
 
 def asperity_share(applied: ArrayLike, modulus_ratio: float, coefficient: float = COUPLING) -> Array:
@@ -34,14 +36,14 @@ def asperity_share(applied: ArrayLike, modulus_ratio: float, coefficient: float 
         t = t - step
         if np.all(np.abs(step) <= 2e-16 * t):
             break
-    return t**2
+    return np.asarray(t**2)
 
 
 class WeightedIslands(Islands):
     """Islands whose powers carry lam(x): total(p) sums (x lam(x))^p, by quadrature that is exact to rounding.
 
     lam is analytic in sqrt(x). Ranges from 0 go by Gauss-Jacobi quadrature in z = sqrt(x/upper) with the weight
-    z^(2 e - 1); others by Gauss-Legendre in ln x, or, when long, as a difference of two ranges from 0.
+    z^(2 e - 1); others by Gauss-Legendre in ln x, on panels of at most a factor of a thousand.
     """
 
     def __init__(self, D: float, psi: float | None, modulus_ratio: float, nodes: int = 32) -> None:
@@ -61,6 +63,8 @@ class WeightedIslands(Islands):
         from scipy.special import roots_jacobi
 
         exponent = power + (1 - self.D) / 2
+        if exponent <= 0:
+            raise InputError(f"the sum of (a')^{power} over the islands from 0 diverges at D = {self.D}")
         if exponent not in self._jacobi:
             nodes, weights = roots_jacobi(self.nodes, 0.0, 2 * exponent - 1)
             self._jacobi[exponent] = ((nodes + 1) / 2, weights / 2 ** (2 * exponent))
@@ -68,18 +72,26 @@ class WeightedIslands(Islands):
         inner = self._lam(upper[..., None] * z**2) ** power
         return np.asarray(2 * upper**exponent * (inner @ w))
 
+    def _between(self, power: float, lower: Array, upper: Array) -> Array:
+        t, w = self._legendre
+        exponent = power + (1 - self.D) / 2
+        length = np.log(np.maximum(upper / lower, 1.0))
+        panels = max(1, int(np.ceil(length.max(initial=0.0) / PANEL)))
+        sum_ = np.zeros_like(length)
+        for i in range(panels):
+            x = lower[..., None] * np.exp(length[..., None] * (i + t) / panels)
+            sum_ += (x**exponent * self._lam(x) ** power) @ w
+        return np.asarray(length * sum_ / panels)
+
     def total(self, power: float, lower: ArrayLike, upper: ArrayLike) -> Array:
         """Sum of (x lam(x))^power over all islands with lower < x < upper [-]."""
         if power == 0:
             return super().total(power, lower, upper)
         lo, hi = np.broadcast_arrays(np.asarray(lower, float), np.asarray(upper, float))
-        exponent = power + (1 - self.D) / 2
-        ratio = np.where(lo > 0, hi / np.where(lo > 0, lo, 1.0), np.inf)
-        if np.all(ratio < 1e3):
-            t, w = self._legendre
-            length = np.log(np.maximum(ratio, 1.0))
-            x = lo[..., None] * np.exp(length[..., None] * t)
-            inner = length * ((x**exponent * self._lam(x) ** power) @ w)
-            return np.asarray(self.weight * inner)
-        rest = self._from_zero(power, np.where(lo > 0, lo, 0.0)) if np.any(lo > 0) else 0.0
-        return np.asarray(self.weight * np.where(hi > lo, self._from_zero(power, hi) - rest, 0.0))
+        some, from_zero = (hi > lo) & (lo > 0), (hi > lo) & (lo <= 0)
+        result = np.zeros(lo.shape)
+        if np.any(some):
+            result[some] = self._between(power, lo[some], hi[some])
+        if np.any(from_zero):
+            result[from_zero] = self._from_zero(power, hi[from_zero])
+        return np.asarray(self.weight * result)

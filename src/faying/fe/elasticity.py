@@ -55,7 +55,7 @@ def element_mass(points: Array, cells: Index, density: float) -> Array:
     _, weights, values, gradients = reference("tet10", 4)
     jacobian = np.einsum("eai,qaj->eqij", points[cells], gradients, optimize=True)
     det = np.linalg.det(jacobian)
-    return density * np.einsum("eq,qa,qb->eab", det * weights, values, values, optimize=True)
+    return np.asarray(density * np.einsum("eq,qa,qb->eab", det * weights, values, values, optimize=True))
 
 
 def _pattern(cells: Index, nodes: int) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], Index]:

@@ -79,11 +79,8 @@ def mesh_step(
     parts = list(glued.solids)
     for face in glued.faces:
         face.name = ""
-    by_signature: dict[tuple[float, ...], list[tuple[str, str]]] = {}
-    for label, part, signature in marks:
-        by_signature.setdefault(signature, []).append((label, part))
     listed = list(glued.faces)
-    labels = [by_signature.get(_signature(face), []) for face in listed]
+    labels = _labels([_signature(face) for face in listed], marks)
     found = {label for pairs in labels for label, _ in pairs}
     lost = {label for label, _, _ in marks} - found
     for number, face in enumerate(listed):
@@ -100,15 +97,27 @@ def mesh_step(
     return _collect(mesh, [solid.name for solid in parts], labels, lost, source=path.name)
 
 
-def _signature(face: Any) -> tuple[float, ...]:
-    """Return the centre and area of a face [mm, mm2], rounded: what tells faces apart before and after gluing."""
+def _signature(face: Any) -> NDArray[np.float64]:
+    """Return the centre and the root of the area of a face [mm]: what tells faces apart before and after gluing."""
     centre = face.center
-    return tuple(round(float(v), 4) + 0.0 for v in (centre.x, centre.y, centre.z, face.mass))
+    return np.array([centre.x, centre.y, centre.z, face.mass**0.5])
 
 
-def _collect(
-    mesh: Any, parts: list[str], labels: list[list[tuple[str, str]]], lost: set[str], *, source: str
-) -> Mesh:
+def _labels(
+    faces: list[NDArray[np.float64]], marks: list[tuple[str, str, NDArray[np.float64]]]
+) -> list[list[tuple[str, str]]]:
+    """Give each glued face the (name, part) of every original face that lies where it lies."""
+    places = np.array(faces)
+    close = 1e-6 * float(np.ptp(places, axis=0).max())
+    labels: list[list[tuple[str, str]]] = [[] for _ in faces]
+    for label, part, signature in marks:
+        # a face that two solids share is listed once for each of them
+        for number in np.flatnonzero(np.linalg.norm(places - signature, axis=1) < close):
+            labels[number].append((label, part))
+    return labels
+
+
+def _collect(mesh: Any, parts: list[str], labels: list[list[tuple[str, str]]], lost: set[str], *, source: str) -> Mesh:
     points = np.asarray(mesh.Coordinates(), float) * 1e-3
     tets = mesh.Elements3D().NumPy()
     cells = tets["nodes"][:, :10].astype(np.int64)[:, _to_vtk("tet10")] - 1

@@ -5,7 +5,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.fe.elasticity import surface_frame
@@ -133,7 +132,9 @@ def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> 
     """
     tri_a, tri_b = mesh.face(first), mesh.face(second)
     if mesh.face_part[first] == mesh.face_part[second]:
-        raise InputError(f"faces {first!r} and {second!r} are both on part {mesh.face_part[first]!r}; a joint needs two")
+        raise InputError(
+            f"faces {first!r} and {second!r} are both on part {mesh.face_part[first]!r}; a joint needs two"
+        )
     reach = 0.01 * mesh.size if reach is None else reach
     _, weights, values, gradients = reference("tri6", DEGREE)
     normals, area = surface_frame(mesh.points, tri_a, gradients)
@@ -144,7 +145,8 @@ def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> 
     if not np.any(hit):
         from scipy.spatial import cKDTree
 
-        nearest = float(cKDTree(mesh.points[tri_b].reshape(-1, 3)).query(positions)[0].min())
+        apart = cKDTree(mesh.points[tri_b].reshape(-1, 3)).query(mesh.points[tri_a].reshape(-1, 3))[0]
+        nearest = float(apart.min())
         raise InputError(f"faces {first!r} and {second!r} do not touch: they are {nearest * 1e3:.4g} mm apart at the "
                          f"nearest and the joint reaches {reach * 1e3:.4g} mm; move a part, or check the unit of the "
                          "geometry")  # fmt: skip

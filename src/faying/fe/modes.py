@@ -27,7 +27,13 @@ class Modes:
 
 
 def lowest_modes(
-    stiffness: Any, mass: Any, count: int, *, shift_frequency: float, solver: str | None = None, start: Array | None = None
+    stiffness: Any,
+    mass: Any,
+    count: int,
+    *,
+    shift_frequency: float,
+    solver: str | None = None,
+    start: Array | None = None,
 ) -> Modes:
     """Find the `count` lowest modes by Lanczos iteration with a negative shift.
 
@@ -45,7 +51,9 @@ def lowest_modes(
         values, shapes = eigsh(stiffness, k=count, M=mass, sigma=-shift, OPinv=inverse, v0=first,
                                ncv=min(n, max(2 * count + 1, 20)), tol=1e-11)  # fmt: skip
     except ArpackNoConvergence as fault:
-        raise NotConverged(f"{len(fault.eigenvalues)} of {count} modes converged; ask for fewer or refine the mesh") from None
+        raise NotConverged(
+            f"{len(fault.eigenvalues)} of {count} modes converged; ask for fewer or refine the mesh"
+        ) from None
     order = np.argsort(values)
     shapes = shapes[:, order]
     # one Rayleigh-Ritz step in extended space removes what the shifted inverse lost on the lowest eigenvalues
@@ -93,7 +101,14 @@ def damped_modes(modes: Modes, stiffness: Any, mass: Any, loss: Any, *, rigid: i
 
 
 def _follow(
-    modes: Modes, rigid: int, squared: NDArray[Any], mixed: NDArray[Any], basis: Array, stiffness: Any, mass: Any, loss: Any
+    modes: Modes,
+    rigid: int,
+    squared: NDArray[Any],
+    mixed: NDArray[Any],
+    basis: Array,
+    stiffness: Any,
+    mass: Any,
+    loss: Any,
 ) -> DampedModes:
     """Pick for each real mode, in turn, the complex one that overlaps it most."""
     elastic = modes.shapes[:, rigid:]

@@ -43,7 +43,9 @@ class _Pardiso:
         try:
             self._solver._call_pardiso(self._upper, np.zeros((matrix.shape[0], 1)))
         except Exception as fault:
-            raise NotConverged(f"PARDISO could not factorise the matrix ({fault}); is a part held by nothing?") from None
+            raise NotConverged(
+                f"PARDISO could not factorise the matrix ({fault}); is a part held by nothing?"
+            ) from None
         # pypardiso's solve() compares the whole matrix with the factorised one at every call, which costs more than
         # solving; the phase is set here instead
         self._solver.set_phase(33)
@@ -121,7 +123,9 @@ class _SuperLU:
             self._factor = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
                                 options={"SymmetricMode": True})  # fmt: skip
         except RuntimeError as fault:
-            raise NotConverged(f"SuperLU could not factorise the matrix ({fault}); is a part held by nothing?") from None
+            raise NotConverged(
+                f"SuperLU could not factorise the matrix ({fault}); is a part held by nothing?"
+            ) from None
 
     def again(self, matrix: Any) -> "_SuperLU":
         return _SuperLU(matrix)

@@ -20,7 +20,8 @@ from faying.fe.solve import Factorisation, factorise
 from faying.joint.seat import Seat
 
 Array = NDArray[np.float64]
-AGED = 40  # conjugate-gradient steps after which a new factorisation is cheaper
+AGED = 15  # conjugate-gradient steps after which a new factorisation is cheaper
+SETTLED = 1e-4  # imbalance below which k_t is held
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,8 +79,7 @@ class Assembly:
             size = float(np.linalg.norm(force)) / scale
             if size < tolerance:
                 fresh = [self._shear_stiffness(joint, seat, u) for joint, seat in self.joints]
-                change = max(float(np.linalg.norm(new - old) / max(np.linalg.norm(new), 1e-300))
-                             for new, old in zip(fresh, shear, strict=True))  # fmt: skip
+                change = max(_relative_change(new, old) for new, old in zip(fresh, shear, strict=True))
                 shear = fresh
                 size = float(np.linalg.norm(self._out_of_balance(u, load, shear))) / scale
                 if size < tolerance or change < 1e-12:
@@ -91,6 +91,8 @@ class Assembly:
             step, count = self._direction(u, force, shear, accuracy=min(1e-2, 0.1 * size))
             length = self._line_search(u, step, load, shear)
             u = u + length * step
+            if size > SETTLED:  # far off, k_t follows at once; near the end it is held so that Newton converges
+                shear = [self._shear_stiffness(joint, seat, u) for joint, seat in self.joints]
             newton, inner = newton + 1, inner + count
             if report:
                 report(f"Newton {newton}: imbalance {size:.1e}, {count} inner steps, step {length:.3g}")
@@ -218,3 +220,8 @@ class Assembly:
                 return middle
             low, high = (middle, high) if value < 0 else (low, middle)
         return (low + high) / 2
+
+
+def _relative_change(new: Array, old: Array) -> float:
+    size = float(np.linalg.norm(new))
+    return float(np.linalg.norm(new - old)) / size if size > 0 else 0.0

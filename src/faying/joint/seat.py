@@ -16,7 +16,9 @@ LEAST_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p
 class Law(Protocol):
     """What a joint asks of a contact law."""
 
-    name: str
+    @property
+    def name(self) -> str:
+        """What the law is called."""
 
     @property
     def greatest_pressure(self) -> float:
@@ -63,7 +65,7 @@ class Seat:
     tangential: Literal["law", "mindlin"] = "law"
     nu: float = 0.3
     scale: float = 1.0
-    points: int = 600
+    points: int = 1000
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
@@ -98,7 +100,9 @@ class Seat:
         if self.tangential == "mindlin":
             return k_n, k_n * 2 * (1 - self.nu) / (2 - self.nu)
         if answer.k_t is None:
-            raise InputError(f'{self.law.name} defines no tangential stiffness; set tangential = "mindlin" in the study')
+            raise InputError(
+                f'{self.law.name} defines no tangential stiffness; set tangential = "mindlin" in the study'
+            )
         return k_n, self.scale * answer.k_t
 
     def loss(self, pressure: Array) -> tuple[Array, Array]:
@@ -116,7 +120,7 @@ class Seat:
         Beyond the end of the law the curve goes on as a power, so that an iteration may pass through; whoever keeps a
         result checks the pressure against `law.greatest_pressure`.
         """
-        log_w, log_p, slope = self._table
+        log_w, _, slope = self._table
         shut = closing > 0
         x = np.log(np.where(shut, closing, 1.0))
         inside = np.clip(x, log_w[0], log_w[-1])
@@ -131,5 +135,7 @@ class Seat:
 
     def closing(self, pressure: float) -> float:
         """Closing [m] at one pressure [Pa] between the least and the greatest of the law."""
-        log_w, log_p, _ = self._table
-        return float(np.exp(np.interp(np.log(pressure), log_p, log_w)))
+        from scipy.interpolate import CubicHermiteSpline
+
+        log_w, log_p, slope = self._table
+        return float(np.exp(CubicHermiteSpline(log_p, log_w, 1 / slope)(np.log(pressure))))

@@ -1,1 +1,5 @@
 """Measured heights in, numbers out."""
+
+from faying.surface import synthesize
+
+__all__ = ["synthesize"]

@@ -1,0 +1,22 @@
+"""faying init [STUDY.toml]"""
+
+from pathlib import Path
+
+import click
+
+
+@click.command()
+@click.argument("study", type=click.Path(path_type=Path), default="study.toml")
+@click.option("--force", is_flag=True, help="Replace the file if it exists.")
+@click.option("--json", "as_json", is_flag=True, help="Print what was written as JSON.")
+def command(study: Path, force: bool, as_json: bool) -> None:
+    """Write a commented study to STUDY, with a small bolted pair (STEP) beside it, so that it runs as it is."""
+    from faying.study.template import write
+
+    made = write(study, force=force)
+    if as_json:
+        import json
+
+        click.echo(json.dumps({"files": [str(path) for path in made]}))
+    else:
+        click.echo(f"written: {', '.join(str(path) for path in made)}; run it with: faying run {study}")

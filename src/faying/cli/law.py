@@ -1,0 +1,277 @@
+"""`faying law`: the curves of a contact law, on the terminal, as JSON, CSV and as a figure."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+
+UNITS = {"pressure": "Pa", "area": "", "k_n": "Pa/m", "k_t": "Pa/m", "loss_n": "", "loss_t": "", "energy_n": "J/m^2",
+         "energy_t": "J/m^2"}  # fmt: skip
+# what the table shows: heading and factor from SI
+SHOWN = {
+    "pressure": ("p [MPa]", 1e-6),
+    "area": ("Ar/A0", 1.0),
+    "k_n": ("k_n [MPa/um]", 1e-12),
+    "k_t": ("k_t [MPa/um]", 1e-12),
+    "loss_n": ("loss n", 1.0),
+    "loss_t": ("loss t", 1.0),
+}
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.option("--model", default="JK", show_default=True, help="The law; `faying models` lists them.")
+@click.option("--D", "D", type=float, help="Fractal dimension of the surface, 2 to 3.")
+@click.option("--G", "G", metavar="LENGTH", help='Fractal roughness, for example "1.53e-10 m".')
+@click.option("--scan-area", metavar="AREA", help='Area that the scan covers, for example "16 mm^2".')
+@click.option("--set", "settings", multiple=True, metavar="NAME=VALUE",
+              help='Any parameter of the model, for example --set cutoff=0.01 or --set "sigma=0.8 um".')  # fmt: skip
+@click.option("--material", default=None, help='Of the rough body, from the catalogue, for example "45 steel".')
+@click.option("--against", default="rigid", show_default=True, help='"rigid", "same", or a name of the catalogue.')
+@click.option("--E", "E", metavar="STRESS", help="Young's modulus, in place of or over --material.")
+@click.option("--nu", type=float, help="Poisson's ratio.")
+@click.option("--hardness", metavar="STRESS", help="Hardness.")
+@click.option("--yield-strength", metavar="STRESS", help="Yield strength; hardness is 2.8 times it where not given.")
+@click.option("--friction", type=float, help="Static friction coefficient.")
+@click.option("--pressure", default="0.1 MPa:50 MPa", show_default=True, metavar="FROM:TO[:POINTS]",
+              help="Nominal pressures, spaced logarithmically; or one pressure.")  # fmt: skip
+@click.option("--scan", type=click.Path(), help="A scan: D, G, moments and area come from it.")
+@click.option("--xy-unit", help='Unit of x and y where the scan states none, for example "mm".')
+@click.option("--z-unit", help='Unit of the heights where the scan states none, for example "um".')
+@click.option("--method", default="psd", show_default=True, help="Estimator of D and G: psd, structure or moments.")
+@click.option("--models", metavar="LIST", help='Several laws of the scan, for example "jk,gw,gw-ke,persson".')
+@click.option("--all-models", is_flag=True, help="All laws that take their inputs from a scan.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
+@click.option("--csv", "csv_file", type=click.Path(dir_okay=False), help="Write all columns to a CSV file.")
+@click.option("--plot", type=click.Path(dir_okay=False), help="Write a figure (png, pdf, svg).")
+def command(
+    model: str,
+    settings: tuple[str, ...],
+    pressure: str,
+    as_json: bool,
+    csv_file: str | None,
+    plot: str | None,
+    against: str,
+    scan: str | None,
+    models: str | None,
+    all_models: bool,
+    **options: Any,
+) -> None:
+    """Real area, stiffness and loss of a contact law against nominal pressure.
+
+    Example: faying law --D 2.39 --G "1.53e-10 m" --scan-area "16 mm^2" --material "45 steel"
+    """
+    from faying.contact.registry import find_law
+    from faying.errors import InputError
+
+    cls = find_law(model)
+    pair = pair_of(options, against)
+    if models or all_models:
+        from faying.cli.compare import show
+
+        if scan is None or settings:
+            raise InputError("--models and --all-models take every input from a scan: give --scan FILE and no --set")
+        names = None if all_models else [name for name in (models or "").split(",") if name.strip()]
+        show(surface_of(scan, options), pair, names, pressures_of(pressure), as_json, csv_file, plot)
+        return
+    if scan is not None:
+        law = cls.from_surface(surface_of(scan, options)[0], pair)
+        changes = parameters_of(cls, options, settings, needed=False)
+        law = law.with_(**changes) if changes else law
+    else:
+        law = cls(pair=pair, **parameters_of(cls, options, settings))  # type: ignore[call-arg]
+    pressures = pressures_of(pressure)
+    response = law.at_pressure(pressures)
+    if csv_file:
+        write_csv(csv_file, law, response)
+    if plot:
+        from faying.plot.law import curves, save
+
+        save(curves({law.name: response}), plot)
+    click.echo(json.dumps(document(law, response), indent=2, allow_nan=False) if as_json else table(law, response))
+
+
+def surface_of(file: str, options: dict[str, Any]) -> tuple[Any, Any]:
+    """Read, level and fit a scan; return what the models take from it, and the levelled scan."""
+    from faying.contact.inputs import SurfaceInputs
+    from faying.errors import InputError
+    from faying.surface.form import prepared
+    from faying.surface.fractal import fit_fractal
+    from faying.surface.read import read_scan
+    from faying.surface.scan import Profile
+
+    scan = read_scan(file, xy_unit=options["xy_unit"], z_unit=options["z_unit"])
+    if isinstance(scan, Profile):
+        raise InputError(f"{file} holds a profile; contact laws need an areal scan")
+    ready = prepared(scan)
+    fit = fit_fractal(scan, options["method"])
+    import numpy as np
+
+    heights = np.where(ready.known, ready.scan.heights, np.nan)
+    return SurfaceInputs.from_heights(heights, ready.scan.spacing, D=fit.D, G=fit.G), ready.scan
+
+
+def pair_of(options: dict[str, Any], against: str) -> Any:
+    """Build the pair from --material, --E ... and --against."""
+    from dataclasses import replace
+
+    from faying.errors import InputError
+    from faying.materials import CATALOGUE, RIGID, ContactPair, Material
+    from faying.units import parse
+
+    def known(name: str) -> Material:
+        if name not in CATALOGUE:
+            raise InputError(f"no material {name!r} in the catalogue; it has {', '.join(CATALOGUE)}; or give --E, --nu")
+        return CATALOGUE[name]
+
+    stresses = ("E", "hardness", "yield_strength")
+    given: dict[str, Any] = {
+        n: parse(options[n], "Pa", name=f"--{n.replace('_', '-')}") for n in stresses if options[n] is not None
+    }
+    given |= {n: options[n] for n in ("nu", "friction") if options[n] is not None}
+    if options["material"] is None:
+        if not {"E", "nu"} <= set(given):
+            raise InputError('no material: give --material, for example "45 steel", or --E and --nu')
+        rough = Material(name="given", **given)
+    else:
+        rough = known(options["material"])
+        if "yield_strength" in given and "hardness" not in given:
+            given["hardness"] = None
+        rough = replace(rough, **given)
+    return ContactPair(rough, RIGID if against == "rigid" else rough if against == "same" else known(against))
+
+
+def parameters_of(
+    cls: Any, options: dict[str, Any], settings: tuple[str, ...], *, needed: bool = True
+) -> dict[str, Any]:
+    """Read the parameters of the law `cls` from --D, --G, --scan-area and --set; every fault in one message."""
+    from dataclasses import MISSING, fields
+
+    from faying.errors import InputError
+
+    texts = {name: str(options[name]) for name in ("D", "G", "scan_area") if options[name] is not None}
+    faults = []
+    for setting in settings:
+        name, mark, text = setting.partition("=")
+        if not mark:
+            faults.append(f'--set "{setting}" is not NAME=VALUE')
+        texts[name.strip()] = text.strip()
+    out: dict[str, Any] = {}
+    for name, text in texts.items():
+        parameter = cls.parameters.get(name)
+        if parameter is None:
+            faults.append(f"{cls.name} has no parameter {name!r}; it has {', '.join(cls.parameters)}")
+            continue
+        try:
+            out[name] = value_of(text, parameter.unit, name)
+        except InputError as fault:
+            faults.append(str(fault))
+    must = [f.name for f in fields(cls) if f.init and f.default is MISSING and f.default_factory is MISSING]
+    missing = [name for name in must if needed and name in cls.parameters and name not in texts]
+    if missing:
+        wants = "; ".join(f"{n} ({cls.parameters[n].meaning}{unit_note(cls.parameters[n].unit)})" for n in missing)
+        faults.append(f"{cls.name} needs {wants}; give them by --set NAME=VALUE, or as options where there is one")
+    if faults:
+        raise InputError("\n  ".join(faults))
+    return out
+
+
+def unit_note(unit: str) -> str:
+    """Write the unit for an error text."""
+    return f", in {unit}" if unit not in ("", "text") else ""
+
+
+def value_of(text: str, unit: str, name: str) -> Any:
+    """Read one value: a word or number as it is, anything else with its unit."""
+    from faying.units import parse
+
+    if unit in ("", "text"):
+        try:
+            return float(text)
+        except ValueError:
+            return text
+    return parse(text, unit, name=name)
+
+
+def pressures_of(text: str, points: int = 19) -> Any:
+    """Read "FROM:TO", "FROM:TO:POINTS" or one pressure [Pa]; InputError otherwise."""
+    import numpy as np
+
+    from faying.errors import InputError
+    from faying.units import parse
+
+    parts = [part.strip() for part in text.split(":")]
+    if len(parts) > 3:
+        raise InputError(f'--pressure "{text}"; write FROM:TO or FROM:TO:POINTS, for example "0.1 MPa:50 MPa:20"')
+    values = [parse(part, "Pa", name="--pressure") for part in parts[:2]]
+    if len(values) == 1:
+        return np.array(values)
+    if not 0 < values[0] < values[1]:
+        raise InputError(f'--pressure "{text}": the first must be above 0 and below the second')
+    if len(parts) == 3:
+        if not parts[2].isdigit() or int(parts[2]) < 2:
+            raise InputError(f'--pressure "{text}": POINTS = {parts[2]}; it must be a whole number of 2 or more')
+        points = int(parts[2])
+    return np.geomspace(values[0], values[1], points)
+
+
+def parameter_values(law: Any) -> dict[str, Any]:
+    """Return the parameters of a law as they are, by name, for print and JSON."""
+    values = {name: getattr(law, name) for name in law.parameters}
+    return {name: value for name, value in values.items() if isinstance(value, (int, float, str))}
+
+
+def document(law: Any, response: Any) -> dict[str, Any]:
+    """Everything that the command knows, as a tree for JSON."""
+    pair = getattr(law, "pair", None)
+    return {
+        "law": type(law).__name__,
+        "source": law.source,
+        "parameters": {n: {"value": v, "unit": law.parameters[n].unit} for n, v in parameter_values(law).items()},
+        "pair": None if pair is None else {"materials": [pair.first.name, pair.second.name], "E_star": pair.E_star},
+        "units": {name: UNITS[name] for name in response.quantities()},
+        **{name: value.tolist() for name, value in response.quantities().items()},
+        "valid": response.valid.tolist(),
+        "reasons": {reason: mask.tolist() for reason, mask in response.reasons.items() if mask.any()},
+    }
+
+
+def table(law: Any, response: Any) -> str:
+    """Format the response for the terminal; * marks rows where the law leaves its ground, with the reasons below."""
+    from faying.units import show
+
+    quantities = response.quantities()
+    names = [name for name in SHOWN if name in quantities]
+    given = []
+    for n, v in parameter_values(law).items():
+        unit = law.parameters[n].unit
+        given.append(f"{n} {v if isinstance(v, str) else show(v, unit) if unit else f'{v:.6g}'}")
+    lines = [f"{law.name}, {law.source}"]
+    while given:
+        line = "  " + given.pop(0)
+        while given and len(line) + len(given[0]) < 100:
+            line += ", " + given.pop(0)
+        lines.append(line)
+    if getattr(law, "pair", None) is not None:
+        lines.append(f"  {law.pair.first.name} against {law.pair.second.name}, E* {show(law.pair.E_star, 'Pa')}")
+    lines.append("")
+    lines.append("  " + "".join(f"{SHOWN[name][0]:>14}" for name in names))
+    for i, good in enumerate(response.valid):
+        row = "".join(f"{quantities[name][i] * SHOWN[name][1]:>14.4g}" for name in names)
+        lines.append("  " + row + ("" if good else "  *"))
+    if not response.valid.all():
+        lines += ["", "  * outside the ground of the model:"]
+        for reason, mask in response.reasons.items():
+            if mask.any():
+                low, high = response.pressure[mask].min(), response.pressure[mask].max()
+                lines.append(f"    {reason}, at {show(float(low), 'Pa')} to {show(float(high), 'Pa')}")
+    return "\n".join(lines)
+
+
+def write_csv(path: str, law: Any, response: Any) -> None:
+    """Write every column with its unit, and whether the law stands on its ground."""
+    quantities = response.quantities()
+    head = [f"{name} [{UNITS[name] or '-'}]" for name in quantities]
+    rows = zip(*(value.tolist() for value in quantities.values()), response.valid.tolist(), strict=True)
+    body = "\n".join(",".join(repr(v) if isinstance(v, float) else str(v).lower() for v in row) for row in rows)
+    Path(path).write_text(f"# {law.name}, {law.source}\n" + ",".join([*head, "valid"]) + "\n" + body + "\n")

@@ -1,0 +1,52 @@
+"""faying run STUDY.toml"""
+
+import json
+import sys
+from pathlib import Path
+
+import click
+
+
+@click.command()
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Folder for the results (default: results/ beside the study)."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@click.option("--no-files", is_flag=True, help="Write no files, only print.")
+def command(study: Path, out: Path | None, as_json: bool, no_files: bool) -> None:
+    """Run STUDY: surface, contact law, preload, modes; write NetCDF, CSV, figures and a report."""
+    from faying import report, table
+    from faying.errors import InputError
+    from faying.study import Study, run
+
+    plan = Study.read(study)
+    folder = out or plan.folder / "results"
+    if not no_files:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as fault:
+            raise InputError(f"cannot make the folder {folder}: {fault.strerror}; give another with --out") from None
+    stages = 3 + 2 * plan.load_count + (0 if no_files else 1)
+    with click.progressbar(length=stages, file=sys.stderr, label="study", item_show_func=lambda s: s or "") as bar:
+
+        def tell(stage: str) -> None:
+            bar.update(1, stage)
+
+        result = run(plan, report=tell)
+        files = []
+        if not no_files:
+            tell("report")
+            files = report.write(result, folder)
+    if as_json:
+        click.echo(json.dumps(result.to_dict() | {"files": [str(f) for f in files]}, indent=2))
+        return
+    click.echo(f"{result.title}: {result.unknowns:,} unknowns, {result.solver}\n")
+    for name, rows in (("modes", table.modes(result)), ("joints", table.joints(result)),
+                       ("comparison with the test", table.comparison(result))):  # fmt: skip
+        if rows:
+            click.echo(f"{name}\n{table.text(rows)}\n")
+    for line in result.warnings:
+        click.echo(f"note: {line}")
+    if files:
+        click.echo(f"\nwritten to {folder}: {', '.join(f.name for f in files)}")

@@ -1,0 +1,136 @@
+"""`faying surface FILE`: roughness, D and G of a scan, on the terminal, as JSON, and as a figure."""
+
+import json
+from typing import Any
+
+import click
+
+METHODS = ("psd", "structure", "roughness-length", "box", "higuchi", "mfdfa", "moments", "fpenn")
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("file", type=click.Path())
+@click.option("--xy-unit", help='Unit of x and y where the file states none, for example "mm".')
+@click.option("--z-unit", help='Unit of the heights where the file states none, for example "um".')
+@click.option("--method", type=click.Choice([*METHODS, "all"]), default="psd", show_default=True, help="Estimator.")
+@click.option(
+    "--degree", type=click.IntRange(0, 8), default=1, show_default=True, help="Form removed: polynomial degree."
+)
+@click.option("--keep-spikes", is_flag=True, help="Leave single outlying points in.")
+@click.option("--self-test", "test", is_flag=True, help="Correct for bias by synthetic surfaces made like this one.")
+@click.option("--cross-check", "check", is_flag=True, help="Compare with what other installed readers make of FILE.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
+@click.option("--plot", type=click.Path(dir_okay=False), help="Write a figure (png, pdf, svg).")
+def command(
+    file: str,
+    xy_unit: str | None,
+    z_unit: str | None,
+    method: str,
+    degree: int,
+    keep_spikes: bool,
+    test: bool,
+    check: bool,
+    as_json: bool,
+    plot: str | None,
+) -> None:
+    """Roughness, fractal dimension D and fractal roughness G of the scan in FILE."""
+    from faying.surface.form import prepared
+    from faying.surface.fractal import FractalFit, fit_all, fit_fractal
+    from faying.surface.read import read_scan
+    from faying.surface.roughness import roughness
+
+    scan = read_scan(file, xy_unit=xy_unit, z_unit=z_unit)
+    ready = prepared(scan, degree=degree, spikes=not keep_spikes)
+    options: dict[str, Any] = {"degree": degree, "spikes": not keep_spikes}
+    if method == "all":
+        fits: dict[str, FractalFit | str] = fit_all(scan, self_test=test, **options)
+    else:
+        fits = {method: fit_fractal(scan, method, self_test=test, **options)}
+    document = describe(scan, ready, roughness(ready), fits)
+    if check:
+        from faying.surface.crosscheck import cross_check
+
+        document["cross_check"] = [vars(o) for o in cross_check(scan, file, xy_unit, z_unit)]
+    if plot:
+        from faying.plot.surface import overview
+
+        overview(scan, ready, fits, plot)
+    click.echo(json.dumps(document, indent=2, allow_nan=False) if as_json else table(document))
+
+
+def describe(scan: Any, ready: Any, rough: Any, fits: Any) -> dict[str, Any]:
+    """Everything that the command knows, as a tree for JSON (SI units; None for what is not finite)."""
+    from dataclasses import asdict
+    from math import isfinite
+
+    def clean(value: Any) -> Any:
+        if isinstance(value, float):
+            return value if isfinite(value) else None
+        if isinstance(value, (list, tuple)):
+            return [clean(v) for v in value]
+        return {k: clean(v) for k, v in value.items()} if isinstance(value, dict) else value
+
+    shape = list(scan.heights.shape)
+    spacing = list(scan.spacing) if len(shape) == 2 else [scan.spacing]
+    size = list(scan.size) if len(shape) == 2 else [scan.length]
+    out = {
+        "file": scan.source,
+        "points": shape,
+        "spacing": spacing,
+        "size": size,
+        "instrument": asdict(scan.instrument),
+        "missing": ready.missing,
+        "spikes": ready.spikes,
+        "roughness": asdict(rough),
+        "fits": {n: {"error": f} if isinstance(f, str) else asdict(f) for n, f in fits.items()},
+        "units": "SI: lengths in metres",
+    }
+    return dict(clean(out))
+
+
+def table(document: dict[str, Any]) -> str:
+    """Format the document for the terminal."""
+    from faying.units import show
+
+    def m(value: float | None, digits: int = 4) -> str:
+        return "-" if value is None else show(value, "m", digits=digits)
+
+    points, size = document["points"], document["size"]
+    areal = len(points) == 2
+    shown = (
+        f"{points[1]} x {points[0]} points, {m(size[0])} x {m(size[1])}"
+        if areal
+        else f"{points[0]} points, {m(size[0])}"
+    )
+    step = " x ".join(m(s) for s in document["spacing"])
+    rough = document["roughness"]
+    q, a, z, slope = ("Sq", "Sa", "Sz", "Sdq") if areal else ("Rq", "Ra", "Rz", "Rdq")
+    lines = [
+        document["file"],
+        f"  {shown}, spacing {step}",
+        f"  missing {document['missing']}, spikes {document['spikes']}",
+        f"  {q} {m(rough['Rq'])}, {a} {m(rough['Ra'])}, {z} {m(rough['Rz'])}, {slope} {rough['Rdq']:.4g}, "
+        f"skewness {rough['skewness']:.3g}, kurtosis {rough['kurtosis']:.3g}",
+        "",
+        f"  {'method':<17}{'D':>7}  {'95 % interval':<18}{'G':>10}  {'95 % interval':<24}{'band':<22}{'implied ' + q}",
+    ]
+    words: list[str] = []
+    for name, fit in document["fits"].items():
+        if "error" in fit:
+            lines.append(f"  {name:<17}{fit['error']}")
+            continue
+        d, g, band = fit["D_interval"], fit["G_interval"], fit["band"]
+        d_text = f"{d[0]:.3f} .. {d[1]:.3f}"
+        g_text = f"{m(g[0], 3)} .. {m(g[1], 3)}"
+        b_text = f"{m(band[0], 3)} .. {m(band[1], 3)}"
+        lines.append(
+            f"  {name:<17}{fit['D']:>7.3f}  {d_text:<18}{m(fit['G'], 3):>10}  {g_text:<24}{b_text:<22}"
+            f"{m(fit['implied_Rq'], 3)}"
+        )
+        words += [f"  {name}: {word}" for word in fit["warnings"]]
+    convention = next((f["convention"] for f in document["fits"].values() if "error" not in f), "")
+    lines += ["", f"  {convention}", *words]
+    for seen in document.get("cross_check", ()):
+        verdict = {True: "agrees", False: "DIFFERS", None: "no opinion"}[seen["agrees"]]
+        lines.append(f"  cross-check by {seen['reader']}: {verdict}: {seen['text']}")
+    return "\n".join(lines)

@@ -1,0 +1,1 @@
+"""Figures: one function each, data and Axes in, Axes out."""

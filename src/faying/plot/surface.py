@@ -1,0 +1,121 @@
+"""Figures of a scan: map, profile, spectrum with the fitted band, estimators side by side."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.surface.convention import density
+from faying.surface.form import Prepared
+from faying.surface.fractal import FractalFit
+from faying.surface.scan import Profile, Scan
+from faying.surface.spectrum import Spectrum
+
+_PREFIXES = ((1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm"), (1e-12, "pm"))
+
+
+def _unit(value: float) -> tuple[float, str]:
+    """The factor and name of the unit in which `value` [m] reads as a number of one to three digits."""
+    for factor, name in _PREFIXES:
+        if abs(value) >= factor:
+            return factor, name
+    return _PREFIXES[-1]
+
+
+def height_map(scan: Scan, ax: Any) -> Any:
+    """Draw the heights as a map; colours span the central 98 % of the heights."""
+    factor, name = _unit(max(scan.size))
+    low, high = np.nanquantile(scan.heights, [0.01, 0.99])
+    scale, unit = _unit(float(high - low))
+    image = ax.imshow(
+        scan.heights / scale,
+        origin="lower",
+        extent=(0, scan.size[0] / factor, 0, scan.size[1] / factor),
+        cmap="viridis",
+        vmin=low / scale,
+        vmax=high / scale,
+        interpolation="nearest",
+    )
+    ax.figure.colorbar(image, ax=ax, label=f"height [{unit}]", shrink=0.85)
+    ax.set_xlabel(f"x [{name}]")
+    ax.set_ylabel(f"y [{name}]")
+    return ax
+
+
+def profile(scan: Profile, ax: Any) -> Any:
+    """Draw a line of heights."""
+    factor, name = _unit(scan.length)
+    scale, unit = _unit(float(np.nanmax(np.abs(scan.heights))))
+    ax.plot(np.arange(len(scan.heights)) * scan.spacing / factor, scan.heights / scale, lw=0.7)
+    ax.set_xlabel(f"x [{name}]")
+    ax.set_ylabel(f"height [{unit}]")
+    ax.margins(x=0)
+    return ax
+
+
+def power_spectrum(spectrum: Spectrum, fits: Mapping[str, FractalFit | str], ax: Any, *, c: float = 1.0) -> Any:
+    """Draw the power per radial frequency with the law of each fit over its band; wavelengths along the top."""
+    ax.loglog(spectrum.frequency, spectrum.density, ".", ms=3, color="0.55", label="scan")
+    for name, fit in fits.items():
+        if isinstance(fit, str) or not (fit.G > 0 and 2 < fit.D < 3):
+            continue
+        f = np.geomspace(1 / fit.band[1], 1 / fit.band[0], 50)
+        ax.loglog(f, density(fit.D, fit.G, c) * f ** (2 * fit.D - 7), lw=1.6, label=f"{name}, D {fit.D:.3f}")
+    ax.set_xlabel("frequency [1/m]")
+    ax.set_ylabel("power per frequency [m³]")
+    top = ax.secondary_xaxis("top", functions=(_inverse, _inverse))
+    top.set_xlabel("wavelength [m]")
+    ax.legend(fontsize="small")
+    return ax
+
+
+def _inverse(x: Any) -> Any:
+    with np.errstate(divide="ignore"):
+        return 1 / np.asarray(x, float)
+
+
+def estimators(fits: Mapping[str, FractalFit | str], ax: Any) -> Any:
+    """Draw D of every estimator with its 95 % interval."""
+    good = [(name, fit) for name, fit in fits.items() if not isinstance(fit, str)]
+    for row, (_, fit) in enumerate(good):
+        ax.plot(fit.D_interval, (row, row), lw=2, color="C0")
+        ax.plot(fit.D, row, "o", color="C0")
+    ax.set_yticks(range(len(good)), [name for name, _ in good])
+    ax.set_ylim(len(good) - 0.5, -0.5)
+    ax.set_xlabel("surface dimension D, 95 % interval")
+    ax.grid(axis="x", alpha=0.3)
+    return ax
+
+
+def overview(scan: Scan | Profile, ready: Prepared, fits: Mapping[str, FractalFit | str], path: str | Path) -> Path:
+    """Write one figure of map (or line), a profile, the spectrum and the estimators; the suffix sets the format.
+
+    Raises InputError for a suffix that matplotlib does not know or a folder that cannot be written.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    from faying.surface.spectrum import spectrum
+
+    figure = Figure(figsize=(11, 7.5), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(2, 2)
+    if isinstance(scan, Scan):
+        height_map(ready.scan, axes[0, 0])
+        profile(ready.scan.profile("x", scan.shape[0] // 2), axes[0, 1])
+        axes[0, 1].set_title("middle row, levelled", fontsize="medium")
+    else:
+        profile(scan, axes[0, 0])
+        axes[0, 0].set_title("as read", fontsize="medium")
+        profile(ready.scan, axes[0, 1])
+        axes[0, 1].set_title("levelled", fontsize="medium")
+    power_spectrum(spectrum(ready.scan), fits, axes[1, 0])
+    estimators(fits, axes[1, 1])
+    figure.suptitle(Path(scan.source).name)
+    try:
+        figure.savefig(path, dpi=130)
+    except (ValueError, OSError) as fault:
+        raise InputError(f"{path}: the figure cannot be written ({fault}); use .png, .pdf or .svg") from fault
+    return Path(path)

@@ -1,0 +1,145 @@
+"""Reads tables of a study file and collects every fault, so that the user sees them all at once."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from typing import Any
+
+from faying import units
+from faying.errors import InputError
+
+MISSING: Any = object()
+
+
+@dataclass
+class Faults:
+    """The faults found so far."""
+
+    lines: list[str] = field(default_factory=list)
+
+    def add(self, text: str) -> None:
+        """Note one fault."""
+        self.lines.append(text)
+
+    def raise_if_any(self, where: str) -> None:
+        """Raise one InputError that lists all of them."""
+        if self.lines:
+            count = f"{len(self.lines)} fault" + "s" * (len(self.lines) > 1)
+            raise InputError(f"{where}: {count}\n" + "\n".join(f"  - {line}" for line in self.lines))
+
+
+class Table:
+    """One table of the file; each key is taken once, and `close` reports the keys that nobody took."""
+
+    def __init__(self, data: Mapping[str, Any], where: str, faults: Faults) -> None:
+        self.data, self.where, self.faults = dict(data), where, faults
+        self._known: list[str] = []
+
+    def _name(self, key: str) -> str:
+        return f"{self.where}.{key}" if self.where else key
+
+    def take(self, key: str, convert: Callable[[Any, str], Any], default: Any = MISSING) -> Any:
+        """Convert the value of `key`; a fault is noted where it is missing without default or does not convert."""
+        self._known.append(key)
+        if key not in self.data:
+            if default is MISSING:
+                self.faults.add(f"{self._name(key)} is missing")
+                return None
+            return default
+        try:
+            return convert(self.data[key], self._name(key))
+        except InputError as fault:
+            self.faults.add(str(fault))
+            return None if default is MISSING else default
+
+    def quantity(self, key: str, unit: str, default: Any = MISSING, *, positive: bool = True) -> Any:
+        """Take a quantity with its unit, in SI."""
+        return self.take(key, lambda value, name: quantity(value, unit, name, positive=positive), default)
+
+    def text(self, key: str, default: Any = MISSING, choices: tuple[str, ...] | None = None) -> Any:
+        """Take a text, one of `choices` where given."""
+        return self.take(key, lambda value, name: _text(value, name, choices), default)
+
+    def number(self, key: str, default: Any = MISSING) -> Any:
+        """Take a plain number (of a quantity without dimension)."""
+        return self.take(key, number, default)
+
+    def count(self, key: str, default: Any = MISSING) -> Any:
+        """Take a whole number of 1 or more."""
+        return self.take(key, _count, default)
+
+    def texts(self, key: str, size: int, default: Any = MISSING) -> Any:
+        """Take a list of `size` texts."""
+        return self.take(key, lambda value, name: _texts(value, name, size), default)
+
+    def table(self, key: str, *, required: bool = False) -> "Table | None":
+        """Take a table within this one."""
+        self._known.append(key)
+        if key not in self.data:
+            if required:
+                self.faults.add(f"[{self._name(key)}] is missing")
+            return None
+        value = self.data[key]
+        if not isinstance(value, Mapping):
+            self.faults.add(f"{self._name(key)} = {value!r} should be a table: [{self._name(key)}]")
+            return None
+        return Table(value, self._name(key), self.faults)
+
+    def tables(self, key: str, *, required: bool = False) -> "list[Table]":
+        """Take a list of tables [[key]]; a single [key] counts as a list of one."""
+        self._known.append(key)
+        value = self.data.get(key)
+        if value is None:
+            if required:
+                self.faults.add(f"[[{self._name(key)}]] is missing")
+            return []
+        items = [value] if isinstance(value, Mapping) else value
+        if not isinstance(items, list) or not all(isinstance(item, Mapping) for item in items):
+            self.faults.add(f"{self._name(key)} should be a list of tables: [[{self._name(key)}]]")
+            return []
+        return [Table(item, f"{self._name(key)}[{i + 1}]", self.faults) for i, item in enumerate(items)]
+
+    def close(self) -> None:
+        """Note every key that was not asked for, with the nearest known one."""
+        for key in self.data:
+            if key not in self._known:
+                near = get_close_matches(key, self._known, n=1)
+                hint = f"; did you mean {near[0]}?" if near else f"; known are {', '.join(self._known)}"
+                self.faults.add(f"{self._name(key)} is not a key that a study has{hint}")
+
+
+def quantity(value: Any, unit: str, name: str, *, positive: bool = True) -> float:
+    """Parse one quantity; InputError where the unit is missing or the value not positive."""
+    number = units.parse(value, unit, name=name)
+    if positive and number <= 0:
+        raise InputError(f'{name} = "{value}" must be positive')
+    return number
+
+
+def number(value: Any, name: str) -> float:
+    """Check one plain number."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or value != value or abs(value) == float("inf"):
+        raise InputError(f"{name} = {value!r} should be a plain finite number, for example 0.3")
+    return float(value)
+
+
+def _count(value: Any, name: str) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+        raise InputError(f"{name} = {value!r} should be a whole number of 1 or more")
+    return value
+
+
+def _text(value: Any, name: str, choices: tuple[str, ...] | None) -> str:
+    if not isinstance(value, str):
+        raise InputError(f"{name} = {value!r} should be text in quotes")
+    if choices and value not in choices:
+        raise InputError(f'{name} = "{value}" should be one of {", ".join(choices)}')
+    return value
+
+
+def _texts(value: Any, name: str, size: int) -> list[str]:
+    if not isinstance(value, list) or len(value) != size or not all(isinstance(v, str) for v in value):
+        raise InputError(
+            f'{name} = {value!r} should be a list of {size} names, for example ["upper.joint", "lower.joint"]'
+        )
+    return list(value)

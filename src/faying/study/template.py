@@ -1,0 +1,108 @@
+"""The study that `faying init` writes: every key explained, and a geometry so small that it runs in seconds."""
+
+from pathlib import Path
+
+from faying.errors import InputError
+from faying.result import whole
+
+TEXT = """# A Faying study. Quantities are text with a unit; plain numbers have no dimension.
+# Run it with: faying run {name}
+title = "Two blocks and a bolt"
+
+# The parts: solids of a STEP file with the names that the CAD program gave to solids and faces.
+[geometry]
+step = "{step}"
+size = "8 mm"                  # largest element
+[geometry.face_size]           # finer where it matters
+"upper.joint" = "4 mm"
+# A face without a name in the file takes one here: the face of that part nearest to the point.
+# [geometry.face_at]
+# "upper.end" = {{ part = "upper", point = ["50 mm", "0 mm", "30 mm"] }}
+
+[part.upper]
+material = "45 steel"          # from the catalogue (45 steel, S355, EN AW-6082 T6) or a [material.NAME] of yours
+[part.lower]
+material = "45 steel"
+
+# [material."my steel"]
+# E = "210 GPa"
+# nu = 0.3
+# density = "7850 kg/m^3"
+# yield_strength = "355 MPa"
+# hardness = "994 MPa"         # 2.8 times the yield strength where left out
+# friction = 0.25
+
+# The rough surface: a scan ...
+# [surface]
+# scan = "scan.x3p"            # X3P, x,y,z text; more formats with the extra `instruments`
+# xy_unit = "mm"               # only where the file does not say
+# z_unit = "um"
+# method = "psd"               # psd, structure or moments
+# ... or its fractal parameters.
+[surface]
+D = 2.39                       # fractal dimension of the surface, between 2 and 3
+G = "1.53e-10 m"               # fractal roughness, Yan-Komvopoulos convention
+scan_area = "16 mm^2"          # area of the scan that D and G come from
+
+[law]
+model = "jk"
+closure = "consistent"         # or "printed": the numbers of the paper
+loss = "held"                  # or "literal"
+cutoff = 0.01                  # smallest asperity that counts for stiffness, as a share of a1c'
+substrate = 1.0                # share of the deformation that the asperity takes, or "exact"
+counterbody = "part"           # or "rigid", as the paper has it
+
+[[joint]]
+name = "joint"
+faces = ["upper.joint", "lower.joint"]
+springs = "per-area"           # or "per-node": the paper's use, which depends on the mesh
+tangential = "law"             # or "mindlin": k_t = k_n 2(1-nu)/(2-nu)
+
+[[bolt]]
+name = "bolt"
+faces = ["upper.seat", "lower.seat"]   # the two seats that head and nut press on
+preload = ["2 kN", "6 kN"]             # one or more, rising
+
+[modes]
+count = 6                      # elastic modes
+# solver = "pardiso"           # the fastest one found where left out
+
+# A hammer test to compare with: one row of frequencies for each preload.
+# [test]
+# source = "who measured it, when"
+# frequencies = [["406 Hz", "1126 Hz"], ["410 Hz", "1135 Hz"]]
+# direction = [1, 0, 0]        # of the hammer
+# points = [["50 mm", "0 mm", "30 mm"]]   # where it hits or the sensor sits
+"""
+
+
+def blocks(path: Path) -> None:
+    """Write a STEP file of two blocks, 80 x 30 x 15 mm each, with a clearance hole and two bolt seats."""
+    from netgen.occ import Axes, Axis, Box, Compound, Cylinder, Glue, WorkPlane, X, Z
+
+    def block(name: str) -> object:
+        solid = Box((-40, -15, 0), (40, 15, 15)) - Cylinder((0, 0, -1), Z, r=4.5, h=17)
+        ring = WorkPlane(Axes((0, 0, 15), n=Z, h=X)).Circle(8).Face()
+        solid = Glue([solid, ring]).solids[0]
+        for face in solid.faces:
+            face.name = ""
+            if abs(face.center.z) < 1e-9:
+                face.name = f"{name}.joint"
+            elif abs(face.center.z - 15) < 1e-9 and face.mass < 300:
+                face.name = f"{name}.seat"
+        solid.name = name
+        return solid
+
+    upper, lower = block("upper"), block("lower").Rotate(Axis((0, 0, 0), X), 180)  # type: ignore[attr-defined]
+    lower.name = "lower"
+    Compound([upper, lower]).WriteStep(str(path))
+
+
+def write(study: Path, *, force: bool = False) -> list[Path]:
+    """Write the study and its geometry; InputError where a file exists already, unless `force`."""
+    step = study.with_name("two-blocks.step")
+    for path in (study, step):
+        if path.exists() and not force:
+            raise InputError(f"{path} exists already; name another file, or replace it with --force")
+    text = TEXT.format(name=study.name, step=step.name)
+    return [whole(step, blocks), whole(study, lambda path: path.write_text(text, encoding="utf-8"))]

@@ -1,0 +1,262 @@
+"""Fitting a power law with a white term to a binned power spectrum, with its uncertainty.
+
+The expected periodogram is  mu = A (f/f0)^-p (1 + w(p)/f^2) + N.  The bracket is the smearing of a power law by the
+Hann window: half the second moment of its spectral kernel, 1/(3 L^2) along each axis, times the second derivative.
+N takes up instrument noise, what aliasing folds back, and the error of filled-in points, so it may be of either sign.
+The bins' means follow a gamma law; maximising its quasi-likelihood (Whittle's approximation) is done by Fisher scoring.
+"""
+
+from dataclasses import dataclass
+from math import pi
+from typing import final
+
+import numpy as np
+
+from faying.errors import NotConverged
+from faying.surface.scan import Array
+from faying.surface.spectrum import Spectrum
+
+LINES = 8.0  # misfit and
+GAPS = 0.8  # rms of ln(density) about a parabola above which a spectrum is taken as one of separate lines
+BREADTH = 0.35  # standard deviation of the smoothing over ln(frequency); wide against ln(1.5), the usual line distance
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PowerLaw:
+    """density = exp(log_level) (f/pivot)^-slope + noise term; `covariance` is of (log_level, slope, noise/level).
+
+    `density` is that of Spectrum; `slope` is its slope (5 - 2Ds), one less than that of the areal density.
+    `noise` [m4 for a scan, m3 for a profile] is the white level of the two-sided density. `misfit` is the mean
+    squared residual over its expected value; the covariance is multiplied by it where it exceeds 1.
+    `response` (3, bins) is the linear answer of (log_level, slope, noise) to the bins' relative residuals; `used`
+    [1/m] and `expected` [m3] are the bins' frequencies and fitted densities.
+    """
+
+    log_level: float
+    slope: float
+    noise: float
+    pivot: float
+    covariance: Array
+    misfit: float
+    used: Array
+    expected: Array
+    response: Array
+
+
+def smearing(spectrum: Spectrum, frequency: Array, slope: float) -> tuple[Array, Array]:
+    """Return the window's smearing (1 + w/f^2) [-] and its derivative with respect to the slope."""
+    axes = spectrum.axes
+    # kernel variance 1/(3 L^2) per axis; a scan: p^2/12 (1/Lx^2 + 1/Ly^2), p = slope + 1; a profile: b(b+1)/(6 L^2)
+    x = spectrum.curvature / (6 * frequency**2)
+    if axes == 2:
+        return 1 + (slope + 1) ** 2 * x, 2 * (slope + 1) * x
+    return 1 + slope * (slope + 1) * x, (2 * slope + 1) * x
+
+
+def fit(spectrum: Spectrum, low: float, high: float, *, white: bool = True) -> PowerLaw:
+    """Fit the bins with low <= frequency <= high [1/m]. NotConverged where the band holds too few bins or no law."""
+    use = (spectrum.frequency >= low) & (spectrum.frequency <= high) & (spectrum.density > 0)
+    f, density, spread = spectrum.frequency[use], spectrum.density[use], spectrum.spread[use]
+    if len(f) < 5:
+        raise NotConverged(f"only {len(f)} bins of frequency lie in the band {low:.4g} .. {high:.4g} 1/m; widen it")
+    # work on the two-sided density (areal for a scan), where white noise is flat
+    shape = 2 * pi * f if spectrum.axes == 2 else np.full(len(f), 2.0)
+    y = density / shape
+    weight = 1 / spread**2
+    pivot = float(np.exp(np.average(np.log(f), weights=weight)))
+    x = np.log(f / pivot)
+    extra = 1.0 if spectrum.axes == 2 else 0.0
+    # start: weighted straight line in the logarithm
+    line = np.polyfit(x, np.log(y), 1, w=np.minimum(weight, np.median(weight)) ** 0.5)
+    theta = np.array([line[1], max(-line[0] - extra, 0.2), 0.0])
+
+    def model(t: Array) -> tuple[Array, Array, Array]:
+        smear, dsmear = smearing(spectrum, f, t[1])
+        power = np.exp(t[0] - (t[1] + extra) * x)
+        level = np.exp(t[0])
+        mu = power * smear + t[2] * level
+        jac = np.stack([mu, power * (dsmear - smear * x), np.full(len(f), level)], axis=1)
+        return mu, jac, power
+
+    def objective(t: Array) -> float:
+        if abs(t[1]) > 20 or abs(t[0] - theta[0]) > 20:
+            return float("inf")
+        mu, _, power = model(t)
+        if (mu <= 0.02 * power).any():
+            return float("inf")
+        return float(np.sum(weight * (np.log(mu) + y / mu)))
+
+    free = np.array([True, True, white])
+    best = objective(theta)
+    for _ in range(200):
+        mu, jac, _ = model(theta)
+        scaled = (jac / mu[:, None])[:, free]
+        fisher = scaled.T @ (weight[:, None] * scaled)
+        step = np.zeros(3)
+        step[free] = np.linalg.lstsq(fisher, scaled.T @ (weight * (y / mu - 1)), rcond=1e-14)[0]
+        length = 1.0
+        while length > 1e-8:
+            trial = theta + length * step
+            value = objective(trial)
+            if value <= best:
+                break
+            length /= 2
+        else:
+            break
+        gain = best - value
+        theta, best = trial, value
+        if gain < 1e-9 * max(1.0, abs(best)) and np.all(np.abs(step) < 1e-8):
+            break
+    mu, jac, _ = model(theta)
+    scaled = (jac / mu[:, None])[:, free]
+    fisher = scaled.T @ (weight[:, None] * scaled)
+    covariance = np.zeros((3, 3))
+    covariance[np.ix_(free, free)] = np.linalg.pinv(fisher)
+    response = covariance[:, free] @ (scaled * weight[:, None]).T
+    response[2] = np.exp(theta[0]) * (response[2] + theta[2] * response[0])
+    misfit = float(np.sum(weight * (y / mu - 1) ** 2)) / max(len(f) - int(free.sum()), 1)
+    return PowerLaw(
+        log_level=float(theta[0]) + (np.log(2 * pi * pivot) if extra else np.log(2.0)),
+        slope=float(theta[1]),
+        noise=float(theta[2] * np.exp(theta[0])),
+        pivot=pivot,
+        covariance=covariance * max(1.0, misfit),
+        misfit=misfit,
+        used=f,
+        expected=mu * shape,
+        response=response,
+    )
+
+
+def _gaps(law: PowerLaw, spectrum: Spectrum) -> float:
+    """Rms of ln(density) about a parabola in ln(frequency): large for separate lines, small for any smooth spectrum."""
+    use = (spectrum.frequency >= law.used[0]) & (spectrum.frequency <= law.used[-1]) & (spectrum.density > 0)
+    x, y = np.log(spectrum.frequency[use]), np.log(spectrum.density[use])
+    return float(np.std(y - np.polyval(np.polyfit(x, y, 2), x)))
+
+
+def fit_lines(spectrum: Spectrum, low: float, high: float) -> PowerLaw:
+    """Fit a spectrum of separate lines, each line's power spread over a Gaussian in ln(frequency), without white term.
+
+    The smoothing of a power law over the same bins serves as its model, so the ends need no correction. The covariance
+    comes from the scatter of the smoothed residuals, with one independent residual per 2 pi^(1/2) BREADTH of ln f.
+    """
+    use = (spectrum.frequency >= low) & (spectrum.frequency <= high)
+    f = spectrum.frequency[use]
+    if len(f) < 5:
+        raise NotConverged(f"only {len(f)} bins of frequency lie in the band {low:.4g} .. {high:.4g} 1/m; widen it")
+    density, width = spectrum.density[use], spectrum.width[use]
+    x = np.log(f)
+    pivot = float(np.exp((x[0] + x[-1]) / 2))
+    x = x - np.log(pivot)
+    nodes = np.linspace(x[0], x[-1], 60)
+    # f S weights the power of a decade of ln f alike for a flat f S; the slope's part is in the model
+    kernel = np.exp(-0.5 * ((nodes[:, None] - x[None, :]) / BREADTH) ** 2)
+    slope, level = 2.0, 0.0
+    observed_power = density * width
+    for _ in range(60):
+        tilt = np.exp(slope * x)  # whitened: every line counts by its excess over the law
+        smear = smearing(spectrum, f, slope)[0]
+        observed = kernel @ (observed_power * tilt / smear / f)
+        model = kernel @ (width / f)
+        ratio = np.log(np.maximum(observed, 1e-300) / model)
+        line = np.polyfit(nodes, ratio, 1)
+        slope -= float(line[0])
+        level = float(line[1])
+        if abs(line[0]) < 1e-10:
+            break
+    residual = ratio - np.polyval(line, nodes)
+    independent = max((x[-1] - x[0]) / (2 * np.pi**0.5 * BREADTH), 3.0)
+    scatter = float(np.sum(residual**2)) / len(nodes) * independent / max(independent - 2, 1.0)
+    design = np.stack([np.ones(len(nodes)), -nodes], axis=1)
+    covariance = np.zeros((3, 3))
+    covariance[:2, :2] = np.linalg.inv(design.T @ design) * scatter * len(nodes) / independent
+    expected = np.exp(level - slope * x) * smearing(spectrum, f, slope)[0]
+    return PowerLaw(
+        log_level=level,
+        slope=slope,
+        noise=0.0,
+        pivot=pivot,
+        covariance=covariance,
+        misfit=max(1.0, scatter / float(np.mean(spectrum.spread[use] ** 2))),
+        used=f,
+        expected=expected,
+        response=np.zeros((3, len(f))),
+    )
+
+
+def supported_band(spectrum: Spectrum, *, resolution: float | None = None) -> tuple[float, float]:
+    """Widest band of frequency [1/m] to start from: 6 cycles over the shortest side up to half the Nyquist frequency.
+
+    Below it the levelling and the window distort the spectrum, above it aliasing, pixel averaging and filled-in points
+    do. An instrument's `resolution` [m] lowers the upper end further.
+    """
+    high = 0.5 * spectrum.nyquist
+    if resolution:
+        high = min(high, 1 / resolution)
+    return 6 * spectrum.lowest, high
+
+
+def fit_band(spectrum: Spectrum, low: float, high: float, *, fixed: bool = False) -> tuple[PowerLaw, tuple[str, ...]]:
+    """Fit the widest part of the band that a power law with noise describes; say in words what was cut.
+
+    The upper end comes down where the white term is significantly negative (instrument blur), the lower end goes up
+    where the lowest octave lies significantly off the law fitted above it (waviness, form, or roll-off).
+    """
+    law = fit(spectrum, low, high)
+    notes: list[str] = []
+    if law.misfit > LINES and _gaps(law, spectrum) > GAPS:
+        return fit_lines(spectrum, low / 2, high), (
+            "the spectrum consists of lines (as a Weierstrass-Mandelbrot series)",
+        )
+    if fixed:
+        return law, ()
+    top, bottom = high, low
+    for _ in range(12):
+        white = law.covariance[2, 2] ** 0.5
+        level = law.noise / (np.exp(law.log_level) / (2 * pi * law.pivot if spectrum.axes == 2 else 2.0))
+        if level < -4 * white and top > 8 * bottom:
+            top /= 2**0.5
+            law = fit(spectrum, bottom, top)
+        else:
+            break
+    if top < high:
+        notes.append(f"short wavelengths are damped (blur or roll-off): band ends at {top:.4g} 1/m")
+    for _ in range(12):
+        if top < 8 * bottom:
+            break
+        octave = (spectrum.frequency >= bottom) & (spectrum.frequency < 2 * bottom) & (spectrum.density > 0)
+        upper = fit(spectrum, 2 * bottom, top)
+        predicted, sigma = _predict(spectrum, upper, spectrum.frequency[octave])
+        spread = spectrum.spread[octave] * max(1.0, upper.misfit) ** 0.5
+        weight = 1 / spread**2
+        excess = float(np.sum(weight * (spectrum.density[octave] / predicted - 1)) / weight.sum())
+        error = float((1 / weight.sum() + np.average(sigma**2, weights=weight)) ** 0.5)
+        if abs(excess) > 4 * error:
+            bottom *= 2**0.5
+            law = fit(spectrum, bottom, top)
+        else:
+            break
+    if bottom > low:
+        notes.append(f"long wavelengths lie off the power law (form, lay or roll-off): band starts at {bottom:.4g} 1/m")
+    return law, tuple(notes)
+
+
+def _predict(spectrum: Spectrum, law: PowerLaw, f: Array) -> tuple[Array, Array]:
+    """Expected density at f and the relative standard error of that extrapolation."""
+    smear, dsmear = smearing(spectrum, f, law.slope)
+    x = np.log(f / law.pivot)
+    power = np.exp(law.log_level - law.slope * x)
+    shape = 2 * pi * f if spectrum.axes == 2 else np.full(len(f), 2.0)
+    level = np.exp(law.log_level) / (2 * pi * law.pivot if spectrum.axes == 2 else 2.0)
+    mean = power * smear + law.noise * shape
+    mean = np.maximum(mean, 0.02 * power)
+    jac = np.stack([np.ones(len(f)), power * (dsmear - smear * x) / mean, level * shape / mean], axis=1)
+    return mean, np.sqrt(np.einsum("ij,jk,ik->i", jac, law.covariance, jac))
+
+
+def estimate_from(law: PowerLaw) -> tuple[float, float, Array]:
+    """Return D, ln S(pivot) and the covariance of (ln S(pivot), D), with D = (7 - slope)/2."""
+    turn = np.array([[1.0, 0.0], [0.0, -0.5]])
+    return (7 - law.slope) / 2, law.log_level, turn @ law.covariance[:2, :2] @ turn.T

@@ -1,0 +1,159 @@
+"""Measured heights with their spacing: frozen, in metres, missing points as NaN."""
+
+from dataclasses import dataclass, field, replace
+from math import isfinite
+from typing import Any, Self, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class Instrument:
+    """What the file says of the instrument; None where it says nothing. Lengths in metres.
+
+    `resolution` is the shortest lateral wavelength that the instrument resolves, `noise` the rms height noise.
+    """
+
+    name: str = ""
+    tip_radius: float | None = None
+    resolution: float | None = None
+    noise: float | None = None
+
+
+def _frozen(heights: Any, dimensions: int, name: str) -> Array:
+    try:
+        out = np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: heights must be real numbers in metres, with NaN where a point is missing") from None
+    if out.ndim != dimensions:
+        want = "rows and columns, heights[iy, ix]" if dimensions == 2 else "one row of points"
+        raise InputError(f"{name}: heights have {out.ndim} dimensions; give {want}")
+    if min(out.shape) < 2:
+        raise InputError(f"{name}: heights of shape {out.shape} hold too few points; at least 2 are needed each way")
+    if np.isinf(out).any():
+        raise InputError(f"{name}: some heights are infinite; mark missing points as NaN")
+    out = np.array(out, copy=True)
+    out.setflags(write=False)
+    return out
+
+
+def _positive(value: Any, name: str) -> float:
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} = {value!r} is not a length; give metres, for example 5e-6") from None
+    if not isfinite(number) or number <= 0:
+        raise InputError(f"{name} = {number}: the distance between points must be a positive number of metres")
+    return number
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Scan:
+    """An areal scan.
+
+    `heights[iy, ix]` in metres (shape ny, nx; copied and made read-only), NaN where a point is missing; `spacing` =
+    (dx, dy) in metres. `source` names the file or recipe, `instrument` carries the limits that the file states,
+    `history` lists what was done to the heights since.
+    Raises InputError for heights that are not two-dimensional, infinite heights, and spacings that are not positive.
+    """
+
+    heights: Array
+    spacing: tuple[float, float]
+    source: str = "array"
+    instrument: Instrument = field(default_factory=Instrument)
+    history: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "heights", _frozen(self.heights, 2, "Scan"))
+        if not isinstance(self.spacing, (tuple, list, np.ndarray)) or len(self.spacing) != 2:
+            raise InputError(f"Scan: spacing = {self.spacing!r}; give the two distances (dx, dy) in metres")
+        object.__setattr__(self, "spacing", (_positive(self.spacing[0], "dx"), _positive(self.spacing[1], "dy")))
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(ny, nx), as of the heights."""
+        return self.heights.shape[0], self.heights.shape[1]
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """(Lx, Ly) [m]: number of points times spacing."""
+        return self.shape[1] * self.spacing[0], self.shape[0] * self.spacing[1]
+
+    @property
+    def missing(self) -> int:
+        """How many points have no height."""
+        return int(np.isnan(self.heights).sum())
+
+    def with_heights(self, heights: Any, note: str = "") -> Self:
+        """Return the same scan with other heights [m] and one more line of history."""
+        return replace(self, heights=heights, history=(*self.history, note) if note else self.history)
+
+    def profile(self, along: str, index: int) -> "Profile":
+        """Return one row (along="x") or one column (along="y") as a Profile."""
+        if along not in ("x", "y"):
+            raise InputError(f'along = {along!r}: a profile runs along "x" or "y"')
+        count = self.shape[0] if along == "x" else self.shape[1]
+        if not -count <= index < count:
+            raise InputError(f"profile {index} along {along}: the scan has {count} of them")
+        heights = self.heights[index] if along == "x" else self.heights[:, index]
+        return Profile(
+            heights=heights,
+            spacing=self.spacing[0 if along == "x" else 1],
+            source=self.source,
+            instrument=self.instrument,
+            history=(*self.history, f"profile {index} along {along}"),
+        )
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Profile:
+    """A line scan: `heights` in metres (shape n, NaN where missing), one `spacing` in metres; else as Scan."""
+
+    heights: Array
+    spacing: float
+    source: str = "array"
+    instrument: Instrument = field(default_factory=Instrument)
+    history: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "heights", _frozen(self.heights, 1, "Profile"))
+        object.__setattr__(self, "spacing", _positive(self.spacing, "spacing"))
+
+    @property
+    def length(self) -> float:
+        """Number of points times spacing [m]."""
+        return len(self.heights) * self.spacing
+
+    @property
+    def missing(self) -> int:
+        """How many points have no height."""
+        return int(np.isnan(self.heights).sum())
+
+    def with_heights(self, heights: Any, note: str = "") -> Self:
+        """Return the same profile with other heights [m] and one more line of history."""
+        return replace(self, heights=heights, history=(*self.history, note) if note else self.history)
+
+
+def usable(scan: Scan | Profile, *, least: int = 16) -> None:
+    """Raise InputError where the heights cannot carry a statistic: too few points, all missing, or all the same."""
+    heights = scan.heights
+    known = heights[~np.isnan(heights)]
+    if known.size == 0:
+        raise InputError(f"{scan.source}: every point is missing; there is nothing to analyse")
+    if min(heights.shape) < least:
+        raise InputError(f"{scan.source}: {heights.shape} points; the analysis needs at least {least} each way")
+    if known.size < heights.size / 2:
+        share = 100 * (1 - known.size / heights.size)
+        raise InputError(f"{scan.source}: {share:.0f} % of the points are missing; at most half may be, crop the scan")
+    if np.ptp(known) <= 1e-12 * float(np.abs(known).max()):
+        raise InputError(
+            f"{scan.source}: all heights are the same ({known[0]:.4g} m); there is no roughness to analyse"
+        )

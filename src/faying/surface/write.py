@@ -1,0 +1,40 @@
+"""Scans out: X3P (metres, read by most programs) and x,y,z text."""
+
+from pathlib import Path
+
+from faying.errors import InputError
+from faying.surface import text, x3p
+from faying.surface.scan import Profile, Scan
+
+
+def write_scan(
+    scan: Scan | Profile,
+    path: str | Path,
+    *,
+    precision: str = "F",
+    xy_unit: str | None = None,
+    z_unit: str | None = None,
+) -> Path:
+    """Write a scan as X3P (suffix .x3p) or as text (.csv, .txt, .xyz), and return the path.
+
+    X3P heights take 4 bytes ("F"), 8 ("D"), or integer steps of 2 or 4 bytes ("I", "L"). Text needs both units and
+    holds no heading. Raises InputError for other suffixes, precisions and missing units.
+    """
+    from faying.units import scale
+
+    file = Path(path)
+    suffix = file.suffix.lower()
+    try:
+        if suffix == ".x3p":
+            x3p.write(scan, file, precision=precision)
+        elif suffix in (".csv", ".txt", ".xyz"):
+            if xy_unit is None or z_unit is None:
+                raise InputError(
+                    f'{file}: text holds no unit, so say which: write_scan(..., xy_unit="mm", z_unit="um")'
+                )
+            text.write(scan, file, xy=scale(xy_unit, "m", name="xy_unit"), z=scale(z_unit, "m", name="z_unit"))
+        else:
+            raise InputError(f"{file}: scans are written as .x3p, .csv, .txt or .xyz; choose one of these suffixes")
+    except OSError as fault:
+        raise InputError(f"{file}: cannot be written ({fault.strerror}); check folder and permissions") from None
+    return file

@@ -1,0 +1,96 @@
+"""The command `faying law`."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from faying import CATALOGUE, JK, RIGID, ContactPair, InputError
+from faying.cli.law import command
+
+SPECIMEN = ["--D", "2.39", "--G", "1.53e-10 m", "--scan-area", "16 mm^2", "--material", "45 steel"]
+LAW = JK(D=2.39, G=1.53e-10, scan_area=16e-6, pair=ContactPair(CATALOGUE["45 steel"], RIGID))
+
+
+def run(*words: str) -> str:
+    return CliRunner().invoke(command, words, catch_exceptions=False, standalone_mode=False).output
+
+
+def test_table_holds_the_law() -> None:
+    out = run(*SPECIMEN, "--pressure", "1 MPa:4 MPa:3")
+    assert "doi:10.3390/fractalfract8100611" in out
+    rows = [[float(v) for v in line.split()] for line in out.splitlines()[-3:]]
+    expected = LAW.at_pressure([1e6, 2e6, 4e6])
+    assert [row[0] for row in rows] == pytest.approx([1, 2, 4], rel=1e-3)
+    assert [row[2] for row in rows] == pytest.approx((expected.k_n * 1e-12).tolist(), rel=1e-3)
+    assert "outside the ground" not in out
+
+
+def test_json_agrees_with_the_library() -> None:
+    out = json.loads(run(*SPECIMEN, "--pressure", "1 MPa:4 MPa:3", "--json"))
+    expected = LAW.at_pressure(out["pressure"])
+    assert out["pressure"] == pytest.approx([1e6, 2e6, 4e6], rel=1e-12)
+    for name, value in expected.quantities().items():
+        assert out[name] == pytest.approx(value.tolist(), rel=1e-9)
+    assert out["valid"] == [True, True, True]
+    assert out["parameters"]["G"] == {"value": 1.53e-10, "unit": "m"}
+
+
+def test_options_reach_the_law() -> None:
+    out = json.loads(run(*SPECIMEN, "--set", "closure=printed", "--set", "shear_stress=1 MPa", "--hardness", "1 GPa",
+                         "--against", "same", "--pressure", "2 MPa", "--json"))  # fmt: skip
+    steel = CATALOGUE["45 steel"]
+    from dataclasses import replace
+
+    hard = replace(steel, hardness=1e9)
+    law = LAW.with_(closure="printed", shear_stress=1e6, pair=ContactPair(hard, hard))
+    assert out["k_t"] == pytest.approx([float(law.at_pressure(2e6).k_t)], rel=1e-9)
+
+
+def test_material_without_catalogue() -> None:
+    words = ["--D", "2.39", "--G", "1.53e-10 m", "--scan-area", "16 mm^2", "--E", "200 GPa", "--nu", "0.3",
+             "--yield-strength", "355 MPa", "--pressure", "2 MPa", "--json"]  # fmt: skip
+    same = LAW.with_(pair=ContactPair(LAW.pair.first, RIGID))
+    assert json.loads(run(*words))["k_n"] == pytest.approx([float(same.at_pressure(2e6).k_n)], rel=1e-9)
+
+
+def test_rows_outside_the_ground_carry_a_star_and_the_reason() -> None:
+    out = run(*SPECIMEN, "--pressure", "1 MPa:50 MPa:4")
+    assert [line.endswith("*") for line in out.splitlines() if line[:3] == "   "][1:5] == [False, False, True, True]
+    assert "stiffness of the bulk" in out
+
+
+def test_csv_and_figure(tmp_path: Path) -> None:
+    table, figure = tmp_path / "law.csv", tmp_path / "law.svg"
+    run(*SPECIMEN, "--csv", str(table), "--plot", str(figure))
+    comment, *lines = table.read_text().splitlines()
+    assert comment.startswith("# JK")
+    rows = list(csv.DictReader(lines))
+    assert len(rows) == 19
+    assert float(rows[0]["k_n [Pa/m]"]) == pytest.approx(float(LAW.at_pressure(1e5).k_n), rel=1e-9)
+    assert rows[0]["valid"] == "true"
+    assert "nominal pressure [MPa]" in figure.read_text()
+
+
+@pytest.mark.parametrize(("words", "message"), [
+    (["--model", "nothing"], "no contact law 'nothing'; known are"),
+    (["--D", "2.39", "--material", "45 steel"], r"JK needs G .*in m.*; scan_area"),
+    ([*SPECIMEN[:6]], "no material: give --material"),
+    ([*SPECIMEN, "--material", "cheese"], "no material 'cheese' in the catalogue"),
+    ([*SPECIMEN, "--against", "cheese"], "no material 'cheese'"),
+    ([*SPECIMEN, "--set", "colour=red"], "has no parameter 'colour'"),
+    ([*SPECIMEN, "--set", "cutoff"], "is not NAME=VALUE"),
+    ([*SPECIMEN, "--G", "1e-10"], "has no unit"),
+    ([*SPECIMEN, "--D", "3.2"], "between 2 and 3"),
+    ([*SPECIMEN, "--pressure", "1 MPa:2 MPa:3:4"], "write FROM:TO"),
+    ([*SPECIMEN, "--pressure", "2 MPa:1 MPa"], "below the second"),
+    ([*SPECIMEN, "--pressure", "1 MPa:2 MPa:1"], "whole number of 2 or more"),
+    ([*SPECIMEN, "--pressure", "1:2"], "has no unit"),
+    ([*SPECIMEN, "--pressure", "1 GPa"], "more than JK covers"),
+    ([*SPECIMEN, "--plot", "law.xyz"], "figures can be written as"),
+])  # fmt: skip
+def test_faults_are_told(words: list[str], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        run(*words)
