@@ -1,6 +1,7 @@
 # The public names. Each is imported when it is first used (lazy_loader reads this file).
 from .contact.jk import JK
 from .errors import FayingError, InputError, NotConverged, OutsideValidity, ReadError
+from .fe.asperity import solve_asperity
 from .materials import CATALOGUE, RIGID, ContactPair, Material
 from .result import Result
 from .study import Study, run
