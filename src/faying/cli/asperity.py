@@ -56,17 +56,19 @@ def command(
         cases = [case_of(options)]
     if plot and len(cases) > 1:
         raise InputError(f"--plot draws one case and the table has {len(cases)}; leave out --plot or --table")
-    with click.progressbar(length=len(cases), label="asperities", file=click.get_text_stream("stderr")) as bar:
-        results = solve_cases(cases, processes=processes, progress=lambda done: bar.update(done - bar.pos))
+    shown: Any = click.progressbar(length=len(cases), label="asperities", file=click.get_text_stream("stderr"))
+    with shown as bar:
+        results = solve_cases(cases, processes=processes, progress=lambda _: bar.update(1))
     if netcdf:
         write_netcdf(netcdf, cases, results)
-    if len(cases) == 1 and isinstance(results[0], FayingError):
-        raise results[0]
+    first: Any = results[0]
+    if len(cases) == 1 and isinstance(first, FayingError):
+        raise first
     if plot:
         from faying.plot.asperity import overview
         from faying.plot.law import save
 
-        save(overview(cases[0], results[0]), plot)
+        save(overview(cases[0], first), plot)
     document = [described(case, result) for case, result in zip(cases, results, strict=True)]
     click.echo(json.dumps(document, indent=2) if as_json else table(document))
     failed = sum("error" in entry for entry in document)
@@ -177,7 +179,9 @@ def table(document: list[dict[str, Any]]) -> str:
     """Format the outcome for the terminal: the greatest load and, where there is one, the residual displacement."""
     from faying.units import show
 
-    lines = [f"{'R':>10}{'h_a':>10}{'displacement':>14}{'force':>12}{'area':>14}{'bounds':>26}{'pressure':>12}{'residual':>12}"]
+    lines = [
+        f"{'R':>10}{'h_a':>10}{'displacement':>14}{'force':>12}{'area':>14}{'bounds':>26}{'pressure':>12}{'residual':>12}"
+    ]
     for entry in document:
         head = f"{show(entry['R'], 'm'):>10}{show(entry['h_a'], 'm'):>10}"
         if "error" in entry:

@@ -73,6 +73,7 @@ def stresses(fig: Any, ax: Any, case: AsperityCase, result: AsperityResult) -> N
         ylim=((case.h_a - 1.2 * reach) * 1e6, (case.h_a + 0.1 * reach) * 1e6),
         aspect="equal",
         xlabel="radius [um]",
+        title=f"at {result.history.displacement[-1] * 1e9:.4g} nm",
         ylabel="height [um]",
     )
     if not case.substrate.is_rigid:

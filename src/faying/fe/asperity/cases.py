@@ -86,7 +86,9 @@ def solve_cases(
                 os.environ[name] = value
 
 
-def write_netcdf(path: str | Path, cases: Sequence[AsperityCase], results: Sequence[AsperityResult | FayingError]) -> Path:
+def write_netcdf(
+    path: str | Path, cases: Sequence[AsperityCase], results: Sequence[AsperityResult | FayingError]
+) -> Path:
     """Write inputs, histories and final values of cases as NetCDF-3; histories are filled up with NaN.
 
     Failed cases keep the steps that they did, with their message in `message`. Raises InputError where the file

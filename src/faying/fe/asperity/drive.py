@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import isfinite, pi, sqrt
 from typing import Literal
 
@@ -146,7 +147,9 @@ def solve_asperity(
 class _Run:
     """One history being driven; every step is kept as it is found."""
 
-    def __init__(self, model: Model, steps: int, targets: list[float], progress: Callable[[float], None] | None) -> None:
+    def __init__(
+        self, model: Model, steps: int, targets: list[float], progress: Callable[[float], None] | None
+    ) -> None:
         self.model, self.steps, self.targets, self.progress = model, steps, targets, progress
         self.state: State = model.body.virgin
         self.at: Equilibrium | None = None
@@ -271,7 +274,7 @@ def _checked(
         raise InputError(
             f"displacement {max(targets)} m is more than the height of the cap, {h_a} m; stay at or below h_a"
         )
-    if any(a == b for a, b in zip(targets[:-1], targets[1:], strict=True)):
+    if any(a == b for a, b in pairwise(targets)):
         raise InputError(f"displacement = {displacement}; two turning points in a row are equal: leave one out")
     if cap.is_rigid:
         raise InputError("the cap is rigid; it must be deformable, only the substrate may be RIGID")

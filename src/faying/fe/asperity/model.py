@@ -135,7 +135,7 @@ class Model:
         r = self.mesh.nodes[body.surface, 0] + moved[:, 0]
         height = self.mesh.nodes[body.surface, 1] + moved[:, 1]
         last = int(at.pressing[-1])
-        gap = height - height[at.pressing].mean()
+        gap = height[at.pressing].mean() - height
         press = np.maximum(-at.balance.force[body.touching[: last + 1]], 0.0)
         return Contact(force=float(press.sum()), radius=_edge(r, gap, press), bounds=_bounds(r, last))
 
@@ -208,7 +208,9 @@ def build(
     )
 
 
-def expected_radius(R: float, h_a: float, displacement: float, E_star: float, hardness: float | None, K: float) -> float:
+def expected_radius(
+    R: float, h_a: float, displacement: float, E_star: float, hardness: float | None, K: float
+) -> float:
     """Contact radius to mesh for [m]: Hertz's, growing to that of the truncated sphere as the cap turns plastic."""
     truncated = sqrt(2 * R * displacement - displacement**2)
     if hardness is None:
