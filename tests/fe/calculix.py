@@ -7,6 +7,7 @@ flow, reactions, and the heights of the free nodes, which tell whether the conta
 import os
 import subprocess
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -81,7 +82,7 @@ def deck(model, touching, *, element="CAX8R", large=False):
         assert known <= set(held)
         known = set(held)
         height = (model.h_a - d) * 1e6
-        pinned = held + [middle[k] for a, b in zip(held[:-1], held[1:], strict=True)
+        pinned = held + [middle[k] for a, b in pairwise(held)
                          if (a, b) in top and (k := (min(a, b), max(a, b))) in middle]  # fmt: skip
         lines += [f"{n + 1},2,2,{height - nodes[n][1]:.12g}" for n in pinned]
         if d == touching[-1][0]:

@@ -1,6 +1,7 @@
 """`faying asperity`: press one asperity, or a table of them, by finite elements."""
 
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -56,7 +57,7 @@ def command(
         cases = [case_of(options)]
     if plot and len(cases) > 1:
         raise InputError(f"--plot draws one case and the table has {len(cases)}; leave out --plot or --table")
-    shown: Any = click.progressbar(length=len(cases), label="asperities", file=click.get_text_stream("stderr"))
+    shown: Any = click.progressbar(length=len(cases), label="asperities", file=sys.stderr)
     with shown as bar:
         results = solve_cases(cases, processes=processes, progress=lambda _: bar.update(1))
     if netcdf:
@@ -170,7 +171,8 @@ def described(case: Any, result: Any) -> dict[str, Any]:
         "residual": result.residual,
         "unknowns": result.unknowns,
         "history": {
-            name: getattr(result.history, name).tolist() for name in ("displacement", "force", "area", "pressure")
+            name: getattr(result.history, name).tolist()
+            for name in ("displacement", "force", "area", "pressure", "area_bounds")
         },
     }
 
@@ -189,9 +191,8 @@ def table(document: list[dict[str, Any]]) -> str:
             continue
         history = entry["history"]
         top = max(range(len(history["force"])), key=history["force"].__getitem__)
-        last = top == len(history["force"]) - 1
-        low, high = entry["area_bounds"]
-        bounds = f"{low * 1e12:.4g} .. {high * 1e12:.4g} um2" if last else "-"
+        low, high = history["area_bounds"][top]
+        bounds = f"{low * 1e12:.4g} .. {high * 1e12:.4g} um2"
         residual = "-" if entry["residual"] is None else show(entry["residual"], "m")
         lines.append(
             f"{head}{show(history['displacement'][top], 'm'):>14}{show(history['force'][top], 'N'):>12}"
