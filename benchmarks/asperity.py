@@ -16,8 +16,8 @@ from pathlib import Path
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
 
-from faying import Material, solve_asperity
-from faying.fe.solve import available
+from faying import Material, solve_asperity  # noqa: E402  the thread limits are read when NumPy is loaded
+from faying.fe.solve import available  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "fe"))
 CAPS = [(15, 100), (20, 750), (40, 3000), (80, 6000)]

@@ -169,6 +169,18 @@ def test_superlu_and_the_fastest_solver_agree():
     assert cap(solver="superlu").force == pytest.approx(cap().force, rel=1e-5)
 
 
+def test_a_force_history_is_the_displacement_history_read_the_other_way():
+    by_displacement = cap()
+    target = by_displacement.force
+    by_force = cap(displacement=None, force=(target, 0.5 * target, 0.0))
+    history = by_force.history
+    top = int(np.argmax(history.force))
+    assert history.force[top] == pytest.approx(target, rel=1e-3)
+    assert history.displacement[top] == pytest.approx(0.075e-6, rel=0.02)
+    assert np.min(np.abs(history.force / target - 0.5)) < 1e-3
+    assert 0 < by_force.residual < history.displacement[top]
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -176,6 +188,9 @@ def test_superlu_and_the_fastest_solver_agree():
         ({"h_a": 21e-6}, "at most R"),
         ({"displacement": 0.8e-6}, "more than the height"),
         ({"displacement": ()}, "one positive value"),
+        ({"displacement": None}, "one of them"),
+        ({"force": 1e-3}, "one of them"),
+        ({"displacement": None, "force": 1e3}, "more than its height"),
         ({"displacement": (1e-7, 1e-7)}, "two turning points"),
         ({"cap": RIGID}, "cap is rigid"),
         ({"layer": STEEL}, "give both"),

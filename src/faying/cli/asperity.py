@@ -7,9 +7,9 @@ from typing import Any
 
 import click
 
-COLUMNS = {"R": "m", "h_a": "m", "displacement": "m", "E": "Pa", "substrate_E": "Pa", "yield_strength": "Pa",
+COLUMNS = {"R": "m", "h_a": "m", "displacement": "m", "force": "N", "E": "Pa", "substrate_E": "Pa", "yield_strength": "Pa",
            "substrate_yield_strength": "Pa", "nu": "", "hardening": "", "elements": ""}  # fmt: skip
-NEEDED = ("R", "h_a", "displacement")
+NEEDED = ("R", "h_a")
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -17,6 +17,7 @@ NEEDED = ("R", "h_a", "displacement")
 @click.option("--h-a", "h_a", metavar="LENGTH", help="Height of the cap; R makes half a sphere.")
 @click.option("--displacement", multiple=True, metavar="LENGTH",
               help="Of the plane from first touch; repeat for turning points, 0 at the end unloads.")  # fmt: skip
+@click.option("--force", multiple=True, metavar="FORCE", help="Of the plane, in place of the displacement.")
 @click.option("--material", default="45 steel", show_default=True, help="Cap and substrate: a name of the catalogue.")
 @click.option("--E", "E", metavar="STRESS", help="Young's modulus of the cap.")
 @click.option("--nu", type=float, help="Poisson's ratio of both.")
@@ -137,17 +138,19 @@ def case_of(options: dict[str, Any]) -> Any:
             nu=nu,
             yield_strength=number("layer_yield_strength", "Pa", strength),
         )
-    moves = options.get("displacement") or ()
-    moves = moves.split(";") if isinstance(moves, str) else moves
-    if not moves:
-        raise InputError("displacement is missing; give --displacement, for example '10 nm'")
+    moves, forces = (
+        history_of(options.get(key) or (), key, unit) for key, unit in (("displacement", "m"), ("force", "N"))
+    )
+    if not moves and not forces:
+        raise InputError("displacement is missing; give --displacement, for example '10 nm', or --force, '1 mN'")
     return AsperityCase(
         R=number("R", "m"),
         h_a=number("h_a", "m"),
         cap=cap,
         substrate=under if options["substrate"] == "same" else RIGID,
         foot="sliding" if options["substrate"] == "sliding" else "bonded",
-        displacement=tuple(parse("0 m" if str(v).strip() == "0" else v, "m", name="displacement") for v in moves),
+        displacement=moves or None,
+        force=forces or None,
         layer=layer,
         layer_thickness=thickness,
         hardening=number("hardening", "", 0.0),
@@ -156,11 +159,24 @@ def case_of(options: dict[str, Any]) -> Any:
     )
 
 
+def history_of(given: Any, name: str, unit: str) -> tuple[float, ...]:
+    """Turning points of a history from texts with units; 0 needs none. A cell of a table separates them by ";"."""
+    from faying.units import parse
+
+    words = given.split(";") if isinstance(given, str) else given
+    return tuple(0.0 if str(v).strip() == "0" else parse(v, unit, name=name) for v in words)
+
+
 def described(case: Any, result: Any) -> dict[str, Any]:
     """Inputs and outcome of one case, SI units."""
     from faying.errors import FayingError
 
-    out: dict[str, Any] = {"R": case.R, "h_a": case.h_a, "E_cap": case.cap.E, "displacement": list(case.displacement)}
+    out: dict[str, Any] = {
+        "R": case.R,
+        "h_a": case.h_a,
+        "E_cap": case.cap.E,
+        "given": list(case.displacement or case.force),
+    }
     if isinstance(result, FayingError):
         return out | {"error": str(result)}
     return out | {

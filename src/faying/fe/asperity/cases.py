@@ -21,7 +21,8 @@ class AsperityCase:
     h_a: float
     cap: Material
     substrate: Material
-    displacement: tuple[float, ...]
+    displacement: tuple[float, ...] | None = None
+    force: tuple[float, ...] | None = None
     layer: Material | None = None
     layer_thickness: float = 0.0
     hardening: float = 0.0
