@@ -42,12 +42,8 @@ def main(path: str, elements: int = 32) -> None:
             for i, (value, law) in enumerate(pairs):
                 ax.plot(X, value, style, color=f"C{i}", marker="o", ms=3, label=f"{law}, {note}")
     for ax, title in zip(fig.axes, ("force", "area", "residual displacement"), strict=True):
-        ax.set(
-            xscale="log",
-            xlabel="x = displacement / critical",
-            ylabel=f"{title}: finite elements - law [%]",
-            ylim=(-10, 10),
-        )
+        ax.set(xscale="log", xlabel="x = displacement / critical", title=title, ylim=(-10, 10))
+        ax.set_ylabel("finite elements - law [%]")
         ax.axhspan(-4, 4, color="0.92", zorder=0)
         ax.legend(fontsize=7)
         ax.grid(alpha=0.3)
