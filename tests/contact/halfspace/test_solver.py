@@ -258,7 +258,12 @@ def test_progress_reports_and_its_exception_stops_the_run(rough):
     ],
 )
 def test_bad_input_is_named_with_its_remedy(change, text):
-    given = {"heights": np.random.default_rng(0).standard_normal((8, 8)), "spacing": 1.0, "E_star": 1.0, "pressure": 0.1}
+    given = {
+        "heights": np.random.default_rng(0).standard_normal((8, 8)),
+        "spacing": 1.0,
+        "E_star": 1.0,
+        "pressure": 0.1,
+    }
     given |= change
     with pytest.raises(InputError, match=text):
         solve_half_space(given.pop("heights"), given.pop("spacing"), **given)

@@ -54,7 +54,11 @@ def project(v: Array, lower: Bound, upper: Bound, total: float) -> tuple[Array, 
     """Nearest point to v between the bounds whose sum is `total`, and the shift that gives it: clip(v + shift)."""
     scale = max(abs(total), float(np.abs(upper).sum()) if isinstance(upper, np.ndarray) else 0.0, 1e-300)
     low = float((lower - v).min())
-    high = float((upper - v).max()) if isinstance(upper, np.ndarray) or isfinite(upper) else total / v.size - float(v.min())
+    high = (
+        float((upper - v).max())
+        if isinstance(upper, np.ndarray) or isfinite(upper)
+        else total / v.size - float(v.min())
+    )
     shift = min(max((total - float(np.clip(v, lower, upper).sum())) / v.size, low), high)
     clipped = v
     for turn in range(200):
