@@ -19,9 +19,9 @@ from pathlib import Path
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
 
-import numpy as np
+import numpy as np  # noqa: E402  the thread counts come first
 
-from faying.contact.halfspace import certify, solve_half_space
+from faying.contact.halfspace import certify, solve_half_space  # noqa: E402
 
 WITNESS = Path(__file__).with_name("halfspace_witness.py")
 PEERS = {"tamaas": 1e-6, "contactmechanics": 1e-6, "aspher-periodic": 1e-7}

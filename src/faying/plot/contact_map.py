@@ -40,7 +40,7 @@ def contact_map(ax: Any, contact: HalfSpaceContact, *, pixels: int = 1200) -> An
     from matplotlib.patches import Patch
 
     extent, unit = _extent(contact)
-    state = _thick(contact.state, contact.heights.shape, pixels)  # type: ignore[arg-type]
+    state = _thick(contact.state, contact.heights.shape, pixels)
     ax.imshow(state, origin="lower", extent=extent, interpolation="nearest",
               cmap=ListedColormap([colour for _, colour in STATES]), norm=BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3))  # fmt: skip
     shares = (1 - contact.area, contact.area - contact.saturated, contact.saturated)
@@ -60,7 +60,7 @@ def pressure_map(ax: Any, contact: HalfSpaceContact, *, pixels: int = 1200) -> A
     import numpy as np
 
     extent, unit = _extent(contact)
-    pressure = _thick(contact.traction, contact.heights.shape, pixels) * 1e-6  # type: ignore[arg-type]
+    pressure = _thick(contact.traction, contact.heights.shape, pixels) * 1e-6
     drawn = ax.imshow(np.where(pressure > 0, pressure, np.nan), origin="lower", extent=extent, cmap="viridis_r", vmin=0,
                       interpolation="nearest")  # fmt: skip
     ax.figure.colorbar(drawn, ax=ax, label="pressure [MPa]", shrink=0.8)

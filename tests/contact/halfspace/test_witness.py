@@ -47,3 +47,24 @@ def test_contact_at_hardness_of_a_self_affine_map(code, rough, tmp_path):
         pytest.skip(f"{code} did not solve the problem, by our certificate")
     assert ours.area == pytest.approx(np.count_nonzero(theirs > 0) / h.size, rel=1e-2)
     assert ours.traction == pytest.approx(theirs, abs=0.02 * 0.05)
+
+
+DATA = Path(os.environ.get("FAYING_DATA", Path(__file__).parents[3].parent / "shared" / "data")) / "scans"
+
+
+@pytest.mark.parametrize("name", ["test1", "test2"])
+@pytest.mark.parametrize("share", [0.02, 0.1, 0.4])
+def test_machined_scan_at_the_hardness_of_steel(name, share, tmp_path):
+    file = DATA / "nanovea-st400" / f"{name}.csv"
+    if not file.exists():
+        pytest.skip("no measured scans: set FAYING_DATA")
+    # 101 points of 5 um a side, in units of the side; H/E* = .0045
+    h = np.loadtxt(file, delimiter=",")[:, 2].reshape(101, 101) * 1e-6 / (101 * 5e-6)
+    hardness, pressure = 0.0045, share * 0.0045
+    ours = solve_half_space(h, 1 / 101, E_star=1.0, pressure=pressure, hardness=hardness)
+    assert ours.residual < 1e-6
+    assert ours.pressure == pytest.approx(pressure, rel=1e-9)
+    theirs = witness("tamaas", tmp_path, h, pressure, hardness, tol=1e-8)
+    assert certify(h, 1 / 101, theirs, E_star=1.0, hardness=hardness) < 1e-4
+    assert ours.area == pytest.approx(np.count_nonzero(theirs > 0) / h.size, rel=0.01)
+    assert ours.saturated == pytest.approx(np.count_nonzero(theirs > hardness * (1 - 1e-6)) / h.size, rel=0.01)
