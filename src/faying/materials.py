@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, isfinite, isnan, pi
+from math import inf, isfinite, isnan
 
 from faying.errors import InputError
 
@@ -101,11 +101,6 @@ class ContactPair:
         if not given:
             raise InputError("no friction coefficient is known for the pair; give one to either material")
         return min(given)
-
-    @property
-    def bulk_stiffness_factor(self) -> float:
-        """2/sqrt(pi): bulk stiffness of the equal-area circle is this times E* sqrt(A0)."""
-        return 2 / pi**0.5
 
 
 CATALOGUE = {

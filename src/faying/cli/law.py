@@ -35,6 +35,12 @@ SHOWN = {
 @click.option("--friction", type=float, help="Static friction coefficient.")
 @click.option("--pressure", default="0.1 MPa:50 MPa", show_default=True, metavar="FROM:TO[:POINTS]",
               help="Nominal pressures, spaced logarithmically; or one pressure.")  # fmt: skip
+@click.option("--scan", type=click.Path(), help="A scan: D, G, moments and area come from it.")
+@click.option("--xy-unit", help='Unit of x and y where the scan states none, for example "mm".')
+@click.option("--z-unit", help='Unit of the heights where the scan states none, for example "um".')
+@click.option("--method", default="psd", show_default=True, help="Estimator of D and G: psd, structure or moments.")
+@click.option("--models", metavar="LIST", help='Several laws of the scan, for example "jk,gw,gw-ke,persson".')
+@click.option("--all-models", is_flag=True, help="All laws that take their inputs from a scan.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 @click.option("--csv", "csv_file", type=click.Path(dir_okay=False), help="Write all columns to a CSV file.")
 @click.option("--plot", type=click.Path(dir_okay=False), help="Write a figure (png, pdf, svg).")
@@ -46,6 +52,9 @@ def command(
     csv_file: str | None,
     plot: str | None,
     against: str,
+    scan: str | None,
+    models: str | None,
+    all_models: bool,
     **options: Any,
 ) -> None:
     """Real area, stiffness and loss of a contact law against nominal pressure.
@@ -53,10 +62,24 @@ def command(
     Example: faying law --D 2.39 --G "1.53e-10 m" --scan-area "16 mm^2" --material "45 steel"
     """
     from faying.contact.registry import find_law
+    from faying.errors import InputError
 
     cls = find_law(model)
     pair = pair_of(options, against)
-    law = cls(pair=pair, **parameters_of(cls, options, settings))  # type: ignore[call-arg]
+    if models or all_models:
+        from faying.cli.compare import show
+
+        if scan is None or settings:
+            raise InputError("--models and --all-models take every input from a scan: give --scan FILE and no --set")
+        names = None if all_models else [name for name in (models or "").split(",") if name.strip()]
+        show(surface_of(scan, options), pair, names, pressures_of(pressure), as_json, csv_file, plot)
+        return
+    if scan is not None:
+        law = cls.from_surface(surface_of(scan, options)[0], pair)
+        changes = parameters_of(cls, options, settings, needed=False)
+        law = law.with_(**changes) if changes else law
+    else:
+        law = cls(pair=pair, **parameters_of(cls, options, settings))  # type: ignore[call-arg]
     pressures = pressures_of(pressure)
     response = law.at_pressure(pressures)
     if csv_file:
@@ -66,6 +89,26 @@ def command(
 
         save(curves({law.name: response}), plot)
     click.echo(json.dumps(document(law, response), indent=2, allow_nan=False) if as_json else table(law, response))
+
+
+def surface_of(file: str, options: dict[str, Any]) -> tuple[Any, Any]:
+    """Read, level and fit a scan; return what the models take from it, and the levelled scan."""
+    from faying.contact.inputs import SurfaceInputs
+    from faying.errors import InputError
+    from faying.surface.form import prepared
+    from faying.surface.fractal import fit_fractal
+    from faying.surface.read import read_scan
+    from faying.surface.scan import Profile
+
+    scan = read_scan(file, xy_unit=options["xy_unit"], z_unit=options["z_unit"])
+    if isinstance(scan, Profile):
+        raise InputError(f"{file} holds a profile; contact laws need an areal scan")
+    ready = prepared(scan)
+    fit = fit_fractal(scan, options["method"])
+    import numpy as np
+
+    heights = np.where(ready.known, ready.scan.heights, np.nan)
+    return SurfaceInputs.from_heights(heights, ready.scan.spacing, D=fit.D, G=fit.G), ready.scan
 
 
 def pair_of(options: dict[str, Any], against: str) -> Any:
@@ -98,7 +141,9 @@ def pair_of(options: dict[str, Any], against: str) -> Any:
     return ContactPair(rough, RIGID if against == "rigid" else rough if against == "same" else known(against))
 
 
-def parameters_of(cls: Any, options: dict[str, Any], settings: tuple[str, ...]) -> dict[str, Any]:
+def parameters_of(
+    cls: Any, options: dict[str, Any], settings: tuple[str, ...], *, needed: bool = True
+) -> dict[str, Any]:
     """Read the parameters of the law `cls` from --D, --G, --scan-area and --set; every fault in one message."""
     from dataclasses import MISSING, fields
 
@@ -121,8 +166,8 @@ def parameters_of(cls: Any, options: dict[str, Any], settings: tuple[str, ...]) 
             out[name] = value_of(text, parameter.unit, name)
         except InputError as fault:
             faults.append(str(fault))
-    needed = [f.name for f in fields(cls) if f.init and f.default is MISSING and f.default_factory is MISSING]
-    missing = [name for name in needed if name in cls.parameters and name not in texts]
+    must = [f.name for f in fields(cls) if f.init and f.default is MISSING and f.default_factory is MISSING]
+    missing = [name for name in must if needed and name in cls.parameters and name not in texts]
     if missing:
         wants = "; ".join(f"{n} ({cls.parameters[n].meaning}{unit_note(cls.parameters[n].unit)})" for n in missing)
         faults.append(f"{cls.name} needs {wants}; give them by --set NAME=VALUE, or as options where there is one")

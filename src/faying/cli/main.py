@@ -10,6 +10,7 @@ import click
 COMMANDS = {
     "init": ("init", "Write a commented study file to start from."),
     "law": ("law", "Curves of a contact law: area, stiffness and loss against pressure."),
+    "models": ("models", "List the contact models with their sources, inputs and ranges."),
     "run": ("run", "Run a study: from the surface and the preload to the modes."),
     "surface": ("surface", "Roughness, fractal dimension D and roughness G of a scan."),
 }

@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-METHODS = ("psd", "structure", "moments")
+METHODS = ("psd", "structure", "roughness-length", "box", "higuchi", "mfdfa", "moments", "fpenn")
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -17,6 +17,8 @@ METHODS = ("psd", "structure", "moments")
     "--degree", type=click.IntRange(0, 8), default=1, show_default=True, help="Form removed: polynomial degree."
 )
 @click.option("--keep-spikes", is_flag=True, help="Leave single outlying points in.")
+@click.option("--self-test", "test", is_flag=True, help="Correct for bias by synthetic surfaces made like this one.")
+@click.option("--cross-check", "check", is_flag=True, help="Compare with what other installed readers make of FILE.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 @click.option("--plot", type=click.Path(dir_okay=False), help="Write a figure (png, pdf, svg).")
 def command(
@@ -26,6 +28,8 @@ def command(
     method: str,
     degree: int,
     keep_spikes: bool,
+    test: bool,
+    check: bool,
     as_json: bool,
     plot: str | None,
 ) -> None:
@@ -39,10 +43,14 @@ def command(
     ready = prepared(scan, degree=degree, spikes=not keep_spikes)
     options: dict[str, Any] = {"degree": degree, "spikes": not keep_spikes}
     if method == "all":
-        fits: dict[str, FractalFit | str] = fit_all(scan, **options)
+        fits: dict[str, FractalFit | str] = fit_all(scan, self_test=test, **options)
     else:
-        fits = {method: fit_fractal(scan, method, **options)}
+        fits = {method: fit_fractal(scan, method, self_test=test, **options)}
     document = describe(scan, ready, roughness(ready), fits)
+    if check:
+        from faying.surface.crosscheck import cross_check
+
+        document["cross_check"] = [vars(o) for o in cross_check(scan, file, xy_unit, z_unit)]
     if plot:
         from faying.plot.surface import overview
 
@@ -122,4 +130,7 @@ def table(document: dict[str, Any]) -> str:
         words += [f"  {name}: {word}" for word in fit["warnings"]]
     convention = next((f["convention"] for f in document["fits"].values() if "error" not in f), "")
     lines += ["", f"  {convention}", *words]
+    for seen in document.get("cross_check", ()):
+        verdict = {True: "agrees", False: "DIFFERS", None: "no opinion"}[seen["agrees"]]
+        lines.append(f"  cross-check by {seen['reader']}: {verdict}: {seen['text']}")
     return "\n".join(lines)

@@ -24,17 +24,17 @@ Where the print is ambiguous or wrong we read it so:
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from math import log, pi, sqrt
 from typing import ClassVar, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from faying.contact.inputs import SurfaceInputs
 from faying.contact.islands import Array, Islands
-from faying.contact.law import ContactLaw, Parameter, Response, checked
+from faying.contact.law import ContactLaw, Parameter, Response, checked, require
 from faying.contact.substrate import SHAPE, WeightedIslands, asperity_share, substrate_share
-from faying.errors import InputError
 from faying.materials import ContactPair
 
 QUANTITIES = ("force", "area", "k_n", "k_t", "energy_n", "energy_t")
@@ -154,11 +154,13 @@ class JK(ContactLaw):
         "shear_stress": Parameter("Pa", "shear stress on the real area, in place of shear_ratio", "0 or more"),
     }
 
-    def __post_init__(self) -> None:
-        def need(good: bool, text: str) -> None:
-            if not good:
-                raise InputError(f"JK: {text}")
+    @classmethod
+    def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> "JK":
+        """Return the law of a measured surface, from its D and G."""
+        return cls(D=surface.D, G=surface.G, pair=pair, scan_area=surface.scan_area, gamma=surface.gamma)
 
+    def __post_init__(self) -> None:
+        need = partial(require, "JK")
         need(2 < self.D < 3, f"D = {self.D}; the dimension of a surface lies between 2 and 3, for example 2.4")
         need(0 < self.G < np.inf, f"G = {self.G} m; it must be positive, for example 1.5e-10")
         need(

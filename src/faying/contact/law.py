@@ -1,20 +1,25 @@
-"""What every contact law gives (Response) and how any of them is asked for a pressure (ContactLaw)."""
+"""How any contact law is asked for a pressure (ContactLaw), and what a parameter of one is."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import ClassVar, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from faying.contact.inputs import SurfaceInputs
+from faying.contact.response import Array, Mask, Response
+from faying.contact.table import PressureTable
 from faying.errors import InputError, NotConverged
+from faying.materials import ContactPair
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+__all__ = ["Array", "ContactLaw", "Mask", "Parameter", "Response", "checked", "require"]
 
 TABLE_POINTS = 500
+# from this many pressures on, at_pressure reads the checked table unless asked to be exact
+MANY = 20_000
 
 
 @dataclass(frozen=True)
@@ -26,42 +31,10 @@ class Parameter:
     allowed: str
 
 
-@dataclass(frozen=True, kw_only=True)
-class Response:
-    """What a contact law says at one load or many; all arrays share one shape, all quantities per nominal area.
-
-    pressure [Pa]; area, real over nominal [-]; k_n, k_t normal and tangential stiffness [Pa/m]; loss_n, loss_t
-    loss factors [-]; energy_n, energy_t strain energies [J/m2]. A quantity that the model does not define is None.
-    valid tells where the model stands on its own ground; `reasons` names, per sign of leaving it, where.
-    """
-
-    pressure: Array
-    area: Array
-    k_n: Array | None = None
-    k_t: Array | None = None
-    loss_n: Array | None = None
-    loss_t: Array | None = None
-    energy_n: Array | None = None
-    energy_t: Array | None = None
-    reasons: Mapping[str, Mask] = field(default_factory=dict)
-
-    @property
-    def valid(self) -> Mask:
-        """True where none of `reasons` holds."""
-        good = np.ones(np.shape(self.pressure), dtype=bool)
-        for mask in self.reasons.values():
-            good &= ~mask
-        return good
-
-    def quantities(self) -> dict[str, Array]:
-        """Return the defined quantities by name, in the order of the fields."""
-        return {f.name: v for f in fields(self) if isinstance(v := getattr(self, f.name), np.ndarray)}
-
-    def reshaped(self, shape: tuple[int, ...]) -> Self:
-        """Return the same response with every array in another shape."""
-        arrays = {name: value.reshape(shape) for name, value in self.quantities().items()}
-        reasons = {name: mask.reshape(shape) for name, mask in self.reasons.items()}
-        return replace(self, **arrays, reasons=reasons)
+def require(law: str, good: bool, text: str) -> None:
+    """Raise InputError with the law's name before the text unless good."""
+    if not good:
+        raise InputError(f"{law}: {text}")
 
 
 def checked(values: ArrayLike, *, name: str, unit: str, zero: bool) -> Array:
@@ -109,6 +82,11 @@ class ContactLaw(ABC):
             raise InputError(f"{self.name} has no parameter {', '.join(unknown)}; it has {', '.join(own)}")
         return replace(self, **changes)  # type: ignore[type-var]
 
+    @classmethod
+    def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> Self:
+        """Return the law of a measured surface; InputError where the model cannot take its inputs from a scan."""
+        raise InputError(f"{cls.name} takes no input from a scan; give its parameters: {', '.join(cls.parameters)}")
+
     def _pressure_at(self, closure: Array) -> Array:
         """Pressure alone; a model overrides this where it is quicker than the whole response."""
         return self.at_closure(closure).pressure
@@ -135,11 +113,18 @@ class ContactLaw(ABC):
         """The pressure at which the law ends [Pa]."""
         return float(np.exp(self._grid[1][-1]))
 
-    def at_pressure(self, pressure: ArrayLike) -> Response:
-        """Return the response at nominal pressures [Pa], any shape; inverted to 1e-12 of the pressure.
+    @property
+    def least_pressure(self) -> float:
+        """The least pressure above 0 that the law resolves [Pa]."""
+        return float(np.exp(self._grid[1][0]))
 
-        At zero pressure nothing touches: every quantity is 0. Raises InputError for NaN or negative pressures and
-        for those above `greatest_pressure`.
+    def at_pressure(self, pressure: ArrayLike, *, exact: bool | None = None) -> Response:
+        """Return the response at nominal pressures [Pa], any shape.
+
+        exact=True inverts every pressure to 1e-12; exact=False reads a table that is made once and checked to 1e-6 of
+        every quantity; None inverts up to 20,000 pressures and reads the table beyond. At zero pressure nothing
+        touches: every quantity is 0. Raises InputError for NaN or negative pressures and for those above
+        `greatest_pressure` or below the least that the law resolves.
         """
         p = checked(pressure, name="pressure", unit="Pa", zero=True)
         if p.size and p.max() > self.greatest_pressure * (1 + 1e-12):
@@ -148,11 +133,23 @@ class ContactLaw(ABC):
                 f"{self.greatest_pressure:.4g} Pa; lower the load or widen the joint"
             )
         flat = p.ravel()
-        at = self.at_closure(self._closure_at(np.where(flat > 0, flat, self.greatest_pressure)))
-        exact = {name: np.where(flat > 0, value, 0.0) for name, value in at.quantities().items()}
-        exact["pressure"] = flat.copy()
-        reasons = {name: mask & (flat > 0) for name, mask in at.reasons.items()}
-        return replace(at, **exact, reasons=reasons).reshaped(p.shape)
+        read = self._table.at if exact is False or (exact is None and p.size > MANY) else self._exact
+        open_points = flat == 0
+        if not open_points.any():
+            return read(flat).reshaped(p.shape)
+        at = read(np.where(open_points, self.greatest_pressure, flat))
+        arrays = {name: np.where(open_points, 0.0, value) for name, value in at.quantities().items()}
+        reasons = {name: mask & ~open_points for name, mask in at.reasons.items()}
+        return replace(at, reasons=reasons, **arrays).reshaped(p.shape)
+
+    def _exact(self, pressure: Array) -> Response:
+        """Response at flat positive pressures within the law, each inverted."""
+        return replace(self.at_closure(self._closure_at(pressure)), pressure=pressure.copy())
+
+    @cached_property
+    def _table(self) -> PressureTable:
+        least, greatest = np.exp(self._grid[1][[0, -1]])
+        return PressureTable(self._exact, float(least), float(greatest))
 
     def _closure_at(self, pressure: Array) -> Array:
         """Invert pressures (flat, positive, within the law) for the closure variable."""

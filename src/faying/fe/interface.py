@@ -145,7 +145,8 @@ def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> 
     if not np.any(hit):
         from scipy.spatial import cKDTree
 
-        nearest = float(cKDTree(mesh.points[tri_b].reshape(-1, 3)).query(positions)[0].min())
+        apart = cKDTree(mesh.points[tri_b].reshape(-1, 3)).query(mesh.points[tri_a].reshape(-1, 3))[0]
+        nearest = float(apart.min())
         raise InputError(f"faces {first!r} and {second!r} do not touch: they are {nearest * 1e3:.4g} mm apart at the "
                          f"nearest and the joint reaches {reach * 1e3:.4g} mm; move a part, or check the unit of the "
                          "geometry")  # fmt: skip

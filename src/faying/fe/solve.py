@@ -1,6 +1,7 @@
 """Factorisations behind one interface; the best one found at run time is taken and reported."""
 
 import os
+import sys
 from collections.abc import Callable
 from typing import Any, Protocol
 
@@ -20,6 +21,9 @@ class Factorisation(Protocol):
     def solve(self, right: Array) -> Array:
         """Solve for one right-hand side (n,) or several (n, m)."""
 
+    def again(self, matrix: Any) -> "Factorisation":
+        """Factorise another matrix with the same pattern, both CSR with sorted indices; the analysis is kept if it can."""
+
 
 class _Pardiso:
     """Intel MKL's PARDISO through pypardiso, as Cholesky of the upper triangle."""
@@ -32,6 +36,7 @@ class _Pardiso:
 
         self._upper = csr_matrix(triu(matrix, format="csr"))
         self._upper.sort_indices()
+        self._kept: Any = None
         self._solver = PyPardisoSolver(mtype=2)
         self._solver._check_A(self._upper)
         self._solver.set_phase(12)
@@ -49,9 +54,21 @@ class _Pardiso:
         x: Array = self._solver._call_pardiso(self._upper, np.asfortranarray(right))
         return x.reshape(right.shape)
 
+    def again(self, matrix: Any) -> "_Pardiso":
+        if self._kept is None:
+            self._kept = matrix.indices >= np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
+        self._upper.data[:] = matrix.data[self._kept]
+        self._solver.set_phase(22)
+        try:
+            self._solver._call_pardiso(self._upper, np.zeros((matrix.shape[0], 1)))
+        except Exception as fault:
+            raise NotConverged(f"PARDISO could not factorise the matrix ({fault})") from None
+        self._solver.set_phase(33)
+        return self
+
     def __del__(self) -> None:
         solver = getattr(self, "_solver", None)
-        if solver is not None:
+        if solver is not None and not sys.is_finalizing():
             solver.free_memory(everything=True)
 
 
@@ -66,6 +83,9 @@ class _Mumps:
         self._context = mumps.Context()
         self._context.set_matrix(matrix.tocoo(), symmetric=True)
         self._context.factor()
+
+    def again(self, matrix: Any) -> "_Mumps":
+        return _Mumps(matrix)
 
     def solve(self, right: Array) -> Array:
         if right.ndim == 2:
@@ -83,6 +103,9 @@ class _Cholmod:
         from sksparse.cholmod import cholesky
 
         self._factor = cholesky(csc_matrix(matrix))
+
+    def again(self, matrix: Any) -> "_Cholmod":
+        return _Cholmod(matrix)
 
     def solve(self, right: Array) -> Array:
         return np.asarray(self._factor(right))
@@ -103,6 +126,9 @@ class _SuperLU:
             raise NotConverged(
                 f"SuperLU could not factorise the matrix ({fault}); is a part held by nothing?"
             ) from None
+
+    def again(self, matrix: Any) -> "_SuperLU":
+        return _SuperLU(matrix)
 
     def solve(self, right: Array) -> Array:
         return np.asarray(self._factor.solve(right))

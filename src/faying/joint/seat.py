@@ -65,7 +65,7 @@ class Seat:
     tangential: Literal["law", "mindlin"] = "law"
     nu: float = 0.3
     scale: float = 1.0
-    points: int = 600
+    points: int = 1000
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
@@ -135,5 +135,7 @@ class Seat:
 
     def closing(self, pressure: float) -> float:
         """Closing [m] at one pressure [Pa] between the least and the greatest of the law."""
-        log_w, log_p, _ = self._table
-        return float(np.exp(np.interp(np.log(pressure), log_p, log_w)))
+        from scipy.interpolate import CubicHermiteSpline
+
+        log_w, log_p, slope = self._table
+        return float(np.exp(CubicHermiteSpline(log_p, log_w, 1 / slope)(np.log(pressure))))

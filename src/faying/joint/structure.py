@@ -95,7 +95,7 @@ class Structure:
         centre_b, normal_b, _ = face_centre(mesh.points, tri_b)
         axis = centre_b - centre_a
         length = float(np.linalg.norm(axis))
-        if length == 0 or normal_a @ axis > -0.5 * length or normal_b @ axis < 0.5 * length:
+        if length < 1e-6 * mesh.size or normal_a @ axis > -0.5 * length or normal_b @ axis < 0.5 * length:
             raise InputError(f"the bolt's faces {first!r} and {second!r} do not look away from each other; name the two seats "
                              "that head and nut press on")  # fmt: skip
         return face_load(mesh.points, tri_a, centre_a, axis) + face_load(mesh.points, tri_b, centre_a, -axis)

@@ -36,13 +36,15 @@ def save(fig: Any, path: str) -> None:
 def panel(ax: Any, responses: Mapping[str, Response], name: str, label: str, scale: float = 1.0) -> Any:
     """Draw one quantity of the laws that have it into `ax`; thin and dotted where a law leaves its ground."""
     import numpy as np
+    from matplotlib import colormaps
 
     for i, (law, response) in enumerate(responses.items()):
         value = response.quantities().get(name)
         if value is None:
             continue
         p, valid = response.pressure * 1e-6, response.valid
-        color, marker = f"C{i % 10}", ("-", "-.")[i // 10 % 2]
+        color = colormaps["tab20"].colors[(2 * i + i // 10) % 20]
+        marker = ("-", "-.")[i // 10 % 2]
         shown = np.where(valid, value * scale, np.nan)
         ax.plot(p, value * scale, ":", color=color, lw=1.0)
         ax.plot(p, shown, marker, color=color, lw=1.8, label=law)
@@ -63,5 +65,12 @@ def curves(responses: Mapping[str, Response]) -> Any:
         ax.set_visible(False)
     handles = {label: h for ax in fig.axes for h, label in zip(*ax.get_legend_handles_labels(), strict=True)}
     if len(responses) > 1:
-        fig.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4, frameon=False)
+        fig.legend(
+            handles.values(),
+            handles.keys(),
+            loc="outside lower center",
+            ncols=4,
+            frameon=False,
+            title="thick: on the model's ground; thin and dotted: outside it",
+        )
     return fig

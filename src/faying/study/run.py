@@ -108,6 +108,11 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     )
 
 
+def build(study: Study) -> Structure:
+    """Return the structure of a study, meshed and with its law on the joints, for work that goes on by hand."""
+    return _structure(study, _surface(study))[0]
+
+
 def _sum(matrices: Any) -> Any:
     total = None
     for matrix in matrices:

@@ -37,12 +37,12 @@ def check_dimension(D: float) -> float:
 def cut_factor(D: float) -> float:
     """Mean of |cos|^(4-2Ds) over all directions [-]: profile spectrum over radial spectrum of an isotropic surface."""
     p = 6 - 2 * D
-    return exp(lgamma(p / 2 + 0.5) - lgamma(p / 2 + 1)) / pi**0.5
+    return exp(lgamma(p / 2 + 0.5) - lgamma(p / 2 + 1)) / float(pi**0.5)
 
 
 def density(D: float, G: float, c: float = 1.0) -> float:
     """Return B of S(f) = B f^-(7-2D) [m^(2D-4)]."""
-    return c * G ** (2 * D - 4) / 2
+    return float(c * G ** (2 * D - 4) / 2)
 
 
 def G_from_density(D: float, log_density: float, c: float = 1.0) -> float:
@@ -58,12 +58,12 @@ def structure_coefficient(D: float) -> float:
     Gamma(s) sin(pi s/2) = pi / (2 Gamma(1-s) cos(pi s/2)).
     """
     s = 2 * D - 5
-    return (2 * pi) ** (1 - s) * pi / (2 * gamma(1 - s) * cos(pi * s / 2)) / (1 - s)
+    return float((2 * pi) ** (1 - s) * pi / (2 * gamma(1 - s) * cos(pi * s / 2)) / (1 - s))
 
 
 def implied_Rq(D: float, G: float, length: float, c: float = 1.0) -> float:
     """Rms height [m] of all wavelengths up to `length` [m]: Rq^2 = c G^(2Ds-2) L^(4-2Ds) / (2 (4-2Ds))."""
-    return (c * G ** (2 * D - 4) * length ** (6 - 2 * D) / (2 * (6 - 2 * D))) ** 0.5
+    return float((c * G ** (2 * D - 4) * length ** (6 - 2 * D) / (2 * (6 - 2 * D))) ** 0.5)
 
 
 def G_from_Rq(D: float, Rq: float, length: float, c: float = 1.0) -> float:

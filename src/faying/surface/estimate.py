@@ -1,5 +1,6 @@
-"""The estimators behind `fit_fractal` that rest on a fitted law: spectrum, structure function, moments of the band."""
+"""The estimators behind `fit_fractal` that rest on the spectrum: power law, and moments of the band."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import log, pi
 from typing import final
@@ -7,12 +8,14 @@ from typing import final
 import numpy as np
 
 from faying.errors import FayingError, NotConverged
-from faying.surface.convention import G_from_density, structure_coefficient
-from faying.surface.form import Mask, Prepared
+from faying.surface import fpenn
+from faying.surface.convention import G_from_density
+from faying.surface.form import Prepared
+from faying.surface.lines import find_lines
 from faying.surface.moments import invert_ratio
-from faying.surface.powerlaw import PowerLaw, fit_band, smearing, supported_band
+from faying.surface.powerlaw import PowerLaw, estimate_from, fit_band, smearing, supported_band
 from faying.surface.scan import Array, Profile, Scan
-from faying.surface.spectrum import Spectrum, spectrum, structure_function
+from faying.surface.spectrum import Spectrum, binned, periodogram
 
 Z95 = 1.959963984540054  # two-sided 95 % point of the normal distribution
 Limits = tuple[float, float] | None
@@ -64,12 +67,25 @@ def with_intervals(
 
 
 def _spectral_fit(ready: Prepared, limits: Limits) -> tuple[Spectrum, PowerLaw, tuple[str, ...]]:
-    s = spectrum(ready.scan)
+    s, notes = clean_spectrum(ready.scan)
     if limits is not None:
-        law, notes = fit_band(s, 1 / limits[1], 1 / limits[0], fixed=True)
+        law, more = fit_band(s, 1 / limits[1], 1 / limits[0], fixed=True)
     else:
-        law, notes = fit_band(s, *supported_band(s, resolution=ready.scan.instrument.resolution))
-    return s, law, notes
+        law, more = fit_band(s, *supported_band(s, resolution=ready.scan.instrument.resolution))
+    return s, law, notes + more
+
+
+def clean_spectrum(scan: Scan | Profile) -> tuple[Spectrum, tuple[str, ...]]:
+    """Return the spectrum without the sharp peaks of tool marks, and what was left out in words."""
+    power, frequency, axes = periodogram(scan)
+    if isinstance(scan, Profile):
+        return binned(scan, power, frequency, axes), ()
+    marked = find_lines(scan, power, frequency)
+    share = float(power[marked].sum() / power.sum())
+    if share < 1e-4:
+        return binned(scan, power, frequency, axes), ()
+    words = f"tool marks: {100 * share:.2g} % of the power lies in sharp peaks of the spectrum and was left out"
+    return binned(scan, power, frequency, axes, exclude=marked), (words,)
 
 
 def white_rms(ready: Prepared, noise: float) -> float:
@@ -81,11 +97,8 @@ def white_rms(ready: Prepared, noise: float) -> float:
 def by_psd(ready: Prepared, limits: Limits, c: float) -> Estimate:
     """Fit a power law with a white term to the spectrum averaged over directions (see `powerlaw`)."""
     _, law, notes = _spectral_fit(ready, limits)
-    turn = np.array([[1.0, 0.0], [0.0, -0.5]])  # (ln S, slope) -> (ln S, D), D = (7 - slope)/2
     return with_intervals(
-        (7 - law.slope) / 2,
-        law.log_level,
-        turn @ law.covariance[:2, :2] @ turn.T,
+        *estimate_from(law),
         law.pivot,
         c,
         band=(1 / float(law.used[-1]), 1 / float(law.used[0])),
@@ -95,148 +108,138 @@ def by_psd(ready: Prepared, limits: Limits, c: float) -> Estimate:
     )
 
 
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Band:
+    """The bins of a fitted band: frequency, width [1/m], density [m3], the white term's shape, smearing, spread [-]."""
+
+    law: PowerLaw
+    frequency: Array
+    width: Array
+    density: Array
+    shape: Array
+    smear: Array
+    spread: Array
+    notes: tuple[str, ...]
+
+    def clean(self, density: Array, noise: float) -> Array:
+        """Density [m3] without its white part and the window's smearing."""
+        return (density - noise * self.shape) / self.smear
+
+    def drawn(self, rng: np.random.Generator) -> tuple[Array, float]:
+        """One draw of the bins about the fitted law, and the white level that the fit would find in it."""
+        expected = self.law.expected
+        fake = expected * rng.gamma(1 / self.spread**2, self.spread**2)
+        return fake, self.law.noise + float(self.law.response[2] @ (fake / expected - 1))
+
+
+def _clean_band(ready: Prepared, limits: Limits) -> Band:
+    """Fit the band and hold its bins, ready to be drawn again from their gamma law."""
+    s, law, notes = _spectral_fit(ready, limits)
+    use = (s.frequency >= law.used[0] * 0.999999) & (s.frequency <= law.used[-1] * 1.000001) & (s.density > 0)
+    f = s.frequency[use]
+    return Band(
+        law=law,
+        frequency=f,
+        width=s.width[use] * s.lowest,
+        density=s.density[use],
+        shape=2 * pi * f if s.axes == 2 else np.full(len(f), 2.0),
+        smear=smearing(s, f, law.slope)[0],
+        spread=s.spread[use] * max(1.0, law.misfit) ** 0.5,
+        notes=notes,
+    )
+
+
+def _through_draws(
+    ready: Prepared, band: Band, c: float, solve: Callable[[Array], tuple[float, float]], extra: float = 0.0
+) -> Estimate:
+    """Solve for (slope, ln S(pivot)) on the measured bins; bias and covariance from 200 draws of the bins.
+
+    `extra` is a further standard error of D (a network's).
+    """
+    slope, level = solve(band.clean(band.density, band.law.noise))
+    rng = np.random.default_rng(2024)
+    draws = []
+    for _ in range(200):
+        try:
+            draws.append(solve(band.clean(*band.drawn(rng))))
+        except FayingError:
+            continue
+    if len(draws) < 150:
+        raise NotConverged("the moments of this band do not fix D: most draws within their error have no solution")
+    cloud = np.array(draws)
+    centre = solve(band.clean(band.law.expected, band.law.noise))
+    slope, level = slope - float(cloud[:, 0].mean() - centre[0]), level - float(cloud[:, 1].mean() - centre[1])
+    covariance = np.cov(np.stack([cloud[:, 1], -cloud[:, 0] / 2]))
+    covariance[1, 1] += extra**2
+    f = band.frequency
+    return with_intervals(
+        (7 - slope) / 2,
+        level,
+        covariance,
+        band.law.pivot,
+        c,
+        band=(1 / float(f[-1]), 1 / float(f[0])),
+        noise=white_rms(ready, band.law.noise),
+        misfit=band.law.misfit,
+        notes=band.notes,
+    )
+
+
 def by_moments(ready: Prepared, limits: Limits, c: float) -> Estimate:
     """Take m2/m0 of the band (white part and window smearing removed) and solve for D, as the ideal series' map does.
 
     The moments are sums over bins, m_2k = (2 pi)^(2k) sum (S - white) f^(2k) df; G follows from m2, the better known
     of the two. Intervals by drawing the bins from their gamma law and repeating the inversion.
     """
-    s, law, notes = _spectral_fit(ready, limits)
-    use = (s.frequency >= law.used[0] * 0.999999) & (s.frequency <= law.used[-1] * 1.000001) & (s.density > 0)
-    f, width = s.frequency[use], s.width[use] * s.lowest
-    shape = 2 * pi * f if s.axes == 2 else np.full(len(f), 2.0)
-    smear = smearing(s, f, law.slope)[0]
-    spread = s.spread[use] * max(1.0, law.misfit) ** 0.5
+    band = _clean_band(ready, limits)
+    f, width = band.frequency, band.width
 
-    def solve(density: Array, noise: float) -> tuple[float, float]:
-        clean = (density - noise * shape) / smear
+    def solve(clean: Array) -> tuple[float, float]:
         m0, m2 = float(np.sum(clean * width)), float(np.sum(clean * f**2 * width))
         if m0 <= 0 or m2 <= 0:
             raise NotConverged("the spectral moments of the band are not positive once the noise is taken out")
         slope = invert_ratio(m2 / m0, 2.0, f, width)
-        return slope, log(m2) - log(float(np.sum((f / law.pivot) ** -slope * f**2 * width)))
+        return slope, log(m2) - log(float(np.sum((f / band.law.pivot) ** -slope * f**2 * width)))
 
-    slope, log_level = solve(s.density[use], law.noise)
-    rng = np.random.default_rng(2024)
-    draws = []
-    expected = law.expected
-    for _ in range(200):
-        fake = expected * rng.gamma(1 / spread**2, spread**2)
-        # the white level of each draw from the same weights as the fit's: its linear response to the bins
-        noise = law.noise + float(law.response[2] @ (fake / expected - 1))
-        try:
-            draws.append(solve(fake, noise))
-        except FayingError:
-            continue
-    if len(draws) < 150:
-        raise NotConverged("the moments of this band do not fix D: most draws within their error have no solution")
-    cloud = np.array(draws)
-    centre = solve(expected, law.noise)
-    bias = cloud.mean(axis=0) - np.array(centre)
-    slope, log_level = slope - bias[0], log_level - bias[1]
-    turned = np.stack([cloud[:, 1], -cloud[:, 0] / 2])
-    return with_intervals(
-        (7 - slope) / 2,
-        log_level,
-        np.cov(turned),
-        law.pivot,
-        c,
-        band=(1 / float(f[-1]), 1 / float(f[0])),
-        noise=white_rms(ready, law.noise),
-        misfit=law.misfit,
-        notes=notes,
-    )
+    return _through_draws(ready, band, c, solve)
 
 
-def _fit_structure(lag: Array, value: Array, weight: Array) -> tuple[float, float, float]:
-    """Fit value = exp(a) (lag/l0)^s + nugget in relative terms; returns (s, a, nugget/exp(a)), l0 the geometric mean."""
-    from scipy.optimize import least_squares
+def by_fpenn(ready: Prepared, limits: Limits, c: float) -> Estimate:
+    """Gather the band's power into a Weierstrass-Mandelbrot series (gamma 1.5) and ask the network for D and G.
 
-    x = np.log(lag) - np.mean(np.log(lag))
-    line = np.polyfit(x, np.log(value), 1)
-    start = np.array([min(max(line[0], 0.05), 1.95), line[1], 0.0])
-
-    def residual(t: Array) -> Array:
-        model = np.exp(t[1]) * (np.exp(t[0] * x) + t[2])
-        return np.asarray(weight * (np.log(np.maximum(model, 1e-300)) - np.log(value)))
-
-    bounds = ([0.01, -np.inf, -20.0], [1.999, np.inf, 50.0])
-    found = least_squares(residual, start, bounds=bounds, x_scale=[0.1, 0.1, 0.05])
-    return float(found.x[0]), float(found.x[1]), float(found.x[2])
-
-
-def _tiles(ready: Prepared) -> list[tuple[Array, Mask]]:
-    """Cut a scan into 3 x 3 parts, a profile into 8, for the spread of an estimate between parts: (heights, known)."""
-    z, known = ready.scan.heights, ready.known
-    if z.ndim == 1:
-        return list(zip(np.array_split(z, 8), np.array_split(known, 8), strict=True))
-    out = []
-    for rows, krows in zip(np.array_split(z, 3), np.array_split(known, 3), strict=True):
-        out += list(zip(np.array_split(rows, 3, axis=1), np.array_split(krows, 3, axis=1), strict=True))
-    return out
-
-
-def by_structure(ready: Prepared, limits: Limits, c: float) -> Estimate:
-    """Fit SF = B lag^(6-2D) + constant to the structure function, each lag vector counting alike.
-
-    The constant is twice the variance of white noise, less twice the power of the wavelengths that the points cannot
-    hold (they lower the structure function at every lag alike), so it may be negative.
-
-    Band: from 3 spacings to 1/16 of the shortest side. The interval is from the spread between parts of the scan
-    (3 x 3, or 8 of a profile), Student's t.
+    Each frequency of the series takes the power within a factor 1.5^(1/2) of it. The interval holds the scatter of the
+    bins and the network's rms error.
     """
-    from scipy.stats import t as student
+    band = _clean_band(ready, limits)
+    ends = np.concatenate([band.frequency - band.width / 2, [band.frequency[-1] + band.width[-1] / 2]])
+    terms = int(log(float(ends[-1] / ends[0])) / log(fpenn.GAMMA))
+    known = fpenn.trained_range()
+    if terms < known.terms[0]:
+        raise NotConverged(f"the band holds {terms} frequencies of a series; the network needs {known.terms[0]}")
+    edges = ends[-1] * fpenn.GAMMA ** np.arange(-terms, 1.0)
+    centres = edges[1:] * fpenn.GAMMA**-0.5
+    length = 1 / float(centres[0])
+    pivot = band.law.pivot
+    tilt = 1 - band.law.slope
 
-    scan = ready.scan
-    spacing = scan.spacing if isinstance(scan, Profile) else max(scan.spacing)
-    side = scan.length if isinstance(scan, Profile) else min(scan.size)
-    low, high = limits if limits is not None else (3 * spacing, side / 16)
-    # an instrument's resolution bounds the wavelengths; a lag of half of it is the shortest one that means anything
-    if limits is None and scan.instrument.resolution:
-        low = max(low, scan.instrument.resolution)
+    def turned(f: Array) -> Array:
+        """The coordinate in which the power of the fitted law grows evenly."""
+        return np.log(f) if abs(tilt) < 1e-3 else np.asarray((f / pivot) ** tilt / tilt)
 
-    def one(part: Scan | Profile, known: Mask) -> tuple[float, float, float, Array]:
-        sf = structure_function(part, known=known, longest=min(0.5, high / _side(part)))
-        use = (sf.lag >= low) & (sf.lag <= high) & (sf.value > 0)
-        if use.sum() < 4:
-            raise NotConverged(f"only {int(use.sum())} lags between {low:.3g} and {high:.3g} m; give a wider band")
-        lag = sf.lag[use]
-        s, a, nugget = _fit_structure(lag, sf.value[use], 1 / lag**0.25)
-        return s, a - s * float(np.mean(np.log(lag))), nugget * np.exp(a), lag
+    def solve(clean: Array) -> tuple[float, float]:
+        held = np.concatenate([[0.0], np.cumsum(clean * band.width)])
+        power = np.diff(np.interp(turned(edges), turned(ends), held))
+        m0, m2, m4 = (float(np.sum(power * (2 * pi * centres) ** (2 * k))) for k in range(3))
+        if min(m0, m2, m4) <= 0:
+            raise NotConverged("the spectral moments of the band are not positive once the noise is taken out")
+        D, G = fpenn.from_series_moments(m0, m2, m4, length=length, terms=terms)
+        slope = 7 - 2 * D
+        if not (2.01 < D < 2.99 and G > 0):
+            raise NotConverged(f"the network finds D = {D:.3f}, outside the range it was trained for")
+        # a term holds B f^(1-slope) times the integral of u^-slope over a factor gamma, not times ln(gamma)
+        e = (1 - slope) * log(fpenn.GAMMA) / 2
+        level = (2 * D - 4) * log(G) - log(2) - log(float(np.sinh(e) / e))
+        return slope, level - slope * log(pivot)
 
-    s, level, nugget, lag = one(scan, ready.known)
-    spots = []
-    for z, known in _tiles(ready):
-        try:
-            part: Scan | Profile = scan.with_heights(z)
-            spots.append(one(part, known)[:2])
-        except FayingError:
-            continue
-    if len(spots) < 4:
-        raise NotConverged("the scan is too small for an interval of the structure function; use method psd")
-    pivot_lag = float(np.exp(np.mean(np.log(lag))))
-    cloud = np.array([(lv + sl * log(pivot_lag), 3 - sl / 2) for sl, lv in spots])
-    widen = (float(student.ppf(0.975, len(spots) - 1)) / Z95) ** 2
-    D = 3 - s / 2
-    # ln SF(pivot) -> ln S at the frequency 1/pivot: SF = 2 B k(D) lag^(6-2D), B = S f^(7-2D)
-    f = 1 / pivot_lag
-
-    def to_density(d: float, log_sf: float) -> float:
-        k = structure_coefficient(d) * 2
-        return log_sf - log(k) - (6 - 2 * d) * log(pivot_lag) - (7 - 2 * d) * log(f)
-
-    centre = to_density(D, level + s * log(pivot_lag))
-    moved = np.array([(to_density(min(max(d, 1.55), 2.99), v), d) for v, d in cloud])
-    return with_intervals(
-        D,
-        centre,
-        np.cov(moved.T) / len(spots) * widen,
-        f,
-        c,
-        band=(float(lag[0]), float(lag[-1])),
-        noise=(max(nugget, 0.0) / 2) ** 0.5,
-    )
-
-
-def _side(scan: Scan | Profile) -> float:
-    return scan.length if isinstance(scan, Profile) else min(scan.size)
+    return _through_draws(ready, band, c, solve, known.rms_D)

@@ -1,7 +1,7 @@
 """Preparing heights: spikes and missing points found, counted and treated; levelling and form removal."""
 
 from dataclasses import dataclass
-from typing import Any, TypeVar, final
+from typing import Any, TypeVar, cast, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from faying.errors import InputError
 from faying.surface.scan import Array, Profile, Scan, usable
 
-Lines = TypeVar("Lines", bound=Scan | Profile)
 Mask = NDArray[np.bool_]
+Lines = TypeVar("Lines", bound=Scan | Profile)
 
 SPIKE = 12.0  # how many robust standard deviations above its neighbours' median makes a point a spike
 
@@ -65,7 +65,7 @@ def levelled(scan: Lines, degree: int = 1) -> Lines:
             normal[i, j] = normal[j, i] = count
     weights = np.linalg.lstsq(normal, right, rcond=None)[0]
     form = sum((w * t for w, t in zip(weights, terms, strict=True)), start=np.zeros(heights.shape))
-    return scan.with_heights(heights - offset - form, f"levelled by a polynomial of degree {degree}")
+    return cast("Lines", scan.with_heights(heights - offset - form, f"levelled by a polynomial of degree {degree}"))
 
 
 def filled(scan: Lines) -> Lines:
@@ -90,7 +90,7 @@ def filled(scan: Lines) -> Lines:
             out[rows, columns] = (out[rows, left] + out[rows, right]) / 2
         else:
             out[rows, columns] = (out[up, columns] + out[down, columns] + out[rows, left] + out[rows, right]) / 4
-    return scan.with_heights(out.reshape(heights.shape), f"{int(hole.sum())} missing points filled in")
+    return cast("Lines", scan.with_heights(out.reshape(heights.shape), f"{int(hole.sum())} missing points filled in"))
 
 
 def _pyramid(values: Array, weight: Array) -> Array:
@@ -113,7 +113,7 @@ def _pyramid(values: Array, weight: Array) -> Array:
 
 
 def find_spikes(scan: Scan | Profile, threshold: float = SPIKE) -> Mask:
-    """Mark single points that stand out from the median of their neighbourhood (5 points along a line, 3 x 3 on a scan).
+    """Mark single points that stand out from the median of their neighbours (5 points of a line, 3 x 3 of a scan).
 
     A point is a spike where it differs from that median by more than `threshold` times the robust standard
     deviation (1.4826 times the median of the absolute differences) over the whole scan and by more than `threshold`
@@ -130,12 +130,12 @@ def find_spikes(scan: Scan | Profile, threshold: float = SPIKE) -> Mask:
     scale = 1.4826 * float(np.median(nonzero))
     candidates = (away > threshold * scale) & ~hole
     if not candidates.any():
-        return candidates
+        return np.zeros(hole.shape, bool)
     # a rough patch is no spike: compare with the mean difference around, the candidates themselves left out
     calm = np.where(candidates, 0.0, away)
     share = uniform_filter((~candidates).astype(float), size=31, mode="nearest")
     around = uniform_filter(calm, size=31, mode="nearest") / np.maximum(share, 1e-3)
-    return candidates & (away > threshold * around)
+    return np.asarray(candidates & (away > threshold * around), bool)
 
 
 def prepared(scan: Scan | Profile, *, degree: int = 1, spikes: bool = True) -> Prepared:

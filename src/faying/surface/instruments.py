@@ -34,7 +34,7 @@ def read(file: Path, xy_unit: str | None, z_unit: str | None) -> Scan | Profile:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             topography = library.read_topography(str(file))
-            heights = np.ma.filled(np.ma.asarray(topography.heights(), float), np.nan)
+            heights: Any = np.ma.filled(np.ma.asarray(topography.heights(), float), np.nan)
             sizes = topography.physical_sizes
             unit = topography.unit
             info = dict(topography.info or {})

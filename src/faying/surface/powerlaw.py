@@ -16,7 +16,8 @@ from faying.errors import NotConverged
 from faying.surface.scan import Array
 from faying.surface.spectrum import Spectrum
 
-LINES = 8.0  # misfit above which a spectrum is taken as one of separate lines
+LINES = 8.0  # misfit and
+GAPS = 0.8  # rms of ln(density) about a parabola above which a spectrum is taken as one of separate lines
 BREADTH = 0.35  # standard deviation of the smoothing over ln(frequency); wide against ln(1.5), the usual line distance
 
 
@@ -128,6 +129,13 @@ def fit(spectrum: Spectrum, low: float, high: float, *, white: bool = True) -> P
     )
 
 
+def _gaps(law: PowerLaw, spectrum: Spectrum) -> float:
+    """Rms of ln(density) about a parabola in ln(frequency): large for separate lines, small for any smooth spectrum."""
+    use = (spectrum.frequency >= law.used[0]) & (spectrum.frequency <= law.used[-1]) & (spectrum.density > 0)
+    x, y = np.log(spectrum.frequency[use]), np.log(spectrum.density[use])
+    return float(np.std(y - np.polyval(np.polyfit(x, y, 2), x)))
+
+
 def fit_lines(spectrum: Spectrum, low: float, high: float) -> PowerLaw:
     """Fit a spectrum of separate lines, each line's power spread over a Gaussian in ln(frequency), without white term.
 
@@ -198,8 +206,10 @@ def fit_band(spectrum: Spectrum, low: float, high: float, *, fixed: bool = False
     """
     law = fit(spectrum, low, high)
     notes: list[str] = []
-    if law.misfit > LINES:
-        return fit_lines(spectrum, low, high), ("the spectrum consists of lines (as a Weierstrass-Mandelbrot series)",)
+    if law.misfit > LINES and _gaps(law, spectrum) > GAPS:
+        return fit_lines(spectrum, low / 2, high), (
+            "the spectrum consists of lines (as a Weierstrass-Mandelbrot series)",
+        )
     if fixed:
         return law, ()
     top, bottom = high, low
@@ -244,3 +254,9 @@ def _predict(spectrum: Spectrum, law: PowerLaw, f: Array) -> tuple[Array, Array]
     mean = np.maximum(mean, 0.02 * power)
     jac = np.stack([np.ones(len(f)), power * (dsmear - smear * x) / mean, level * shape / mean], axis=1)
     return mean, np.sqrt(np.einsum("ij,jk,ik->i", jac, law.covariance, jac))
+
+
+def estimate_from(law: PowerLaw) -> tuple[float, float, Array]:
+    """Return D, ln S(pivot) and the covariance of (ln S(pivot), D), with D = (7 - slope)/2."""
+    turn = np.array([[1.0, 0.0], [0.0, -0.5]])
+    return (7 - law.slope) / 2, law.log_level, turn @ law.covariance[:2, :2] @ turn.T

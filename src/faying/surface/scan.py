@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field, replace
 from math import isfinite
-from typing import Any, final
+from typing import Any, Self, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,7 +79,7 @@ class Scan:
     @property
     def shape(self) -> tuple[int, int]:
         """(ny, nx), as of the heights."""
-        return self.heights.shape  # type: ignore[return-value]
+        return self.heights.shape[0], self.heights.shape[1]
 
     @property
     def size(self) -> tuple[float, float]:
@@ -91,7 +91,7 @@ class Scan:
         """How many points have no height."""
         return int(np.isnan(self.heights).sum())
 
-    def with_heights(self, heights: Any, note: str = "") -> "Scan":
+    def with_heights(self, heights: Any, note: str = "") -> Self:
         """Return the same scan with other heights [m] and one more line of history."""
         return replace(self, heights=heights, history=(*self.history, note) if note else self.history)
 
@@ -137,7 +137,7 @@ class Profile:
         """How many points have no height."""
         return int(np.isnan(self.heights).sum())
 
-    def with_heights(self, heights: Any, note: str = "") -> "Profile":
+    def with_heights(self, heights: Any, note: str = "") -> Self:
         """Return the same profile with other heights [m] and one more line of history."""
         return replace(self, heights=heights, history=(*self.history, note) if note else self.history)
 

@@ -23,9 +23,10 @@ HANN_CORRELATION = 1 + 2 * (4 / 9 + 1 / 36)
 class Spectrum:
     """A power spectrum in bins of frequency (arrays of equal shape, one entry per bin).
 
-    `frequency` [1/m] is the bin's power-neutral centre, `density` [m3] the mean power per radial frequency, `count`
-    the number of independent Fourier coefficients in the bin, `spread` the relative standard deviation of its mean
-    (window correlation and the unevenness over directions included), `width` the bin's width in steps of 1/L.
+    `frequency` [1/m] is the bin's mean frequency, `density` [m3] the mean power per radial frequency, `count` the
+    number of Fourier coefficients in the bin, `uneven` the unevenness <C^2>/<C>^2 over directions, `spread` the
+    relative standard deviation of the bin's mean (that unevenness and the window's correlation included), `width` the
+    bin's width in steps of 1/L.
     `lowest` [1/m] is one cycle over the shortest side, `nyquist` [1/m] the Nyquist frequency of the coarser axis.
     `curvature` [1/m2] is (1/Lx^2 + 1/Ly^2)/2 or 1/L^2, which sets how far the window smears a power law.
     """
@@ -34,6 +35,7 @@ class Spectrum:
     density: Array
     count: Array
     spread: Array
+    uneven: Array
     width: Array
     lowest: float
     nyquist: float
@@ -49,6 +51,12 @@ def _edges(lowest: float, highest: float, ratio: float) -> Array:
     return np.array(edges)
 
 
+def _running_median(values: Array, reach: int = 6) -> Array:
+    """Median over up to `reach` bins on either side, not below 1."""
+    spans = [values[max(0, i - reach) : i + reach + 1] for i in range(len(values))]
+    return np.array([max(1.0, float(np.median(span))) for span in spans])
+
+
 def _hann(count: int) -> Array:
     return 0.5 - 0.5 * np.cos(2 * pi * (np.arange(count) + 0.5) / count)
 
@@ -60,8 +68,8 @@ def spectrum(scan: Scan | Profile, *, ratio: float = 1.06, exclude: NDArray[np.b
     coefficients (shape ny, nx//2+1) left out of the averages (peaks of machining marks). No user errors: the heights
     come from `form.prepared`.
     """
-    power, frequency, steps = periodogram(scan)
-    return binned(scan, power, frequency, steps, ratio=ratio, exclude=exclude)
+    power, frequency, axes = periodogram(scan)
+    return binned(scan, power, frequency, axes, ratio=ratio, exclude=exclude)
 
 
 def periodogram(scan: Scan | Profile) -> tuple[Array, Array, tuple[Array, ...]]:
@@ -117,7 +125,7 @@ def binned(
     flat, w = index.ravel(), weight.ravel()
     p = power.ravel()
     wp = w * p
-    count = np.bincount(flat, w, bins)[1:-1]
+    count = np.asarray(np.bincount(flat, w, bins)[1:-1], float)
     first = np.bincount(flat, wp, bins)[1:-1]
     second = np.bincount(flat, wp * p, bins)[1:-1]
     centre = np.bincount(flat, w * frequency.ravel(), bins)[1:-1]
@@ -125,13 +133,15 @@ def binned(
     count, first, second, centre = count[use], first[use], second[use], centre[use]
     mean = first / count
     # <P^2> is 2 <C^2> for Gaussian heights, so this is the unevenness over directions (and a little of the slope)
-    uneven = np.maximum(second / count / (2 * mean**2), 1.0) if len(axes) == 2 else np.ones(len(mean))
+    # smoothed over bins: a bin's own value goes with its mean, and weights that do would bias the fit
+    uneven = _running_median(second / count / (2 * mean**2)) if len(axes) == 2 else np.ones(len(mean))
     f = centre / count
     return Spectrum(
         frequency=f,
         density=mean * (2 * pi * f if len(axes) == 2 else 2.0),
         count=count,
         spread=np.sqrt(HANN_CORRELATION ** len(axes) * uneven / count),
+        uneven=uneven,
         width=np.diff(edges)[use],
         lowest=lowest,
         nyquist=nyquist,
@@ -178,12 +188,12 @@ def structure_function(
     mask = ~np.isnan(z) if known is None else known & ~np.isnan(z)
     values = np.where(mask, z, 0.0)
     values = np.where(mask, values - values.sum() / mask.sum(), 0.0)
-    spacing = (scan.spacing,) if isinstance(scan, Profile) else (scan.spacing[1], scan.spacing[0])
+    spacing = [scan.spacing] if isinstance(scan, Profile) else [scan.spacing[1], scan.spacing[0]]
     side = min(n * d for n, d in zip(z.shape, spacing, strict=True))
     reach = [max(2, int(longest * side / d)) for d in spacing]
     shape = tuple(fft.next_fast_len(n + r + 1, real=True) for n, r in zip(z.shape, reach, strict=True))
     total, pairs = _products(values, mask.astype(float), shape)
-    if len(reach) == 1:
+    if len(spacing) == 1:
         r = np.arange(reach[0] + 1) * spacing[0]
         total, pairs = total[: reach[0] + 1], pairs[: reach[0] + 1]
     else:
@@ -205,7 +215,7 @@ def structure_function(
     each = np.where(use, total.ravel() / np.maximum(pairs.ravel(), 1), 0.0)
     value = np.bincount(bins, each, n)[1:]
     lag = np.bincount(bins, np.where(use, r.ravel(), 0.0), n)[1:]
-    number = np.bincount(bins, np.where(use, pairs.ravel(), 0.0), n)[1:]
+    number = np.asarray(np.bincount(bins, np.where(use, pairs.ravel(), 0.0), n)[1:], float)
     good = count > 0
     return Structure(
         lag=lag[good] / count[good], value=value[good] / count[good], pairs=number[good], axes=len(spacing)

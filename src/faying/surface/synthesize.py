@@ -48,7 +48,8 @@ def spectral(
     `shape` = (ny, nx) for a Scan, n for a Profile; `spacing` [m]. Give `G` [m], or `Rq` [m]: then the heights are
     scaled to that rms value. `longest` and `shortest` [m] are the wavelengths where the law rolls off to a plateau and
     where it ends (default: none; the Nyquist wavelength of the grid, in a circle). `lay` = (angle [rad], stretch >= 1):
-    wavelengths along the angle (from x) are longer by the stretch at the same power per area.
+    wavelengths along the angle (from x) are longer by the stretch than those across it, the power of all directions
+    together being that of G.
     `periodic` makes a surface that repeats over the window; else it is cut from one twice as long each way.
     Raises InputError for D outside (2, 3), both or neither of G and Rq, and values that are not positive.
     """
@@ -71,7 +72,11 @@ def spectral(
     c = prefactor(convention, gamma)
     level = density(D, G, c) if G is not None else density(D, G_from_Rq(D, 1e-6, 1e-3, c), c)
     exponent = 7 - 2 * D
+    uneven = 1.0
     if len(counts) == 2:
+        # mean over directions, so that the power of all directions together is that of G
+        turn = (np.arange(720) + 0.5) * pi / 720
+        uneven = float(np.mean((stretch * np.cos(turn) ** 2 + np.sin(turn) ** 2 / stretch) ** (D - 4)))
         fy, fx = frequencies[0][:, None], frequencies[1][None, :]
         along, across = fx * cos(angle) + fy * sin(angle), -fx * sin(angle) + fy * cos(angle)
         f = np.hypot(along * stretch**0.5, across / stretch**0.5)
@@ -81,7 +86,7 @@ def spectral(
     cut = 0.5 / max(steps) if shortest is None else 1 / shortest
     effective = np.maximum(f, 1 / longest) if longest is not None else f
     with np.errstate(divide="ignore"):
-        power = level * effective**-exponent / (2 * pi * effective if len(counts) == 2 else 2.0)
+        power = level / uneven * effective**-exponent / (2 * pi * effective if len(counts) == 2 else 2.0)
     power[(real > cut * (1 + 1e-12)) | (real == 0)] = 0.0
     noise = rng.standard_normal(total)
     area = float(np.prod(steps))

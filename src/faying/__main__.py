@@ -1,0 +1,5 @@
+"""python -m faying"""
+
+from faying.cli import main
+
+main()

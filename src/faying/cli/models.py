@@ -1,0 +1,71 @@
+"""`faying models`: every contact model with its source, inputs and ranges."""
+
+import json
+from typing import Any
+
+import click
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("name", required=False)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def command(name: str | None, as_json: bool) -> None:
+    """List the contact laws and the single-asperity models, or all about the law NAME."""
+    from faying.contact import asperity
+    from faying.contact.registry import find_law, laws
+
+    if name:
+        entries = [describe(find_law(name))]
+    else:
+        entries = [describe(cls) for cls in laws().values()]
+    singles = [] if name else [single(cls) for cls in asperity.models().values()]
+    if as_json:
+        click.echo(json.dumps({"laws": entries, "asperities": singles}, indent=2))
+        return
+    lines = ["Laws of rough surfaces, faying.contact", ""] if not name else []
+    for entry in entries:
+        lines += [f"{entry['class']} ({entry['name']}), {entry['source']}", f"  holds: {entry['ground']}"]
+        lines += [f"  {n}{mark(p)}: {p['meaning']}; {p['allowed']}" for n, p in entry["parameters"].items()]
+        lines.append("")
+    if singles:
+        lines += ["Models of one asperity, faying.contact.asperity", ""]
+        lines += [f"{e['class']} ({e['name']}), {e['source']}\n  holds: {e['ground']}" for e in singles]
+    click.echo("\n".join(lines).rstrip())
+
+
+def mark(parameter: dict[str, Any]) -> str:
+    """Write the unit and the default of a parameter."""
+    unit = parameter["unit"]
+    text = f" [{unit}]" if unit not in ("", "text") else ""
+    return text + ("" if parameter["needed"] else f" = {parameter['default']}")
+
+
+def describe(cls: Any) -> dict[str, Any]:
+    """Return what a law says of itself."""
+    from dataclasses import MISSING, fields
+
+    defaults = {f.name: f.default for f in fields(cls)}
+    parameters = {}
+    for name, p in cls.parameters.items():
+        needed = defaults[name] is MISSING
+        parameters[name] = {
+            "unit": p.unit,
+            "meaning": p.meaning,
+            "allowed": p.allowed,
+            "needed": needed,
+            "default": None if needed else defaults[name],
+        }
+    return {
+        "class": cls.__name__,
+        "name": cls.name,
+        "source": cls.source,
+        "ground": cls.ground,
+        "summary": (cls.__doc__ or "").split("\n")[0],
+        "parameters": parameters,
+    }
+
+
+def single(cls: Any) -> dict[str, Any]:
+    """Return what a single-asperity model says of itself."""
+    summary = (cls.__doc__ or "").split("\n")[0]
+    return {"class": cls.__name__, "name": cls.name, "source": cls.source, "ground": cls.ground, "summary": summary}

@@ -1,0 +1,166 @@
+"""What every single-asperity model gives, and the models that are sums of powers between borders."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from importlib import import_module
+from inspect import isabstract, isclass
+from math import pi, sqrt
+from pkgutil import iter_modules
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from faying.contact.law import checked
+from faying.errors import InputError
+from faying.materials import ContactPair
+
+Array = NDArray[np.float64]
+Term = tuple[float, float]  # coefficient and power of x
+
+
+@dataclass(frozen=True, kw_only=True)
+class AsperityResponse:
+    """One asperity at one interference or many, all arrays of the same shape.
+
+    force [N]; area, real [m2]; pressure, mean [Pa]; stiffness, the derivative of force by interference [N/m]; energy,
+    its integral from first touch [J].
+    """
+
+    force: Array
+    area: Array
+    pressure: Array
+    stiffness: Array
+    energy: Array
+
+
+class Curve(NamedTuple):
+    """A model without units at x: force P, area A, derivative dP/dx, energy integral of P dx."""
+
+    P: Array
+    A: Array
+    dP: Array
+    W: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class AsperityModel(ABC):
+    """A sphere of radius R [m] of the pair, against a plane. A model states a curve in x, interference over `critical`.
+
+    Units of the curve: the Hertz force (4/3) E* sqrt(R) c^(3/2) and area pi R c at the critical interference c.
+    Raises InputError unless R is positive and finite.
+    """
+
+    R: float
+    pair: ContactPair
+
+    name: ClassVar[str]
+    source: ClassVar[str]
+    ground: ClassVar[str]
+
+    def __post_init__(self) -> None:
+        if not 0 < self.R < np.inf:
+            raise InputError(f"{self.name}: R = {self.R} m; it must be positive, for example 15e-6")
+
+    @property
+    def critical(self) -> float:
+        """Interference at which yield begins, (pi K H/(2 E*))^2 R [m]; K H of the softer body."""
+        KH = self.pair.hardness_coefficient * self.pair.hardness
+        return float((pi * KH / (2 * self.pair.E_star)) ** 2 * self.R)
+
+    @property
+    @abstractmethod
+    def borders(self) -> tuple[float, ...]:
+        """The x at which the formulas change; force may jump there where the source's fits do not meet."""
+
+    @abstractmethod
+    def curve(self, x: Array) -> Curve:
+        """Return the model without units at x >= 0."""
+
+    def at(self, delta: ArrayLike) -> AsperityResponse:
+        """Return the response at interferences [m], any shape; InputError where one is negative or not finite."""
+        d = checked(delta, name="interference", unit="m", zero=True)
+        c = self.critical
+        P, A, dP, W = self.curve(d / c)
+        unit_force, unit_area = 4 / 3 * self.pair.E_star * sqrt(self.R) * c**1.5, pi * self.R * c
+        force, area = unit_force * P, unit_area * A
+        return AsperityResponse(
+            force=np.asarray(force),
+            area=np.asarray(area),
+            pressure=np.asarray(force / np.where(area > 0, area, 1.0)),
+            stiffness=np.asarray(unit_force / c * dP),
+            energy=np.asarray(unit_force * c * W),
+        )
+
+    def jump(self, x: float) -> float:
+        """How much P grows at once at the border x."""
+        below, above = self.curve(np.array([np.nextafter(x, 0), np.nextafter(x, np.inf)])).P
+        return float(above - below)
+
+
+class Piece(NamedTuple):
+    """A stretch of a curve up to x = upper: P and A as sums of coefficient times power of x."""
+
+    upper: float
+    P: tuple[Term, ...]
+    A: tuple[Term, ...]
+
+
+HERTZ = Piece(1.0, ((1.0, 1.5),), ((1.0, 1.0),))
+
+
+def powers(terms: tuple[Term, ...], x: Array) -> Array:
+    """Sum of coefficient times power of x."""
+    return np.asarray(sum((c * x**n for c, n in terms), np.zeros_like(x)))
+
+
+def integrated(terms: tuple[Term, ...]) -> tuple[Term, ...]:
+    """Terms of the integral from zero."""
+    return tuple((c / (n + 1), n + 1) for c, n in terms)
+
+
+class PowerModel(AsperityModel):
+    """A model whose curve is a sum of powers on each of a few stretches."""
+
+    @property
+    @abstractmethod
+    def pieces(self) -> tuple[Piece, ...]:
+        """The stretches in order; the last ends at infinity."""
+
+    @property
+    def borders(self) -> tuple[float, ...]:
+        """The x at which the formulas change."""
+        return tuple(piece.upper for piece in self.pieces[:-1])
+
+    def curve(self, x: Array) -> Curve:
+        """Return the model without units at x >= 0."""
+        out = [np.zeros_like(x) for _ in range(4)]
+        lower, carried = 0.0, 0.0
+        for piece in self.pieces:
+            here = (x > lower) & (x <= piece.upper)
+            if np.any(here):
+                v = x[here]
+                work = integrated(piece.P)
+                slope = tuple((c * n, n - 1) for c, n in piece.P if n != 0)
+                start = float(powers(work, np.array(lower))) if lower > 0 else 0.0
+                values = (powers(piece.P, v), powers(piece.A, v), powers(slope, v), carried + powers(work, v) - start)
+                for total, value in zip(out, values, strict=True):
+                    total[here] = value
+            if np.isfinite(piece.upper):
+                ends = powers(integrated(piece.P), np.array([piece.upper, lower] if lower > 0 else [piece.upper]))
+                carried += float(ends[0]) - (float(ends[1]) if lower > 0 else 0.0)
+            lower = piece.upper
+        return Curve(*out)
+
+
+def models() -> dict[str, type[AsperityModel]]:
+    """Return every single-asperity model by the name of its class, in alphabetical order."""
+    package = import_module("faying.contact.asperity")
+    found: dict[str, type[AsperityModel]] = {}
+    for entry in iter_modules(package.__path__):
+        module = import_module(f"faying.contact.asperity.{entry.name}")
+        for name, value in vars(module).items():
+            own = isclass(value) and issubclass(value, AsperityModel) and value.__module__ == module.__name__
+            if own and not isabstract(value):
+                found[name] = value
+    return dict(sorted(found.items()))

@@ -1,0 +1,99 @@
+"""The JK asperity of Zhang, Wu, Liu and Jiang 2024: Lin and Lin's law on a cap that rests on a compliant substrate."""
+
+from dataclasses import dataclass, fields
+from math import inf, sqrt
+from typing import ClassVar, Literal, final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from faying.contact.asperity.base import (
+    Array,
+    AsperityResponse,
+    Piece,
+    PowerModel,
+    integrated,
+    powers,
+)
+from faying.contact.jk import asperity_regimes
+from faying.contact.law import checked
+from faying.contact.substrate import asperity_share
+from faying.errors import InputError
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class JK(PowerModel):
+    """Powers 1.38 and 1.16 between yield and 76.8 c ("printed") or those of Lin and Lin ("consistent").
+
+    doi:10.3390/fractalfract8100611, eqs. (1), (7)-(20). With `height` h_a [m] the interference is shared with the
+    substrate by eq. (1), delta = delta_a (1 + Er xi sqrt(delta_a)) with xi sqrt(h_a) = coefficient/sqrt(2), where
+    Er = modulus_ratio and the paper's coefficient is 1.5 (a half-space in series gives 0.67 to 1); energy is then
+    the work on both. Without it the asperity takes all. Raises InputError for values that are not positive.
+    """
+
+    height: float | None = None
+    modulus_ratio: float = 1.0
+    coefficient: float = 1.5
+    closure: Literal["consistent", "printed"] = "consistent"
+
+    name: ClassVar[str] = "JK"
+    source: ClassVar[str] = "doi:10.3390/fractalfract8100611"
+    ground: ClassVar[str] = "as LL-2005; the substrate's share from an elastic model"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in ("height", "modulus_ratio", "coefficient"):
+            value = getattr(self, name)
+            if value is not None and not 0 < value < inf:
+                raise InputError(f"JK asperity: {name} = {value}; it must be positive")
+        if self.closure not in ("consistent", "printed"):
+            raise InputError(f'JK asperity: closure = {self.closure!r}; use "consistent" or "printed"')
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """Three stretches, in x = delta_a/c."""
+        x_p, regimes = asperity_regimes(self.pair.hardness_coefficient, printed=self.closure == "printed")
+        ends = (1.0, x_p, inf)
+        return tuple(Piece(end, r.force, r.area) for end, r in zip(ends, regimes, strict=True))
+
+    @property
+    def _coupling(self) -> float:
+        """Factor q of delta/c = x + q x^1.5."""
+        if self.height is None:
+            return 0.0
+        return self.modulus_ratio * self.coefficient / sqrt(2) * sqrt(self.critical / self.height)
+
+    def share(self, delta: ArrayLike) -> Array:
+        """Return lam = delta_a/delta at interferences [m]."""
+        d = checked(delta, name="interference", unit="m", zero=True)
+        if self.height is None:
+            return np.ones_like(d)
+        return asperity_share(d / self.height, self.modulus_ratio, self.coefficient / sqrt(2))
+
+    def at(self, delta: ArrayLike) -> AsperityResponse:
+        """Return the response at applied interferences [m], any shape; InputError where one is negative."""
+        d = checked(delta, name="interference", unit="m", zero=True)
+        own = super().at(d * self.share(d))
+        q, c = self._coupling, self.critical
+        if q == 0:
+            return own
+        x = d * self.share(d) / c
+        unit = 4 / 3 * self.pair.E_star * sqrt(self.R) * c**2.5
+        out = {f.name: getattr(own, f.name) for f in fields(own)}
+        out["stiffness"] = own.stiffness / (1 + 1.5 * q * np.sqrt(x))
+        # work on the substrate: integral of P d(q x^1.5), each term of P by 1.5 q x^.5
+        soft = tuple(p._replace(P=tuple((1.5 * q * a, n + 0.5) for a, n in p.P)) for p in self.pieces)
+        out["energy"] = own.energy + unit * work(soft, x)
+        return AsperityResponse(**out)
+
+
+def work(pieces: tuple[Piece, ...], x: Array) -> Array:
+    """Integral of P from 0 to x over the pieces."""
+    total, lower = np.zeros_like(x), 0.0
+    for piece in pieces:
+        upper = np.clip(x, lower, piece.upper)
+        terms = integrated(piece.P)
+        total = total + powers(terms, upper) - (powers(terms, np.full_like(x, lower)) if lower > 0 else 0.0)
+        lower = piece.upper
+    return total

@@ -1,0 +1,131 @@
+"""Greenwood and Williamson 1966: summits of one radius and Gaussian heights, with any asperity law."""
+
+from dataclasses import dataclass
+from functools import cached_property, partial
+from math import inf, pi, sqrt
+from typing import ClassVar, final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from faying.contact.asperity.base import Array, AsperityModel, models
+from faying.contact.inputs import SurfaceInputs
+from faying.contact.law import ContactLaw, Parameter, Response, require
+from faying.errors import InputError
+from faying.materials import ContactPair
+
+# what is summed: heights to this many standard deviations, with this many points on each panel
+HIGHEST, NODES = 9.0, 12
+FARTHEST, NEAREST = 6.0, -3.0
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class GreenwoodWilliamson(ContactLaw):
+    """p = eta int_d^inf f(z - d) phi(z) dz over the heights z of the summits, likewise area, stiffness and energy.
+
+    doi:10.1098/rspa.1966.0242. density eta of summits [1/m2]; radius R [m]; sigma, standard deviation of their heights
+    [m]; pair; asperity, the name of any model of `faying.contact.asperity` (Chang, Etsion and Bogy 1987, Kogut and
+    Etsion 2003, Zhao, Maietta and Chang 2000, Jackson and Green 2006 are this law with theirs).
+
+    Closure variable: the separation d [m] from the mean plane of the summits, 6 to -3 sigma. Stiffness is the exact
+    derivative -dp/dd, jumps of the asperity's force included. No tangential stiffness and no loss: the source
+    defines none. Raises InputError for values that are not positive and unknown asperities.
+    """
+
+    density: float
+    radius: float
+    sigma: float
+    pair: ContactPair
+    asperity: str = "Hertz"
+
+    name: ClassVar[str] = "GW"
+    source: ClassVar[str] = "doi:10.1098/rspa.1966.0242"
+    ground: ClassVar[str] = "real area up to 0.3, separation above that of the summits' mean plane; no interaction"
+    geometric: ClassVar[bool] = False
+    parameters: ClassVar = {
+        "density": Parameter("1/m^2", "summits per area", "above 0"),
+        "radius": Parameter("m", "radius of the summits", "above 0"),
+        "sigma": Parameter("m", "standard deviation of the summit heights", "above 0"),
+        "asperity": Parameter("text", "law of one asperity", "a name of faying.contact.asperity"),
+    }
+
+    def __post_init__(self) -> None:
+        need = partial(require, "GW")
+        for name in ("density", "radius", "sigma"):
+            need(0 < getattr(self, name) < inf, f"{name} = {getattr(self, name)}; it must be positive")
+        self._asperity  # noqa: B018  # names its own faults
+
+    @classmethod
+    def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> "GreenwoodWilliamson":
+        """Return the law of a measured surface, from its spectral moments (McCool 1986)."""
+        return cls(density=surface.summit_density, radius=surface.summit_radius, sigma=surface.summit_deviation,
+                   pair=pair)  # fmt: skip
+
+    @cached_property
+    def _asperity(self) -> AsperityModel:
+        known = {name: cls for name, cls in models().items() if name != "ZX"}
+        plain = {name.lower(): cls for name, cls in known.items()}
+        cls = plain.get(self.asperity.lower().replace("-", "").replace("_", ""))
+        if cls is None:
+            raise InputError(f"GW: asperity = {self.asperity!r}; use one of {', '.join(known)}")
+        return cls(R=self.radius, pair=self.pair)
+
+    @property
+    def closure_range(self) -> tuple[float, float]:
+        """Separations at the least and the greatest load [m]."""
+        return FARTHEST * self.sigma, NEAREST * self.sigma
+
+    @cached_property
+    def _jumps(self) -> list[tuple[float, float]]:
+        """Interference in units of sigma and size [N] of each jump of the asperity's force."""
+        law = self._asperity
+        unit = 4 / 3 * self.pair.E_star * sqrt(self.radius) * law.critical**1.5
+        return [(x * law.critical / self.sigma, unit * law.jump(x)) for x in law.borders]
+
+    @cached_property
+    def _nodes(self) -> tuple[Array, Array]:
+        """Interferences t in units of sigma, and the weighted values of force, area, k_n, energy there (n, 4).
+
+        Panels end where the asperity's formulas change and grow threefold from there, up to a quarter of sigma; on
+        each t = a + (b-a) s^2, so that the square root at first touch is a polynomial in s.
+        """
+        end = HIGHEST - NEAREST
+        edges = [0.0, *(t for t, _ in self._jumps if t < end)]
+        even = np.linspace(0, end, int(4 * end) + 1)
+        first = min([*edges[1:], even[1]])
+        graded = np.geomspace(first, even[1], 1 + int(np.ceil(np.log(even[1] / first) / np.log(3))))[:-1]
+        cuts = np.unique(np.concatenate([even, edges, graded]))
+        s, w = np.polynomial.legendre.leggauss(NODES)
+        s, w = (s + 1) / 2, w / 2
+        low, span = cuts[:-1, None], np.diff(cuts)[:, None]
+        t = (low + span * s**2).ravel()
+        weight = (span * 2 * s * w).ravel()
+        at = self._asperity.at(t * self.sigma)
+        return t, np.stack([at.force, at.area, at.stiffness, at.energy], axis=1) * weight[:, None]
+
+    def at_closure(self, separation: ArrayLike) -> Response:
+        """Return the response at separations d [m], any shape; InputError unless between -3 and 6 sigma."""
+        d = np.asarray(separation, float)
+        far, near = self.closure_range
+        if not np.all((d >= near * (1 + 1e-9)) & (d <= far * (1 + 1e-9))):
+            raise InputError(f"GW: separations from {near:.4g} to {far:.4g} m (-3 to 6 sigma) are covered")
+        h = (d / self.sigma)[..., None]
+        t, values = self._nodes
+        heights = np.exp(-((t + h) ** 2) / 2) / sqrt(2 * pi)
+        force, area, k_n, energy = np.moveaxis(self.density * heights @ values, -1, 0)
+        for jump, size in self._jumps:
+            k_n = k_n + self.density * size / self.sigma * np.exp(-((jump + h[..., 0]) ** 2) / 2) / sqrt(2 * pi)
+        reasons = {
+            "real area above 0.3 of the nominal area": np.asarray(area > 0.3),
+            "separation below the mean plane of the summits": np.asarray(d < 0),
+        }
+        if self.asperity.lower() == "hertz" and any(m.hardness for m in (self.pair.first, self.pair.second)):
+            reasons["mean pressure of the contacts above the hardness"] = np.asarray(force > self.pair.hardness * area)
+        return Response(
+            pressure=np.asarray(force),
+            area=np.asarray(area),
+            k_n=np.asarray(k_n),
+            energy_n=np.asarray(energy),
+            reasons=reasons,
+        )

@@ -1,0 +1,104 @@
+"""What contact models take from a measured surface, in plain numbers; the heights come as an array."""
+
+from dataclasses import dataclass
+from math import inf, log, pi, sqrt
+from typing import Self, final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from faying.errors import InputError
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class SurfaceInputs:
+    """Numbers of one scan that the models need; SI.
+
+    D, G [m] in the convention of Yan and Komvopoulos (that of JK); scan_area [m2]; m0 [m2], m2 [-], m4 [1/m2] the
+    moments of a profile, mean over both directions; slope, the rms gradient of the surface [-]; h_rms [m]; shortest
+    wavelength that the scan resolves [m]; gamma, frequency index. Raises InputError unless all are positive.
+
+    m2, m4 and slope grow without end as the spacing of the scan falls, if the surface is fractal: they belong to it.
+    """
+
+    D: float
+    G: float
+    scan_area: float
+    m0: float
+    m2: float
+    m4: float
+    slope: float
+    h_rms: float
+    shortest: float
+    gamma: float = 1.5
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not 0 < value < inf:
+                raise InputError(f"surface: {name} = {value}; it must be positive and finite")
+        if self.alpha <= 0.8968:
+            raise InputError(
+                f"surface: m0 m4/m2^2 = {self.alpha:.4g}; for a random surface it exceeds 1.5: the heights are "
+                "smoothed or the form is not removed"
+            )
+
+    @classmethod
+    def from_heights(cls, heights: ArrayLike, spacing: tuple[float, float], *, D: float, G: float) -> Self:
+        """Return the inputs from levelled heights [iy, ix] [m], NaN where missing, and spacing (dx, dy) [m].
+
+        Slopes and curvatures by differences of neighbours, so that the shortest wavelength is twice the
+        spacing. Raises InputError for fewer than 5 points a side.
+        """
+        z = np.asarray(heights, float)
+        if z.ndim != 2 or min(z.shape) < 5:
+            raise InputError(f"heights of shape {z.shape}; give a grid of at least 5 x 5 points")
+        z = z - np.nanmean(z)
+        m2, m4 = [], []
+        for axis, step in ((1, spacing[0]), (0, spacing[1])):
+            first = np.diff(z, axis=axis) / step
+            second = np.diff(z, 2, axis=axis) / step**2
+            m2.append(float(np.nanmean(first**2)))
+            m4.append(float(np.nanmean(second**2)))
+        m0 = float(np.nanmean(z**2))
+        return cls(
+            D=D,
+            G=G,
+            scan_area=float(z.shape[0] * spacing[1] * z.shape[1] * spacing[0]),
+            m0=m0,
+            m2=sum(m2) / 2,
+            m4=sum(m4) / 2,
+            slope=sqrt(sum(m2)),
+            h_rms=sqrt(m0),
+            shortest=2 * max(spacing),
+        )
+
+    @property
+    def alpha(self) -> float:
+        """Bandwidth of Nayak, m0 m4/m2^2 [-]."""
+        return self.m0 * self.m4 / self.m2**2
+
+    @property
+    def summit_density(self) -> float:
+        """Summits per area, (m4/m2)/(6 pi sqrt 3) [1/m2]; McCool 1986, doi:10.1016/0043-1648(86)90045-1."""
+        return self.m4 / self.m2 / (6 * pi * sqrt(3))
+
+    @property
+    def summit_radius(self) -> float:
+        """Mean radius of summits, (3/8) sqrt(pi/m4) [m]."""
+        return 3 / 8 * sqrt(pi / self.m4)
+
+    @property
+    def summit_deviation(self) -> float:
+        """Standard deviation of summit heights, sqrt((1 - 0.8968/alpha) m0) [m]."""
+        return sqrt((1 - 0.8968 / self.alpha) * self.m0)
+
+    @property
+    def summit_plane(self) -> float:
+        """Height of the mean plane of the summits above that of the surface, 4 sqrt(m0/(pi alpha)) [m]."""
+        return 4 * sqrt(self.m0 / (pi * self.alpha))
+
+    @property
+    def G_majumdar_bhushan(self) -> float:
+        """G [m] in the convention of Majumdar and Bhushan, whose series lacks the factor ln(gamma)."""
+        return float(self.G * log(self.gamma) ** (1 / (2 * (self.D - 2))))

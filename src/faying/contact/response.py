@@ -1,0 +1,49 @@
+"""What every contact law gives at a load."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Response:
+    """What a contact law says at one load or many; all arrays share one shape, all quantities per nominal area.
+
+    pressure [Pa]; area, real over nominal [-]; k_n, k_t normal and tangential stiffness [Pa/m]; loss_n, loss_t
+    loss factors [-]; energy_n, energy_t strain energies [J/m2]. A quantity that the model does not define is None.
+    valid tells where the model stands on its own ground; `reasons` names, per sign of leaving it, where.
+    """
+
+    pressure: Array
+    area: Array | None = None
+    k_n: Array | None = None
+    k_t: Array | None = None
+    loss_n: Array | None = None
+    loss_t: Array | None = None
+    energy_n: Array | None = None
+    energy_t: Array | None = None
+    reasons: Mapping[str, Mask] = field(default_factory=dict)
+
+    @property
+    def valid(self) -> Mask:
+        """True where none of `reasons` holds."""
+        good = np.ones(np.shape(self.pressure), dtype=bool)
+        for mask in self.reasons.values():
+            good &= ~mask
+        return good
+
+    def quantities(self) -> dict[str, Array]:
+        """Return the defined quantities by name, in the order of the fields."""
+        return {f.name: v for f in fields(self) if isinstance(v := getattr(self, f.name), np.ndarray)}
+
+    def reshaped(self, shape: tuple[int, ...]) -> Self:
+        """Return the same response with every array in another shape."""
+        arrays = {name: value.reshape(shape) for name, value in self.quantities().items()}
+        reasons = {name: mask.reshape(shape) for name, mask in self.reasons.items()}
+        return replace(self, **arrays, reasons=reasons)

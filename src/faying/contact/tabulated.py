@@ -1,0 +1,159 @@
+"""A law from any measured or computed curve."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar, Self, final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from faying.contact.law import Array, ContactLaw, Parameter, Response, checked, require
+from faying.errors import InputError, ReadError
+
+QUANTITIES = ("area", "k_n", "k_t", "loss_n", "loss_t", "energy_n", "energy_t")
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TabulatedLaw(ContactLaw):
+    """Rising pressures [Pa], shape (n,), n >= 2, and any of area, k_n, k_t, loss_n, ... at them, SI, same shape.
+
+    Between the points: shape-preserving cubics (Fritsch and Carlson 1980, doi:10.1137/0717021) through the logarithms
+    of both where all values are positive, so that power laws stay exact; through the values over ln(p) else. Outside
+    the table the law says nothing. `origin` names the measurement. Raises InputError for tables that are not finite,
+    not rising in pressure, of unequal length, negative, or with nothing but pressure.
+    """
+
+    pressure: ArrayLike
+    area: ArrayLike | None = None
+    k_n: ArrayLike | None = None
+    k_t: ArrayLike | None = None
+    loss_n: ArrayLike | None = None
+    loss_t: ArrayLike | None = None
+    energy_n: ArrayLike | None = None
+    energy_t: ArrayLike | None = None
+    origin: str = "table"
+
+    name: ClassVar[str] = "Table"
+    source: ClassVar[str] = "measured or computed curve"
+    ground: ClassVar[str] = "between its first and last pressure"
+    parameters: ClassVar = {
+        "pressure": Parameter("Pa", "nominal pressures of the table", "positive, rising"),
+        "area": Parameter("", "real area over nominal area", "0 to 1"),
+        "k_n": Parameter("Pa/m", "normal stiffness per area", "0 or more"),
+        "k_t": Parameter("Pa/m", "tangential stiffness per area", "0 or more"),
+        "loss_n": Parameter("", "normal loss factor", "0 or more"),
+        "loss_t": Parameter("", "tangential loss factor", "0 or more"),
+        "energy_n": Parameter("J/m^2", "normal energy per area", "0 or more"),
+        "energy_t": Parameter("J/m^2", "tangential energy per area", "0 or more"),
+        "origin": Parameter("text", "where the table comes from", "any text"),
+    }
+
+    def __post_init__(self) -> None:
+        p = checked(self.pressure, name="pressure of the table", unit="Pa", zero=False)
+        require(
+            self.name, p.ndim == 1 and p.size >= 2, f"pressure has shape {p.shape}; give at least 2 values in a row"
+        )
+        require(self.name, bool(np.all(np.diff(p) > 0)), "pressure does not rise; sort the table and drop repetitions")
+        columns = self._columns
+        require(self.name, bool(columns), f"nothing but pressure is given; give any of {', '.join(QUANTITIES)}")
+        for name, value in columns.items():
+            checked(value, name=f"{name} of the table", unit=self.parameters[name].unit or "no unit", zero=True)
+            require(self.name, value.shape == p.shape, f"{name} has shape {value.shape}, pressure {p.shape}")
+        object.__setattr__(self, "pressure", _frozen(p))
+        for name, value in columns.items():
+            object.__setattr__(self, name, _frozen(value))
+
+    @classmethod
+    def from_approach(cls, pressure: ArrayLike, approach: ArrayLike, *, origin: str = "table") -> Self:
+        """Return the law of a measured approach of the faces [m] under rising pressures [Pa]: k_n = dp/d(approach).
+
+        The derivative is that of a shape-preserving cubic through the logarithms. Raises InputError as the class, and
+        unless the approach rises.
+        """
+        from scipy.interpolate import PchipInterpolator
+
+        p = checked(pressure, name="pressure of the table", unit="Pa", zero=False)
+        u = checked(approach, name="approach", unit="m", zero=False)
+        good = p.ndim == 1 and p.shape == u.shape and p.size >= 2 and np.all(np.diff(u) > 0) and np.all(np.diff(p) > 0)
+        require(cls.name, bool(good), "pressure and approach must be two rows of one length, both rising")
+        slope = PchipInterpolator(np.log(u), np.log(p)).derivative()(np.log(u))
+        return cls(pressure=p, k_n=p / u * slope, origin=origin)
+
+    @classmethod
+    def from_csv(cls, path: str | Path) -> Self:
+        """Read a table with a head such as `pressure [MPa],k_n [MPa/um]`; lines from # on are comments.
+
+        `faying law --csv` writes such files. Raises ReadError for files that are missing or do not hold a table.
+        """
+        return cls(**read_columns(Path(path)), origin=str(path))
+
+    @property
+    def _columns(self) -> dict[str, Array]:
+        given = {f.name: getattr(self, f.name) for f in fields(self) if f.name in QUANTITIES}
+        return {name: np.asarray(value, float) for name, value in given.items() if value is not None}
+
+    @property
+    def closure_range(self) -> tuple[float, float]:
+        """First and last pressure [Pa]."""
+        p = np.asarray(self.pressure)
+        return float(p[0]), float(p[-1])
+
+    @cached_property
+    def _curves(self) -> Mapping[str, tuple[bool, Any]]:
+        from scipy.interpolate import PchipInterpolator
+
+        log_p = np.log(np.asarray(self.pressure))
+        out = {}
+        for name, value in self._columns.items():
+            positive = bool(np.all(value > 0))
+            out[name] = positive, PchipInterpolator(log_p, np.log(value) if positive else value)
+        return out
+
+    def at_closure(self, pressure: ArrayLike) -> Response:
+        """Return the response at pressures [Pa] within the table, any shape; InputError outside."""
+        p = checked(pressure, name="pressure", unit="Pa", zero=False)
+        first, last = self.closure_range
+        if p.size and (p.min() < first * (1 - 1e-9) or p.max() > last * (1 + 1e-9)):
+            raise InputError(f"{self.origin}: the table covers {first:.4g} to {last:.4g} Pa; asked were {p.min():.4g} "
+                             f"to {p.max():.4g} Pa")  # fmt: skip
+        x = np.log(np.clip(p, first, last))
+        values = {n: np.exp(c(x)) if positive else np.asarray(c(x)) for n, (positive, c) in self._curves.items()}
+        reasons = {}
+        if "area" in values:
+            reasons["real area above 0.3 of the nominal area"] = values["area"] > 0.3
+        return Response(pressure=p.copy(), reasons=reasons, **values)
+
+
+def _frozen(values: Array) -> Array:
+    out = np.array(values, dtype=float)
+    out.setflags(write=False)
+    return out
+
+
+def read_columns(path: Path) -> dict[str, Array]:
+    """Read the columns of a CSV file whose head names quantities and units; SI arrays by name."""
+    from faying.units import scale
+
+    try:
+        lines = [line for line in path.read_text().splitlines() if line.strip() and not line.startswith("#")]
+    except (OSError, UnicodeDecodeError) as fault:
+        raise ReadError(f"{path}: cannot be read as text ({fault})") from None
+    head = [cell.strip() for cell in lines[0].split(",")] if lines else []
+    out: dict[str, Array] = {}
+    for i, cell in enumerate(head):
+        name, _, unit = cell.partition("[")
+        name, unit = name.strip(), unit.rstrip("] ").strip()
+        if name not in TabulatedLaw.parameters or name == "origin":
+            continue
+        wanted = TabulatedLaw.parameters[name].unit
+        factor = scale(unit, wanted, name=f"unit of {name}") if wanted else 1.0
+        try:
+            out[name] = factor * np.array([float(line.split(",")[i]) for line in lines[1:]])
+        except (ValueError, IndexError):
+            raise ReadError(f"{path}: column {cell!r} holds something that is not a number") from None
+    if "pressure" not in out:
+        raise ReadError(f'{path}: no column "pressure [unit]"; the head is {", ".join(head) or "empty"}')
+    return out

@@ -1,0 +1,113 @@
+"""Two rough surfaces in contact as one: the surface whose gap to a plane is the gap between the two."""
+
+from dataclasses import dataclass, replace
+from typing import final
+
+import numpy as np
+
+from faying.errors import InputError, NotConverged
+from faying.surface.convention import prefactor
+from faying.surface.estimate import clean_spectrum, with_intervals
+from faying.surface.form import Prepared, prepared
+from faying.surface.fractal import FractalFit, result
+from faying.surface.powerlaw import estimate_from, fit, fit_band, smearing, supported_band
+from faying.surface.scan import Array, Scan
+from faying.surface.spectrum import Spectrum
+from faying.surface.summits import summits
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Combined:
+    """The equivalent surface of two unrelated rough surfaces.
+
+    `fit` holds D and G [m] with intervals from the sum of the two spectra over the wavelengths that both scans cover;
+    `Rq` [m], `m0` [m2], `m2` [-] and `m4` [1/m2] are the root of the sum of squares, and the sums (m2 and m4 at the
+    shortest wavelength of each scan: `spacings` [m] tells whether they belong together). `frequency` [1/m] and
+    `density` [m3] are the summed spectrum.
+    """
+
+    fit: FractalFit
+    Rq: float
+    m0: float
+    m2: float
+    m4: float
+    spacings: tuple[float, float]
+    frequency: Array
+    density: Array
+
+
+def _whole(ready: Prepared) -> tuple[Spectrum, Array]:
+    """Spectrum, and its densities freed of the window's smearing by the slope fitted to it."""
+    s, _ = clean_spectrum(ready.scan)
+    law = fit(s, *supported_band(s))
+    return s, s.density / smearing(s, s.frequency, law.slope)[0]
+
+
+def combine(
+    scan_a: Scan, scan_b: Scan, *, degree: int = 1, convention: str = "yan-komvopoulos", gamma: float = 1.5
+) -> Combined:
+    """Return the equivalent rough surface of two scans in contact: spectra and moments add, heights being unrelated.
+
+    The scans may differ in size and spacing; D and G come from the band that both cover. Both are levelled by a
+    polynomial of `degree`, spikes out. Raises InputError for anything but two areal scans, and for scans whose bands of
+    wavelength do not overlap by a factor of 4.
+    """
+    for name, scan in (("scan_a", scan_a), ("scan_b", scan_b)):
+        if not isinstance(scan, Scan):
+            raise InputError(f"{name} is a {type(scan).__name__}: two areal scans (faying.Scan) can be combined")
+    c = prefactor(convention, gamma)
+    ready_a, ready_b = prepared(scan_a, degree=degree), prepared(scan_b, degree=degree)
+    (sa, da), (sb, db) = _whole(ready_a), _whole(ready_b)
+    bands = [supported_band(s, resolution=r.scan.instrument.resolution) for s, r in ((sa, ready_a), (sb, ready_b))]
+    low, high = max(b[0] for b in bands), min(b[1] for b in bands)
+    if high < 4 * low:
+        raise InputError(
+            f"the scans share no band of wavelengths ({1 / high:.3g} .. {1 / low:.3g} m); measure both over like sizes"
+        )
+    inside = (sa.frequency >= sb.frequency[0]) & (sa.frequency <= sb.frequency[-1])
+    f = sa.frequency[inside]
+    other = np.exp(np.interp(np.log(f), np.log(sb.frequency), np.log(np.maximum(db, 1e-300))))
+    total = da[inside] + other
+    spread_b = np.interp(f, sb.frequency, sb.spread)
+    joint = replace(
+        sa,
+        frequency=f,
+        density=total,
+        count=sa.count[inside],
+        uneven=sa.uneven[inside],
+        width=sa.width[inside],
+        # variances of the two parts, relative to the sum
+        spread=np.sqrt((sa.spread[inside] * da[inside]) ** 2 + (spread_b * other) ** 2) / total,
+        curvature=0.0,
+    )
+    try:
+        law, notes = fit_band(joint, low, high)
+    except NotConverged as fault:
+        raise InputError(f"the scans share too few wavelengths ({fault})") from fault
+    estimate = with_intervals(*estimate_from(law), law.pivot, c, band=(1 / float(law.used[-1]), 1 / float(law.used[0])),
+                              misfit=law.misfit, notes=notes)  # fmt: skip
+    parts = [summits(r) for r in (ready_a, ready_b)]
+    m0, m2, m4 = (sum(getattr(p, name) for p in parts) for name in ("m0", "m2", "m4"))
+    length = max(min(scan_a.size), min(scan_b.size))
+    return Combined(
+        fit=result(
+            estimate,
+            method="psd",
+            convention=convention,
+            gamma=gamma,
+            Rq=m0**0.5,
+            Ra=float((2 / np.pi * m0) ** 0.5),
+            length=length,
+            missing=ready_a.missing + ready_b.missing,
+            spikes=ready_a.spikes + ready_b.spikes,
+            areal=True,
+        ),
+        Rq=m0**0.5,
+        m0=m0,
+        m2=m2,
+        m4=m4,
+        spacings=(max(scan_a.spacing), max(scan_b.spacing)),
+        frequency=f,
+        density=total,
+    )

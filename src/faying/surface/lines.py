@@ -1,0 +1,52 @@
+"""Peaks of a spectrum that belong to tool marks, not to the random part of the surface."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.surface.scan import Array, Scan
+
+THRESHOLD = 40.0  # a coefficient this many times its surroundings' mean; chance reaches 20 now and then
+REACH = 5  # surroundings: coefficients up to this many steps away each way
+MOST = 20000  # more candidates than this are an uneven spectrum, not lines
+LARGEST = 0.3  # share of the power that may be taken for tool marks
+
+
+def find_lines(scan: Scan, power: Array, frequency: Array) -> NDArray[np.bool_]:
+    """Mark the coefficients of a periodogram (half-plane, as from `spectrum.periodogram`) that lie on sharp peaks.
+
+    The periodogram is divided by the median over each ring of frequency; a coefficient is on a peak where it is 40
+    times the mean of its 11 x 11 surroundings (their median over ln 2), so that an uneven spectrum over directions,
+    such as a random lay, is left alone. Neighbours within the window's main lobe are marked too.
+    Where peaks hold more than 30 % of the power of the usable band (a Weierstrass-Mandelbrot surface, a regular
+    texture) nothing is marked: there the lines are the surface.
+    """
+    lowest = 1 / min(scan.size)
+    ring = np.log2(np.maximum(frequency / lowest, 0.5)) * 6
+    index = (ring - ring.min()).astype(np.int32).ravel()
+    flat = power.ravel()
+    order = np.argsort(index, kind="stable")
+    bounds = np.searchsorted(index[order], np.arange(index.max() + 2))
+    level = np.ones(index.max() + 1)
+    for k in range(len(level)):
+        part = flat[order[bounds[k] : bounds[k + 1]]]
+        if part.size:
+            level[k] = max(float(np.median(part)) / np.log(2), 1e-300)
+    white = (flat / level[index]).reshape(power.shape)
+    rows, columns = np.nonzero((white > THRESHOLD) & (frequency > 2 * lowest))
+    marked = np.zeros(power.shape, bool)
+    if not 0 < len(rows) <= MOST:
+        return marked
+    offset = np.arange(-REACH, REACH + 1)
+    near_rows = (rows[:, None] + offset) % power.shape[0]
+    near_columns = np.abs(columns[:, None] + offset)
+    near_columns = np.minimum(near_columns, 2 * (power.shape[1] - 1) - near_columns)
+    around = np.median(white[near_rows[:, :, None], near_columns[:, None, :]].reshape(len(rows), -1), axis=1)
+    peak = white[rows, columns] > THRESHOLD * around / np.log(2)
+    for dy in range(-2, 3):
+        for dx in range(-2, 3):
+            column = np.abs(columns[peak] + dx)
+            marked[(rows[peak] + dy) % power.shape[0], np.minimum(column, power.shape[1] - 1)] = True
+    inner = (frequency > 6 * lowest) & (frequency < 0.5 * frequency[0, -1])
+    if power[marked & inner].sum() > LARGEST * power[inner].sum():
+        marked[:] = False
+    return marked

@@ -1,0 +1,75 @@
+import json
+import re
+import subprocess
+import sys
+
+import pytest
+
+import faying
+from faying.cli import main
+
+
+def call(*args):
+    return subprocess.run([sys.executable, "-m", "faying", *args], capture_output=True, text=True, check=False)
+
+
+def test_help_lists_every_command_and_imports_nothing_heavy():
+    out = call("--help")
+    assert out.returncode == 0
+    for command in ("init", "law", "run", "surface"):
+        assert f"\n  {command} " in out.stdout
+    code = "import sys; from faying.cli import main\ntry: main(['--help'])\nexcept SystemExit: pass\n" \
+           "print([m for m in ('numpy', 'scipy', 'matplotlib', 'pint', 'netgen', 'skfem') if m in sys.modules])"  # fmt: skip
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert loaded.stdout.strip().endswith("[]")
+
+
+@pytest.mark.parametrize("command", ["init", "law", "run", "surface"])
+def test_every_command_has_help(command, capsys):
+    with pytest.raises(SystemExit) as stop:
+        main([command, "--help"])
+    assert stop.value.code == 0
+    assert "--json" in capsys.readouterr().out
+
+
+def test_exit_codes(tmp_path, capsys):
+    with pytest.raises(SystemExit) as stop:
+        main(["run", str(tmp_path / "none.toml")])
+    assert stop.value.code == 1
+    assert "faying: no file" in capsys.readouterr().err
+    with pytest.raises(SystemExit) as stop:
+        main(["run"])
+    assert stop.value.code == 2
+    with pytest.raises(SystemExit) as stop:
+        main(["dance"])
+    assert stop.value.code == 2
+
+
+def test_init_and_run(tmp_path, capsys):
+    path = tmp_path / "mine.toml"
+    with pytest.raises(SystemExit) as stop:
+        main(["init", str(path)])
+    assert stop.value.code == 0
+    capsys.readouterr()
+    with pytest.raises(SystemExit) as stop:
+        main(["init", str(path)])
+    assert stop.value.code == 1
+    assert "exists already" in capsys.readouterr().err
+    with pytest.raises(SystemExit) as stop:
+        main(["run", str(path), "--json"])
+    assert stop.value.code == 0
+    captured = capsys.readouterr()
+    data = json.loads(captured.out)
+    assert data["title"] == "Two blocks and a bolt"
+    made = {p.name for p in (tmp_path / "results").iterdir()}
+    assert made == {"result.nc", "modes.csv", "report.html", "frequencies.svg", "pressure.svg", "law.svg", "modes.png"}
+    report = (tmp_path / "results" / "report.html").read_text()
+    assert "outside its ground" in report  # the flag travels with the numbers
+    assert not re.search(r'(src|href)="(?!data:|#)', report)  # nothing is fetched: one self-contained file
+    assert "\x1b[" not in captured.out  # no colour when not a terminal
+
+
+def test_version(capsys):
+    with pytest.raises(SystemExit):
+        main(["--version"])
+    assert faying.__version__ in capsys.readouterr().out

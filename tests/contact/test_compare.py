@@ -1,0 +1,59 @@
+"""Several laws on one surface."""
+
+import numpy as np
+import pytest
+
+from faying import JK, RIGID, ContactPair, InputError, Material
+from faying.contact import GreenwoodWilliamson, SurfaceInputs, TabulatedLaw, compare, laws_of_surface
+
+PAIR = ContactPair(Material(name="m", E=200e9, nu=0.3, yield_strength=355e6), RIGID)
+SURFACE = SurfaceInputs(
+    D=2.4, G=1e-11, scan_area=16e-6, m0=1e-12, m2=1e-4, m4=1e6, slope=0.014, h_rms=1e-6, shortest=1e-6
+)
+P = np.geomspace(1e5, 1e8, 7)
+
+
+def test_every_model_that_lives_on_numbers_is_there() -> None:
+    made, left_out = laws_of_surface(SURFACE, PAIR)
+    assert left_out == {}
+    assert {"JK", "MB", "WK", "YK", "ME", "JS", "Persson", "GW", "GW-CEB", "GW-KE", "GW-ZMC", "GW-JG"} <= set(made)
+    assert "Table" not in made
+    assert made["GW-KE"] == GreenwoodWilliamson.from_surface(SURFACE, PAIR).with_(asperity="KogutEtsion")
+
+
+def test_named_models_in_any_spelling() -> None:
+    made, _ = laws_of_surface(SURFACE, PAIR, names=["jk", "gw-jg", "greenwood-williamson", "persson"])
+    assert list(made) == ["JK", "GW-JG", "GW", "Persson"]
+    with pytest.raises(InputError, match="no contact law 'cube'"):
+        laws_of_surface(SURFACE, PAIR, names=["cube"])
+
+
+def test_a_model_that_cannot_take_the_surface_is_left_out_with_its_reason() -> None:
+    soft = ContactPair(Material(name="m", E=200e9, nu=0.3), RIGID)
+    made, left_out = laws_of_surface(SURFACE, soft, names=["jk", "gw"])
+    assert list(made) == ["GW"]
+    assert "neither hardness nor yield_strength" in left_out["JK"]
+
+
+def test_spread_is_the_largest_over_the_smallest() -> None:
+    laws = {n: TabulatedLaw(pressure=P, k_n=f * P) for n, f in (("a", 1.0), ("b", 3.0), ("c", 2.0))}
+    table = compare(laws, P)
+    assert table.spread("k_n") == pytest.approx(np.full(7, 3.0), rel=1e-9)
+    assert np.isnan(table.spread("k_t")).all()
+    assert np.isnan(compare({"a": laws["a"]}, P).spread("k_n")).all()
+
+
+def test_beyond_a_law_there_is_nothing() -> None:
+    short = TabulatedLaw(pressure=P[1:4], k_n=P[1:4])
+    jk = JK(D=2.39, G=1.53e-10, pair=PAIR, scan_area=16e-6)
+    table = compare({"short": short, "JK": jk}, P)
+    r = table.responses["short"]
+    assert np.isnan(r.k_n).tolist() == [True, False, False, False, True, True, True]
+    assert r.valid.tolist() == [False, True, True, True, False, False, False]
+    assert np.isnan(table.spread("k_n")).tolist() == np.isnan(r.k_n).tolist()
+    assert table.responses["JK"].k_n[0] == pytest.approx(float(jk.at_pressure(P[0]).k_n), rel=1e-9)
+
+
+def test_pressures_must_be_positive() -> None:
+    with pytest.raises(InputError, match="positive"):
+        compare({}, [0.0, 1e6])

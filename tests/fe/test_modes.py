@@ -1,0 +1,146 @@
+"""Modes of a bar in two halves with springs between them, against closed forms."""
+
+import numpy as np
+import pytest
+from boxes import stack
+from scipy.optimize import brentq, fsolve
+
+import faying
+from faying.fe.elasticity import assemble
+from faying.fe.interface import join
+from faying.fe.modes import damped_modes, lowest_modes
+from faying.fe.solve import available, chosen, factorise
+from faying.joint.structure import tie
+
+BAR = faying.Material(name="bar", E=200e9, nu=0.0, density=7800.0)  # nu = 0: the bar of the textbook
+HALF, SIDE = 0.5, 0.02
+SHIFT = 20.0
+
+
+@pytest.fixture(scope="module")
+def bar():
+    mesh = stack([HALF, HALF], [24, 24], width=SIDE, height=SIDE, sections=[(1, 1), (1, 1)])
+    K, M = assemble(mesh, dict.fromkeys(mesh.parts, BAR))
+    return mesh, K, M, join(mesh, "p0.right", "p1.left")
+
+
+def sprung(bar, k_n, k_t):
+    _, K, M, joint = bar
+    ones = np.ones(len(joint.weights))
+    return K + joint.springs(k_n * ones, k_t * ones), M
+
+
+def kind(modes):
+    """Share of the motion along x of each mode."""
+    return np.array([np.sum(s[0::3] ** 2) / np.sum(s**2) for s in modes.shapes.T])
+
+
+@pytest.mark.parametrize("stiffness", [1e10, 1e12, 1e14])
+def test_axial_modes(bar, stiffness):
+    """Halves that move against each other: beta tan(beta L) = 2 k/E, by hand from E u' = k (jump of u)."""
+    K, M = sprung(bar, stiffness, 1e13)
+    modes = lowest_modes(K, M, 40, shift_frequency=SHIFT)
+    axial = modes.frequencies[(kind(modes) > 0.99) & (modes.frequencies > 1)]
+    beta = brentq(lambda b: b * np.sin(b * HALF) - 2 * stiffness / BAR.E * np.cos(b * HALF), 1e-6, np.pi / 2 / HALF)
+    exact = beta * np.sqrt(BAR.E / BAR.density) / (2 * np.pi)
+    assert axial[0] == pytest.approx(exact, rel=1e-4)
+
+
+@pytest.mark.parametrize("stiffness", [1e11, 1e12, 1e13])
+def test_bending_modes_with_a_joint_at_mid_length(bar, stiffness):
+    """Euler-Bernoulli halves, free outside, joined by a rotational spring k I; the first mode is symmetric.
+
+    Half beam, x from the free end: w = cosh bx + cos bx + c (sinh bx + sin bx); at the joint no shear, and the moment is
+    the spring's: E I w'' = -2 k I w'.
+    """
+    K, M = sprung(bar, stiffness, 1e15)
+    modes = lowest_modes(K, M, 16, shift_frequency=SHIFT)
+    bending = modes.frequencies[(kind(modes) < 0.2) & (modes.frequencies > 1)]
+
+    def residual(b):
+        z = b * HALF
+        c = -(np.sinh(z) + np.sin(z) * 1) / (np.cosh(z) - np.cos(z))  # w'''(L) = 0
+        slope = b * (np.sinh(z) - np.sin(z) + c * (np.cosh(z) + np.cos(z)))
+        curvature = b**2 * (np.cosh(z) - np.cos(z) + c * (np.sinh(z) - np.sin(z)))
+        return BAR.E * curvature + 2 * stiffness * slope
+
+    grid = np.linspace(0.2, 2.4 / HALF, 400)
+    values = np.array([residual(b) for b in grid])
+    first = np.flatnonzero(np.sign(values[:-1]) != np.sign(values[1:]))[0]
+    beta = brentq(residual, grid[first], grid[first + 1])
+    inertia = SIDE**4 / 12
+    exact = beta**2 * np.sqrt(BAR.E * inertia / (BAR.density * SIDE**2)) / (2 * np.pi)
+    assert bending[0] == pytest.approx(exact, rel=0.01)
+
+
+def test_rigid_motions(bar):
+    modes = lowest_modes(*sprung(bar, 1e12, 1e12), 10, shift_frequency=SHIFT)
+    assert np.all(modes.frequencies[:6] < 1e-2)
+    assert modes.frequencies[6] > 10
+
+
+def test_stiffer_joints_never_lower_a_frequency_and_all_lie_between_free_and_tied(bar):
+    mesh, K, M, _ = bar
+    free = lowest_modes(K, M, 24, shift_frequency=SHIFT).frequencies
+    grown = tie(mesh, [("p0.right", "p1.left")])
+    tied = lowest_modes(
+        (grown.T @ K @ grown).tocsr(), (grown.T @ M @ grown).tocsr(), 24, shift_frequency=SHIFT
+    ).frequencies
+    last = free
+    for stiffness in (1e9, 1e11, 1e13, 1e15):
+        now = lowest_modes(*sprung(bar, stiffness, 0.8 * stiffness), 24, shift_frequency=SHIFT).frequencies
+        assert np.all(now[6:] >= last[6:] * (1 - 1e-9))
+        last = now
+    assert np.all(last[6:] <= tied[6:] * (1 + 1e-9))
+
+
+@pytest.mark.parametrize("stiffness", [1e10, 1e12])
+def test_loss_factor_against_the_complex_closed_form(bar, stiffness):
+    """The axial equation with k (1 + i eta) has a complex root; its square is the complex eigenvalue."""
+    eta = 0.25
+    K, M = sprung(bar, stiffness, 1e13)
+    _, _, _, joint = bar
+    ones = np.ones(len(joint.weights))
+    modes = lowest_modes(K, M, 40, shift_frequency=SHIFT)
+    damped = damped_modes(modes, K, M, joint.springs(eta * stiffness * ones, 0 * ones), rigid=6)
+    axial = np.flatnonzero(kind(modes)[6:] > 0.99)[0]
+
+    def residual(x):
+        b = x[0] + 1j * x[1]
+        z = b * np.sin(b * HALF) - 2 * stiffness * (1 + 1j * eta) / BAR.E * np.cos(b * HALF)
+        return [z.real, z.imag]
+
+    real = brentq(lambda b: residual([b, 0.0])[0], 1e-6, np.pi / 2 / HALF)
+    b = complex(*fsolve(residual, [real, 0.02 * real], xtol=1e-13))
+    squared = b**2 * BAR.E / BAR.density
+    assert damped.frequencies[axial] == pytest.approx(np.sqrt(squared.real) / (2 * np.pi), rel=1e-4)
+    assert damped.loss_factors[axial] == pytest.approx(squared.imag / squared.real, rel=1e-3)
+
+
+def test_no_loss_no_damping(bar):
+    K, M = sprung(bar, 1e12, 1e12)
+    modes = lowest_modes(K, M, 12, shift_frequency=SHIFT)
+    damped = damped_modes(modes, K, M, 1e-30 * (K - bar[1]), rigid=6)
+    assert np.abs(damped.loss_factors).max() < 1e-12
+    assert damped.frequencies == pytest.approx(modes.frequencies[6:], rel=1e-9)
+
+
+@pytest.mark.parametrize("name", available())
+def test_every_factorisation_solves(bar, name):
+    _, K, M, _ = bar
+    A = (K + (2 * np.pi * SHIFT) ** 2 * M).tocsr()
+    right = np.random.default_rng(0).standard_normal((A.shape[0], 2))
+    factor = factorise(A, name)
+    x = factor.solve(right)
+    assert np.linalg.norm(A @ x - right) < 1e-6 * np.linalg.norm(right)
+    assert factor.solve(right[:, 0].copy()) == pytest.approx(x[:, 0], rel=1e-6, abs=1e-9 * np.abs(x).max())
+
+
+def test_an_unknown_factorisation_is_refused():
+    with pytest.raises(faying.InputError, match=r"solver 'banana' is not here; use one of .*superlu"):
+        chosen("banana")
+
+
+def test_the_environment_chooses(monkeypatch):
+    monkeypatch.setenv("FAYING_SOLVER", "superlu")
+    assert chosen() == "superlu"

@@ -1,0 +1,132 @@
+import numpy as np
+import pytest
+from boxes import stack
+
+import faying
+from faying.fe.elasticity import face_centre, face_load
+from faying.fe.interface import join
+from faying.joint.seat import Seat
+from faying.joint.structure import Joint, Structure
+
+STEEL = faying.CATALOGUE["45 steel"]
+SIMPLE = faying.Material(name="simple", E=200e9, nu=0.0, density=7800.0)
+
+
+def law(G=1.53e-10):
+    return faying.JK(D=2.39, G=G, pair=faying.ContactPair(STEEL, STEEL), scan_area=16e-6)
+
+
+def bars(sections=((2, 2), (2, 2)), material=SIMPLE, **changes):
+    mesh = stack([0.05, 0.05], [3, 3], width=0.02, height=0.02, sections=sections)
+    joint = Joint(name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"),
+                  seat=Seat(law=law()), **changes)  # fmt: skip
+    return Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, material), joints=(joint,))
+
+
+def squeeze(structure, force):
+    return force * structure.bolt_load("p1.right", "p0.left")
+
+
+@pytest.mark.parametrize("sections", [((2, 2), (2, 2)), ((2, 2), (3, 3))], ids=["matched", "unmatched"])
+def test_uniform_pressure(sections):
+    """Bars of nu = 0 pressed by uniform end loads: p = F/A everywhere, and the joint closes by the law's w(p)."""
+    structure = bars(sections)
+    for force in (400.0, 2000.0, 8000.0):
+        found = structure.assembly().solve(squeeze(structure, force))
+        p = force / 4e-4
+        # where the meshes do not match, a kink of the second side runs through triangles of the first
+        tolerance = 1e-8 if sections[0] == sections[1] else 0.05
+        weights = structure.joints[0].interface.weights
+        assert weights @ found.pressures[0] == pytest.approx(force, rel=1e-8)
+        assert found.pressures[0] == pytest.approx(np.full_like(found.pressures[0], p), rel=tolerance)
+        closing = -(weights @ found.openings[0]) / weights.sum()
+        assert closing == pytest.approx(structure.joints[0].seat.closing(p), rel=max(tolerance / 10, 1e-7))
+
+
+def test_balance_and_warm_start():
+    structure = bars(material=STEEL)
+    assembly = structure.assembly()
+    for force in (1e3, 3e3, 9e3):
+        found = assembly.solve(squeeze(structure, force))
+        weights = structure.joints[0].interface.weights
+        assert weights @ found.pressures[0] == pytest.approx(force, rel=1e-8)
+    direct = structure.assembly().solve(squeeze(structure, 9e3))
+    assert found.pressures[0] == pytest.approx(direct.pressures[0], rel=1e-6)
+
+
+def test_an_eccentric_load_opens_one_side_and_still_balances():
+    """A resultant outside the kern: part of the face carries nothing; force and moment are those of the load."""
+    structure = bars(material=STEEL)
+    mesh = structure.mesh
+    centre, _, _ = face_centre(mesh.points, mesh.face("p1.right"))
+    line = centre + np.array([0.0, 0.006, 0.0])
+    inward = np.array([-1.0, 0.0, 0.0])
+    load = face_load(mesh.points, mesh.face("p1.right"), line, inward)
+    load += face_load(mesh.points, mesh.face("p0.left"), line, -inward)
+    found = structure.assembly().solve(4e3 * load)
+    joint, p = structure.joints[0].interface, found.pressures[0]
+    assert 0.05 < joint.weights[p == 0].sum() / joint.area < 0.9
+    assert np.all(p >= 0)
+    assert joint.weights @ p == pytest.approx(4e3, rel=1e-8)
+    arm = joint.weights @ (p * joint.positions[:, 1]) / 4e3
+    assert arm == pytest.approx(line[1], abs=1e-5)
+
+
+def test_one_load_at_once_or_in_steps_gives_the_same_pressure():
+    structure = bars(material=STEEL)
+    steps = structure.assembly()
+    for force in np.linspace(1e3, 6e3, 5):
+        last = steps.solve(squeeze(structure, force))
+    once = structure.assembly().solve(squeeze(structure, 6e3))
+    assert last.pressures[0] == pytest.approx(once.pressures[0], rel=1e-6)
+
+
+def test_preload_beyond_the_law():
+    structure = bars()
+    with pytest.raises(faying.InputError, match=r"presses the joint to .* MPa at one point, more than JK covers"):
+        structure.assembly().solve(squeeze(structure, 1e6))
+
+
+def test_a_load_that_does_not_balance_is_refused():
+    structure = bars()
+    with pytest.raises(faying.InputError, match="do not balance"):
+        structure.assembly().solve(np.ones(structure.mesh.unknowns))
+
+
+def test_too_few_steps_are_reported():
+    structure = bars(material=STEEL)
+    with pytest.raises(faying.NotConverged, match="after 1 Newton steps"):
+        structure.assembly().solve(squeeze(structure, 5e3), steps=1)
+
+
+def test_bolts_that_pull_nothing_together():
+    structure = bars()
+    with pytest.raises(faying.InputError, match="do not look away from each other"):
+        structure.bolt_load("p0.right", "p1.left")
+    with pytest.raises(faying.InputError, match="both on part 'p0'"):
+        structure.bolt_load("p0.right", "p0.left")
+
+
+def test_a_part_without_joint_is_refused():
+    mesh = stack([0.05, 0.05, 0.05], [2, 2, 2], width=0.02, height=0.02, gap=1e-6)
+    joint = Joint(
+        name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), seat=Seat(law=law())
+    )
+    with pytest.raises(faying.InputError, match="part p2 has no joint"):
+        Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=(joint,))
+
+
+def test_per_area_springs_do_not_depend_on_the_mesh_and_per_node_springs_do():
+    """The same pressed bars on three meshes: the sum of k_n per area stays within 1 %, the node-by-node sum drifts."""
+    totals = {False: [], True: []}
+    for n in (1, 2, 4):
+        mesh = stack([0.02, 0.02], [2 * n, 2 * n], width=0.02, height=0.02, sections=[(n, n), (n, n)])
+        for per_node in totals:
+            joint = Joint(name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"),
+                          seat=Seat(law=law()), per_node=per_node, scan_area=16e-6)  # fmt: skip
+            structure = Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=(joint,))
+            found = structure.assembly().solve(squeeze(structure, 600.0))
+            totals[per_node].append(structure.springs(found.pressures)[0].total()[0])
+    area, node = np.array(totals[False]), np.array(totals[True])
+    assert np.abs(area / area[-1] - 1).max() < 0.01
+    assert np.all(np.diff(node) > 0.3 * node[:-1])

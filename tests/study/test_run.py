@@ -1,0 +1,149 @@
+"""The pipeline on the study that `faying init` writes."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import faying
+from faying.study import Study, build, run
+from faying.study.template import write
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    path = tmp_path_factory.mktemp("study") / "study.toml"
+    write(path)
+    return Study.read(path)
+
+
+@pytest.fixture(scope="module")
+def result(study):
+    return run(study)
+
+
+def test_shapes_and_bounds(result):
+    assert result.loads.tolist() == [2000.0, 6000.0]
+    assert result.frequencies.shape == result.loss_factors.shape == (2, 6)
+    assert result.rigid.shape == (6,)
+    assert result.rigid.max() < 1e-2
+    assert np.all(result.frequencies > 1.0)
+    assert np.all(result.frequencies >= result.free * (1 - 1e-9))
+    assert np.all(result.loss_factors > 0)
+    assert np.all(result.loss_factors < 0.25)  # never more than the joint's own
+    # complex modes stiffen a little: compare the undamped bound with room for eta^2
+    assert np.all(result.frequencies <= result.tied * (1 + result.loss_factors**2))
+
+
+def test_bolt_force_balance(result):
+    for load, pressure in zip(result.loads, result.pressure, strict=True):
+        assert result.weights @ pressure == pytest.approx(load, rel=1e-8)
+
+
+def test_stiffness_at_the_points_is_that_of_the_law(study, result):
+    steel = study.materials["45 steel"]
+    law = faying.JK(D=2.39, G=1.53e-10, pair=faying.ContactPair(steel, steel), scan_area=16e-6)
+    assert result.k_n == pytest.approx(law.at_pressure(result.pressure).k_n)
+    assert result.k_t == pytest.approx(law.at_pressure(result.pressure).k_t)
+
+
+def test_sum_of_springs_does_not_depend_on_the_mesh(study, result):
+    """Refined twice: the total of the joint's springs stays within 1 %."""
+
+    def total(size):
+        structure = build(
+            replace(study, geometry=replace(study.geometry, size=size, face_size={"upper.joint": size / 2}))
+        )
+        found = structure.assembly().solve(6000 * structure.bolt_load(*study.bolts[0].faces))
+        return structure.springs(found.pressures)[0].total()[0]
+
+    totals = np.array([total(size) for size in (11e-3, 8e-3, 5.5e-3)])
+    assert np.abs(totals / totals[-1] - 1).max() < 0.01
+
+
+def test_flags_are_carried(result):
+    assert any("outside its ground" in line for line in result.warnings)
+    assert any("10.3390/fractalfract8100611" in line for line in result.sources)
+
+
+def test_netcdf_round_trip(result, tmp_path):
+    from scipy.io import netcdf_file
+
+    path = result.to_netcdf(tmp_path / "r.nc")
+    with netcdf_file(path, mmap=False) as nc:
+        for name in ("loads", "frequencies", "loss_factors", "tied", "free", "rigid", "pressure", "k_n"):
+            assert nc.variables[name].data.tolist() == getattr(result, name).tolist()
+        assert nc.variables["frequencies"].units == b"Hz"
+        assert nc.variables["pressure"].units == b"Pa"
+        assert nc.variables["frequencies"].dimensions == ("load", "mode")
+        assert b"outside its ground" in nc.warnings
+
+
+def test_csv_and_json(result, tmp_path):
+    lines = result.to_csv(tmp_path / "r.csv").read_text().splitlines()
+    assert lines[0] == "preload [N],mode,frequency [Hz],loss factor [-],free [Hz],tied [Hz]"
+    assert len(lines) == 1 + 2 * 6
+    assert float(lines[1].split(",")[2]) == pytest.approx(result.frequencies[0, 0], rel=1e-7)
+    again = json.loads(json.dumps(result.to_dict()))
+    assert again["frequencies"]["values"] == result.frequencies.tolist()
+
+
+def test_nothing_half_written_is_left(result, tmp_path):
+    with pytest.raises(faying.InputError, match="no folder"):
+        result.to_netcdf(tmp_path / "none" / "r.nc")
+    (tmp_path / "r.nc").mkdir()
+    with pytest.raises(faying.InputError, match="cannot write"):
+        result.to_netcdf(tmp_path / "r.nc")
+    assert [p.name for p in tmp_path.iterdir()] == ["r.nc"]
+
+
+def test_names_that_do_not_fit_the_geometry_are_reported_together(study):
+    bolt = replace(study.bolts[0], faces=("upper.seat", "lower.nut"))
+    joint = replace(study.joints[0], faces=("upper.joint", "floor"))
+    with pytest.raises(faying.InputError) as caught:
+        run(replace(study, bolts=(bolt,), joints=(joint,), parts={"upper": "45 steel", "base": "45 steel"}))
+    text = str(caught.value)
+    assert "bolt 'bolt' names the face 'lower.nut', which does not exist; the faces are" in text
+    assert "joint 'joint' names the face 'floor'" in text
+    assert "part 'base' is not in two-blocks.step" in text
+    assert "[part] says nothing of 'lower'" in text
+
+
+def test_a_preload_that_the_law_does_not_cover(study):
+    with pytest.raises(faying.InputError, match="more than JK covers with this surface"):
+        run(replace(study, bolts=(replace(study.bolts[0], preload=(5e5,)),)))
+
+
+def test_a_file_that_is_not_step(study, tmp_path):
+    bad = tmp_path / "x.step"
+    bad.write_text("solid, they said")
+    with pytest.raises(faying.ReadError, match="is not a STEP file"):
+        run(replace(study, geometry=replace(study.geometry, step=bad)))
+    bad.write_bytes(study.geometry.step.read_bytes()[:20000])
+    with pytest.raises(faying.ReadError):
+        run(replace(study, geometry=replace(study.geometry, step=bad)))
+
+
+def test_faces_can_be_named_by_a_point(study):
+    at = {"upper.side": ("upper", (0.04, 0.0, 0.0075))}
+    from faying.fe.geometry import mesh_step
+
+    mesh = mesh_step(study.geometry.step, size=8e-3, face_points=at)
+    assert mesh.face_part["upper.side"] == "upper"
+    assert mesh.points[np.unique(mesh.face("upper.side")), 0] == pytest.approx(0.04)
+    with pytest.raises(faying.InputError, match="no part is called 'roof'"):
+        mesh_step(study.geometry.step, size=8e-3, face_points={"x": ("roof", (0, 0, 0))})
+
+
+def test_the_same_study_gives_the_same_numbers(study, result):
+    again = run(study)
+    assert again.frequencies == pytest.approx(result.frequencies, rel=1e-9)
+    assert again.loss_factors == pytest.approx(result.loss_factors, rel=1e-5)
+
+
+def test_per_node_and_mindlin_options(study, result):
+    joint = replace(study.joints[0], springs="per-node", tangential="mindlin")
+    other = run(replace(study, joints=(joint,), mode_count=3))
+    assert other.frequencies.shape == (2, 3)
+    assert other.convergence[0]["total_k_n [N/m]"] != pytest.approx(result.convergence[0]["total_k_n [N/m]"], rel=0.01)

@@ -1,0 +1,65 @@
+"""Every command and every Python block of the README and the docs runs."""
+
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+T_SPECIMEN = "examples/t-specimen/study.toml"  # minutes long: tests/examples runs it once, and looks at what it gives
+
+
+def blocks(page, language):
+    return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(), re.M | re.S)
+
+
+def commands(page):
+    """Lines of the plain blocks that call faying, without the set-up before them."""
+    for block in blocks(page, "(?:sh|console)?"):
+        for line in block.replace("\\\n", " ").splitlines():
+            found = re.search(r"(?:^|&& )(?:uv run [^&]*?)?faying( .*)$", line)
+            if found and "pytest" not in line:
+                yield found.group(1).strip()
+
+
+@pytest.fixture
+def checkout(tmp_path, monkeypatch):
+    """A copy of what the commands need, so that nothing is written to the repository."""
+    shutil.copytree(ROOT / "examples", tmp_path / "examples", ignore=shutil.ignore_patterns("results"))
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_commands(page, checkout):
+    for line in commands(page):
+        if T_SPECIMEN in line and line.startswith("run "):
+            continue
+        done = subprocess.run(
+            [sys.executable, "-m", "faying", *shlex.split(line)], capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, f"faying {line}\n{done.stderr}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_python_blocks(page, checkout):
+    for block in blocks(page, "python"):
+        done = subprocess.run([sys.executable, "-c", block], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, f"{block}\n{done.stderr}"
+
+
+def test_the_readme_has_commands():
+    found = list(commands(ROOT / "README.md"))
+    assert f"run {T_SPECIMEN}" in found
+    assert len(found) >= 5
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"], ids=lambda p: p.name)
+def test_links_lead_somewhere(page):
+    for target in re.findall(r"\]\((?!https?:|#)([^)#]+)", page.read_text()):
+        assert (page.parent / target).exists(), f"{page.name} links to {target}"
