@@ -58,7 +58,7 @@ def stack(lengths, counts, width=1.0, height=1.0, sections=None, gap=0.0):
         ny, nz = sections[i] if sections else (2, 2)
         points, cells = box((count, ny, nz), (length, width, height), (start, 0.0, 0.0))
         for side, x in (("left", start), ("right", start + length)):
-            tri = surface(points, cells, lambda p, x=x: np.abs(p[:, 0] - x) < 1e-9 * length)
+            tri = surface(points, cells, lambda p, x=x, tiny=1e-9 * length: np.abs(p[:, 0] - x) < tiny)
             faces[f"p{i}.{side}"] = _outward(points, tri, cells) + offset
             owner[f"p{i}.{side}"] = f"p{i}"
         all_points.append(points)

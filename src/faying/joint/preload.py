@@ -125,7 +125,7 @@ class Assembly:
 
     def _shear_stiffness(self, joint: Interface, seat: Seat, u: Array) -> Array:
         p = np.minimum(seat.pressure(-joint.opening(u))[0], seat.law.greatest_pressure)
-        return seat.stiffness(np.where(p > 1.0, p, 0.0))[1]
+        return seat.stiffness(p)[1]
 
     def _out_of_balance(self, u: Array, load: Array, shear: list[Array]) -> Array:
         force = load - self.stiffness @ u
