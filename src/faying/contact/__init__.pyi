@@ -4,6 +4,7 @@ from .compare import Comparison, compare, laws_of_surface
 from .greenwood_williamson import GreenwoodWilliamson
 from .inputs import SurfaceInputs
 from .jackson_streator import JacksonStreator
+from .halfspace import HalfSpace, solve_half_space
 from .jk import JK
 from .law import ContactLaw, Parameter, Response
 from .majumdar_bhushan import MajumdarBhushan

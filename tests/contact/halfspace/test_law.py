@@ -36,9 +36,8 @@ def test_on_a_rung_the_law_is_the_contact_itself(law):
         assert said.area == pytest.approx(contact.area_corrected, rel=1e-3)
         assert said.k_n == pytest.approx(tangent.k_n_unloading, rel=2e-3)
         assert said.k_t == pytest.approx(tangent.k_t, rel=2e-3)
-        assert said.loss_n == pytest.approx(contact.plastic_work / contact.elastic_energy, rel=1e-3)
-        assert said.energy_n == pytest.approx(contact.plastic_work + contact.elastic_energy, rel=1e-3)
-        assert said.loss_t == 0
+        assert said.energy_n == pytest.approx(contact.elastic_energy, rel=1e-3)
+        assert (said.loss_n, said.loss_t) == (0, 0)  # a small swing of the load is elastic and without slip
 
 
 def test_between_rungs_the_law_is_near_the_contact(law):
@@ -64,8 +63,12 @@ def test_choices_of_area_and_stiffness(law):
     p = 100e6
     said = law.at_pressure(p)
     assert law.with_(area="counted").at_pressure(p).area > said.area
-    assert law.with_(stiffness="loading").at_pressure(p).k_n < said.k_n
-    elastic = law.with_(elastic=True).at_pressure(p)
+    first = law.with_(stiffness="loading").at_pressure(p)
+    contact = law.contact_at(p)
+    assert first.k_n < said.k_n
+    assert first.loss_n == pytest.approx(contact.plastic_work / contact.elastic_energy, rel=0.05)
+    assert first.energy_n == pytest.approx(contact.plastic_work + contact.elastic_energy, rel=0.05)
+    elastic = law.with_(elastic=True, stiffness="loading").at_pressure(p)
     assert elastic.loss_n == 0
     assert elastic.area < said.area
 

@@ -50,13 +50,13 @@ class HalfSpace(ContactLaw):
 
     scan of the rough face (levelled, without missing points; anything with heights [m] and spacing (dx, dy) [m]);
     where both faces are rough, the scan of their sum. pair of materials. elastic=True leaves out the hardness.
-    stiffness: k_n against a small fall of the load ("unloading", what a vibration sees) or against its growth
-    ("loading"). area: "corrected" for the size of the points, or as "counted". shear_ratio X = T/(mu F): above 0,
+    stiffness: "unloading", k_n against a small fall of the load, which is what a vibration sees: elastic, loss_n 0,
+    energy_n the strain energy; or "loading", k_n against its growth, loss_n the plastic work of first loading over
+    the strain energy, energy_n their sum. area: "corrected" for the size of the points, or as "counted". shear_ratio X = T/(mu F): above 0,
     k_t is that of the points that still stick and loss_t follows from their slip (needs the pair's friction).
     periodic as in `solve_half_space`. points: rungs of the ladder, spaced evenly in ln(pressure) from lowest to
     highest pressure [Pa]; between them each quantity is a monotone cubic in logarithms. tol as in `solve_half_space`.
 
-    loss_n is the plastic work of first loading over the elastic energy; energies are per nominal area.
     Closure variable: the pressure [Pa]. Flagged where fewer than 30 points touch or none is open.
     Raises InputError for parameters out of range and whatever `solve_half_space` does not accept.
     """
@@ -140,9 +140,9 @@ class HalfSpace(ContactLaw):
             "area": contact.area_corrected if self.area == "corrected" else contact.area,
             "k_n": tangent.k_n_unloading if self.stiffness == "unloading" else tangent.k_n_loading,
             "k_t": tangent.k_t,
-            "loss_n": contact.plastic_work / contact.elastic_energy,
+            "loss_n": 0.0 if self.stiffness == "unloading" else contact.plastic_work / contact.elastic_energy,
             "loss_t": 0.0,
-            "energy_n": contact.elastic_energy + contact.plastic_work,
+            "energy_n": contact.elastic_energy + (0.0 if self.stiffness == "unloading" else contact.plastic_work),
             "energy_t": 0.0,
         }
         if self.shear_ratio > 0:
@@ -160,7 +160,7 @@ class HalfSpace(ContactLaw):
         return tuple(contacts)
 
     @cached_property
-    def _table(self) -> _Ladder:
+    def _rungs(self) -> _Ladder:
         rows = [self._numbers(contact) for contact in self.ladder]
         return _Ladder(
             pressure=np.geomspace(*self.closure_range, self.points),
@@ -173,7 +173,7 @@ class HalfSpace(ContactLaw):
         from scipy.interpolate import PchipInterpolator
 
         p = np.asarray(closure, dtype=float)
-        table = self._table
+        table = self._rungs
         x, at = np.log(table.pressure), np.log(p)
 
         def between(values: Array) -> Array:
