@@ -10,6 +10,7 @@ from .law import ContactLaw, Parameter, Response
 from .majumdar_bhushan import MajumdarBhushan
 from .morag_etsion import MoragEtsion
 from .persson import Persson
+from .power_law import PowerLaw
 from .registry import find_law, laws
 from .tabulated import TabulatedLaw
 from .wang_komvopoulos import WangKomvopoulos
@@ -25,6 +26,7 @@ __all__ = [
     "MoragEtsion",
     "Parameter",
     "Persson",
+    "PowerLaw",
     "Response",
     "SurfaceInputs",
     "TabulatedLaw",

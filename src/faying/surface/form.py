@@ -117,7 +117,7 @@ def find_spikes(scan: Scan | Profile, threshold: float = SPIKE) -> Mask:
 
     A point is a spike where it differs from that median by more than `threshold` times the robust standard
     deviation (1.4826 times the median of the absolute differences) over the whole scan and by more than `threshold`
-    times that of its own 31-point surroundings' scale. Missing points are never spikes.
+    times the mean difference in the 15 points (15 x 15) around it. Missing points are never spikes.
     """
     from scipy.ndimage import median_filter, uniform_filter
 
@@ -131,10 +131,8 @@ def find_spikes(scan: Scan | Profile, threshold: float = SPIKE) -> Mask:
     candidates = (away > threshold * scale) & ~hole
     if not candidates.any():
         return np.zeros(hole.shape, bool)
-    # a rough patch is no spike: compare with the mean difference around, the candidates themselves left out
-    calm = np.where(candidates, 0.0, away)
-    share = uniform_filter((~candidates).astype(float), size=31, mode="nearest")
-    around = uniform_filter(calm, size=31, mode="nearest") / np.maximum(share, 1e-3)
+    # a rough patch is no spike: compare with the mean difference around, single large ones cut down to the threshold
+    around = uniform_filter(np.minimum(away, threshold * scale), size=15, mode="nearest")
     return np.asarray(candidates & (away > threshold * around), bool)
 
 

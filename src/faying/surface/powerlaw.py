@@ -216,7 +216,7 @@ def fit_band(spectrum: Spectrum, low: float, high: float, *, fixed: bool = False
     for _ in range(12):
         white = law.covariance[2, 2] ** 0.5
         level = law.noise / (np.exp(law.log_level) / (2 * pi * law.pivot if spectrum.axes == 2 else 2.0))
-        if level < -4 * white and top > 8 * bottom:
+        if level < -3 * white and top > 8 * bottom:
             top /= 2**0.5
             law = fit(spectrum, bottom, top)
         else:
@@ -233,7 +233,7 @@ def fit_band(spectrum: Spectrum, low: float, high: float, *, fixed: bool = False
         weight = 1 / spread**2
         excess = float(np.sum(weight * (spectrum.density[octave] / predicted - 1)) / weight.sum())
         error = float((1 / weight.sum() + np.average(sigma**2, weights=weight)) ** 0.5)
-        if abs(excess) > 4 * error:
+        if abs(excess) > 3 * error:
             bottom *= 2**0.5
             law = fit(spectrum, bottom, top)
         else:
