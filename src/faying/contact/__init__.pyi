@@ -2,9 +2,9 @@
 from . import asperity
 from .compare import Comparison, compare, laws_of_surface
 from .greenwood_williamson import GreenwoodWilliamson
+from .halfspace import HalfSpace, solve_half_space
 from .inputs import SurfaceInputs
 from .jackson_streator import JacksonStreator
-from .halfspace import HalfSpace, solve_half_space
 from .jk import JK
 from .law import ContactLaw, Parameter, Response
 from .majumdar_bhushan import MajumdarBhushan
@@ -21,6 +21,7 @@ __all__ = [
     "Comparison",
     "ContactLaw",
     "GreenwoodWilliamson",
+    "HalfSpace",
     "JacksonStreator",
     "MajumdarBhushan",
     "MoragEtsion",
@@ -37,4 +38,5 @@ __all__ = [
     "find_law",
     "laws",
     "laws_of_surface",
+    "solve_half_space",
 ]
