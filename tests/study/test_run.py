@@ -111,7 +111,7 @@ def test_names_that_do_not_fit_the_geometry_are_reported_together(study):
 
 
 def test_a_preload_that_the_law_does_not_cover(study):
-    with pytest.raises(faying.InputError, match="more than JK covers with this surface"):
+    with pytest.raises(faying.InputError, match="than JK covers with this surface"):
         run(replace(study, bolts=(replace(study.bolts[0], preload=(5e5,)),)))
 
 

@@ -111,23 +111,22 @@ class Seat:
         return k_n, self.scale * answer.k_t
 
     def answer(self, pressure: Array) -> Answer:
-        """What the law says at pressures [Pa]; those below the least are asked as the least."""
-        return self.law.at_pressure(self._lifted(pressure))
+        """What the law says at pressures [Pa]; beyond its ends, what it says there."""
+        return self.law.at_pressure(self._within(pressure))
 
-    def _lifted(self, pressure: Array) -> Array:
-        """Pressures with those between 0 and the least one raised to it."""
-        return np.where((pressure > 0) & (pressure < self.least_pressure), self.least_pressure, pressure)
+    def _within(self, pressure: Array) -> Array:
+        """Pressures brought within the law; 0 stays 0."""
+        return np.where(pressure > 0, np.clip(pressure, self.least_pressure, self.law.greatest_pressure), 0.0)
 
     def stiffness(self, pressure: Array) -> tuple[Array, Array]:
-        """k_n and k_t [Pa/m] at pressures [Pa] of any shape; 0 where the pressure is 0."""
-        lifted = self._lifted(pressure)
-        k_n, k_t = self._ask(lifted)
-        if not np.any(lifted > pressure):
+        """k_n and k_t [Pa/m] at pressures [Pa] of any shape; 0 where the pressure is 0, held beyond the end of the law."""
+        within = self._within(pressure)
+        k_n, k_t = self._ask(within)
+        raised = within > pressure
+        if not np.any(raised):
             return k_n, k_t
         # below the table p is a power of w, so k_n a power of p with the exponent 1 - 1/(d ln p/d ln w)
-        fade = np.where(
-            lifted > pressure, (pressure / np.where(lifted > 0, lifted, 1.0)) ** (1 - 1 / self._table[2][0]), 1.0
-        )
+        fade = np.where(raised, pressure / np.where(raised, within, 1.0), 1.0) ** (1 - 1 / self._table[2][0])
         return k_n * fade, k_t * fade
 
     def loss(self, pressure: Array) -> tuple[Array, Array]:

@@ -177,6 +177,13 @@ def _flags(structure: Structure, preload: Preload, load: float) -> list[str]:
     """Say where the law has left its ground, with the share of the joint's area."""
     out = []
     for joint, pressure in zip(structure.joints, preload.pressures, strict=True):
+        end = joint.seat.law.greatest_pressure
+        if np.any(pressure > end):
+            share = float(joint.interface.weights @ (pressure > end) / joint.interface.area)
+            out.append(
+                f"{joint.name}, {load / 1e3:g} kN: on {share:.2%} of the joint the pressure exceeds the {end / 1e6:.3g} MPa at "
+                f"which {joint.seat.law.name} ends with this surface; stiffness is held there"
+            )
         reasons = getattr(joint.seat.answer(pressure), "reasons", {})
         for text, mask in reasons.items():
             share = float(joint.interface.weights @ mask / joint.interface.area)
