@@ -273,7 +273,7 @@ def _check_pressure(pressure: float, hardness: float | None) -> None:
 def memory_needed(shape: tuple[int, int], *, periodic: bool) -> float:
     """Bytes that a solution on a map of this shape takes at its peak."""
     padded = transform_shape(shape, periodic=periodic)
-    return 8.0 * (14 * shape[0] * shape[1] + 5 * padded[0] * padded[1])
+    return 8.0 * (22 * shape[0] * shape[1] + 5 * padded[0] * padded[1])
 
 
 def memory_free() -> float:
