@@ -89,13 +89,16 @@ def study_at_4_kn(d: Dimensions) -> np.ndarray:
     return result.comparison.predicted[0]
 
 
+def misfit(x: np.ndarray, ratio: np.ndarray) -> np.ndarray:
+    """Return ln(model over test) for each of the five modes."""
+    return np.log(in_plane(dimensions(x)) * ratio / TEST)
+
+
 def main() -> None:
     """Alternate between the plane model and the study until the dimensions rest."""
     x, ratio = START, np.ones(5)
     for _ in range(6):
-        fit = least_squares(
-            lambda v: np.log(in_plane(dimensions(v)) * ratio / TEST), x, bounds=BOUNDS, x_scale=START, diff_step=1e-3
-        )  # noqa: B023
+        fit = least_squares(misfit, x, args=(ratio,), bounds=BOUNDS, x_scale=START, diff_step=1e-3)
         moved, x = np.abs(fit.x / x - 1).max(), fit.x
         found = study_at_4_kn(dimensions(x))
         ratio = np.sqrt(ratio * found / in_plane(dimensions(x)))  # halfway, so that it does not swing
