@@ -61,7 +61,7 @@ class Bare:
     def __init__(self, **given):
         self.given = given
 
-    def at_pressure(self, p):
+    def at_pressure(self, p, *, exact=None):
         nothing = dict.fromkeys(("k_n", "k_t", "loss_n", "loss_t"))
         return type("Answer", (), nothing | {k: f(np.asarray(p)) for k, f in self.given.items()})
 

@@ -2,12 +2,14 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import faying
 from faying.study import Study, build, run
+from faying.study.schema import LawSpec, SurfaceSpec
 from faying.study.template import write
 
 
@@ -147,3 +149,22 @@ def test_per_node_and_mindlin_options(study, result):
     other = run(replace(study, joints=(joint,), mode_count=3))
     assert other.frequencies.shape == (2, 3)
     assert other.convergence[0]["total_k_n [N/m]"] != pytest.approx(result.convergence[0]["total_k_n [N/m]"], rel=0.01)
+
+
+@pytest.mark.parametrize(("model", "tangential"), [("gw-ke", "mindlin"), ("power-law", "law"), ("persson", "mindlin")])
+def test_other_laws(study, model, tangential):
+    """GW with Kogut and Etsion's asperity presses the joint; laws that cannot say why."""
+    scan = Path(__file__).parents[2] / "examples" / "t-specimen" / "milled.x3p"
+    other = replace(study, law=LawSpec(model=model), surface=SurfaceSpec(scan=scan), mode_count=1,
+                    joints=(replace(study.joints[0], tangential=tangential),),
+                    bolts=(replace(study.bolts[0], preload=(6000.0,)),))  # fmt: skip
+    if model == "gw-ke":
+        structure = build(other)
+        found = structure.assembly().solve(6000 * structure.bolt_load(*study.bolts[0].faces))
+        assert structure.joints[0].interface.weights @ found.pressures[0] == pytest.approx(6000, rel=1e-8)
+        assert structure.springs(found.pressures)[0].k_t.max() > 0
+        return
+    match = {"power-law": "takes no input from a scan", "persson": "never meet"}[model]
+    with pytest.raises(faying.InputError, match=match):
+        structure = build(other)
+        structure.assembly().solve(6000 * structure.bolt_load(*study.bolts[0].faces))

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from faying.errors import InputError
 
 Array = NDArray[np.float64]
+FEW = 200  # pressures up to which a law is inverted exactly
 LEAST_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p(closing) goes on as a power
 
 
@@ -24,8 +25,8 @@ class Law(Protocol):
     def greatest_pressure(self) -> float:
         """Where the law ends [Pa]."""
 
-    def at_pressure(self, pressure: ArrayLike) -> "Answer":
-        """Response at nominal pressures [Pa]."""
+    def at_pressure(self, pressure: ArrayLike, *, exact: bool | None = None) -> "Answer":
+        """Response at nominal pressures [Pa]; exact=False may read a checked table."""
 
 
 class Answer(Protocol):
@@ -50,6 +51,11 @@ class Answer(Protocol):
     @property
     def valid(self) -> NDArray[np.bool_]:
         """Where the law stands on its own ground."""
+
+
+def _exact(pressure: Array) -> bool | None:
+    """Whether to ask a law for exact inversion: the points of a whole joint are asked again and again, so read a table."""
+    return False if np.size(pressure) > FEW else None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,7 +104,7 @@ class Seat:
         return CubicHermiteSpline(log_w, log_p, slope)
 
     def _ask(self, pressure: Array) -> tuple[Array, Array]:
-        answer = self.law.at_pressure(pressure)
+        answer = self.law.at_pressure(pressure, exact=_exact(pressure))
         if answer.k_n is None:
             raise InputError(f"{self.law.name} defines no normal stiffness; choose another law for the joint")
         k_n = self.scale * answer.k_n
@@ -112,7 +118,7 @@ class Seat:
 
     def answer(self, pressure: Array) -> Answer:
         """What the law says at pressures [Pa]; beyond its ends, what it says there."""
-        return self.law.at_pressure(self._within(pressure))
+        return self.law.at_pressure(self._within(pressure), exact=_exact(pressure))
 
     def _within(self, pressure: Array) -> Array:
         """Pressures brought within the law; 0 stays 0."""
