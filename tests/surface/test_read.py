@@ -220,3 +220,16 @@ def test_the_checksum_inside_is_md5_of_the_heights(rough, tmp_path):
     path = write_scan(rough, tmp_path / "a.x3p")
     data = zipfile.ZipFile(path).read("bindata/data.bin")
     assert hashlib.md5(data).hexdigest().upper() in xml_of(path)
+    # the checksum of main.xml as OpenGPS writes it, in the format of md5sum
+    stated = zipfile.ZipFile(path).read("md5checksum.hex").decode()
+    assert stated == hashlib.md5(zipfile.ZipFile(path).read("main.xml")).hexdigest() + " *main.xml\n"
+
+
+@pytest.mark.parametrize("precision", ["F", "D", "I", "L"])
+def test_another_reader_finds_the_same_in_our_x3p(tmp_path, precision):
+    topography = pytest.importorskip("SurfaceTopography")
+    scan = spectral((24, 36), spacing=(2e-6, 3e-6), D=2.4, Rq=1e-6)
+    path = write_scan(scan, tmp_path / "a.x3p", precision=precision)
+    seen = topography.read_topography(str(path)).to_unit("m")
+    assert np.abs(np.asarray(seen.heights()).T - scan.heights).max() < 1e-4 * np.ptp(scan.heights)
+    assert np.array(seen.physical_sizes) / (36, 24) == pytest.approx(scan.spacing, rel=1e-6)

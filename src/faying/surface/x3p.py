@@ -221,12 +221,12 @@ xsi:schemaLocation="{NAMESPACE} {NAMESPACE}/ISO5436_2.xsd">
   <Record4><ChecksumFile>md5checksum.hex</ChecksumFile></Record4>
 </p:ISO5436_2>
 """.encode()
-    total = hashlib.md5(xml, usedforsecurity=False).hexdigest().upper()
+    total = hashlib.md5(xml, usedforsecurity=False).hexdigest()
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         for name, content in (
             ("main.xml", xml),
             ("bindata/data.bin", data),
-            ("md5checksum.hex", f"{total} *main.xml".encode()),
+            ("md5checksum.hex", f"{total} *main.xml\n".encode()),
         ):
             # a fixed date keeps the file the same from run to run
             info = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
