@@ -37,7 +37,9 @@ def imported(path):
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module:
-            names = [f"{node.module}.{alias.name}" for alias in node.names] if node.module == "faying" else [node.module]
+            names = (
+                [f"{node.module}.{alias.name}" for alias in node.names] if node.module == "faying" else [node.module]
+            )
         for name in names:
             parts = name.split(".")
             if parts[0] == "faying" and len(parts) > 1 and parts[1] in RANK:

@@ -40,7 +40,9 @@ def test_commands(page, checkout):
     for line in commands(page):
         if T_SPECIMEN in line and line.startswith("run "):
             continue
-        done = subprocess.run([sys.executable, "-m", "faying", *shlex.split(line)], capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            [sys.executable, "-m", "faying", *shlex.split(line)], capture_output=True, text=True, check=False
+        )
         assert done.returncode == 0, f"faying {line}\n{done.stderr}"
 
 

@@ -14,12 +14,12 @@ HERE = Path(__file__).parent
 class Dimensions:
     """Dimensions [mm]. Stems and flanges have one width; bending in the test is across the thin side of the stems."""
 
-    stem_height: float = 230.0
-    stem_thickness: float = 20.0
-    flange_length: float = 100.0
-    flange_thickness: float = 20.0
+    stem_height: float = 370.6
+    stem_thickness: float = 51.5
+    flange_length: float = 117.2
+    flange_thickness: float = 25.0
     width: float = 60.0  # chosen
-    bolt_distance: float = 60.0  # chosen: between the axes of the two bolts
+    bolt_distance: float = 84.3  # chosen: the bolts in the middle of what the flange stands out
     hole: float = 9.0  # clearance hole of an M8 bolt, ISO 273
     washer: float = 16.0  # outer diameter of an M8 washer, ISO 7089
 

@@ -1,4 +1,6 @@
 # The public names. Each is imported when it is first used (lazy_loader reads this file).
+from . import contact
+from .contact.halfspace import HalfSpace, solve_half_space
 from .contact.jk import JK
 from .errors import FayingError, InputError, NotConverged, OutsideValidity, ReadError
 from .fe.asperity import solve_asperity
@@ -6,8 +8,10 @@ from .materials import CATALOGUE, RIGID, ContactPair, Material
 from .result import Result
 from .study import Study, run
 from .surface import synthesize
+from .surface.combine import Combined, combine
 from .surface.fractal import FractalFit, fit_fractal
 from .surface.read import read_scan
-from .surface.scan import Scan
+from .surface.scan import Profile, Scan
+from .surface.write import write_scan
 
 __version__: str

@@ -58,4 +58,12 @@ def test_bolt_forces_balance(outcome):
 def test_files(outcome):
     _, results = outcome
     names = {path.name for path in results.iterdir()}
-    assert {"result.nc", "modes.csv", "report.html", "frequencies.svg", "comparison.svg", "pressure.svg", "modes.png"} <= names
+    assert {
+        "result.nc",
+        "modes.csv",
+        "report.html",
+        "frequencies.svg",
+        "comparison.svg",
+        "pressure.svg",
+        "modes.png",
+    } <= names

@@ -83,7 +83,9 @@ def test_stiffer_joints_never_lower_a_frequency_and_all_lie_between_free_and_tie
     mesh, K, M, _ = bar
     free = lowest_modes(K, M, 24, shift_frequency=SHIFT).frequencies
     grown = tie(mesh, [("p0.right", "p1.left")])
-    tied = lowest_modes((grown.T @ K @ grown).tocsr(), (grown.T @ M @ grown).tocsr(), 24, shift_frequency=SHIFT).frequencies
+    tied = lowest_modes(
+        (grown.T @ K @ grown).tocsr(), (grown.T @ M @ grown).tocsr(), 24, shift_frequency=SHIFT
+    ).frequencies
     last = free
     for stiffness in (1e9, 1e11, 1e13, 1e15):
         now = lowest_modes(*sprung(bar, stiffness, 0.8 * stiffness), 24, shift_frequency=SHIFT).frequencies

@@ -1,6 +1,9 @@
 """`faying law --models`: several laws of one scan in one table and on one plot, with the factor between them."""
 
 import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +18,17 @@ def show(
     as_json: bool,
     csv_file: str | None,
     plot: str | None,
+    contact_map: str | None = None,
 ) -> None:
     """Compare the laws and print, write and draw the outcome."""
     from faying.contact.compare import compare, laws_of_surface
 
     inputs, scan = surface
     made, left_out = laws_of_surface(inputs, pair, names=names, scan=scan)
-    comparison = compare(made, pressures, left_out)
+    if contact_map:
+        draw_contact(made, float(pressures[-1]), contact_map)
+    with progress_bar(made) as made:
+        comparison = compare(made, pressures, left_out)
     if csv_file:
         Path(csv_file).write_text(csv(comparison))
     if plot:
@@ -31,6 +38,33 @@ def show(
     click.echo(
         json.dumps(document(inputs, comparison), indent=2, allow_nan=False) if as_json else table(inputs, comparison)
     )
+
+
+def draw_contact(laws: dict[str, Any], pressure: float, path: str) -> None:
+    """Write the picture of where the scan touches at a pressure [Pa]; InputError unless one law is solved on the scan."""
+    from faying.contact.halfspace import HalfSpace
+    from faying.errors import InputError
+    from faying.plot.contact_map import contact_figure
+    from faying.plot.law import save
+
+    solved = [law for law in laws.values() if isinstance(law, HalfSpace)]
+    if not solved:
+        raise InputError("--contact-map shows the numerical contact: put halfspace among --models")
+    save(contact_figure(solved[0].contact_at(pressure)), path)
+
+
+@contextmanager
+def progress_bar(laws: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """The laws, those that are solved on the scan with a bar on the terminal that follows their loads."""
+    from faying.contact.halfspace import HalfSpace
+
+    slow = [name for name, law in laws.items() if isinstance(law, HalfSpace)]
+    if not slow:
+        yield laws
+        return
+    loads = sum(laws[name].points for name in slow)
+    with click.progressbar(length=loads, label="contact of the scan", file=sys.stderr) as bar:
+        yield {n: law.with_(progress=lambda *_: bar.update(1)) if n in slow else law for n, law in laws.items()}
 
 
 def clean(values: Any) -> list[float | None]:

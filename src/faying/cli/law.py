@@ -41,6 +41,8 @@ SHOWN = {
 @click.option("--method", default="psd", show_default=True, help="Estimator of D and G: psd, structure or moments.")
 @click.option("--models", metavar="LIST", help='Several laws of the scan, for example "jk,gw,gw-ke,persson".')
 @click.option("--all-models", is_flag=True, help="All laws that take their inputs from a scan.")
+@click.option("--contact-map", type=click.Path(dir_okay=False),
+              help="Picture of where the scan touches at the last pressure; with halfspace among --models.")  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 @click.option("--csv", "csv_file", type=click.Path(dir_okay=False), help="Write all columns to a CSV file.")
 @click.option("--plot", type=click.Path(dir_okay=False), help="Write a figure (png, pdf, svg).")
@@ -55,6 +57,7 @@ def command(
     scan: str | None,
     models: str | None,
     all_models: bool,
+    contact_map: str | None,
     **options: Any,
 ) -> None:
     """Real area, stiffness and loss of a contact law against nominal pressure.
@@ -72,10 +75,14 @@ def command(
         if scan is None or settings:
             raise InputError("--models and --all-models take every input from a scan: give --scan FILE and no --set")
         names = None if all_models else [name for name in (models or "").split(",") if name.strip()]
-        show(surface_of(scan, options), pair, names, pressures_of(pressure), as_json, csv_file, plot)
+        show(surface_of(scan, options), pair, names, pressures_of(pressure), as_json, csv_file, plot,
+             contact_map)  # fmt: skip
         return
+    if contact_map:
+        raise InputError("--contact-map goes with --scan and halfspace among --models")
     if scan is not None:
-        law = cls.from_surface(surface_of(scan, options)[0], pair)
+        inputs, levelled = surface_of(scan, options)
+        law = cls(scan=levelled, pair=pair) if takes_scan(cls) else cls.from_surface(inputs, pair)  # type: ignore[call-arg]
         changes = parameters_of(cls, options, settings, needed=False)
         law = law.with_(**changes) if changes else law
     else:
@@ -89,6 +96,13 @@ def command(
 
         save(curves({law.name: response}), plot)
     click.echo(json.dumps(document(law, response), indent=2, allow_nan=False) if as_json else table(law, response))
+
+
+def takes_scan(cls: Any) -> bool:
+    """Whether a law is solved on the scan itself."""
+    from dataclasses import fields
+
+    return any(f.name == "scan" for f in fields(cls))
 
 
 def surface_of(file: str, options: dict[str, Any]) -> tuple[Any, Any]:

@@ -2,6 +2,7 @@
 from . import asperity
 from .compare import Comparison, compare, laws_of_surface
 from .greenwood_williamson import GreenwoodWilliamson
+from .halfspace import HalfSpace, HalfSpaceContact, solve_half_space
 from .inputs import SurfaceInputs
 from .jackson_streator import JacksonStreator
 from .jk import JK
@@ -9,6 +10,7 @@ from .law import ContactLaw, Parameter, Response
 from .majumdar_bhushan import MajumdarBhushan
 from .morag_etsion import MoragEtsion
 from .persson import Persson
+from .power_law import PowerLaw
 from .registry import find_law, laws
 from .tabulated import TabulatedLaw
 from .wang_komvopoulos import WangKomvopoulos
@@ -19,11 +21,14 @@ __all__ = [
     "Comparison",
     "ContactLaw",
     "GreenwoodWilliamson",
+    "HalfSpace",
+    "HalfSpaceContact",
     "JacksonStreator",
     "MajumdarBhushan",
     "MoragEtsion",
     "Parameter",
     "Persson",
+    "PowerLaw",
     "Response",
     "SurfaceInputs",
     "TabulatedLaw",
@@ -34,4 +39,5 @@ __all__ = [
     "find_law",
     "laws",
     "laws_of_surface",
+    "solve_half_space",
 ]

@@ -73,6 +73,27 @@ class SurfaceInputs:
             shortest=2 * max(spacing),
         )
 
+    @classmethod
+    def from_fractal(cls, *, D: float, G: float, scan_area: float, shortest: float, gamma: float = 1.5) -> Self:
+        """Return the inputs of an ideal isotropic fractal surface, summed over its waves down to `shortest` [m].
+
+        Waves l_n = sqrt(scan_area)/gamma^n of variance G^(2D-4) ln(gamma) l^(6-2D)/2 (Yan and Komvopoulos). A profile
+        of an isotropic surface has half its squared gradient and 3/8 of its fourth moment. Raises InputError as the
+        class, and for D outside 2 to 3 or a shortest wave not below the side.
+        """
+        side = sqrt(scan_area) if scan_area > 0 else 0.0
+        if not (2 < D < 3 and 0 < shortest < side and G > 0 and gamma > 1):
+            raise InputError(
+                f"D = {D}, G = {G} m, scan_area = {scan_area} m2, shortest = {shortest} m, gamma = {gamma}; need D "
+                "between 2 and 3, G positive, gamma above 1 and the shortest wave below the side of the scan"
+            )
+        length = side / gamma ** np.arange(int(log(side / shortest) / log(gamma)) + 1)
+        variance = G ** (2 * D - 4) * log(gamma) * length ** (6 - 2 * D) / 2
+        q = 2 * pi / length
+        m0, gradient, fourth = (float(np.sum(variance * q**k)) for k in (0, 2, 4))
+        return cls(D=D, G=G, scan_area=scan_area, m0=m0, m2=gradient / 2, m4=3 / 8 * fourth, slope=sqrt(gradient),
+                   h_rms=sqrt(m0), shortest=shortest, gamma=gamma)  # fmt: skip
+
     @property
     def alpha(self) -> float:
         """Bandwidth of Nayak, m0 m4/m2^2 [-]."""

@@ -67,11 +67,17 @@ class Seat:
     scale: float = 1.0
     points: int = 1000
 
+    @property
+    def least_pressure(self) -> float:
+        """Below it the joint carries nothing that matters [Pa]: p(closing) and the stiffness go on as powers."""
+        return max(LEAST_PRESSURE, 1.001 * getattr(self.law, "least_pressure", 0.0))
+
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
         """ln closing, ln pressure, and d ln p/d ln w, from the least pressure to where the law ends."""
-        p = np.geomspace(LEAST_PRESSURE, self.law.greatest_pressure, self.points)
-        k = self.stiffness(p)[0]
+        p = np.geomspace(self.least_pressure, self.law.greatest_pressure, self.points)
+        p[-1] = min(p[-1], self.law.greatest_pressure)
+        k = self._ask(p)[0]
         slope = np.gradient(np.log(k), np.log(p))
         if np.any(k <= 0) or slope[0] >= 1:
             raise InputError(f"{self.law.name}: stiffness does not grow from zero slower than pressure; the faces would "
@@ -91,8 +97,7 @@ class Seat:
         log_w, log_p, slope = self._table
         return CubicHermiteSpline(log_w, log_p, slope)
 
-    def stiffness(self, pressure: Array) -> tuple[Array, Array]:
-        """k_n and k_t [Pa/m] at pressures [Pa] of any shape; 0 where the pressure is 0."""
+    def _ask(self, pressure: Array) -> tuple[Array, Array]:
         answer = self.law.at_pressure(pressure)
         if answer.k_n is None:
             raise InputError(f"{self.law.name} defines no normal stiffness; choose another law for the joint")
@@ -105,9 +110,28 @@ class Seat:
             )
         return k_n, self.scale * answer.k_t
 
+    def answer(self, pressure: Array) -> Answer:
+        """What the law says at pressures [Pa]; beyond its ends, what it says there."""
+        return self.law.at_pressure(self._within(pressure))
+
+    def _within(self, pressure: Array) -> Array:
+        """Pressures brought within the law; 0 stays 0."""
+        return np.where(pressure > 0, np.clip(pressure, self.least_pressure, self.law.greatest_pressure), 0.0)
+
+    def stiffness(self, pressure: Array) -> tuple[Array, Array]:
+        """k_n and k_t [Pa/m] at pressures [Pa] of any shape; 0 where the pressure is 0, held beyond the end of the law."""
+        within = self._within(pressure)
+        k_n, k_t = self._ask(within)
+        raised = within > pressure
+        if not np.any(raised):
+            return k_n, k_t
+        # below the table p is a power of w, so k_n a power of p with the exponent 1 - 1/(d ln p/d ln w)
+        fade = np.where(raised, pressure / np.where(raised, within, 1.0), 1.0) ** (1 - 1 / self._table[2][0])
+        return k_n * fade, k_t * fade
+
     def loss(self, pressure: Array) -> tuple[Array, Array]:
         """Loss factors normal and tangential [-]; 0 where the law defines none."""
-        answer = self.law.at_pressure(pressure)
+        answer = self.answer(pressure)
         nothing = np.zeros(np.shape(pressure))
         return (
             nothing if answer.loss_n is None else answer.loss_n,

@@ -43,7 +43,7 @@ def panel(ax: Any, responses: Mapping[str, Response], name: str, label: str, sca
         if value is None:
             continue
         p, valid = response.pressure * 1e-6, response.valid
-        color = colormaps["tab20"].colors[(2 * i + i // 10) % 20]
+        color = colormaps["tab20"]((2 * i + i // 10) % 20)
         marker = ("-", "-.")[i // 10 % 2]
         shown = np.where(valid, value * scale, np.nan)
         ax.plot(p, value * scale, ":", color=color, lw=1.0)

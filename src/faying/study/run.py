@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faying.contact.jk import JK
+from faying.contact.law import ContactLaw
 from faying.errors import InputError
 from faying.fe.geometry import mesh_step
 from faying.fe.interface import join
@@ -19,6 +19,7 @@ from faying.joint.structure import Joint, Springs, Structure
 from faying.materials import RIGID, ContactPair
 from faying.result import Comparison, Result
 from faying.study.schema import Study
+from faying.study.surface import Surface, law_facts, law_of, surface_of
 
 Array = NDArray[np.float64]
 Report = Callable[[str], None]
@@ -34,12 +35,12 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     study = study if isinstance(study, Study) else Study.read(study)
     tell = report or (lambda _: None)
     tell("surface")
-    surface = _surface(study)
+    surface = surface_of(study.surface)
     tell("mesh")
     structure, laws = _structure(study, surface)
     K, M = structure.matrices
     loads = np.array(study.bolts[0].preload)
-    notes: list[str] = list(surface["warnings"])
+    notes: list[str] = list(surface.warnings)
 
     assembly = structure.assembly(solver=study.solver)
     units = [structure.bolt_load(*bolt.faces) for bolt in study.bolts]
@@ -99,18 +100,18 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         outline=structure.mesh.points[nodes],
         triangles=triangles,
         shapes=shapes,
-        surface=surface["facts"],
-        law=_law_facts(laws[0]),
+        surface=surface.facts,
+        law=law_facts(laws[0]),
         convergence=tuple(_convergence(p, s) for p, s in zip(preloads, per_load, strict=True)),
         comparison=comparison,
-        sources=_sources(study, surface),
+        sources=_sources(study, surface, laws[0]),
         warnings=tuple(dict.fromkeys(notes)),
     )
 
 
 def build(study: Study) -> Structure:
     """Return the structure of a study, meshed and with its law on the joints, for work that goes on by hand."""
-    return _structure(study, _surface(study))[0]
+    return _structure(study, surface_of(study.surface))[0]
 
 
 def _sum(matrices: Any) -> Any:
@@ -120,45 +121,7 @@ def _sum(matrices: Any) -> Any:
     return total
 
 
-def _surface(study: Study) -> dict[str, Any]:
-    """D, G and scan area from the scan or as given, with facts for the report and warnings."""
-    spec = study.surface
-    if spec.scan is None:
-        facts: dict[str, Any] = {
-            "D": spec.D,
-            "G [m]": spec.G,
-            "scan_area [m2]": spec.scan_area,
-            "origin": "given in the study",
-        }
-        return {"D": spec.D, "G": spec.G, "scan_area": spec.scan_area, "facts": facts, "warnings": [], "source": ""}
-    from faying.surface.fractal import fit_fractal
-    from faying.surface.read import read_scan
-    from faying.surface.scan import Scan
-
-    scan = read_scan(spec.scan, xy_unit=spec.xy_unit, z_unit=spec.z_unit)
-    if not isinstance(scan, Scan) and spec.scan_area is None:
-        raise InputError(f"{spec.scan.name} is a line scan, which covers no area; give surface.scan_area as well")
-    fit = fit_fractal(scan, method=spec.method)
-    D, G = spec.D or fit.D, spec.G or fit.G
-    area = spec.scan_area or (scan.size[0] * scan.size[1] if isinstance(scan, Scan) else 0.0)
-    facts = {
-        "D": D,
-        "D_interval": list(fit.D_interval),
-        "G [m]": G,
-        "G_interval [m]": list(fit.G_interval),
-        "scan_area [m2]": area,
-        "band [m]": list(fit.band),
-        "Rq [m]": fit.Rq,
-        "implied_Rq [m]": fit.implied_Rq,
-        "method": spec.method,
-        "convention": fit.convention,
-        "origin": spec.scan.name,
-    }
-    return {"D": D, "G": G, "scan_area": area, "facts": facts, "warnings": list(getattr(fit, "warnings", ())),
-            "source": f"scan {spec.scan.name}: {' x '.join(map(str, scan.heights.shape))} points"}  # fmt: skip
-
-
-def _structure(study: Study, surface: dict[str, Any]) -> tuple[Structure, list[JK]]:
+def _structure(study: Study, surface: Surface) -> tuple[Structure, list[ContactLaw]]:
     """Mesh, joints and the law of each joint; every name that does not fit the geometry is reported at once."""
     spec = study.geometry
     mesh = mesh_step(spec.step, size=spec.size, local_size=spec.face_size, face_points=spec.face_at)
@@ -180,7 +143,7 @@ def _structure(study: Study, surface: dict[str, Any]) -> tuple[Structure, list[J
     for joint in study.joints:
         rough, other = (materials[mesh.face_part[face]] for face in joint.faces)
         pair = ContactPair(rough, RIGID if study.law.counterbody == "rigid" else other)
-        law = JK(D=surface["D"], G=surface["G"], scan_area=surface["scan_area"], pair=pair, **study.law.options)
+        law = law_of(study.law, surface, pair)
         laws.append(law)
         joints.append(
             Joint(
@@ -189,7 +152,7 @@ def _structure(study: Study, surface: dict[str, Any]) -> tuple[Structure, list[J
                 interface=join(mesh, *joint.faces),
                 seat=Seat(law=law, tangential=joint.tangential, nu=rough.nu),
                 per_node=joint.springs == "per-node",
-                scan_area=law.scan_area,
+                scan_area=surface.scan_area,
             )
         )
     return Structure(mesh=mesh, materials=materials, joints=tuple(joints)), laws
@@ -214,7 +177,14 @@ def _flags(structure: Structure, preload: Preload, load: float) -> list[str]:
     """Say where the law has left its ground, with the share of the joint's area."""
     out = []
     for joint, pressure in zip(structure.joints, preload.pressures, strict=True):
-        reasons = getattr(joint.seat.law.at_pressure(pressure), "reasons", {})
+        end = joint.seat.law.greatest_pressure
+        if np.any(pressure > end):
+            share = float(joint.interface.weights @ (pressure > end) / joint.interface.area)
+            out.append(
+                f"{joint.name}, {load / 1e3:g} kN: on {share:.2%} of the joint the pressure exceeds the {end / 1e6:.3g} MPa at "
+                f"which {joint.seat.law.name} ends with this surface; stiffness is held there"
+            )
+        reasons = getattr(joint.seat.answer(pressure), "reasons", {})
         for text, mask in reasons.items():
             share = float(joint.interface.weights @ mask / joint.interface.area)
             if share > 0:
@@ -233,21 +203,6 @@ def _maps(structure: Structure, preloads: list[Preload]) -> dict[str, Array]:
         "k_n": np.stack([np.concatenate([k for k, _ in row]) for row in pairs]),
         "k_t": np.stack([np.concatenate([k for _, k in row]) for row in pairs]),
     }
-
-
-def _law_facts(law: JK) -> dict[str, Any]:
-    keys = ("closure", "loss", "cutoff", "alpha", "substrate", "gamma", "shear_ratio")
-    return (
-        {"name": law.name}
-        | {key: getattr(law, key) for key in keys}
-        | {
-            "E_star [Pa]": law.pair.E_star,
-            "G_star [Pa]": law.pair.G_star,
-            "hardness [Pa]": law.pair.hardness,
-            "limits [m2]": list(law.limits),
-            "greatest_pressure [Pa]": law.greatest_pressure,
-        }
-    )
 
 
 def _convergence(preload: Preload, springs: tuple[Springs, ...]) -> dict[str, float]:
@@ -293,12 +248,12 @@ def _compare(
     )
 
 
-def _sources(study: Study, surface: dict[str, Any]) -> tuple[str, ...]:
+def _sources(study: Study, surface: Surface, law: ContactLaw) -> tuple[str, ...]:
     used = {study.parts[name] for name in study.parts}
     lines = [f"material {name}: {study.materials[name].source or 'given in the study'}" for name in sorted(used)]
-    lines += [f"contact law {JK.name}: {JK.source}", f"geometry: {study.geometry.step.name}"]
-    if surface["source"]:
-        lines.append(surface["source"])
+    lines += [f"contact law {law.name}: {law.source}", f"geometry: {study.geometry.step.name}"]
+    if surface.source:
+        lines.append(surface.source)
     if study.test is not None:
         lines.append(f"test: {study.test.source}")
     return tuple(lines)

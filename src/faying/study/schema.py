@@ -260,10 +260,21 @@ def _law(top: Table) -> LawSpec:
     share = table.take("substrate", lambda v, name: v if v == "exact" else number(v, name), None)
     if share is not None:
         options["substrate"] = share
-    model = table.text("model", "jk", ("jk",))
+    model = table.take("model", _known_law, "jk")
     counterbody = table.text("counterbody", "part", ("part", "rigid"))
     table.close()
     return LawSpec(model=model, counterbody=counterbody, options=options)
+
+
+def _known_law(value: Any, name: str) -> str:
+    from faying.contact.compare import ASPERITIES
+    from faying.contact.registry import find_law
+
+    if not isinstance(value, str):
+        raise InputError(f"{name} = {value!r} should be text in quotes")
+    if value.upper() not in ASPERITIES:
+        find_law(value)
+    return value
 
 
 def _joint(table: Table, index: int) -> JointSpec:

@@ -45,7 +45,7 @@ G = "1.53e-10 m"               # fractal roughness, Yan-Komvopoulos convention
 scan_area = "16 mm^2"          # area of the scan that D and G come from
 
 [law]
-model = "jk"
+model = "jk"                   # any name that `faying models` lists; all but jk take their inputs from a scan
 closure = "consistent"         # or "printed": the numbers of the paper
 loss = "held"                  # or "literal"
 cutoff = 0.01                  # smallest asperity that counts for stiffness, as a share of a1c'

@@ -66,6 +66,8 @@ def read(file: Path, xy_unit: str | None, z_unit: str | None) -> Scan | Profile:
 def _scan(
     file: Path, heights: Any, sizes: Any, positions: Any, xy: float, z: float, instrument: Instrument
 ) -> Scan | Profile:
+    if heights.size == 0 or not all(np.isfinite(s) and s > 0 for s in sizes):
+        raise ReadError(f"{file}: the file holds no points or no size; it is damaged")
     if heights.ndim == 2:
         nx, ny = heights.shape
         spacing = (sizes[0] * xy / nx, sizes[1] * xy / ny)

@@ -8,7 +8,7 @@ from faying.surface.scan import Array, Scan
 THRESHOLD = 40.0  # a coefficient this many times its surroundings' mean; chance reaches 20 now and then
 REACH = 5  # surroundings: coefficients up to this many steps away each way
 MOST = 20000  # more candidates than this are an uneven spectrum, not lines
-LARGEST = 0.3  # share of the power that may be taken for tool marks
+LARGEST = 0.25  # share of the rings of frequency that tool marks may rule
 
 
 def find_lines(scan: Scan, power: Array, frequency: Array) -> NDArray[np.bool_]:
@@ -17,8 +17,8 @@ def find_lines(scan: Scan, power: Array, frequency: Array) -> NDArray[np.bool_]:
     The periodogram is divided by the median over each ring of frequency; a coefficient is on a peak where it is 40
     times the mean of its 11 x 11 surroundings (their median over ln 2), so that an uneven spectrum over directions,
     such as a random lay, is left alone. Neighbours within the window's main lobe are marked too.
-    Where peaks hold more than 30 % of the power of the usable band (a Weierstrass-Mandelbrot surface, a regular
-    texture) nothing is marked: there the lines are the surface.
+    Where peaks hold most of the power in more than a quarter of the rings (six an octave) of the usable band, nothing
+    is marked: there the lines are the surface (a Weierstrass-Mandelbrot series, a regular texture).
     """
     lowest = 1 / min(scan.size)
     ring = np.log2(np.maximum(frequency / lowest, 0.5)) * 6
@@ -32,7 +32,7 @@ def find_lines(scan: Scan, power: Array, frequency: Array) -> NDArray[np.bool_]:
         if part.size:
             level[k] = max(float(np.median(part)) / np.log(2), 1e-300)
     white = (flat / level[index]).reshape(power.shape)
-    rows, columns = np.nonzero((white > THRESHOLD) & (frequency > 2 * lowest))
+    rows, columns = np.nonzero((white > THRESHOLD) & (frequency > 2 * lowest) & (frequency < 0.45 / max(scan.spacing)))
     marked = np.zeros(power.shape, bool)
     if not 0 < len(rows) <= MOST:
         return marked
@@ -46,7 +46,11 @@ def find_lines(scan: Scan, power: Array, frequency: Array) -> NDArray[np.bool_]:
         for dx in range(-2, 3):
             column = np.abs(columns[peak] + dx)
             marked[(rows[peak] + dy) % power.shape[0], np.minimum(column, power.shape[1] - 1)] = True
-    inner = (frequency > 6 * lowest) & (frequency < 0.5 * frequency[0, -1])
-    if power[marked & inner].sum() > LARGEST * power[inner].sum():
+    inner = (frequency > 6 * lowest) & (frequency < 0.25 / max(scan.spacing))
+    rings = index.reshape(power.shape)[inner]
+    total = np.bincount(rings, power[inner])
+    in_peaks = np.bincount(rings, np.where(marked, power, 0.0)[inner], len(total))
+    filled = total > 0
+    if np.mean(in_peaks[filled] > 0.5 * total[filled]) > LARGEST:
         marked[:] = False
     return marked

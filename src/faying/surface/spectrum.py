@@ -46,7 +46,7 @@ class Spectrum:
 def _edges(lowest: float, highest: float, ratio: float) -> Array:
     """Bin edges [steps of 1/L]: half-integers, at least two steps wide, then growing geometrically by `ratio`."""
     edges = [0.5]
-    while edges[-1] < highest / lowest:
+    while edges[-1] < highest / lowest * (1 - 1e-9):
         edges.append(max(edges[-1] + 2.0, float(np.ceil(edges[-1] * ratio)) + 0.5))
     return np.array(edges)
 
@@ -113,7 +113,8 @@ def binned(
     edges = _edges(lowest, nyquist, ratio)
     # index of the bin: through a table over steps of lowest/8, faster than searching for every coefficient
     table = np.digitize(np.arange(0, int(edges[-1] * 8) + 2) / 8 + 1 / 16, edges)
-    index = table[np.minimum(frequency * (8 / lowest), len(table) - 1).astype(np.int32)]
+    # the small shift keeps coefficients that lie on a border on one side of it in every unit
+    index = table[np.minimum(frequency * (8 / lowest) + 1e-6, len(table) - 1).astype(np.int32)]
     weight = np.ones(frequency.shape)
     if len(axes) == 2:  # the column fx = 0 (and fx = Nyquist) holds every coefficient twice
         weight[:, 0] = 0.5

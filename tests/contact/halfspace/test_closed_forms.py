@@ -114,6 +114,7 @@ def test_at_small_hardness_the_contact_is_the_bearing_area(rough):
     h = rough(128)
     contact = solve_half_space(h, 1 / 128, E_star=1.0, pressure=2e-7, hardness=1e-6)
     assert contact.saturated == pytest.approx(0.2, abs=2e-4)
+    assert 0.2 <= contact.area_corrected <= contact.area
     # nothing bends: the highest fifth of the points carries the load
     high = h >= np.quantile(h, 0.8)
     assert np.count_nonzero(high ^ contact.at_hardness) < 1e-3 * h.size

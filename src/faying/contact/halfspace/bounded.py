@@ -53,10 +53,16 @@ def _at(bound: Bound, where: NDArray[np.intp]) -> Bound:
 def project(v: Array, lower: Bound, upper: Bound, total: float) -> tuple[Array, float]:
     """Nearest point to v between the bounds whose sum is `total`, and the shift that gives it: clip(v + shift)."""
     scale = max(abs(total), float(np.abs(upper).sum()) if isinstance(upper, np.ndarray) else 0.0, 1e-300)
+    clipped = np.clip(v, lower, upper)
+    if abs(total - float(clipped.sum())) <= 1e-13 * scale:
+        return clipped, 0.0  # a shift of rounding size would lift every cell off its bound
     low = float((lower - v).min())
-    high = float((upper - v).max()) if isinstance(upper, np.ndarray) or isfinite(upper) else total / v.size - float(v.min())
-    shift = min(max((total - float(np.clip(v, lower, upper).sum())) / v.size, low), high)
-    clipped = v
+    high = (
+        float((upper - v).max())
+        if isinstance(upper, np.ndarray) or isfinite(upper)
+        else total / v.size - float(v.min())
+    )
+    shift = min(max((total - float(clipped.sum())) / v.size, low), high)
     for turn in range(200):
         moved = v + shift
         clipped = np.clip(moved, lower, upper)

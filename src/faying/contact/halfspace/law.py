@@ -1,7 +1,7 @@
 """A contact law computed on a scan: a ladder of half-space contacts, read between its rungs."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar, Literal, Protocol, final
 
@@ -50,13 +50,14 @@ class HalfSpace(ContactLaw):
 
     scan of the rough face (levelled, without missing points; anything with heights [m] and spacing (dx, dy) [m]);
     where both faces are rough, the scan of their sum. pair of materials. elastic=True leaves out the hardness.
-    stiffness: k_n against a small fall of the load ("unloading", what a vibration sees) or against its growth
-    ("loading"). area: "corrected" for the size of the points, or as "counted". shear_ratio X = T/(mu F): above 0,
+    stiffness: "unloading", k_n against a small fall of the load, which is what a vibration sees: elastic, loss_n 0,
+    energy_n the strain energy; or "loading", k_n against its growth, loss_n the plastic work of first loading over
+    the strain energy, energy_n their sum. area: "corrected" for the size of the points, or as "counted". shear_ratio X = T/(mu F): above 0,
     k_t is that of the points that still stick and loss_t follows from their slip (needs the pair's friction).
     periodic as in `solve_half_space`. points: rungs of the ladder, spaced evenly in ln(pressure) from lowest to
     highest pressure [Pa]; between them each quantity is a monotone cubic in logarithms. tol as in `solve_half_space`.
+    progress: called with (rungs done, points) while the ladder is climbed, on first use.
 
-    loss_n is the plastic work of first loading over the elastic energy; energies are per nominal area.
     Closure variable: the pressure [Pa]. Flagged where fewer than 30 points touch or none is open.
     Raises InputError for parameters out of range and whatever `solve_half_space` does not accept.
     """
@@ -72,6 +73,7 @@ class HalfSpace(ContactLaw):
     lowest: float | None = None
     highest: float | None = None
     tol: float = 1e-6
+    progress: Callable[[int, int], object] | None = field(default=None, repr=False, compare=False)
 
     name: ClassVar[str] = "half-space"
     source: ClassVar[str] = "doi:10.1016/S0043-1648(99)00113-1"
@@ -87,13 +89,14 @@ class HalfSpace(ContactLaw):
     ground: ClassVar[str] = "the scan resolves the roughness that touches: at least 30 points in contact, some open"
 
     def __post_init__(self) -> None:
-        for field, words in WORDS.items():
-            if getattr(self, field) not in words:
-                raise InputError(f"half-space: {field} = {getattr(self, field)!r}; use {' or '.join(words)}")
+        for name, words in WORDS.items():
+            if getattr(self, name) not in words:
+                raise InputError(f"half-space: {name} = {getattr(self, name)!r}; use {' or '.join(words)}")
         if not 0 <= self.shear_ratio < 1:
             raise InputError(f"half-space: shear_ratio = {self.shear_ratio}; it must be at least 0 and below 1")
-        if self.points < 4:
-            raise InputError(f"half-space: points = {self.points}; a ladder needs 4 or more")
+        if self.points < 4 or self.points != int(self.points):
+            raise InputError(f"half-space: points = {self.points}; a ladder needs a whole number of 4 or more")
+        object.__setattr__(self, "points", int(self.points))  # the command line reads numbers as floats
         low, high = self.closure_range
         if not 0 < low < high < np.inf:
             raise InputError(f"half-space: pressures from {low:.4g} to {high:.4g} Pa; give 0 < lowest < highest")
@@ -140,9 +143,9 @@ class HalfSpace(ContactLaw):
             "area": contact.area_corrected if self.area == "corrected" else contact.area,
             "k_n": tangent.k_n_unloading if self.stiffness == "unloading" else tangent.k_n_loading,
             "k_t": tangent.k_t,
-            "loss_n": contact.plastic_work / contact.elastic_energy,
+            "loss_n": 0.0 if self.stiffness == "unloading" else contact.plastic_work / contact.elastic_energy,
             "loss_t": 0.0,
-            "energy_n": contact.elastic_energy + contact.plastic_work,
+            "energy_n": contact.elastic_energy + (0.0 if self.stiffness == "unloading" else contact.plastic_work),
             "energy_t": 0.0,
         }
         if self.shear_ratio > 0:
@@ -157,10 +160,12 @@ class HalfSpace(ContactLaw):
         contacts: list[HalfSpaceContact] = []
         for pressure in np.geomspace(*self.closure_range, self.points):
             contacts.append(self.contact_at(float(pressure), start=contacts[-1] if contacts else None))
+            if self.progress is not None:
+                self.progress(len(contacts), self.points)
         return tuple(contacts)
 
     @cached_property
-    def _table(self) -> _Ladder:
+    def _rungs(self) -> _Ladder:
         rows = [self._numbers(contact) for contact in self.ladder]
         return _Ladder(
             pressure=np.geomspace(*self.closure_range, self.points),
@@ -173,7 +178,7 @@ class HalfSpace(ContactLaw):
         from scipy.interpolate import PchipInterpolator
 
         p = np.asarray(closure, dtype=float)
-        table = self._table
+        table = self._rungs
         x, at = np.log(table.pressure), np.log(p)
 
         def between(values: Array) -> Array:

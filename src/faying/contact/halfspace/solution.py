@@ -71,29 +71,42 @@ class HalfSpaceContact:
         """Share of the map's points at hardness [-]."""
         return float(np.count_nonzero(self.at_hardness) / self.traction.size)
 
+    def _border(self, touching: NDArray[np.bool_], other: NDArray[np.bool_]) -> float:
+        """Length of the cell sides between `touching` and `other` points, per map area [1/m]."""
+        sides = []
+        for axis in (1, 0):
+            if self.periodic:
+                next_touching, next_other = np.roll(touching, -1, axis), np.roll(other, -1, axis)
+                here_touching, here_other = touching, other
+            else:
+                edge = [(1, 1) if k == axis else (0, 0) for k in (0, 1)]
+                a, b = np.pad(touching, edge), np.pad(other, edge, constant_values=True)
+                here_touching, next_touching = (np.take(a, range(k, a.shape[axis] - 1 + k), axis) for k in (0, 1))
+                here_other, next_other = (np.take(b, range(k, b.shape[axis] - 1 + k), axis) for k in (0, 1))
+            sides.append(int(np.count_nonzero((here_touching & next_other) | (here_other & next_touching))))
+        (ny, nx), (dx, dy) = touching.shape, self.spacing
+        return float((sides[0] * dy + sides[1] * dx) / (nx * ny * dx * dy))
+
     @property
     def perimeter(self) -> float:
         """Length of the border of the contact, counted along cell sides, per map area [1/m]."""
         touching = self.traction > 0
-        ny, nx = touching.shape
-        if self.periodic:
-            across, along = (int(np.count_nonzero(touching ^ np.roll(touching, 1, axis))) for axis in (1, 0))
-        else:
-            framed = np.pad(touching, 1)
-            across, along = (int(np.count_nonzero(np.diff(framed, axis=axis))) for axis in (1, 0))
-        return float(
-            (across * self.spacing[1] + along * self.spacing[0]) / (nx * ny * self.spacing[0] * self.spacing[1])
-        )
+        return self._border(touching, ~touching)
 
     @property
     def area_corrected(self) -> float:
-        """Real area freed of the pixels' excess along the border [-].
+        """Real area freed of the excess of cells that touch in part [-].
 
         A - (pi - 1 + ln 2)/24 S dx, with S the perimeter: Yastrebov, Anciaux and Molinari 2017,
-        doi:10.1016/j.jmps.2017.07.016. For square cells; dx is the geometric mean of the spacings.
+        doi:10.1016/j.jmps.2017.07.016; for square cells (dx is the geometric mean of the spacings). A cell at hardness
+        touches in full: only the border of elastic cells counts in S, and the area is at least pressure over hardness.
         """
-        dx = (self.spacing[0] * self.spacing[1]) ** 0.5
-        return max(0.0, self.area - (pi - 1 + log(2)) / 24 * self.perimeter * float(dx))
+        touching = self.traction > 0
+        dx = float((self.spacing[0] * self.spacing[1]) ** 0.5)
+        least = 0.0 if self.hardness is None else self.pressure / self.hardness
+        return max(
+            least, self.area - (pi - 1 + log(2)) / 24 * self._border(touching & ~self.at_hardness, ~touching) * dx
+        )
 
     @property
     def gap(self) -> Array:

@@ -1,0 +1,222 @@
+"""Files in and out: X3P, text, units, faults."""
+
+import hashlib
+import zipfile
+
+import numpy as np
+import pytest
+
+from faying import InputError, ReadError, Scan, read_scan
+from faying.surface.read import plausible
+from faying.surface.scan import Profile
+from faying.surface.synthesize import spectral, with_missing
+from faying.surface.write import write_scan
+
+
+@pytest.fixture
+def rough():
+    return with_missing(spectral((40, 56), spacing=(2e-6, 3e-6), D=2.4, Rq=1e-6, seed=1), share=0.02)
+
+
+@pytest.mark.parametrize(("precision", "tolerance"), [("F", 1e-6), ("D", 0.0)])
+def test_x3p_returns_what_was_written(rough, tmp_path, precision, tolerance):
+    back = read_scan(write_scan(rough, tmp_path / "a.x3p", precision=precision))
+    assert isinstance(back, Scan)
+    assert back.spacing == pytest.approx(rough.spacing, rel=1e-15)
+    assert np.array_equal(np.isnan(back.heights), np.isnan(rough.heights))
+    assert np.nanmax(np.abs(back.heights - rough.heights)) <= tolerance * 1e-5
+
+
+@pytest.mark.parametrize(("precision", "steps"), [("I", 2**16), ("L", 2**32)])
+def test_integer_x3p_is_true_to_half_a_step(tmp_path, precision, steps):
+    scan = spectral((40, 40), spacing=1e-6, D=2.4, Rq=1e-6, seed=1)
+    back = read_scan(write_scan(scan, tmp_path / "a.x3p", precision=precision))
+    assert np.abs(back.heights - scan.heights).max() <= 0.51 * np.ptp(scan.heights) / (steps - 4)
+
+
+def test_writing_twice_gives_the_same_bytes(rough, tmp_path):
+    a, b = write_scan(rough, tmp_path / "a.x3p"), write_scan(rough, tmp_path / "b.x3p")
+    assert a.read_bytes() == b.read_bytes()
+
+
+def test_profiles_go_through_x3p_and_text(tmp_path):
+    line = spectral(300, spacing=0.5e-6, D=2.4, Rq=1e-6)
+    back = read_scan(write_scan(line, tmp_path / "a.x3p", precision="D"))
+    assert isinstance(back, Profile)
+    assert np.array_equal(back.heights, line.heights)
+    text = read_scan(write_scan(line, tmp_path / "a.txt", xy_unit="um", z_unit="nm"), xy_unit="um", z_unit="nm")
+    assert isinstance(text, Profile)
+    assert text.spacing == pytest.approx(line.spacing, rel=1e-9)
+    assert np.allclose(text.heights, line.heights, atol=1e-16)
+
+
+def test_text_returns_what_was_written_in_any_order_of_lines(rough, tmp_path):
+    path = write_scan(rough, tmp_path / "a.csv", xy_unit="mm", z_unit="um")
+    lines = path.read_text().splitlines()
+    np.random.default_rng(0).shuffle(lines)
+    path.write_text("\n".join(lines))
+    back = read_scan(path, xy_unit="mm", z_unit="um")
+    assert back.spacing == pytest.approx(rough.spacing, rel=1e-6)
+    assert np.allclose(back.heights, rough.heights, atol=1e-14, equal_nan=True)
+
+
+@pytest.mark.parametrize("separator", [",", ";", " ", "\t"])
+def test_separators(tmp_path, separator):
+    path = tmp_path / "a.txt"
+    path.write_text("\n".join(separator.join(map(str, (x, y, x + 2 * y))) for y in range(4) for x in range(3)))
+    assert read_scan(path, "um", "um").heights[3, 2] == pytest.approx(8e-6)
+
+
+def test_text_without_unit_is_asked_for_it(rough, tmp_path):
+    path = write_scan(rough, tmp_path / "a.csv", xy_unit="mm", z_unit="um")
+    with pytest.raises(InputError, match=r"states no unit; give xy_unit and z_unit.*--xy-unit mm --z-unit um"):
+        read_scan(path)
+    with pytest.raises(InputError, match="give z_unit"):
+        read_scan(path, xy_unit="mm")
+    with pytest.raises(InputError, match="xy_unit"):
+        read_scan(path, xy_unit="kg", z_unit="um")
+
+
+def test_a_unit_against_the_file_is_refused(rough, tmp_path):
+    path = write_scan(rough, tmp_path / "a.x3p")
+    with pytest.raises(InputError, match="states its units"):
+        read_scan(path, xy_unit="mm", z_unit="um")
+
+
+@pytest.mark.parametrize("wrong", [1e9, 1e-9])
+def test_a_unit_wrong_by_1e9_is_noticed(tmp_path, wrong):
+    scan = spectral((40, 40), spacing=5e-6, D=2.4, Rq=1e-6)
+    heights = write_scan(scan.with_heights(scan.heights * wrong), tmp_path / "z.x3p", precision="D")
+    with pytest.raises(ReadError, match="check the unit"):
+        read_scan(heights)
+    lateral = write_scan(Scan(heights=scan.heights, spacing=(5e-6 * wrong, 5e-6 * wrong)), tmp_path / "x.x3p")
+    with pytest.raises(ReadError, match="check the unit"):
+        read_scan(lateral)
+    plausible(scan)
+
+
+def test_missing_empty_and_unknown_files(tmp_path):
+    with pytest.raises(ReadError, match="no such file"):
+        read_scan(tmp_path / "none.x3p")
+    with pytest.raises(ReadError, match="not a file"):
+        read_scan(tmp_path)
+    empty = tmp_path / "empty.csv"
+    empty.write_text("\n")
+    with pytest.raises(ReadError, match="empty"):
+        read_scan(empty)
+    other = tmp_path / "a.x3p"
+    other.write_bytes(b"something else entirely")
+    with pytest.raises(ReadError, match="not an X3P"):
+        read_scan(other)
+    strange = tmp_path / "a.xyzzy"
+    strange.write_bytes(bytes(range(256)) * 10)
+    with pytest.raises(ReadError, match=r"SurfaceTopography|no format|damaged"):
+        read_scan(strange)
+
+
+@pytest.mark.parametrize(
+    ("text", "match"),
+    [
+        ("0,0,1\n1,0,2\n0,1,3\n", "3 points"),
+        ("0,0,1\n1,0,2\n0,1,3\nx,y,z\n", "line 4"),
+        ("0,0,1\n1,0,2\n0,1,3\n1,1,4\n2,0,5\n", "cut off"),
+        ("0,0,1\n1,0,2\n0,1,3\n1.4,1,4\n1.7,2,1\n", "not evenly spaced|do not fill"),
+        ("0,0,1\n1,0,2\n2,0,3\n3,0,4\n", "all y are the same"),
+        ("nan,0,1\n1,0,2\n0,1,3\n1,1,4\n", "some x are missing"),
+        ("0,1\n1,2\n1,3\n2,4\n", "share one x"),
+        ("0,0,1\n1,0,2\n0,1,3\n1,1,4\n1,1,4\n", "once each"),
+    ],
+)
+def test_faulty_text(tmp_path, text, match):
+    path = tmp_path / "a.csv"
+    path.write_text(text)
+    with pytest.raises(ReadError, match=match):
+        read_scan(path, "um", "um")
+
+
+def test_all_missing_text(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(f"{x},{y},nan" for y in range(4) for x in range(4)))
+    with pytest.raises(ReadError, match="every point is missing"):
+        read_scan(path, "um", "um")
+
+
+def repacked(source, target, **changes):
+    """Copy an X3P with some members replaced (None leaves one out)."""
+    with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
+        for name in old.namelist():
+            content = changes.get(name.replace("/", "_").replace(".", "_"), old.read(name))
+            if content is not None:
+                new.writestr(name, content)
+    return target
+
+
+def xml_of(path):
+    return zipfile.ZipFile(path).read("main.xml").decode()
+
+
+def test_damaged_x3p(rough, tmp_path):
+    good = write_scan(rough, tmp_path / "good.x3p")
+    xml = xml_of(good)
+    cases = {
+        "holds no main.xml": {"main_xml": None},
+        "holds no bindata": {"bindata_data_bin": None},
+        "checksum": {"bindata_data_bin": b"\0" * (40 * 56 * 4)},
+        "not well-formed": {"main_xml": xml[:-40]},
+        "document type": {"main_xml": xml.replace("<p:ISO", '<!DOCTYPE a [<!ENTITY b "c">]><p:ISO', 1)},
+        "whole numbers": {"main_xml": xml.replace("<SizeX>56", "<SizeX>5.6")},
+        "cut off": {"main_xml": xml.replace("<SizeX>56", "<SizeX>57")},
+        "more than can be read": {"main_xml": xml.replace("<SizeX>56", "<SizeX>99999999")},
+        "data type 'Q'": {"main_xml": xml.replace("<DataType>F<", "<DataType>Q<")},
+        "only evenly spaced": {"main_xml": xml.replace("<CX><AxisType>I", "<CX><AxisType>A")},
+        "is not a number": {"main_xml": xml.replace("<Increment>2e-06", "<Increment>two")},
+        "positive number of metres": {"main_xml": xml.replace("<Increment>2e-06", "<Increment>-2e-06")},
+        "lacks Record1/Axes/CX/Increment": {"main_xml": xml.replace("<Increment>2e-06</Increment>", "")},
+    }
+    for number, (match, change) in enumerate(cases.items()):
+        with pytest.raises(ReadError, match=match):
+            read_scan(repacked(good, tmp_path / f"{number}.x3p", **change))
+    cut = tmp_path / "cut.x3p"
+    cut.write_bytes(good.read_bytes()[:-300])
+    with pytest.raises(ReadError, match="cut off or damaged"):
+        read_scan(cut)
+
+
+def test_x3p_with_a_mask_and_with_heights_in_the_xml(tmp_path):
+    scan = spectral((8, 12), spacing=1e-6, D=2.4, Rq=1e-6)
+    good = write_scan(scan, tmp_path / "good.x3p", precision="D")
+    xml = xml_of(good)
+    valid = np.ones((8, 12), bool)
+    valid[2, 3] = valid[7, 11] = False
+    with zipfile.ZipFile(good, "a") as archive:
+        archive.writestr("bindata/valid.bin", np.packbits(valid.ravel(), bitorder="little").tobytes())
+    link = "<PointDataLink>bindata/data.bin</PointDataLink>"
+    masked = xml.replace(link, link + "<ValidPointsLink>bindata/valid.bin</ValidPointsLink>")
+    back = read_scan(repacked(good, tmp_path / "masked.x3p", main_xml=masked))
+    assert np.array_equal(~np.isnan(back.heights), valid)
+    listed = "<DataList>" + "".join(f"<Datum>{v!r}</Datum>" for v in map(float, scan.heights.ravel())) + "</DataList>"
+    start, end = xml.index("<DataLink>"), xml.index("</DataLink>") + len("</DataLink>")
+    inline = xml[:start] + listed + xml[end:]
+    back = read_scan(repacked(good, tmp_path / "list.x3p", main_xml=inline))
+    assert np.array_equal(back.heights, scan.heights)
+    with pytest.raises(ReadError, match="lists 95 heights"):
+        read_scan(repacked(good, tmp_path / "short.x3p", main_xml=inline.replace("<Datum>", "<Other>", 1).replace("</Datum>", "</Other>", 1)))  # fmt: skip
+
+
+def test_writing_refuses_what_it_cannot_do(rough, tmp_path):
+    with pytest.raises(InputError, match="written as"):
+        write_scan(rough, tmp_path / "a.sur")
+    with pytest.raises(InputError, match="text holds no unit"):
+        write_scan(rough, tmp_path / "a.csv")
+    with pytest.raises(InputError, match="cannot mark missing"):
+        write_scan(rough, tmp_path / "a.x3p", precision="I")
+    with pytest.raises(InputError, match="precision"):
+        write_scan(rough, tmp_path / "a.x3p", precision="Z")
+    with pytest.raises(InputError, match="cannot be written"):
+        write_scan(rough, tmp_path / "none" / "a.x3p")
+
+
+def test_the_checksum_inside_is_md5_of_the_heights(rough, tmp_path):
+    path = write_scan(rough, tmp_path / "a.x3p")
+    data = zipfile.ZipFile(path).read("bindata/data.bin")
+    assert hashlib.md5(data).hexdigest().upper() in xml_of(path)

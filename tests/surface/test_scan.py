@@ -1,0 +1,83 @@
+"""Scans and profiles: frozen, checked, in metres."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from faying import InputError, Scan
+from faying.surface.scan import Profile, usable
+
+
+def test_scan_is_frozen_and_copies_its_heights():
+    z = np.zeros((4, 6))
+    scan = Scan(heights=z, spacing=(2e-6, 3e-6))
+    z[0, 0] = 5.0
+    assert scan.heights[0, 0] == 0
+    assert scan.shape == (4, 6)
+    assert scan.size == pytest.approx((12e-6, 12e-6))
+    with pytest.raises(ValueError, match="read-only"):
+        scan.heights[0, 0] = 1.0
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        scan.spacing = (1.0, 1.0)
+
+
+def test_masked_points_count_as_missing():
+    z = np.ma.masked_greater(np.arange(12.0).reshape(3, 4), 9.5)
+    scan = Scan(heights=z, spacing=(1e-6, 1e-6))
+    assert scan.missing == 2
+
+
+def test_profiles_of_a_scan_keep_the_right_spacing():
+    scan = Scan(heights=np.arange(12.0).reshape(3, 4), spacing=(1e-6, 2e-6))
+    row, column = scan.profile("x", 1), scan.profile("y", 2)
+    assert list(row.heights) == [4, 5, 6, 7]
+    assert row.spacing == 1e-6
+    assert list(column.heights) == [2, 6, 10]
+    assert column.spacing == 2e-6
+    assert column.length == pytest.approx(6e-6)
+
+
+@pytest.mark.parametrize(
+    ("heights", "spacing", "match"),
+    [
+        (np.zeros(5), (1e-6, 1e-6), "1 dimensions"),
+        (np.zeros((1, 5)), (1e-6, 1e-6), "too few points"),
+        (np.full((3, 3), np.inf), (1e-6, 1e-6), "infinite"),
+        ([["a", "b"], ["c", "d"]], (1e-6, 1e-6), "real numbers"),
+        (np.zeros((3, 3)), 1e-6, "two distances"),
+        (np.zeros((3, 3)), (1e-6, 0.0), "positive"),
+        (np.zeros((3, 3)), (1e-6, "1 um"), "not a length"),
+        (np.zeros((3, 3)), (float("nan"), 1e-6), "positive"),
+    ],
+)
+def test_what_is_no_scan_is_refused(heights, spacing, match):
+    with pytest.raises(InputError, match=match):
+        Scan(heights=heights, spacing=spacing)
+
+
+def test_profile_index_and_direction_are_checked():
+    scan = Scan(heights=np.zeros((3, 4)), spacing=(1e-6, 1e-6))
+    with pytest.raises(InputError, match="has 3 of them"):
+        scan.profile("x", 3)
+    with pytest.raises(InputError, match='"x" or "y"'):
+        scan.profile("z", 0)
+
+
+@pytest.mark.parametrize(
+    ("heights", "match"),
+    [
+        (np.full((20, 20), np.nan), "every point is missing"),
+        (np.full((20, 20), 3e-6), "all heights are the same"),
+        (np.random.default_rng(0).normal(size=(20, 4)), "at least 16"),
+        (np.where(np.arange(400).reshape(20, 20) % 5 < 3, np.nan, np.arange(400.0).reshape(20, 20)), "60 %"),
+    ],
+)
+def test_heights_that_carry_no_statistic(heights, match):
+    with pytest.raises(InputError, match=match):
+        usable(Scan(heights=heights, spacing=(1e-6, 1e-6)))
+
+
+def test_profile_needs_one_row():
+    with pytest.raises(InputError, match="one row"):
+        Profile(heights=np.zeros((3, 3)), spacing=1e-6)
