@@ -45,7 +45,12 @@ def dimensions(x: np.ndarray) -> Dimensions:
 
 def in_plane(d: Dimensions) -> np.ndarray:
     """First five elastic frequencies [Hz] of both T's in one piece, plane stress, biquadratic elements."""
-    half, arm, flange, top = d.stem_thickness / 2, d.flange_length / 2, d.flange_thickness, d.flange_thickness + d.stem_height
+    half, arm, flange, top = (
+        d.stem_thickness / 2,
+        d.flange_length / 2,
+        d.flange_thickness,
+        d.flange_thickness + d.stem_height,
+    )
     x = np.concatenate([np.linspace(-arm, -half, 4), np.linspace(-half, half, 4)[1:], np.linspace(half, arm, 4)[1:]])
     side = np.concatenate([np.linspace(0, flange, 4), np.linspace(flange, top, 25)[1:]])
     mesh = skfem.MeshQuad.init_tensor(x * 1e-3, np.concatenate([-side[:0:-1], side]) * 1e-3)
@@ -84,11 +89,16 @@ def study_at_4_kn(d: Dimensions) -> np.ndarray:
     return result.comparison.predicted[0]
 
 
+def misfit(x: np.ndarray, ratio: np.ndarray) -> np.ndarray:
+    """Return ln(model over test) for each of the five modes."""
+    return np.log(in_plane(dimensions(x)) * ratio / TEST)
+
+
 def main() -> None:
     """Alternate between the plane model and the study until the dimensions rest."""
     x, ratio = START, np.ones(5)
     for _ in range(6):
-        fit = least_squares(lambda v: np.log(in_plane(dimensions(v)) * ratio / TEST), x, bounds=BOUNDS, x_scale=START, diff_step=1e-3)  # noqa: B023
+        fit = least_squares(misfit, x, args=(ratio,), bounds=BOUNDS, x_scale=START, diff_step=1e-3)
         moved, x = np.abs(fit.x / x - 1).max(), fit.x
         found = study_at_4_kn(dimensions(x))
         ratio = np.sqrt(ratio * found / in_plane(dimensions(x)))  # halfway, so that it does not swing

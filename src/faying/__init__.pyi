@@ -8,9 +8,10 @@ from .materials import CATALOGUE, RIGID, ContactPair, Material
 from .result import Result
 from .study import Study, run
 from .surface import synthesize
-from .surface.combine import combine
+from .surface.combine import Combined, combine
 from .surface.fractal import FractalFit, fit_fractal
 from .surface.read import read_scan
 from .surface.scan import Profile, Scan
+from .surface.write import write_scan
 
 __version__: str

@@ -1,10 +1,12 @@
 """Several laws on one surface."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
 from faying import JK, RIGID, ContactPair, InputError, Material
-from faying.contact import GreenwoodWilliamson, SurfaceInputs, TabulatedLaw, compare, laws_of_surface
+from faying.contact import GreenwoodWilliamson, SurfaceInputs, TabulatedLaw, compare, laws, laws_of_surface
 
 PAIR = ContactPair(Material(name="m", E=200e9, nu=0.3, yield_strength=355e6), RIGID)
 SURFACE = SurfaceInputs(
@@ -52,6 +54,49 @@ def test_beyond_a_law_there_is_nothing() -> None:
     assert r.valid.tolist() == [False, True, True, True, False, False, False]
     assert np.isnan(table.spread("k_n")).tolist() == np.isnan(r.k_n).tolist()
     assert table.responses["JK"].k_n[0] == pytest.approx(float(jk.at_pressure(P[0]).k_n), rel=1e-9)
+
+
+def test_laws_do_not_depend_on_the_units() -> None:
+    # lengths in units of 1 mm, forces of 1 kN: every number changes, no dimensionless answer does
+    L, S = 1e3, 1e-9  # 1 m = 1000 mm, 1 Pa = 1e-9 kN/mm2
+    values = vars(SURFACE)
+    other = SurfaceInputs(**(values | {
+        "G": values["G"] * L, "scan_area": values["scan_area"] * L**2, "m0": values["m0"] * L**2,
+        "m4": values["m4"] / L**2, "h_rms": values["h_rms"] * L, "shortest": values["shortest"] * L,
+    }))  # fmt: skip
+    m = PAIR.first
+    pair = ContactPair(Material(name="m", E=m.E * S, nu=m.nu, yield_strength=(m.yield_strength or 0) * S), RIGID)
+    units = {"pressure": S, "area": 1.0, "k_n": S / L, "k_t": S / L, "loss_n": 1.0, "loss_t": 1.0, "energy_n": S * L,
+             "energy_t": S * L}  # fmt: skip
+    here = compare(laws_of_surface(SURFACE, PAIR)[0], P)
+    there = compare(laws_of_surface(other, pair)[0], P * S)
+    assert here.responses.keys() == there.responses.keys()
+    for name, response in here.responses.items():
+        assert there.responses[name].valid.tolist() == response.valid.tolist(), name
+        for quantity, value in response.quantities().items():
+            expected = pytest.approx(value * units[quantity], rel=1e-8, abs=1e-300, nan_ok=True)
+            assert there.responses[name].quantities()[quantity] == expected, (name, quantity)
+
+
+@dataclass(frozen=True)
+class Map:
+    """Heights with their spacing, as a law of a scan takes them."""
+
+    heights: np.ndarray
+    spacing: tuple[float, float]
+
+
+def test_a_law_of_the_scan_itself_takes_part_when_named() -> None:
+    if "HalfSpace" not in laws():
+        pytest.skip("this checkout has no half-space law")
+    x = np.arange(32) * 1e-6
+    waves = 1e-7 * np.cos(2 * np.pi * x / 32e-6)
+    made, left_out = laws_of_surface(
+        SURFACE, PAIR, names=["half-space", "jk"], scan=Map(waves[:, None] + waves, (1e-6, 1e-6))
+    )
+    assert left_out == {}
+    assert list(made) == ["half-space", "JK"]
+    assert "half-space" not in laws_of_surface(SURFACE, PAIR)[0]
 
 
 def test_pressures_must_be_positive() -> None:

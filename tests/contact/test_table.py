@@ -46,15 +46,15 @@ def test_pressures_on_a_kink_are_as_good() -> None:
     read, exact = law.at_pressure(p, exact=False), law.at_pressure(p, exact=True)
     for quantity, value in exact.quantities().items():
         assert read.quantities()[quantity] == pytest.approx(value, rel=1e-6, abs=1e-14), quantity
-    assert not law._table.good.all()
+    assert not law._pressure_table.good.all()
 
 
 def test_only_many_pressures_read_the_table() -> None:
     law = SPECIMEN.with_(G=2e-10)
     few = law.at_pressure(np.full(MANY, 1e6))
-    assert "_table" not in vars(law)
+    assert "_pressure_table" not in vars(law)
     many = law.at_pressure(np.full(MANY + 1, 1e6))
-    assert "_table" in vars(law)
+    assert "_pressure_table" in vars(law)
     assert float(many.k_n[0]) == pytest.approx(float(few.k_n[0]), rel=1e-6)
 
 

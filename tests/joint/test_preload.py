@@ -83,7 +83,9 @@ def test_one_load_at_once_or_in_steps_gives_the_same_pressure():
 
 def test_preload_beyond_the_law():
     structure = bars()
-    with pytest.raises(faying.InputError, match=r"presses the joint to .* MPa, and 100% of what is in contact to more than JK covers"):
+    with pytest.raises(
+        faying.InputError, match=r"presses the joint to .* MPa, and 100% of what is in contact to more than JK covers"
+    ):
         structure.assembly().solve(squeeze(structure, 1e6))
 
 

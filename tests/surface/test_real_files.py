@@ -166,7 +166,7 @@ def test_mutated_files_are_read_or_refused_in_words(scans, tmp_path):
 
 @pytest.mark.slow
 def test_many_mutated_files(scans, tmp_path):
-    fuzz(scans, tmp_path, 150, 2)
+    fuzz(scans, tmp_path, 40, 2)
 
 
 def test_fits_of_mutated_text_scans_end_in_words(scans):

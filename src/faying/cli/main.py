@@ -8,6 +8,7 @@ import click
 
 # command -> (module, one line for `faying --help`)
 COMMANDS = {
+    "asperity": ("asperity", "Press one asperity by finite elements: force, area, stresses."),
     "init": ("init", "Write a commented study file to start from."),
     "law": ("law", "Curves of a contact law: area, stiffness and loss against pressure."),
     "models": ("models", "List the contact models with their sources, inputs and ranges."),

@@ -19,7 +19,8 @@ def __getattr__(name: str) -> Any:
     try:
         return _from_stub(name)
     except AttributeError:
-        file = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
-        if name[:1].isupper() and find_spec(f"{__name__}.{file}") is not None:
-            return getattr(import_module(f"{__name__}.{file}"), name)
+        if name[:1].isupper():
+            for file in (re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower(), name.lower()):
+                if find_spec(f"{__name__}.{file}") is not None:
+                    return getattr(import_module(f"{__name__}.{file}"), name)
         raise

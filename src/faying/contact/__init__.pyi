@@ -2,7 +2,7 @@
 from . import asperity
 from .compare import Comparison, compare, laws_of_surface
 from .greenwood_williamson import GreenwoodWilliamson
-from .halfspace import HalfSpace, solve_half_space
+from .halfspace import HalfSpace, HalfSpaceContact, solve_half_space
 from .inputs import SurfaceInputs
 from .jackson_streator import JacksonStreator
 from .jk import JK
@@ -22,6 +22,7 @@ __all__ = [
     "ContactLaw",
     "GreenwoodWilliamson",
     "HalfSpace",
+    "HalfSpaceContact",
     "JacksonStreator",
     "MajumdarBhushan",
     "MoragEtsion",

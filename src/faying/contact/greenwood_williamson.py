@@ -15,7 +15,7 @@ from faying.errors import InputError
 from faying.materials import ContactPair
 
 # what is summed: heights to this many standard deviations, with this many points on each panel
-HIGHEST, NODES = 9.0, 12
+HIGHEST, NODES = 8.5, 10
 FARTHEST, NEAREST = 6.0, -3.0
 
 
@@ -87,12 +87,12 @@ class GreenwoodWilliamson(ContactLaw):
     def _nodes(self) -> tuple[Array, Array]:
         """Interferences t in units of sigma, and the weighted values of force, area, k_n, energy there (n, 4).
 
-        Panels end where the asperity's formulas change and grow threefold from there, up to a quarter of sigma; on
+        Panels end where the asperity's formulas change and grow threefold from there, up to half of sigma; on
         each t = a + (b-a) s^2, so that the square root at first touch is a polynomial in s.
         """
         end = HIGHEST - NEAREST
         edges = [0.0, *(t for t, _ in self._jumps if t < end)]
-        even = np.linspace(0, end, int(4 * end) + 1)
+        even = np.linspace(0, end, int(2 * end) + 1)
         first = min([*edges[1:], even[1]])
         graded = np.geomspace(first, even[1], 1 + int(np.ceil(np.log(even[1] / first) / np.log(3))))[:-1]
         cuts = np.unique(np.concatenate([even, edges, graded]))

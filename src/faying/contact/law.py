@@ -133,7 +133,7 @@ class ContactLaw(ABC):
                 f"{self.greatest_pressure:.4g} Pa; lower the load or widen the joint"
             )
         flat = p.ravel()
-        read = self._table.at if exact is False or (exact is None and p.size > MANY) else self._exact
+        read = self._pressure_table.at if exact is False or (exact is None and p.size > MANY) else self._exact
         open_points = flat == 0
         if not open_points.any():
             return read(flat).reshaped(p.shape)
@@ -147,7 +147,7 @@ class ContactLaw(ABC):
         return replace(self.at_closure(self._closure_at(pressure)), pressure=pressure.copy())
 
     @cached_property
-    def _table(self) -> PressureTable:
+    def _pressure_table(self) -> PressureTable:
         least, greatest = np.exp(self._grid[1][[0, -1]])
         return PressureTable(self._exact, float(least), float(greatest))
 

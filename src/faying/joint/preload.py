@@ -21,7 +21,7 @@ from faying.joint.seat import Seat
 
 Array = NDArray[np.float64]
 AGED = 15  # conjugate-gradient steps after which a new factorisation is cheaper
-BEYOND = 0.05  # share of the contact that may lie beyond the end of the law, at the rim of a hole say; it is flagged
+BEYOND = 0.1  # share of the contact that may lie beyond the end of the law, at the rim of a hole say; it is flagged
 SETTLED = 1e-4  # imbalance below which k_t is held
 
 

@@ -67,7 +67,7 @@ def power_spectrum(spectrum: Spectrum, fits: Mapping[str, FractalFit | str], ax:
     ax.set_ylabel("power per frequency [m³]")
     top = ax.secondary_xaxis("top", functions=(_inverse, _inverse))
     top.set_xlabel("wavelength [m]")
-    ax.legend(fontsize="small")
+    ax.legend(fontsize="small", loc="upper right")
     return ax
 
 

@@ -116,7 +116,7 @@ def find_spikes(scan: Scan | Profile, threshold: float = SPIKE) -> Mask:
     """Mark single points that stand out from the median of their neighbours (5 points of a line, 3 x 3 of a scan).
 
     A point is a spike where it differs from that median by more than `threshold` times the robust standard
-    deviation (1.4826 times the median of the absolute differences) over the whole scan and by more than `threshold`
+    deviation (1.4826 times the median of the absolute differences, or a quarter of the median step if more) and by more than `threshold`
     times the mean difference in the 15 points (15 x 15) around it. Missing points are never spikes.
     """
     from scipy.ndimage import median_filter, uniform_filter
@@ -124,10 +124,12 @@ def find_spikes(scan: Scan | Profile, threshold: float = SPIKE) -> Mask:
     hole = np.isnan(scan.heights)
     heights = filled(scan).heights
     away = np.abs(heights - median_filter(heights, size=5 if heights.ndim == 1 else 3, mode="nearest"))
-    nonzero = away[(away > 0) & ~hole]
-    if nonzero.size == 0:
+    # on smooth heights the median differs from the point at crests alone, so the step between neighbours sets a floor
+    steps = np.concatenate([np.abs(np.diff(heights, axis=axis)).ravel() for axis in range(heights.ndim)])
+    positive = away[(away > 0) & ~hole]
+    if positive.size == 0:
         return np.zeros(hole.shape, bool)
-    scale = 1.4826 * float(np.median(nonzero))
+    scale = max(1.4826 * float(np.median(positive)), 0.25 * float(np.median(steps)))
     candidates = (away > threshold * scale) & ~hole
     if not candidates.any():
         return np.zeros(hole.shape, bool)

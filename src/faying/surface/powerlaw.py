@@ -18,6 +18,10 @@ from faying.surface.spectrum import Spectrum
 
 LINES = 8.0  # misfit and
 GAPS = 0.8  # rms of ln(density) about a parabola above which a spectrum is taken as one of separate lines
+LINE_TEXT = (
+    "the power lies in separate lines (a series of waves, a regular texture, or marks all one way, for which profiles "
+    "across them are better)"
+)
 BREADTH = 0.35  # standard deviation of the smoothing over ln(frequency); wide against ln(1.5), the usual line distance
 
 
@@ -201,46 +205,66 @@ def supported_band(spectrum: Spectrum, *, resolution: float | None = None) -> tu
 def fit_band(spectrum: Spectrum, low: float, high: float, *, fixed: bool = False) -> tuple[PowerLaw, tuple[str, ...]]:
     """Fit the widest part of the band that a power law with noise describes; say in words what was cut.
 
-    The upper end comes down where the white term is significantly negative (instrument blur), the lower end goes up
-    where the lowest octave lies significantly off the law fitted above it (waviness, form, or roll-off).
+    A band passes where its misfit is at most 1.6, its white term not significantly negative (blur), and its lowest
+    octave not significantly off the law fitted above it (waviness, roll-off); significant is 3 standard errors. Bands
+    are cut in steps of 2^(1/2) at either end, the widest tried first, down to a factor of 5; where none passes the one
+    of least misfit is taken, and a remark says so. A spectrum of separate lines goes to `fit_lines`.
     """
     law = fit(spectrum, low, high)
-    notes: list[str] = []
     if law.misfit > LINES and _gaps(law, spectrum) > GAPS:
         return fit_lines(spectrum, low / 2, high), (
             "the spectrum consists of lines (as a Weierstrass-Mandelbrot series)",
         )
-    if fixed:
+    if fixed or _passes(spectrum, law, low, high):
         return law, ()
-    top, bottom = high, low
-    for _ in range(12):
-        white = law.covariance[2, 2] ** 0.5
-        level = law.noise / (np.exp(law.log_level) / (2 * pi * law.pivot if spectrum.axes == 2 else 2.0))
-        if level < -3 * white and top > 8 * bottom:
-            top /= 2**0.5
+    steps = int(2 * np.log2(high / low) + 1e-9)
+    ends = [(a, b) for total in range(1, steps + 1) for a in range(total + 1) if (b := total - a) >= 0]
+    tried = []
+    for a, b in ends:
+        bottom, top = low * 2 ** (a / 2), high / 2 ** (b / 2)
+        if top < 5 * bottom:
+            continue
+        try:
             law = fit(spectrum, bottom, top)
-        else:
-            break
-    if top < high:
-        notes.append(f"short wavelengths are damped (blur or roll-off): band ends at {top:.4g} 1/m")
-    for _ in range(12):
-        if top < 8 * bottom:
-            break
-        octave = (spectrum.frequency >= bottom) & (spectrum.frequency < 2 * bottom) & (spectrum.density > 0)
+        except NotConverged:
+            continue
+        tried.append((law.misfit, bottom, top, law))
+        if _passes(spectrum, law, bottom, top):
+            return law, _cut_in_words(low, high, bottom, top)
+    if not tried:
+        return fit(spectrum, low, high), ("no part of the band obeys a power law",)
+    _, bottom, top, law = min(tried, key=lambda entry: entry[0])
+    return law, (
+        *_cut_in_words(low, high, bottom, top),
+        "no part of the band obeys a power law; the least bad one is used",
+    )
+
+
+def _cut_in_words(low: float, high: float, bottom: float, top: float) -> tuple[str, ...]:
+    words = []
+    if top < high * 0.999:
+        words.append(f"waves under {1 / top:.3g} m lie off the power law (blur, noise or roll-off) and were left out")
+    if bottom > low * 1.001:
+        words.append(f"waves over {1 / bottom:.3g} m lie off the power law (form, lay or roll-off) and were left out")
+    return tuple(words)
+
+
+def _passes(spectrum: Spectrum, law: PowerLaw, bottom: float, top: float) -> bool:
+    level = np.exp(law.log_level) / (2 * pi * law.pivot if spectrum.axes == 2 else 2.0)
+    if law.misfit > 1.6 or law.noise / level < -3 * law.covariance[2, 2] ** 0.5:
+        return False
+    octave = (spectrum.frequency >= bottom) & (spectrum.frequency < 2 * bottom) & (spectrum.density > 0)
+    if top < 5 * bottom or not octave.any():
+        return True
+    try:
         upper = fit(spectrum, 2 * bottom, top)
-        predicted, sigma = _predict(spectrum, upper, spectrum.frequency[octave])
-        spread = spectrum.spread[octave] * max(1.0, upper.misfit) ** 0.5
-        weight = 1 / spread**2
-        excess = float(np.sum(weight * (spectrum.density[octave] / predicted - 1)) / weight.sum())
-        error = float((1 / weight.sum() + np.average(sigma**2, weights=weight)) ** 0.5)
-        if abs(excess) > 3 * error:
-            bottom *= 2**0.5
-            law = fit(spectrum, bottom, top)
-        else:
-            break
-    if bottom > low:
-        notes.append(f"long wavelengths lie off the power law (form, lay or roll-off): band starts at {bottom:.4g} 1/m")
-    return law, tuple(notes)
+    except NotConverged:
+        return True
+    predicted, sigma = _predict(spectrum, upper, spectrum.frequency[octave])
+    spread = spectrum.spread[octave] * max(1.0, upper.misfit) ** 0.5
+    weight = 1 / spread**2
+    excess = float(np.sum(weight * (spectrum.density[octave] / predicted - 1)) / weight.sum())
+    return abs(excess) <= 3 * float((1 / weight.sum() + np.average(sigma**2, weights=weight)) ** 0.5)
 
 
 def _predict(spectrum: Spectrum, law: PowerLaw, f: Array) -> tuple[Array, Array]:

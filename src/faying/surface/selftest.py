@@ -73,8 +73,7 @@ def self_test(
             fit = fit_fractal(fake, method, **options)
         except FayingError:
             continue
-        if 0 < fit.G < float("inf"):
-            rows.append((D, fit.D, _log_density(fit, pivot, c) - level))
+        rows.append((D, fit.D, _log_density(fit, pivot, c) - level))
     if len(rows) < max(9, rounds // 2):
         raise NotConverged(f"{method} failed on {rounds - len(rows)} of {rounds} synthetic surfaces like this scan")
     return _corrected(scan, raw, np.array(rows), pivot, options, student)
@@ -113,10 +112,14 @@ def _corrected(
         raise NotConverged(f"{raw.method} hardly answers to D on surfaces like this scan (gain {gain:.2f}); use psd")
     D = (raw.D - offset) / gain
     residual = (rows[:, 1] - offset - gain * rows[:, 0]) / gain
-    # the level's error goes with the error of D: subtract what D's own correction explains
-    shift = float(rows[:, 2].mean())
+    # where the found D leaves 2 .. 3 there is no G, hence no level
+    sound = np.isfinite(rows[:, 2])
+    if sound.sum() < 6 or not np.isfinite(_log_density(raw, pivot, c)):
+        raise NotConverged(f"{raw.method} finds no G on surfaces like this scan; use psd")
+    shift = float(rows[sound, 2].mean())
     free = len(rows) - 2
-    covariance = np.cov(np.stack([rows[:, 2], residual])) * (len(rows) - 1) / free
+    covariance = np.cov(np.stack([rows[sound, 2], residual[sound]])) * (sound.sum() - 1) / (sound.sum() - 2)
+    covariance[1, 1] = float(residual @ residual) / free
     size = max(scan.heights.shape)
     scale = min(1.0, LARGEST / size)
     middle = float(rows[:, 0].mean())

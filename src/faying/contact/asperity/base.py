@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import cache
 from importlib import import_module
 from inspect import isabstract, isclass
 from math import pi, sqrt
@@ -153,8 +154,8 @@ class PowerModel(AsperityModel):
         return Curve(*out)
 
 
-def models() -> dict[str, type[AsperityModel]]:
-    """Return every single-asperity model by the name of its class, in alphabetical order."""
+@cache
+def _found() -> tuple[tuple[str, type[AsperityModel]], ...]:
     package = import_module("faying.contact.asperity")
     found: dict[str, type[AsperityModel]] = {}
     for entry in iter_modules(package.__path__):
@@ -163,4 +164,9 @@ def models() -> dict[str, type[AsperityModel]]:
             own = isclass(value) and issubclass(value, AsperityModel) and value.__module__ == module.__name__
             if own and not isabstract(value):
                 found[name] = value
-    return dict(sorted(found.items()))
+    return tuple(sorted(found.items()))
+
+
+def models() -> dict[str, type[AsperityModel]]:
+    """Return every single-asperity model by the name of its class, in alphabetical order."""
+    return dict(_found())

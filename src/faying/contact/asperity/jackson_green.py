@@ -64,7 +64,7 @@ class JacksonGreenBase(AsperityModel):
 
     def _work(self, x: Array, form: str) -> Array:
         """Integral of P from 1.9 to x > 1.9 by Gauss-Legendre in ln x, on panels of a factor of 8."""
-        t, w = np.polynomial.legendre.leggauss(20)
+        t, w = np.polynomial.legendre.leggauss(12)
         length = np.log(x / ELASTIC_END)
         panels = max(1, int(np.ceil(length.max(initial=0.0) / np.log(8))))
         total = np.zeros_like(x)

@@ -81,6 +81,7 @@ class Body:
 
     @cached_property
     def virgin(self) -> State:
+        """The state before any load."""
         points = 4 * len(self.elements)
         return State(plastic=np.zeros((points, 4)), hardened=np.zeros(points))
 
@@ -143,7 +144,9 @@ class Body:
         returned = return_map(self.flow, self.strain(unknowns), state.plastic, state.hardened)
         pull = (returned.stress * self._weight[:, None]).reshape(-1, 1, 16)
         local = (pull @ self._B).reshape(-1)
-        force = np.bincount(self._dofs.reshape(-1), weights=local, minlength=self.size + 1)[: self.size]
+        force = np.asarray(
+            np.bincount(self._dofs.reshape(-1), weights=local, minlength=self.size + 1)[: self.size], float
+        )
         energy = float(self._weight @ returned.energy)
         if self.far is not None:
             places = self.unknown_of_dof[self.far.dofs]
@@ -203,7 +206,7 @@ class Body:
 
     def _gather(self, entries: Array, where: Index) -> Array:
         size = len(self._pattern[0])
-        return np.bincount(where, weights=entries, minlength=size + 1)[:size]
+        return np.asarray(np.bincount(where, weights=entries, minlength=size + 1)[:size], float)
 
     @cached_property
     def _where(self) -> Index:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import isfinite, pi, sqrt
 from typing import Literal
 
@@ -14,6 +15,7 @@ from faying.fe.asperity.mesh import Array, Index
 from faying.fe.asperity.model import Model, build, expected_radius
 from faying.materials import RIGID, ContactPair, Material
 
+FORCE_TOLERANCE = 1e-4  # of the largest force asked for
 BISECTIONS = 6  # a step that does not converge is halved this often before the run gives up
 
 
@@ -90,7 +92,8 @@ def solve_asperity(
     h_a: float,
     cap: Material,
     substrate: Material,
-    displacement: float | Sequence[float],
+    displacement: float | Sequence[float] | None = None,
+    force: float | Sequence[float] | None = None,
     layer: Material | None = None,
     layer_thickness: float = 0.0,
     hardening: float = 0.0,
@@ -107,7 +110,7 @@ def solve_asperity(
     substrate: Material; one without a yield strength stays elastic; substrate RIGID holds the base of the cap, bonded
     or sliding (`foot`): h_a = R on a sliding rigid foot is half of a sphere between two planes. displacement: of the
     plane from first touch [m], one value or the turning points of a history (a smaller value after a larger one
-    unloads; 0 unloads until contact is lost). layer, layer_thickness: a third material under the cap [m]. hardening:
+    unloads; 0 unloads until contact is lost); or force: of the plane [N] in place of it, in the same way. layer, layer_thickness: a third material under the cap [m]. hardening:
     tangent modulus over E, 0 <= hardening < 1. elements: over the contact radius. steps: load steps for the largest
     displacement (1.5 a contact element where not given). domain: radius and depth of the substrate [m] (40 radii of
     the cap's base); its foot keeps its height, its wall its radius. solver: name of the factorisation.
@@ -116,15 +119,28 @@ def solve_asperity(
     AsperityResult. Raises InputError for impossible geometry and NotConverged with the step, the place and the steps
     done (attribute `result`). Source of the setting: Zhang et al. 2024, doi:10.3390/fractalfract8100611, section 2.4.
     """
-    targets = _checked(R, h_a, displacement, layer, layer_thickness, hardening, elements, steps, domain, cap)
+    if (displacement is None) == (force is None):
+        raise InputError("give displacement or force, one of them")
+    _check_shape(R, h_a, layer, layer_thickness, hardening, elements, steps, domain, cap)
+    targets = _turning_points(displacement if force is None else force, "displacement" if force is None else "force")
     top = max(targets)
+    if force is None and top > h_a:
+        raise InputError(f"displacement {top} m is more than the height of the cap, {h_a} m; stay at or below h_a")
     soft = [m for m in (cap, substrate, layer) if m is not None and m.hardness is not None and not m.is_rigid]
     weakest = min(soft, key=lambda m: m.hardness or np.inf) if soft else None
     pair = ContactPair(cap, RIGID)
     K = 0.454 + 0.41 * (weakest or cap).nu
     hardness = weakest.hardness if weakest else None
-    radius = expected_radius(R, h_a, top, pair.E_star, hardness, K)
-    if not substrate.is_rigid:
+    if force is None:
+        radius = expected_radius(R, h_a, top, pair.E_star, hardness, K)
+    else:
+        radius = max((0.75 * top * R / pair.E_star) ** (1 / 3), sqrt(top / (pi * hardness)) if hardness else 0.0)
+        top = radius**2 / (1.5 * R)  # between Hertz's a^2/R and the truncated sphere's a^2/(2R)
+        if top > h_a:
+            raise InputError(
+                f"force {max(targets)} N would press the cap by about {top:.3g} m, more than its height {h_a} m"
+            )
+    if force is None and not substrate.is_rigid:
         radius /= sqrt(1 + 0.75 * cap.E / substrate.E * sqrt(top / h_a))  # what the substrate gives way
     base = sqrt(2 * R * h_a - h_a**2)
     model = build(
@@ -140,7 +156,8 @@ def solve_asperity(
         layer_thickness=layer_thickness if layer else 0.0,
         solver=solver,
     )
-    return _Run(model, steps or round(1.5 * elements), targets, progress).result()
+    run = _Run(model, steps or round(1.5 * elements), targets, progress)
+    return run.result() if force is None else run.to_forces(sqrt(top))
 
 
 class _Run:
@@ -157,7 +174,9 @@ class _Run:
         self.factorisations = 0
 
     def result(self) -> AsperityResult:
+        """Go to displacements, one after the other."""
         goals = _path(self.targets, self.steps)
+        goal = 0.0
         try:
             for number, (start, goal) in enumerate(zip([0.0, *goals[:-1]], goals, strict=True)):
                 if self.residual is not None and goal < start:
@@ -167,11 +186,63 @@ class _Run:
                 if self.progress is not None:
                     self.progress((number + 1) / len(goals))
         except NotConverged as fault:
-            done = self.rows[-1][0] if self.rows else 0.0
-            stop = NotConverged(f"between displacements {done:.6g} and {goal:.6g} m: {fault}")
-            stop.result = self._gathered() if self.rows else None  # type: ignore[attr-defined]
-            raise stop from None
+            raise self._stopped(fault, goal) from None
         return self._gathered()
+
+    def to_forces(self, root: float) -> AsperityResult:
+        """Go to forces: steps of even length in the root of the displacement, the last one shortened to the force."""
+        here, now = 0.0, 0.0
+        stride = root / self.steps
+        scale = max(self.targets)
+        goal = 0.0
+        try:
+            for number, target in enumerate(self.targets):
+                way = 1.0 if target > now else -1.0
+                while abs(now - target) > FORCE_TOLERANCE * scale:
+                    goal = max(sqrt(here) + way * stride, 0.0) ** 2
+                    if goal > self.model.h_a:
+                        raise NotConverged(
+                            f"force {target} N is not reached while the cap is being pressed down to its base"
+                        )
+                    force = self._try(goal)
+                    if way * (force - target) > FORCE_TOLERANCE * scale:
+                        goal, force = self._between(here, now, goal, force, target, FORCE_TOLERANCE * scale)
+                    self._step(goal)
+                    here, now = goal, force
+                    if target == 0 and self.residual is not None:
+                        break
+                if self.progress is not None:
+                    self.progress((number + 1) / len(self.targets))
+        except NotConverged as fault:
+            raise self._stopped(fault, goal) from None
+        return self._gathered()
+
+    def _try(self, displacement: float) -> float:
+        return self.model.contact(self.model.press(displacement, self.at, self.state)).force
+
+    def _between(
+        self, low: float, f_low: float, high: float, f_high: float, target: float, tolerance: float
+    ) -> tuple[float, float]:
+        """Displacement in one step from here that gives the force `target`, by regula falsi (Illinois), and the force."""
+        a, fa, b, fb = low, f_low - target, high, f_high - target
+        middle, f = b, fb
+        for _ in range(40):
+            middle = (a * fb - b * fa) / (fb - fa)
+            f = self._try(middle) - target
+            if abs(f) <= tolerance:
+                break
+            if f * fb < 0:
+                a, fa = b, fb
+            else:
+                fa *= 0.5
+            b, fb = middle, f
+        return middle, f + target
+
+    def _stopped(self, fault: NotConverged, goal: float) -> NotConverged:
+        done = self.rows[-1][0] if self.rows else 0.0
+        stop = NotConverged(f"between displacements {done:.6g} and {goal:.6g} m: {fault}")
+        stop.result = self._gathered() if self.rows else None  # type: ignore[attr-defined]
+        return stop
 
     def _go(self, start: float, goal: float, halvings: int) -> None:
         try:
@@ -203,7 +274,7 @@ class _Run:
                 displacement, contact.force, pi * contact.radius**2, pi * low**2, pi * high**2, volume, found.iterations,
             )
         )  # fmt: skip
-        if not len(found.pressing):
+        if contact.force <= 1e-9 * max(row[1] for row in self.rows):
             moved = self.model.body.spread(found.unknowns)[self.model.body.surface, 1]
             highest = float(np.max(self.model.mesh.nodes[self.model.body.surface, 1] + moved))
             self.residual = self.model.h_a - highest
@@ -249,10 +320,19 @@ def _path(targets: list[float], steps: int) -> list[float]:
     return goals
 
 
-def _checked(
+def _turning_points(given: float | Sequence[float] | None, name: str) -> list[float]:
+    """Return the turning points of a history of displacements or forces, after refusing those that make no sense."""
+    targets = [float(v) for v in np.atleast_1d(np.asarray(given, float))]
+    if not targets or not all(isfinite(v) and v >= 0 for v in targets) or targets[0] <= 0:
+        raise InputError(f"{name} = {given}; give one positive value, or several, none below 0")
+    if any(a == b for a, b in pairwise(targets)):
+        raise InputError(f"{name} = {given}; two turning points in a row are equal: leave one out")
+    return targets
+
+
+def _check_shape(
     R: float,
     h_a: float,
-    displacement: float | Sequence[float],
     layer: Material | None,
     layer_thickness: float,
     hardening: float,
@@ -260,21 +340,12 @@ def _checked(
     steps: int | None,
     domain: float | None,
     cap: Material,
-) -> list[float]:
-    """Return the turning points of the history, after refusing what cannot be meshed or pressed."""
+) -> None:
+    """Refuse what cannot be meshed."""
     if not (isfinite(R) and R > 0):
         raise InputError(f"R = {R} m; the radius of the cap must be positive, for example 15e-6")
     if not (isfinite(h_a) and 0 < h_a <= R):
         raise InputError(f"h_a = {h_a} m with R = {R} m; the height must be above 0 and at most R (a half sphere)")
-    targets = [float(v) for v in np.atleast_1d(np.asarray(displacement, float))]
-    if not targets or not all(isfinite(v) and v >= 0 for v in targets) or targets[0] <= 0:
-        raise InputError(f"displacement = {displacement}; give one positive value [m], or several, none below 0")
-    if max(targets) > h_a:
-        raise InputError(
-            f"displacement {max(targets)} m is more than the height of the cap, {h_a} m; stay at or below h_a"
-        )
-    if any(a == b for a, b in zip(targets[:-1], targets[1:], strict=True)):
-        raise InputError(f"displacement = {displacement}; two turning points in a row are equal: leave one out")
     if cap.is_rigid:
         raise InputError("the cap is rigid; it must be deformable, only the substrate may be RIGID")
     if (layer is None) != (layer_thickness == 0) or layer_thickness < 0:
@@ -290,4 +361,3 @@ def _checked(
         raise InputError(
             f"domain = {domain} m; it must be more than twice the cap's base radius {base:.4g} m and the layer"
         )
-    return targets

@@ -49,14 +49,17 @@ class Quads:
 
     @cached_property
     def place(self) -> Array:
-        return np.einsum("gn,enb->egb", self._shape, self.corners)
+        """The Gauss points (m, 4, 2) [m]."""
+        return np.asarray(np.einsum("gn,enb->egb", self._shape, self.corners))
 
     @cached_property
     def weight(self) -> Array:
+        """Volume of each Gauss point (m, 4) [m3]."""
         return np.asarray(2 * np.pi * self.place[..., 0] * self._slopes[1])
 
     @cached_property
     def B(self) -> Array:
+        """Strain operators (m, 4, 4, 8)."""
         slopes, _ = self._slopes
         radius = self.place[..., 0]
         m = len(self.corners)

@@ -40,6 +40,7 @@ class Solver:
         self.factorisations = 0
 
     def __call__(self, matrix: Any, right: Array) -> Array:
+        """Solve with `matrix`, whose pattern is that of the first one."""
         if self._factor is None:
             self._factor = factorise(matrix, self._name)
         else:
@@ -113,4 +114,4 @@ def balanced(
 
 def _stretch(body: Body, now: Balance) -> float:
     """A force to measure the imbalance by when nothing presses: that of the stresses on the finest elements."""
-    return float(np.abs(now.returned.stress).max() * np.sqrt(np.median(body.quads.weight) ** 2) ** (2 / 3))
+    return float(np.abs(now.returned.stress).max() * np.median(body.quads.weight) ** (2 / 3))

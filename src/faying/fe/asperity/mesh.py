@@ -6,6 +6,7 @@ the contact, so a mesh of half the size has about four times the elements and th
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 from math import asin, sqrt
 
 import numpy as np
@@ -119,7 +120,7 @@ def cap_mesh(
         radii = np.concatenate([foot[:, 0], flat])
         coarse = _Grading(fine=fine, flat=0.7 * contact_radius, growth=1.5 * growth - 0.5)
         stops = [h_a, *([h_a + layer_thickness] if layer_thickness else []), h_a + domain]
-        pieces = [coarse.split(a, b)[1:] for a, b in zip(stops[:-1], stops[1:], strict=True)]
+        pieces = [coarse.split(a, b)[1:] for a, b in pairwise(stops)]
         z = h_a - np.concatenate(pieces)
         below = np.zeros((len(z) + 1, len(radii)), np.int64)
         below[0, : columns + 1] = number[-1]

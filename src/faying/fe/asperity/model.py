@@ -131,13 +131,13 @@ class Model:
         count = len(at.pressing)
         if not count:
             return Contact(force=0.0, radius=0.0, bounds=(0.0, 0.0))
-        force = -float(at.balance.force[body.touching[at.pressing]].sum())
         moved = body.spread(at.unknowns)[body.surface]
         r = self.mesh.nodes[body.surface, 0] + moved[:, 0]
         height = self.mesh.nodes[body.surface, 1] + moved[:, 1]
         last = int(at.pressing[-1])
-        gap = height[: last + 1].min() - height
-        return Contact(force=force, radius=_edge(r, gap, last), bounds=_bounds(r, last))
+        gap = height[at.pressing].mean() - height
+        press = np.maximum(-at.balance.force[body.touching[: last + 1]], 0.0)
+        return Contact(force=float(press.sum()), radius=_edge(r, gap, press), bounds=_bounds(r, last))
 
 
 def _bounds(r: Array, last: int) -> tuple[float, float]:
@@ -145,19 +145,32 @@ def _bounds(r: Array, last: int) -> tuple[float, float]:
     return float(inner), float(r[min(last + 1, len(r) - 1)])
 
 
-def _edge(r: Array, gap: Array, last: int) -> float:
-    """Radius at which the gap closes: outside a smooth contact it opens as (r - a)^1.5 (Johnson 1985, eq. 3.42a).
+def _edge(r: Array, gap: Array, press: Array) -> float:
+    """Radius of the contact, between nodes, from nodal forces `press` (k,) and the gap of the surface nodes (s,).
 
-    The second and third open nodes are extrapolated; the first one feels the mesh. Kept within the bounds.
+    The pressure is taken as (1 - r^2/a^2)^b and its first moments give b and a: b = 1/2 is Hertz's, b = 0 the even
+    pressure of full plastic flow. Outside, the gap opens as (r - a)^(1 + b), 1.5 with Hertz (Johnson 1985, eq. 3.42a)
+    and 1 at the kink that flow leaves; the second and third open nodes are extrapolated, as the first feels the mesh.
+    At a kink the one estimate lies a part of an element outside, the other as much inside: there the mean is taken.
+    Measured over contacts anywhere between nodes: within 0.05 of an element for b = 1/2, 0.25 for b = 0.
     """
+    last = len(press) - 1
     low, high = _bounds(r, last)
-    first, second = last + 2, last + 3
-    if second >= len(r):
+    total = press.sum()
+    if last + 3 >= len(r) or total <= 0:
         return 0.5 * (low + high)
-    y1, y2 = max(gap[first], 0.0) ** (2 / 3), max(gap[second], 0.0) ** (2 / 3)
+    second = float(press @ r[: last + 1] ** 2 / total)
+    fourth = float(press @ r[: last + 1] ** 4 / total)
+    b, a_pressure = 0.5, high
+    if last >= 4:
+        ratio = fourth / second**2  # 2 (b + 2)/(b + 3)
+        b = float(np.clip((3 * ratio - 4) / (2 - ratio), 0.0, 0.5))
+        a_pressure = sqrt((b + 2) * second)
+    y1, y2 = np.maximum(gap[last + 2 : last + 4], 0.0) ** (1 / (1 + b))
     if y2 <= y1:
         return 0.5 * (low + high)
-    return float(np.clip(r[first] - y1 * (r[second] - r[first]) / (y2 - y1), low, high))
+    a_gap = r[last + 2] - y1 * (r[last + 3] - r[last + 2]) / (y2 - y1)
+    return float(np.clip(a_gap + (0.5 - b) * (a_pressure - a_gap), low, high))
 
 
 def build(

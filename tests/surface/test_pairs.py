@@ -1,0 +1,170 @@
+"""Two surfaces combined; lay, sections and summits; a second reader's opinion."""
+
+import numpy as np
+import pytest
+
+from faying import InputError, Scan, fit_fractal, read_scan
+from faying.surface.combine import combine
+from faying.surface.crosscheck import compare, cross_check
+from faying.surface.lay import across_and_along, find_lay, sections
+from faying.surface.scan import Profile
+from faying.surface.summits import cutoff_study, summits
+from faying.surface.synthesize import spectral
+from faying.surface.write import write_scan
+
+
+def test_two_like_surfaces_add_up():
+    # spectra of the same D add: G^(2D-4) is the sum of both
+    D, Ga, Gb = 2.5, 1e-9, 3e-9
+    a, b = (spectral((384, 384), spacing=1e-6, D=D, G=g, seed=s) for s, g in ((1, Ga), (2, Gb)))
+    both = combine(a, b)
+    expected = (Ga ** (2 * D - 4) + Gb ** (2 * D - 4)) ** (1 / (2 * D - 4))
+    assert both.fit.D_interval[0] < D < both.fit.D_interval[1]
+    assert both.fit.G_interval[0] < expected < both.fit.G_interval[1]
+    parts = [summits(s) for s in (a, b)]
+    for name in ("m0", "m2", "m4"):
+        assert getattr(both, name) == pytest.approx(sum(getattr(p, name) for p in parts), rel=1e-12)
+    assert both.Rq == pytest.approx(both.m0**0.5)
+
+
+def test_combining_is_symmetric_and_works_across_sizes():
+    a = spectral((256, 256), spacing=1e-6, D=2.4, Rq=1e-6, seed=1)
+    b = spectral((300, 200), spacing=(1.5e-6, 1.5e-6), D=2.4, Rq=1e-6, seed=2)
+    ab, ba = combine(a, b).fit, combine(b, a).fit
+    assert pytest.approx(ba.D, abs=0.05) == ab.D
+    assert np.log(ab.G) == pytest.approx(np.log(ba.G), abs=2.5)
+
+
+def test_a_smooth_partner_changes_nothing():
+    a = spectral((256, 256), spacing=1e-6, D=2.5, Rq=1e-6, seed=1)
+    b = spectral((256, 256), spacing=1e-6, D=2.5, Rq=1e-9, seed=2)
+    assert pytest.approx(fit_fractal(a).D, abs=0.01) == combine(a, b).fit.D
+    assert combine(a, b).Rq == pytest.approx(summits(a).m0 ** 0.5, rel=1e-4)
+
+
+def test_what_cannot_be_combined():
+    a = spectral((128, 128), spacing=1e-6, D=2.4, Rq=1e-6)
+    with pytest.raises(InputError, match="scan_b is a Profile"):
+        combine(a, a.profile("x", 0))
+    with pytest.raises(InputError, match="share no band"):
+        combine(a, spectral((128, 128), spacing=1e-4, D=2.4, Rq=1e-6))
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.6, 1.5, 2.6])
+def test_the_lay_is_found(angle):
+    lay = find_lay(spectral((256, 256), spacing=1e-6, D=2.4, Rq=1e-6, lay=(angle, 2.0), seed=3))
+    assert lay.present
+    assert abs((lay.angle - angle + np.pi / 2) % np.pi - np.pi / 2) < 0.08
+
+
+def test_an_isotropic_surface_has_none():
+    for seed in range(5):
+        scan = spectral((192, 192), spacing=1e-6, D=2.4, Rq=1e-6, seed=seed)
+        assert not find_lay(scan).present
+    with pytest.raises(InputError, match="no lay"):
+        across_and_along(scan)
+
+
+def test_profiles_across_the_lay_are_rougher_than_along():
+    scan = spectral((256, 256), spacing=1e-6, D=2.4, Rq=1e-6, lay=(0.6, 3.0), seed=3)
+    across, along = across_and_along(scan, 24)
+    slope = [np.mean([np.mean(np.diff(p.heights) ** 2) for p in lines]) for lines in (across, along)]
+    assert slope[0] > 3 * slope[1]
+
+
+def test_sections_lie_where_they_should():
+    y, x = np.mgrid[0:40, 0:60] * 1e-6
+    scan = Scan(heights=2 * x + 3 * y, spacing=(1e-6, 1e-6))
+    for angle in (0.0, 0.5, 1.2, 2.2):
+        for line in sections(scan, angle, 9):
+            assert isinstance(line, Profile)
+            rise = np.diff(line.heights) / line.spacing
+            assert np.allclose(rise, 2 * np.cos(angle) + 3 * np.sin(angle), atol=1e-6)
+    with pytest.raises(InputError, match="no line of 16 points"):
+        sections(Scan(heights=np.zeros((4, 4)), spacing=(1e-6, 1e-6)), 0.0)
+
+
+def test_moments_and_summits_of_an_egg_box():
+    n, wave, a = 240, 24, 1e-6
+    y, x = np.mgrid[0:n, 0:n]
+    z = a * np.cos(2 * np.pi * (x + 0.5) / wave) * np.cos(2 * np.pi * (y + 0.5) / wave)
+    s = summits(Scan(heights=z, spacing=(1e-6, 1e-6)))
+    k = 2 * np.pi / (wave * 1e-6)
+    assert s.m0 == pytest.approx(a**2 / 4, rel=1e-3)
+    assert s.m2 == pytest.approx(a**2 * k**2 / 4, rel=0.02)
+    assert s.m4 == pytest.approx(a**2 * k**4 / 4, rel=0.03)
+
+
+def test_summits_of_a_gaussian_surface_follow_nayak():
+    # a band-limited isotropic surface, well sampled: Nayak's density of summits is m4/(6 pi 3^.5 m2)
+    scan = spectral((512, 512), spacing=1e-6, D=2.3, Rq=1e-6, shortest=12e-6, longest=24e-6, periodic=True, seed=4)
+    s = summits(scan)
+    assert s.density == pytest.approx(s.m4 / s.m2 / (6 * np.pi * 3**0.5), rel=0.06)
+    assert s.bandwidth > 1.5
+    # mean curvature of summits and their mean height are positive, and the radius fits (3 pi^.5/8) / m4^.5 roughly
+    assert s.radius == pytest.approx(3 * np.pi**0.5 / 8 / s.m4**0.5, rel=0.25)
+    assert s.mean_height > 0
+
+
+def test_moments_depend_on_the_cutoff_as_a_fractal_s_do():
+    D = 2.4
+    scan = spectral((512, 512), spacing=1e-6, D=D, Rq=1e-6, seed=1)
+    cutoffs, found = cutoff_study(scan, [6e-6, 12e-6, 24e-6])
+    m2 = [s.m2 for s in found]
+    slope = np.polyfit(np.log(cutoffs), np.log(m2), 1)[0]
+    # m2 ~ cutoff^-(2D-4)
+    assert slope == pytest.approx(-(2 * D - 4), abs=0.15)
+    assert found[0].density > 3 * found[2].density
+    assert len(cutoff_study(scan)[0]) == 4
+
+
+def test_a_plane_has_no_summit():
+    x = np.arange(32) * 1e-6
+    ramp = Scan(heights=np.tile(np.exp(x / 1e-5) * 1e-6, (32, 1)), spacing=(1e-6, 1e-6))
+    with pytest.raises(InputError, match="no summit"):
+        summits(ramp)
+
+
+def test_the_other_reader_agrees_on_text_and_disagrees_in_words(tmp_path):
+    path = write_scan(spectral((20, 30), spacing=1e-6, D=2.4, Rq=1e-6), tmp_path / "a.csv", xy_unit="mm", z_unit="um")
+    scan = read_scan(path, "mm", "um")
+    (opinion,) = cross_check(scan, path, "mm", "um")
+    assert opinion.agrees
+    assert opinion.reader == "numpy"
+    (opinion,) = cross_check(scan.with_heights(scan.heights * 8), path, "mm", "um")
+    assert opinion.agrees is False
+    assert "heights 0.125 times ours" in opinion.text
+    path.write_text("nothing")
+    (opinion,) = cross_check(scan, path, "mm", "um")
+    assert opinion.agrees is None
+    assert "cannot read it" in opinion.text
+
+
+def test_comparison_names_points_and_spacing():
+    scan = spectral((20, 30), spacing=1e-6, D=2.4, Rq=1e-6)
+    seen = {"points": [30, 20], "spacing": [1e-3, 1e-6], "deviation": float(scan.heights.std())}
+    text = compare("other", scan, seen).text
+    assert "points [30, 20] against [20, 30]" in text
+    assert "spacing 0.001 m" in text
+
+
+def test_no_second_reader(tmp_path, monkeypatch):
+    from faying.surface import crosscheck
+
+    path = write_scan(spectral((20, 30), spacing=1e-6, D=2.4, Rq=1e-6), tmp_path / "a.x3p")
+    monkeypatch.setattr(crosscheck, "find_spec", lambda name: None)
+    with pytest.raises(InputError, match="no second reader"):
+        cross_check(read_scan(path), path)
+
+
+@pytest.mark.slow
+def test_surfalize_s_heights_of_the_zygo_file_are_eight_times_ours(scans):
+    pytest.importorskip("SurfaceTopography")
+    from importlib.util import find_spec
+
+    if find_spec("surfalize") is None:
+        pytest.skip("surfalize is not installed (group compare)")
+    path = scans / "surfacetopography" / "metropro-1.dat"
+    (opinion,) = cross_check(read_scan(path), path)
+    assert opinion.agrees is False
+    assert "heights 8 times ours" in opinion.text
