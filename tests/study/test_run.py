@@ -151,20 +151,28 @@ def test_per_node_and_mindlin_options(study, result):
     assert other.convergence[0]["total_k_n [N/m]"] != pytest.approx(result.convergence[0]["total_k_n [N/m]"], rel=0.01)
 
 
-@pytest.mark.parametrize(("model", "tangential"), [("gw-ke", "mindlin"), ("power-law", "law"), ("persson", "mindlin")])
-def test_other_laws(study, model, tangential):
-    """GW with Kogut and Etsion's asperity presses the joint; laws that cannot say why."""
+def on_the_milled_scan(study, model, tangential):
     scan = Path(__file__).parents[2] / "examples" / "t-specimen" / "milled.x3p"
-    other = replace(study, law=LawSpec(model=model), surface=SurfaceSpec(scan=scan), mode_count=1,
-                    joints=(replace(study.joints[0], tangential=tangential),),
-                    bolts=(replace(study.bolts[0], preload=(6000.0,)),))  # fmt: skip
-    if model == "gw-ke":
-        structure = build(other)
-        found = structure.assembly().solve(6000 * structure.bolt_load(*study.bolts[0].faces))
-        assert structure.joints[0].interface.weights @ found.pressures[0] == pytest.approx(6000, rel=1e-8)
-        assert structure.springs(found.pressures)[0].k_t.max() > 0
-        return
-    match = {"power-law": "takes no input from a scan", "persson": "never meet"}[model]
-    with pytest.raises(faying.InputError, match=match):
-        structure = build(other)
-        structure.assembly().solve(6000 * structure.bolt_load(*study.bolts[0].faces))
+    return build(replace(study, law=LawSpec(model=model), surface=SurfaceSpec(scan=scan),
+                         joints=(replace(study.joints[0], tangential=tangential),)))  # fmt: skip
+
+
+def test_another_law_presses_the_joint(study):
+    """Greenwood and Williamson's sum over Kogut and Etsion's asperity, with Mindlin's ratio for k_t."""
+    structure = on_the_milled_scan(study, "gw-ke", "mindlin")
+    found = structure.assembly().solve(6000 * structure.bolt_load(*study.bolts[0].faces))
+    assert structure.joints[0].interface.weights @ found.pressures[0] == pytest.approx(6000, rel=1e-8)
+    springs = structure.springs(found.pressures)[0]
+    assert springs.k_t == pytest.approx(springs.k_n * 2 * 0.7 / 1.7)
+
+
+def test_a_law_that_takes_nothing_from_a_scan_says_so(study):
+    with pytest.raises(faying.InputError, match="takes no input from a scan"):
+        on_the_milled_scan(study, "power-law", "law")
+
+
+def test_a_law_in_which_faces_would_never_meet_says_so(study):
+    """Persson's stiffness is proportional to pressure at every load: the integral of dp/k_n diverges at 0."""
+    structure = on_the_milled_scan(study, "persson", "mindlin")
+    with pytest.raises(faying.InputError, match="never meet"):
+        structure.joints[0].seat.pressure(np.array([1e-9]))
