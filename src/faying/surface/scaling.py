@@ -77,14 +77,19 @@ def _estimate(ready: Prepared, c: float, local: Local, low: float, high: float, 
 
 
 def _band(ready: Prepared, limits: Limits, points: float, share: float) -> tuple[float, float]:
-    """Sizes [m] from `points` spacings (and the instrument's resolution) to `share` of the side, or as given."""
+    """Sizes [m] from `points` spacings (and the instrument's resolution) to `share` of the side, or as given.
+
+    Where that is less than a factor of 3, up to a third of the side.
+    """
     if limits is not None:
         return limits
     steps = _steps(ready.scan)
     low = points * max(steps)
     if ready.scan.instrument.resolution:
         low = max(low, ready.scan.instrument.resolution)
-    return low, share * _side(ready.scan.heights, steps)
+    side = _side(ready.scan.heights, steps)
+    # a scan of a hundred points or so: larger sizes than are good rather than none
+    return low, max(share * side, min(3.2 * low, side / 3))
 
 
 def _line(x: Array, y: Array) -> tuple[float, float]:
