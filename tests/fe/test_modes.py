@@ -1,5 +1,7 @@
 """Modes of a bar in two halves with springs between them, against closed forms."""
 
+import sys
+
 import numpy as np
 import pytest
 from boxes import stack
@@ -144,3 +146,13 @@ def test_an_unknown_factorisation_is_refused():
 def test_the_environment_chooses(monkeypatch):
     monkeypatch.setenv("FAYING_SOLVER", "superlu")
     assert chosen() == "superlu"
+
+
+def test_a_broken_installation_is_left_out(tmp_path, monkeypatch):
+    """A library that is there but cannot be loaded (built for another NumPy, say) is no library."""
+    (tmp_path / "sksparse").mkdir()
+    (tmp_path / "sksparse" / "__init__.py").write_text("raise RuntimeError('built for another NumPy')")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "sksparse", raising=False)
+    assert "cholmod" not in available.__wrapped__()
+    assert "superlu" in available.__wrapped__()

@@ -3,6 +3,7 @@
 import os
 import sys
 from collections.abc import Callable
+from functools import cache
 from typing import Any, Protocol
 
 import numpy as np
@@ -143,17 +144,19 @@ _BACKENDS: dict[str, Callable[[Any], Factorisation]] = {
 }
 
 
-def available() -> list[str]:
-    """Names of the factorisations that can be used here, fastest first."""
-    from importlib.util import find_spec
+@cache
+def available() -> tuple[str, ...]:
+    """Names of the factorisations that can be used here, fastest first; one that is installed but broken is left out."""
+    from importlib import import_module
 
-    def there(module: str) -> bool:
+    def works(module: str) -> bool:
         try:
-            return find_spec(module) is not None
-        except ModuleNotFoundError:
+            import_module(module)
+        except Exception:
             return False
+        return True
 
-    return [name for name, module in _MODULE.items() if there(module)]
+    return tuple(name for name, module in _MODULE.items() if works(module))
 
 
 def chosen(name: str | None = None) -> str:
