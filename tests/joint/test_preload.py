@@ -81,6 +81,21 @@ def test_one_load_at_once_or_in_steps_gives_the_same_pressure():
     assert last.pressures[0] == pytest.approx(once.pressures[0], rel=1e-6)
 
 
+def test_a_gap_before_the_load_is_closed_first():
+    """Bars 2 um apart: the same pressure as without the gap, and the ends come that much nearer."""
+    mesh = stack([0.05, 0.05], [3, 3], width=0.02, height=0.02, gap=2e-6)
+    joint = Joint(
+        name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), seat=Seat(law=law())
+    )
+    structure = Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, SIMPLE), joints=(joint,))
+    found = structure.assembly().solve(squeeze(structure, 2000.0))
+    assert found.pressures[0] == pytest.approx(np.full_like(found.pressures[0], 5e6), rel=1e-7)
+    moved = found.displacement.reshape(-1, 3)[:, 0]
+    left, right = (np.unique(mesh.face(name)) for name in ("p0.right", "p1.left"))
+    approach = moved[left].mean() - moved[right].mean()
+    assert approach == pytest.approx(2e-6 + joint.seat.closing(5e6), rel=1e-4)
+
+
 def test_preload_beyond_the_law():
     structure = bars()
     with pytest.raises(

@@ -27,8 +27,11 @@ SETTLED = 1e-4  # imbalance below which k_t is held
 
 @dataclass(frozen=True, kw_only=True)
 class Preload:
-    """Equilibrium under the bolts. pressures [Pa] and openings [m], one array per joint; displacement (unknowns,) [m];
-    imbalance, the residual force over the load [-]; Newton steps, conjugate-gradient steps, factorisations taken."""
+    """Equilibrium under the bolts.
+
+    pressures [Pa] and openings [m], one array per joint; displacement (unknowns,) [m]; imbalance, the residual force over
+    the load [-]; Newton steps, conjugate-gradient steps, factorisations taken.
+    """
 
     pressures: tuple[Array, ...]
     openings: tuple[Array, ...]
@@ -102,7 +105,8 @@ class Assembly:
         pressures = tuple(seat.pressure(-gap)[0] for gap, (_, seat) in zip(openings, self.joints, strict=True))
         for p, (joint, seat) in zip(pressures, self.joints, strict=True):
             end = seat.law.greatest_pressure
-            beyond = float(joint.weights[p > end].sum() / joint.weights[p > 0].sum())
+            touching = float(joint.weights[p > 0].sum())
+            beyond = float(joint.weights[p > end].sum()) / touching if touching > 0 else 0.0
             if beyond > BEYOND:
                 raise InputError(
                     f"the preload presses the joint to {p.max() / 1e6:.4g} MPa, and {beyond:.0%} of what is in contact to more "
@@ -118,11 +122,11 @@ class Assembly:
         springs = self._shifted
         push = load.copy()
         for joint, seat in self.joints:
-            mean = np.clip(total / joint.area, 10.0, 0.5 * seat.law.greatest_pressure)
+            mean = np.clip(total / joint.area, 10 * seat.least_pressure, 0.5 * seat.law.greatest_pressure)
             k_n, k_t = (np.full(len(joint.weights), float(k)) for k in seat.stiffness(np.asarray(mean)))
             springs = springs + joint.springs(k_n, k_t)
             # a spring that is tangent to p(closing) at the mean pressure, in place of the curve
-            offset = mean - k_n * (seat.closing(float(mean)) - joint.gap * 0)
+            offset = mean - k_n * (seat.closing(float(mean)) + joint.gap)
             push = push + joint.forces(np.asarray(offset), np.zeros((len(joint.weights), 2)))
         self._factor = factorise(springs.tocsr(), self.solver)
         self.factorisations += 1
