@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from faying import __version__, table
-from faying.result import Result, whole
+from faying.files import whole
+from faying.result import Result
 
 STYLE = """
 body{font:15px/1.5 system-ui,sans-serif;max-width:66rem;margin:2rem auto;padding:0 1rem;color:#1c2733}
@@ -19,8 +20,8 @@ figure{margin:1rem 0}figure svg,figure img{max-width:100%;height:auto}figcaption
 """
 
 
-def html(result: Result) -> str:
-    """Return the report as HTML text; figures are inside it."""
+def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
+    """Return the report as HTML text with its figures inside, those of `drawn` where they exist already."""
     parts = [f"<h1>{escape(result.title)}</h1>",
              f"<p>{result.unknowns:,} unknowns, factorised by {escape(result.solver)}; Faying {__version__}.</p>"]  # fmt: skip
     if result.warnings:
@@ -36,7 +37,7 @@ def html(result: Result) -> str:
             f"<p>{escape(result.comparison.source)}</p>",
         ]
     parts += ["<h2>Joints</h2>", _table(table.joints(result))]
-    for name, figure in figures(result).items():
+    for name, figure in (drawn or figures(result)).items():
         parts.append(f"<figure>{_picture(name, figure)}<figcaption>{CAPTIONS[name]}</figcaption></figure>")
     parts += ["<h2>Surface</h2>", _facts(result.surface), "<h2>Contact law</h2>", _facts(result.law)]
     parts += ["<h2>Sources</h2>", "<ul>", *(f"<li>{escape(line)}</li>" for line in result.sources), "</ul>"]
@@ -84,10 +85,11 @@ def figures(result: Result) -> dict[str, Any]:
 def write(result: Result, folder: Path) -> list[Path]:
     """Write result.nc, modes.csv, the figures as SVG (mode shapes as PNG) and report.html into a folder that exists."""
     made = [result.to_netcdf(folder / "result.nc"), result.to_csv(folder / "modes.csv")]
-    for name, figure in figures(result).items():
+    drawn = figures(result)
+    for name, figure in drawn.items():
         kind = "png" if name == "modes" else "svg"
         made.append(whole(folder / f"{name}.{kind}", lambda path, f=figure, k=kind: f.savefig(path, format=k, dpi=150)))  # type: ignore[misc]
-    made.append(whole(folder / "report.html", lambda path: path.write_text(html(result), encoding="utf-8")))
+    made.append(whole(folder / "report.html", lambda path: path.write_text(html(result, drawn), encoding="utf-8")))
     return made
 
 

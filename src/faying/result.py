@@ -2,8 +2,6 @@
 
 import csv
 import io
-import os
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faying.errors import InputError
+from faying.files import whole
 
 Array = NDArray[np.float64]
 
@@ -183,18 +182,3 @@ class Result:
                 values = (self.frequencies[i, j], self.loss_factors[i, j], self.free[j], self.tied[j])
                 rows.writerow([f"{load:.6g}", j + 1, *(f"{value:.8g}" for value in values)])
         return out.getvalue()
-
-
-def whole(path: Path, write: Callable[[Path], object]) -> Path:
-    """Let `write` fill a temporary file beside `path` and move it there, so that no half-written file is left."""
-    if not path.parent.is_dir():
-        raise InputError(f"no folder {path.parent} to write {path.name} in; make it first")
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        write(temporary)
-        os.replace(temporary, path)
-    except OSError as fault:
-        raise InputError(f"cannot write {path}: {fault.strerror or fault}") from None
-    finally:
-        temporary.unlink(missing_ok=True)
-    return path

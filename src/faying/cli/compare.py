@@ -22,6 +22,7 @@ def show(
 ) -> None:
     """Compare the laws and print, write and draw the outcome."""
     from faying.contact.compare import compare, laws_of_surface
+    from faying.files import whole
 
     inputs, scan = surface
     made, left_out = laws_of_surface(inputs, pair, names=names, scan=scan)
@@ -30,7 +31,7 @@ def show(
     with progress_bar(made) as made:
         comparison = compare(made, pressures, left_out)
     if csv_file:
-        Path(csv_file).write_text(csv(comparison))
+        whole(Path(csv_file), lambda path: path.write_text(csv(comparison)))
     if plot:
         from faying.plot.law import curves, save
 

@@ -284,8 +284,11 @@ def table(law: Any, response: Any) -> str:
 
 def write_csv(path: str, law: Any, response: Any) -> None:
     """Write every column with its unit, and whether the law stands on its ground."""
+    from faying.files import whole
+
     quantities = response.quantities()
     head = [f"{name} [{UNITS[name] or '-'}]" for name in quantities]
     rows = zip(*(value.tolist() for value in quantities.values()), response.valid.tolist(), strict=True)
     body = "\n".join(",".join(repr(v) if isinstance(v, float) else str(v).lower() for v in row) for row in rows)
-    Path(path).write_text(f"# {law.name}, {law.source}\n" + ",".join([*head, "valid"]) + "\n" + body + "\n")
+    text = f"# {law.name}, {law.source}\n" + ",".join([*head, "valid"]) + "\n" + body + "\n"
+    whole(Path(path), lambda temporary: temporary.write_text(text))

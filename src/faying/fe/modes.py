@@ -33,7 +33,6 @@ def lowest_modes(
     *,
     shift_frequency: float,
     solver: str | None = None,
-    start: Array | None = None,
 ) -> Modes:
     """Find the `count` lowest modes by Lanczos iteration with a negative shift.
 
@@ -46,19 +45,18 @@ def lowest_modes(
     factor = factorise((stiffness + shift * mass).tocsr(), solver)
     n = stiffness.shape[0]
     inverse = LinearOperator((n, n), matvec=factor.solve, dtype=float)
-    first = np.random.default_rng(SEED).standard_normal(n) if start is None else start
+    first = np.random.default_rng(SEED).standard_normal(n)
     try:
-        values, shapes = eigsh(stiffness, k=count, M=mass, sigma=-shift, OPinv=inverse, v0=first,
+        _, shapes = eigsh(stiffness, k=count, M=mass, sigma=-shift, OPinv=inverse, v0=first,
                                ncv=min(n, max(2 * count + 1, 20)), tol=1e-11)  # fmt: skip
     except ArpackNoConvergence as fault:
         raise NotConverged(
             f"{len(fault.eigenvalues)} of {count} modes converged; ask for fewer or refine the mesh"
         ) from None
-    order = np.argsort(values)
-    shapes = shapes[:, order]
-    # one Rayleigh-Ritz step in extended space removes what the shifted inverse lost on the lowest eigenvalues
-    values = np.einsum("im,im->m", shapes, stiffness @ shapes) / np.einsum("im,im->m", shapes, mass @ shapes)
-    shapes /= np.sqrt(np.einsum("im,im->m", shapes, mass @ shapes))
+    # Rayleigh quotients remove what the shifted inverse lost on the lowest eigenvalues
+    sizes = np.einsum("im,im->m", shapes, mass @ shapes)
+    values = np.einsum("im,im->m", shapes, stiffness @ shapes) / sizes
+    shapes = shapes / np.sqrt(sizes)
     order = np.argsort(values)
     return Modes(
         frequencies=np.sqrt(np.abs(values[order])) / (2 * np.pi),

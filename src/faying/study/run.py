@@ -54,7 +54,7 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         tell(f"preload {load / 1e3:g} kN")
         force = sum(
             (bolt.preload[number] * unit for bolt, unit in zip(study.bolts, units, strict=True)),
-            np.zeros(len(K.indptr) - 1),
+            np.zeros(structure.mesh.unknowns),
         )
         preload = assembly.solve(np.asarray(force))
         springs = structure.springs(preload.pressures)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from faying.errors import InputError
-from faying.result import whole
+from faying.files import whole
 
 TEXT = """# A Faying study. Quantities are text with a unit; plain numbers have no dimension.
 # Run it with: faying run {name}

@@ -10,6 +10,7 @@ import numpy as np
 
 from faying.errors import FayingError, InputError
 from faying.fe.asperity.drive import AsperityResult, solve_asperity
+from faying.files import whole
 from faying.materials import Material
 
 
@@ -97,15 +98,12 @@ def write_netcdf(
     """
     from scipy.io import netcdf_file
 
-    target = Path(path)
-    if not target.parent.is_dir():
-        raise InputError(f"no folder {target.parent} to write {target.name} in; make it first")
     found = [r if isinstance(r, AsperityResult) else getattr(r, "result", None) for r in results]
     messages = ["" if isinstance(r, AsperityResult) else str(r) for r in results]
     longest = max([len(r.history.force) for r in found if r is not None], default=1)
     width = max([len(m) for m in messages] + [1])
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
-    try:
+
+    def write(temporary: Path) -> None:
         with netcdf_file(temporary, "w", version=2) as nc:
             nc.title = "Single asperities pressed by a smooth rigid plane, axisymmetric finite elements"
             for name, size in (("case", len(cases)), ("step", longest), ("bound", 2), ("letter", width)):
@@ -143,9 +141,5 @@ def write_netcdf(
             variable.units = "m2"
             variable = nc.createVariable("message", "c", ("case", "letter"))
             variable[:] = np.array([list(m.ljust(width)) for m in messages], "S1")
-        os.replace(temporary, target)
-    except OSError as fault:
-        raise InputError(f"cannot write {target}: {fault.strerror or fault}") from None
-    finally:
-        temporary.unlink(missing_ok=True)
-    return target
+
+    return whole(Path(path), write)
