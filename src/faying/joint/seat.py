@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from faying.errors import InputError
 
 Array = NDArray[np.float64]
-FEW = 200  # pressures up to which a law is inverted exactly
+FEW = 200  # pressures up to which a law is inverted exactly; more are read from the table between its points
 LEAST_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p(closing) goes on as a power
 
 
@@ -53,11 +53,6 @@ class Answer(Protocol):
         """Where the law stands on its own ground."""
 
 
-def _exact(pressure: Array) -> bool | None:
-    """Whether to ask a law for exact inversion: the points of a whole joint are asked again and again, so read a table."""
-    return False if np.size(pressure) > FEW else None
-
-
 @dataclass(frozen=True, kw_only=True)
 class Seat:
     """The law of one joint, with its pressure as a function of closing: w = integral of dp/k_n from 0 to p.
@@ -71,7 +66,7 @@ class Seat:
     tangential: Literal["law", "mindlin"] = "law"
     nu: float = 0.3
     scale: float = 1.0
-    points: int = 1000
+    points: int = 2000
 
     @property
     def least_pressure(self) -> float:
@@ -79,11 +74,24 @@ class Seat:
         return max(LEAST_PRESSURE, 1.001 * getattr(self.law, "least_pressure", 0.0))
 
     @cached_property
-    def _table(self) -> tuple[Array, Array, Array]:
-        """ln closing, ln pressure, and d ln p/d ln w, from the least pressure to where the law ends."""
+    def _grid(self) -> Array:
+        """Pressures [Pa] of the table, from the least to where the law ends."""
         p = np.geomspace(self.least_pressure, self.law.greatest_pressure, self.points)
         p[-1] = min(p[-1], self.law.greatest_pressure)
-        k = self._ask(p)[0]
+        return np.asarray(p)
+
+    @cached_property
+    def _samples(self) -> tuple[Array, tuple[Array, Array], tuple[Array, Array]]:
+        """ln pressure, logarithms of k_n and k_t, and the two loss factors, on the grid."""
+        k_n, k_t = self._ask(self._grid)
+        with np.errstate(divide="ignore"):  # a law may have no tangential stiffness at its least pressure
+            stiffness = np.log(k_n), np.log(k_t)
+        return np.log(self._grid), stiffness, self._ask_loss(self._grid)
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array, Array]:
+        """ln closing, ln pressure, and d ln p/d ln w, from the least pressure to where the law ends."""
+        p, k = self._grid, np.exp(self._samples[1][0])
         slope = np.gradient(np.log(k), np.log(p))
         if np.any(k <= 0) or slope[0] >= 1:
             raise InputError(f"{self.law.name}: stiffness does not grow from zero slower than pressure; the faces would "
@@ -104,7 +112,7 @@ class Seat:
         return CubicHermiteSpline(log_w, log_p, slope)
 
     def _ask(self, pressure: Array) -> tuple[Array, Array]:
-        answer = self.law.at_pressure(pressure, exact=_exact(pressure))
+        answer = self.law.at_pressure(pressure)
         if answer.k_n is None:
             raise InputError(f"{self.law.name} defines no normal stiffness; choose another law for the joint")
         k_n = self.scale * answer.k_n
@@ -118,7 +126,7 @@ class Seat:
 
     def answer(self, pressure: Array) -> Answer:
         """What the law says at pressures [Pa]; beyond its ends, what it says there."""
-        return self.law.at_pressure(self._within(pressure), exact=_exact(pressure))
+        return self.law.at_pressure(self._within(pressure), exact=False if np.size(pressure) > FEW else None)
 
     def _within(self, pressure: Array) -> Array:
         """Pressures brought within the law; 0 stays 0."""
@@ -127,7 +135,12 @@ class Seat:
     def stiffness(self, pressure: Array) -> tuple[Array, Array]:
         """k_n and k_t [Pa/m] at pressures [Pa] of any shape; 0 where the pressure is 0, held beyond the end of the law."""
         within = self._within(pressure)
-        k_n, k_t = self._ask(within)
+        if np.size(pressure) > FEW:
+            log_p, (log_n, log_t), _ = self._samples
+            x = np.log(np.where(within > 0, within, 1.0))
+            k_n, k_t = (np.where(within > 0, np.exp(np.interp(x, log_p, y)), 0.0) for y in (log_n, log_t))
+        else:
+            k_n, k_t = self._ask(within)
         raised = within > pressure
         if not np.any(raised):
             return k_n, k_t
@@ -137,7 +150,16 @@ class Seat:
 
     def loss(self, pressure: Array) -> tuple[Array, Array]:
         """Loss factors normal and tangential [-]; 0 where the law defines none."""
-        answer = self.answer(pressure)
+        within = self._within(pressure)
+        if np.size(pressure) <= FEW:
+            return self._ask_loss(within)
+        log_p, _, losses = self._samples
+        x = np.log(np.where(within > 0, within, 1.0))
+        n, t = (np.where(within > 0, np.interp(x, log_p, y), 0.0) for y in losses)
+        return n, t
+
+    def _ask_loss(self, pressure: Array) -> tuple[Array, Array]:
+        answer = self.law.at_pressure(pressure)
         nothing = np.zeros(np.shape(pressure))
         return (
             nothing if answer.loss_n is None else answer.loss_n,

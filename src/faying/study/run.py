@@ -13,7 +13,7 @@ from faying.fe.geometry import mesh_step
 from faying.fe.interface import join
 from faying.fe.modes import Modes, damped_modes, lowest_modes
 from faying.fe.solve import chosen
-from faying.joint.preload import Preload
+from faying.joint.balance import Preload
 from faying.joint.seat import Seat
 from faying.joint.structure import Joint, Springs, Structure
 from faying.materials import RIGID, ContactPair
