@@ -3,7 +3,7 @@ import pytest
 from boxes import stack
 
 import faying
-from faying.fe.elasticity import face_centre, face_load
+from faying.fe.faces import face_centre, face_load
 from faying.fe.interface import join
 from faying.joint.seat import Seat
 from faying.joint.structure import Joint, Structure
