@@ -10,6 +10,7 @@ from faying.errors import InputError
 from faying.fe.elements import FACES, reference, shape_at
 from faying.fe.faces import FACE_DEGREE, surface_frame
 from faying.fe.mesh import Array, Mesh
+from faying.fe.overlap import overlap
 from faying.fe.sides import Blocks, Index, padded
 
 
@@ -126,11 +127,11 @@ class Interface:
 
 
 def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> Interface:
-    """Pair two faces: each quadrature point of the first is projected on the second.
+    """Pair two faces: where their meshes match, point by point; else over every overlap of two element faces.
 
     first, second: names of the faces; reach: the farthest that the second may lie away [m], 1 % of the structure's size
-    where None. Points that find no partner carry nothing. Raises InputError where the faces do not meet at all, lie on
-    one part, or face the same way.
+    where None. What finds no partner carries nothing. Raises InputError where the faces do not meet at all, lie on one
+    part, or face the same way.
     """
     faces_a, faces_b = mesh.face(first), mesh.face(second)
     if mesh.face_part[first] == mesh.face_part[second]:
@@ -138,6 +139,20 @@ def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> 
             f"faces {first!r} and {second!r} are both on part {mesh.face_part[first]!r}; a joint needs two"
         )
     reach = 0.01 * mesh.size if reach is None else reach
+    found = _matched(mesh, faces_a, faces_b, reach) or _overlapping(mesh, faces_a, faces_b, reach)
+    if found is None:
+        from scipy.spatial import cKDTree
+
+        apart = cKDTree(mesh.points[mesh.face_nodes(second)]).query(mesh.points[mesh.face_nodes(first)])[0]
+        nearest = float(apart.min())
+        raise InputError(f"faces {first!r} and {second!r} do not touch: they are {nearest * 1e3:.4g} mm apart at the "
+                         f"nearest and the joint reaches {reach * 1e3:.4g} mm; move a part, or check the unit of the "
+                         "geometry")  # fmt: skip
+    return found
+
+
+def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Interface | None:
+    """Quadrature points of the first face projected on the second; None where the meshes do not match."""
     places, shares, directions, sampled = [], [], [], []
     for faces in faces_a:
         kind = FACES[faces.shape[1]].name
@@ -150,14 +165,16 @@ def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> 
     positions, normals = np.concatenate(places), np.concatenate(directions)
     first_nodes, first_values = padded(sampled)
     second_nodes, second_values, distance, hit = _project(mesh.points, faces_b, positions, normals, reach)
-    if not np.any(hit):
-        from scipy.spatial import cKDTree
-
-        apart = cKDTree(mesh.points[mesh.face_nodes(second)]).query(mesh.points[mesh.face_nodes(first)])[0]
-        nearest = float(apart.min())
-        raise InputError(f"faces {first!r} and {second!r} do not touch: they are {nearest * 1e3:.4g} mm apart at the "
-                         f"nearest and the joint reaches {reach * 1e3:.4g} mm; move a part, or check the unit of the "
-                         "geometry")  # fmt: skip
+    if not np.any(hit) or first_values.shape[1] != second_values.shape[1]:
+        return None
+    # shape functions of both sides agree point by point, up to their order
+    if not np.allclose(np.sort(first_values[hit], axis=1), np.sort(second_values[hit], axis=1), atol=1e-6):
+        return None
+    counts = np.repeat([len(reference(FACES[f.shape[1]].name, FACE_DEGREE[FACES[f.shape[1]].name])[1]) for f in faces_a],
+                       [len(f) for f in faces_a])  # fmt: skip
+    share = np.add.reduceat(hit, np.concatenate([[0], np.cumsum(counts)[:-1]])) / counts
+    if not np.all((share == 0) | (share == 1)):  # an edge of the second face runs through an element face of the first
+        return None
     return Interface(
         positions=positions[hit],
         weights=np.concatenate(shares)[hit],
@@ -167,6 +184,45 @@ def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> 
         first_values=first_values[hit],
         second_nodes=second_nodes[hit],
         second_values=second_values[hit],
+        unknowns=mesh.unknowns,
+    )
+
+
+def _overlapping(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Interface | None:
+    """Points in every overlap of two element faces; None where there is none."""
+    degree = max(2 if FACES[faces.shape[1]].count <= 4 else 4 for faces in (*faces_a, *faces_b))
+    cut = overlap(mesh.points, faces_a, faces_b, reach=reach, degree=degree)
+    q = len(cut.weights)
+    positions, normals, weights = cut.positions.copy(), cut.normals.copy(), cut.weights.copy()
+    gap, good = np.zeros(q), np.zeros(q, dtype=bool)
+    sides = []
+    for blocks, (block, face) in ((faces_a, cut.first), (faces_b, cut.second)):
+        width = max(faces.shape[1] for faces in blocks)
+        nodes, values = np.full((q, width), blocks[0][0, 0]), np.zeros((q, width))
+        for number, faces in enumerate(blocks):
+            here = np.flatnonzero(block == number)
+            tried = faces[face[here]]
+            along, shapes, normal, flat = _cut(mesh.points[tried], positions[here], normals[here])
+            nodes[here, : faces.shape[1]], values[here, : faces.shape[1]] = tried, shapes
+            if blocks is faces_a:
+                positions[here] += along[:, None] * normals[here]
+                weights[here] /= np.abs(np.einsum("qi,qi->q", normal, normals[here]))
+                normals[here] = normal
+            else:
+                gap[here] = along
+                good[here] = (np.abs(along) <= reach) & (np.einsum("qi,qi->q", normal, normals[here]) < 0) & ~flat
+        sides.append((nodes, values))
+    if not np.any(good):
+        return None
+    return Interface(
+        positions=positions[good],
+        weights=weights[good],
+        normals=normals[good],
+        gap=gap[good],
+        first_nodes=sides[0][0][good],
+        first_values=sides[0][1][good],
+        second_nodes=sides[1][0][good],
+        second_values=sides[1][1][good],
         unknowns=mesh.unknowns,
     )
 
@@ -196,20 +252,33 @@ def _project(
             if not len(left):
                 continue
             tried = faces[within[near[left, rank]]]
-            along, shapes, good = _cut(points[tried], positions[left], normals[left])
-            good &= np.abs(along) <= reach
+            along, shapes, normal, flat = _cut(points[tried], positions[left], normals[left])
+            good = _inside(tried, shapes) & ~flat & (np.abs(along) <= reach)
+            good &= np.einsum("qi,qi->q", normal, normals[left]) < 0
             chosen, columns = left[good], slice(0, faces.shape[1])
             hit[chosen], distance[chosen] = True, along[good]
             nodes[chosen, columns], values[chosen, columns] = tried[good], shapes[good]
     return nodes, values, distance, hit
 
 
-def _cut(faces: Array, targets: Array, normals: Array) -> tuple[Array, Array, Any]:
-    """Where lines cut curved element faces (q, a, 3): distance along the normal (q,), shape functions, whether inside."""
+def _inside(faces: Index, shapes: Array) -> Any:
+    """Whether points with these shape functions (q, a) lie in the reference element, its edges included."""
     kind = FACES[faces.shape[1]]
-    triangle = kind.shape == "tri"
-    low, high, tolerance = (-1.0, 2.0, 1e-6) if triangle else (-2.0, 2.0, 2e-6)
-    guess = np.full((len(faces), 2), 1 / 3 if triangle else 0.0)
+    local, tolerance = shapes @ kind.nodes, 1e-6
+    if kind.shape == "tri":
+        return (local >= -tolerance).all(axis=1) & (local.sum(axis=1) <= 1 + tolerance)
+    return (np.abs(local) <= 1 + 2 * tolerance).all(axis=1)
+
+
+def _cut(faces: Array, targets: Array, normals: Array) -> tuple[Array, Array, Array, Any]:
+    """Where lines cut curved element faces (q, a, 3), by Newton's method.
+
+    Returns distance along the line (q,), shape functions (q, a) and unit normals (q, 3) of the face there, and whether
+    the line runs along the face, so that there is no such place.
+    """
+    kind = FACES[faces.shape[1]]
+    low, high = (-1.0, 2.0) if kind.shape == "tri" else (-2.0, 2.0)
+    guess = np.full((len(faces), 2), 1 / 3 if kind.shape == "tri" else 0.0)
     along = np.zeros(len(faces))
     for _ in range(8):
         values, gradients = shape_at(kind.name, guess.T)
@@ -221,9 +290,8 @@ def _cut(faces: Array, targets: Array, normals: Array) -> tuple[Array, Array, An
         step = np.linalg.solve(jacobian, miss[:, :, None])[:, :, 0]
         guess = np.clip(guess - step[:, :2], low, high)
         along = along - step[:, 2]
-    facing = np.einsum("qi,qi->q", np.cross(tangent[..., 0], tangent[..., 1]), normals) < 0
-    if triangle:
-        inside = (guess >= -tolerance).all(axis=1) & (guess.sum(axis=1) <= 1 + tolerance)
-    else:
-        inside = (np.abs(guess) <= 1 + tolerance).all(axis=1)
-    return along, shape_at(kind.name, guess.T)[0], inside & facing & ~flat
+        if not len(step) or np.abs(step[:, :2]).max() < 1e-12:
+            break
+    normal = np.cross(tangent[..., 0], tangent[..., 1])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    return along, shape_at(kind.name, guess.T)[0], normal, flat

@@ -13,13 +13,14 @@ from faying.fe.sides import Blocks, Index, nodes_of
 
 Array = NDArray[np.float64]
 
-# the rule for the stiffness of each kind: degree, and degree along the axis of a wedge; those of CalculiX
+# the rule for the stiffness of each kind: degree, and degree along the axis of a wedge; those of CalculiX, but for
+# wedge6, to which CalculiX gives two points and so a motion that costs nothing
 STIFFNESS_RULE: dict[str, tuple[int, int | None]] = {
     "tet4": (1, None),
     "tet10": (2, None),
     "hex8": (3, None),
     "hex20": (5, None),
-    "wedge6": (1, 3),
+    "wedge6": (2, 3),
     "wedge15": (2, 5),
 }
 # the rule for the mass: exact on straight elements
