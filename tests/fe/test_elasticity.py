@@ -3,7 +3,8 @@ import pytest
 from boxes import box, stack
 
 import faying
-from faying.fe.elasticity import assemble, face_centre, face_load, rigid_motions
+from faying.fe.elasticity import assemble, rigid_motions
+from faying.fe.faces import face_centre, face_load
 from faying.fe.mesh import Mesh
 from faying.fe.modes import lowest_modes
 

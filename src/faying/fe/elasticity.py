@@ -1,15 +1,17 @@
-"""Stiffness and mass of isotropic solids, assembled without a loop over elements."""
+"""Stiffness and mass of isotropic solids of any elements, assembled without a loop over elements."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from faying.fe.elements import reference
-from faying.fe.mesh import Array, Index, Mesh
+from faying.errors import InputError
+from faying.fe.elements import SOLIDS, reference
+from faying.fe.incompatible import condensed_stiffness
+from faying.fe.mesh import MASS_RULE, STIFFNESS_RULE, Array, Mesh
+from faying.fe.sides import Blocks, Index
 
-CHUNK = 4000  # elements at a time: keeps the blocks in cache and bounds the memory
+CHUNK = 400_000  # pairs of nodes at a time: keeps the blocks in cache and bounds the memory
 
 
 class Solid(Protocol):
@@ -28,19 +30,17 @@ class Solid(Protocol):
         """Density [kg/m3]."""
 
 
-def _jacobians(points: Array, cells: Index, gradients: Array) -> tuple[Array, Array]:
+def gradients_in_space(points: Array, cells: Index, gradients: Array) -> tuple[Array, Array]:
     """Gradients in space (e, q, a, 3) and determinants (e, q)."""
     jacobian = np.einsum("eai,qaj->eqij", points[cells], gradients, optimize=True)
     inverse = np.linalg.inv(jacobian)
     return np.einsum("qaj,eqji->eqai", gradients, inverse, optimize=True), np.linalg.det(jacobian)
 
 
-def element_stiffness(points: Array, cells: Index, E: float, nu: float) -> Array:
-    """Element stiffness [N/m], shape (e, a, 3, a, 3): four Gauss points, exact for straight elements."""
-    _, weights, _, gradients = reference("tet10", 2)
+def stiffness_of(g: Array, weights: Array, E: float, nu: float) -> Array:
+    """Stiffness (e, a, 3, a, 3) of gradients in space g (e, q, a, 3) at points of weight (e, q) [m3]."""
     lam, mu = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
-    g, det = _jacobians(points, cells, gradients)
-    scaled = g * np.sqrt(det * weights)[..., None, None]
+    scaled = g * np.sqrt(weights)[..., None, None]
     e, q, a, _ = scaled.shape
     flat = scaled.reshape(e, q, 3 * a)
     products = (flat.transpose(0, 2, 1) @ flat).reshape(e, a, 3, a, 3)
@@ -50,53 +50,118 @@ def element_stiffness(points: Array, cells: Index, E: float, nu: float) -> Array
     return block
 
 
-def element_mass(points: Array, cells: Index, density: float) -> Array:
+def element_stiffness(points: Array, cells: Index, E: float, nu: float) -> Array:
+    """Element stiffness [N/m], shape (e, a, 3, a, 3), by the rule of each kind; hex8 bends by incompatible modes."""
+    kind = SOLIDS[cells.shape[1]].name
+    _, weights, _, gradients = reference(kind, *STIFFNESS_RULE[kind])
+    g, det = gradients_in_space(points, cells, gradients)
+    if kind == "hex8":
+        return condensed_stiffness(points, cells, g, det * weights, det, lambda g, w: stiffness_of(g, w, E, nu))
+    return stiffness_of(g, det * weights, E, nu)
+
+
+def element_mass(points: Array, cells: Index, density: float, rule: str = "exact") -> Array:
     """Consistent element mass between nodes [kg], shape (e, a, a)."""
-    _, weights, values, gradients = reference("tet10", 4)
+    kind = SOLIDS[cells.shape[1]].name
+    _, weights, values, gradients = reference(kind, *(MASS_RULE if rule == "exact" else STIFFNESS_RULE)[kind])
     jacobian = np.einsum("eai,qaj->eqij", points[cells], gradients, optimize=True)
-    det = np.linalg.det(jacobian)
-    return np.asarray(density * np.einsum("eq,qa,qb->eab", det * weights, values, values, optimize=True))
+    share = density * np.linalg.det(jacobian) * weights
+    pairs = (values[:, :, None] * values[:, None, :]).reshape(len(weights), -1)
+    return np.asarray((share @ pairs).reshape(len(cells), values.shape[1], values.shape[1]))
 
 
-def _pattern(cells: Index, nodes: int) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], Index]:
-    """Order of all (row, column) node pairs, where each distinct pair starts, its column, and the row pointer."""
-    a = cells.shape[1]
-    key = np.repeat(cells, a, axis=1) * nodes + np.tile(cells, (1, a))
-    order = np.argsort(key, axis=None, kind="stable")
-    ranked = key.ravel()[order]
-    starts = np.flatnonzero(np.concatenate([[True], ranked[1:] != ranked[:-1]]))
-    pairs = ranked[starts]
-    pointer = np.searchsorted(pairs, np.arange(nodes + 1, dtype=np.int64) * nodes)
-    return order, starts, pairs % nodes, pointer
+def _pairs(cells: Index) -> tuple[Index, Index]:
+    """Local numbers of every pair of nodes of an element, each pair once."""
+    a, b = np.triu_indices(cells.shape[1])
+    return a, b
 
 
-def assemble(mesh: Mesh, materials: Mapping[str, Solid]) -> tuple[Any, Any]:
+def _keys(blocks: Blocks, nodes: int) -> Index:
+    """Row times nodes plus column of every pair of nodes of every element, row <= column."""
+    out = []
+    for cells in blocks:
+        a, b = _pairs(cells)
+        first, second = cells[:, a], cells[:, b]
+        out.append((np.minimum(first, second) * nodes + np.maximum(first, second)).ravel())
+    return np.concatenate(out)
+
+
+def _slots(key: Index) -> tuple[Index, Index]:
+    """The distinct keys in order, and where each key stands among them."""
+    order = np.argsort(key, kind="stable")
+    ranked = key[order]
+    new = np.concatenate([[True], ranked[1:] != ranked[:-1]])
+    slot = np.empty(len(key), dtype=np.int64)
+    slot[order] = np.cumsum(new) - 1
+    return ranked[new], slot
+
+
+def _chunks(mesh: Mesh) -> Iterator[tuple[str, Index]]:
+    """Element blocks part by part, a few elements at a time."""
+    for name, blocks in mesh.parts.items():
+        for cells in blocks:
+            some = max(1, CHUNK // cells.shape[1] ** 2)
+            for begin in range(0, len(cells), some):
+                yield name, cells[begin : begin + some]
+
+
+def assemble(mesh: Mesh, materials: Mapping[str, Solid], *, mass: str = "exact") -> tuple[Any, Any]:
     """Return stiffness [N/m] and mass [kg] of all parts as sparse CSR matrices (3n, 3n), node by node x, y, z.
 
-    materials: part -> its material. The parts are not connected; joints add to these matrices.
+    materials: part -> its material; mass: "exact", or "stiffness" for the coarser rule of the stiffness, with which
+    CalculiX integrates its mass too. The parts are not connected; joints add to these matrices.
     """
-    from scipy.sparse import bsr_array
+    if mass not in ("exact", "stiffness"):
+        raise InputError(f"mass = {mass!r} should be exact or stiffness")
+    from scipy.sparse import bsr_array, csr_array
 
-    cells = np.concatenate(list(mesh.parts.values()))
-    n, count = len(mesh.points), len(cells)
-    stiff, mass = np.empty((count, 10, 10, 3, 3)), np.empty((count, 10, 10))
+    n = len(mesh.points)
+    pairs, slot = _slots(_keys(mesh.blocks, n))
+    # only pairs with row <= column are summed, those on the diagonal by half; the rest is the transpose
+    stiff, weight = np.zeros((len(pairs), 9)), np.zeros(len(pairs))
     first = 0
-    for name, block in mesh.parts.items():
+    for name, cells in _chunks(mesh):
         solid = materials[name]
-        for begin in range(0, len(block), CHUNK):
-            some = block[begin : begin + CHUNK]
-            here = slice(first + begin, first + begin + len(some))
-            stiff[here] = element_stiffness(mesh.points, some, solid.E, solid.nu).transpose(0, 1, 3, 2, 4)
-            mass[here] = element_mass(mesh.points, some, solid.density or 0.0)
-        first += len(block)
-    order, starts, columns, pointer = _pattern(cells, n)
-    blocks = np.add.reduceat(stiff.reshape(-1, 3, 3)[order], starts)
-    weights = np.add.reduceat(mass.reshape(-1)[order], starts)
-    shape = (3 * n, 3 * n)
-    K = bsr_array((blocks, columns, pointer), shape=shape).tocsr()
-    M = bsr_array((weights[:, None, None] * np.eye(3), columns, pointer), shape=shape).tocsr()
-    M.eliminate_zeros()
-    return (K + K.T) * 0.5, (M + M.T) * 0.5
+        a, b = _pairs(cells)
+        here = slot[first : first + len(cells) * len(a)]
+        first += len(here)
+        block = element_stiffness(mesh.points, cells, solid.E, solid.nu).transpose(0, 1, 3, 2, 4)[:, a, b]
+        swapped = cells[:, a] > cells[:, b]
+        block[swapped] = block[swapped].transpose(0, 2, 1)
+        _add(stiff, here, block.reshape(-1, 9))
+        heavy = element_mass(mesh.points, cells, solid.density or 0.0, mass)
+        _add(weight[:, None], here, heavy[:, a, b].reshape(-1, 1))
+    columns, rows = pairs % n, pairs // n
+    half = np.where(rows == columns, 0.5, 1.0)
+    pointer = np.searchsorted(rows, np.arange(n + 1))
+    stiff *= half[:, None]
+    K = bsr_array((stiff.reshape(-1, 3, 3), columns, pointer), shape=(3 * n, 3 * n)).tocsr()
+    M = csr_array((weight * half, columns, pointer), shape=(n, n))
+    return _with_transpose(K), _threefold(_with_transpose(M))
+
+
+def _add(total: Array, slot: Index, values: Array) -> None:
+    """Add rows of values to the rows `slot` of total, where a slot may occur many times."""
+    order = np.argsort(slot, kind="stable")
+    ranked = slot[order]
+    starts = np.flatnonzero(np.concatenate([[True], ranked[1:] != ranked[:-1]]))
+    total[ranked[starts]] += np.add.reduceat(values[order], starts)
+
+
+def _with_transpose(upper: Any) -> Any:
+    whole = (upper + upper.T).tocsr()
+    whole.sort_indices()
+    return whole
+
+
+def _threefold(scalar: Any) -> Any:
+    """The same number between like components of two nodes: each entry three times, along the diagonal of a block."""
+    from scipy.sparse import csr_array
+
+    n = scalar.shape[0]
+    rows = scalar[np.repeat(np.arange(n), 3)]
+    component = np.repeat(np.tile(np.arange(3), n), np.diff(rows.indptr))
+    return csr_array((rows.data, 3 * rows.indices + component, rows.indptr), shape=(3 * n, 3 * n))
 
 
 def rigid_motions(points: Array) -> Array:
@@ -110,44 +175,3 @@ def rigid_motions(points: Array) -> Array:
         axis[i] = 1 / size
         modes[:, :, 3 + i] = np.cross(axis, x)
     return modes.reshape(-1, 6)
-
-
-def face_load(points: Array, triangles: Index, axis_point: Array, direction: Array) -> Array:
-    """Nodal forces [N] (3n,) of a total force 1 N along `direction` whose line of action passes through `axis_point`.
-
-    The traction is uniform up to a linear part across the face, just enough to bring the resultant on the line: two such
-    loads on one line with opposite directions balance exactly, whatever the meshes of their faces.
-    """
-    _, weights, values, gradients = reference("tri6", 4)
-    _, area = surface_frame(points, triangles, gradients)
-    unit = direction / np.linalg.norm(direction)
-    helper = np.eye(3)[np.argmin(np.abs(unit))]
-    across = np.stack([np.cross(unit, helper), np.cross(unit, np.cross(unit, helper))])
-    across /= np.linalg.norm(across, axis=1)[:, None]
-    place = np.einsum("fai,qa->fqi", points[triangles], values) - axis_point
-    radius = float(np.sqrt((area * weights).sum()))
-    basis = np.concatenate([np.ones((*area.shape, 1)), place @ across.T / radius], axis=2)
-    share = area * weights
-    gram = np.einsum("fq,fqi,fqj->ij", share, basis, basis)
-    traction = basis @ np.linalg.solve(gram, [1.0, 0.0, 0.0])
-    total = np.zeros(len(points))
-    np.add.at(total, triangles.ravel(), np.einsum("fq,qa->fa", share * traction, values).ravel())
-    return np.asarray(total[:, None] * unit).reshape(-1)
-
-
-def face_centre(points: Array, triangles: Index) -> tuple[Array, Array, float]:
-    """Centre [m] (3,), mean unit normal (3,), and area [m2] of a face."""
-    _, weights, values, gradients = reference("tri6", 4)
-    normals, area = surface_frame(points, triangles, gradients)
-    share = area * weights
-    place = np.einsum("fai,qa->fqi", points[triangles], values)
-    normal = np.einsum("fq,fqi->i", share, normals)
-    return np.einsum("fq,fqi->i", share, place) / share.sum(), normal / np.linalg.norm(normal), float(share.sum())
-
-
-def surface_frame(points: Array, triangles: Index, gradients: Array) -> tuple[Array, Array]:
-    """Unit normals (f, q, 3) and area per reference area (f, q) on curved triangles."""
-    tangent = np.einsum("fai,qaj->fqij", points[triangles], gradients, optimize=True)
-    normal = np.cross(tangent[..., 0], tangent[..., 1])
-    area = np.linalg.norm(normal, axis=-1)
-    return normal / area[..., None], area

@@ -19,7 +19,7 @@ _NETGEN_EDGES = {"tet10": ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)), "tri
 
 
 def _to_vtk(kind: str) -> list[int]:
-    edges = [_NETGEN_EDGES[kind].index(edge) for edge in EDGES[kind]]
+    edges = [_NETGEN_EDGES[kind].index((min(edge), max(edge))) for edge in EDGES[kind]]
     return [*range(CORNERS[kind]), *(CORNERS[kind] + i for i in edges)]
 
 
@@ -146,7 +146,8 @@ def _collect(mesh: Any, parts: list[str], labels: list[list[tuple[str, str]]], l
     blocks = {name: new_cells[domain == i] for i, name in enumerate(parts)}
     for label, tri in faces.items():
         faces[label] = _outward(new_points, tri, blocks[face_part[label]])
-    made = Mesh(points=new_points, parts=blocks, faces=faces, face_part=face_part, source=source)
+    made = Mesh(points=new_points, parts={name: (cells,) for name, cells in blocks.items()},
+                faces={name: (tri,) for name, tri in faces.items()}, face_part=face_part, source=source)  # fmt: skip
     if lost:
         raise InputError(f"{source}: the faces {', '.join(sorted(lost))} overlap others only in part, so that gluing cut "
                          "them; split the larger face in the CAD program where the parts meet")  # fmt: skip

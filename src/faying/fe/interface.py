@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.elasticity import surface_frame
-from faying.fe.elements import reference, shape_at
-from faying.fe.mesh import Array, Index, Mesh
-
-DEGREE = 4  # exact for products of two quadratic functions on straight triangles
+from faying.fe.elements import FACES, reference, shape_at
+from faying.fe.faces import FACE_DEGREE, surface_frame
+from faying.fe.mesh import Array, Mesh
+from faying.fe.overlap import overlap
+from faying.fe.sides import Blocks, Index, padded
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,35 +86,38 @@ class Interface:
         """Return the same joint lumped to the nodes of its first face, each with its share of the area.
 
         For the node-by-node use of a law. Shares follow the diagonal of the consistent mass matrix, so that all are
-        positive (the consistent share of a corner of a quadratic triangle is zero). Needs faces that match.
+        positive (the consistent share of a corner of a quadratic triangle is zero). Raises InputError where the faces
+        do not match node for node.
         """
-        nodes, inverse = np.unique(self.first_nodes, return_inverse=True)
-        inverse = inverse.reshape(self.first_nodes.shape)
-        diagonal = np.zeros(len(nodes))
-        np.add.at(diagonal, inverse, self.weights[:, None] * self.first_values**2)
-        share = diagonal * (self.area / diagonal.sum())
-        where = np.empty((len(nodes), 3))
+        from scipy.sparse import csr_array
+        from scipy.sparse.linalg import spsolve
+
+        nodes, first = np.unique(self.first_nodes, return_inverse=True)
+        others, second = np.unique(self.second_nodes, return_inverse=True)
+        row = np.arange(len(self.weights) + 1)
+
+        def sampled(column: Index, values: Array, count: int) -> Any:
+            pointer = row * values.shape[1]
+            return csr_array((values.ravel(), column.ravel(), pointer), shape=(len(self.weights), count))
+
+        one = sampled(first, self.first_values, len(nodes))
+        two = sampled(second, self.second_values, len(others))
+        weighted = one * self.weights[:, None]
+        gram, cross = (weighted.T @ one).tocsc(), (weighted.T @ two).tocoo()
+        diagonal = gram.diagonal()
+        # partners are the nodes whose shape functions agree: the integral of the squared difference vanishes
+        differ = diagonal[cross.row] + (two * two).T.dot(self.weights)[cross.col] - 2 * cross.data
+        same = differ < 1e-8 * diagonal[cross.row]
         partner = np.full(len(nodes), -1)
-        normal, gap = np.zeros((len(nodes), 3)), np.zeros(len(nodes))
-        np.add.at(normal, inverse, self.weights[:, None, None] * self.normals[:, None, :])
-        np.add.at(gap, inverse, (self.weights * self.gap)[:, None])
-        weight = np.zeros(len(nodes))
-        np.add.at(weight, inverse, self.weights[:, None])
-        # matched faces: the shape functions of both sides agree point by point, up to their order
-        order_a = np.argsort(-self.first_values, axis=1)
-        order_b = np.argsort(-self.second_values, axis=1)
-        same = np.allclose(np.take_along_axis(self.first_values, order_a, 1),
-                           np.take_along_axis(self.second_values, order_b, 1), atol=1e-6)  # fmt: skip
-        if not same:
+        partner[cross.row[same]] = others[cross.col[same]]
+        if np.any(partner < 0):
             raise InputError("node-by-node springs need faces whose meshes match; use springs per area")
-        for column in range(self.first_nodes.shape[1]):
-            match = np.argmin(np.abs(self.second_values - self.first_values[:, column : column + 1]), axis=1)
-            partner[inverse[:, column]] = self.second_nodes[np.arange(len(match)), match]
+        normal = weighted.T @ self.normals
         return Interface(
-            positions=where,
-            weights=share,
+            positions=np.asarray(spsolve(gram, weighted.T @ self.positions)).reshape(-1, 3),
+            weights=diagonal * (self.area / diagonal.sum()),
             normals=normal / np.linalg.norm(normal, axis=1)[:, None],
-            gap=gap / weight,
+            gap=np.asarray(spsolve(gram, weighted.T @ self.gap)),
             first_nodes=nodes[:, None],
             first_values=np.ones((len(nodes), 1)),
             second_nodes=partner[:, None],
@@ -124,89 +127,171 @@ class Interface:
 
 
 def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> Interface:
-    """Pair two faces: each quadrature point of the first is projected on the second.
+    """Pair two faces: where their meshes match, point by point; else over every overlap of two element faces.
 
     first, second: names of the faces; reach: the farthest that the second may lie away [m], 1 % of the structure's size
-    where None. Points that find no partner carry nothing. Raises InputError where the faces do not meet at all, lie on
-    one part, or face the same way.
+    where None. What finds no partner carries nothing. Raises InputError where the faces do not meet at all, lie on one
+    part, or face the same way.
     """
-    tri_a, tri_b = mesh.face(first), mesh.face(second)
+    faces_a, faces_b = mesh.face(first), mesh.face(second)
     if mesh.face_part[first] == mesh.face_part[second]:
         raise InputError(
             f"faces {first!r} and {second!r} are both on part {mesh.face_part[first]!r}; a joint needs two"
         )
     reach = 0.01 * mesh.size if reach is None else reach
-    _, weights, values, gradients = reference("tri6", DEGREE)
-    normals, area = surface_frame(mesh.points, tri_a, gradients)
-    positions = np.einsum("fai,qa->fqi", mesh.points[tri_a], values).reshape(-1, 3)
-    normals = normals.reshape(-1, 3)
-    host, local, distance = _project(mesh.points, tri_b, positions, normals, reach)
-    hit = host >= 0
-    if not np.any(hit):
+    found = _matched(mesh, faces_a, faces_b, reach) or _overlapping(mesh, faces_a, faces_b, reach)
+    if found is None:
         from scipy.spatial import cKDTree
 
-        apart = cKDTree(mesh.points[tri_b].reshape(-1, 3)).query(mesh.points[tri_a].reshape(-1, 3))[0]
+        apart = cKDTree(mesh.points[mesh.face_nodes(second)]).query(mesh.points[mesh.face_nodes(first)])[0]
         nearest = float(apart.min())
         raise InputError(f"faces {first!r} and {second!r} do not touch: they are {nearest * 1e3:.4g} mm apart at the "
                          f"nearest and the joint reaches {reach * 1e3:.4g} mm; move a part, or check the unit of the "
                          "geometry")  # fmt: skip
-    nodes_a = np.repeat(tri_a, len(weights), axis=0)
-    second_values, _ = shape_at("tri6", local[hit].T)
-    first_values = np.tile(values, (len(tri_a), 1))[hit]
+    return found
+
+
+def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Interface | None:
+    """Quadrature points of the first face projected on the second; None where the meshes do not match."""
+    places, shares, directions, sampled = [], [], [], []
+    for faces in faces_a:
+        kind = FACES[faces.shape[1]].name
+        _, weights, values, gradients = reference(kind, FACE_DEGREE[kind])
+        normals, area = surface_frame(mesh.points, faces, gradients)
+        places.append(np.einsum("fai,qa->fqi", mesh.points[faces], values).reshape(-1, 3))
+        shares.append((area * weights).ravel())
+        directions.append(normals.reshape(-1, 3))
+        sampled.append((np.repeat(faces, len(weights), axis=0), np.tile(values, (len(faces), 1))))
+    positions, normals = np.concatenate(places), np.concatenate(directions)
+    first_nodes, first_values = padded(sampled)
+    second_nodes, second_values, distance, hit = _project(mesh.points, faces_b, positions, normals, reach)
+    if not np.any(hit) or first_values.shape[1] != second_values.shape[1]:
+        return None
+    # shape functions of both sides agree point by point, up to their order
+    if not np.allclose(np.sort(first_values[hit], axis=1), np.sort(second_values[hit], axis=1), atol=1e-6):
+        return None
+    counts = np.repeat([len(reference(FACES[f.shape[1]].name, FACE_DEGREE[FACES[f.shape[1]].name])[1]) for f in faces_a],
+                       [len(f) for f in faces_a])  # fmt: skip
+    share = np.add.reduceat(hit, np.concatenate([[0], np.cumsum(counts)[:-1]])) / counts
+    if not np.all((share == 0) | (share == 1)):  # an edge of the second face runs through an element face of the first
+        return None
     return Interface(
         positions=positions[hit],
-        weights=(area * weights).reshape(-1)[hit],
+        weights=np.concatenate(shares)[hit],
         normals=normals[hit],
         gap=distance[hit],
-        first_nodes=nodes_a[hit],
-        first_values=first_values,
-        second_nodes=tri_b[host[hit]],
-        second_values=second_values,
+        first_nodes=first_nodes[hit],
+        first_values=first_values[hit],
+        second_nodes=second_nodes[hit],
+        second_values=second_values[hit],
+        unknowns=mesh.unknowns,
+    )
+
+
+def _overlapping(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Interface | None:
+    """Points in every overlap of two element faces; None where there is none."""
+    degree = max(2 if FACES[faces.shape[1]].count <= 4 else 4 for faces in (*faces_a, *faces_b))
+    cut = overlap(mesh.points, faces_a, faces_b, reach=reach, degree=degree)
+    q = len(cut.weights)
+    positions, normals, weights = cut.positions.copy(), cut.normals.copy(), cut.weights.copy()
+    gap, good = np.zeros(q), np.zeros(q, dtype=bool)
+    sides = []
+    for blocks, (block, face) in ((faces_a, cut.first), (faces_b, cut.second)):
+        width = max(faces.shape[1] for faces in blocks)
+        nodes, values = np.full((q, width), blocks[0][0, 0]), np.zeros((q, width))
+        for number, faces in enumerate(blocks):
+            here = np.flatnonzero(block == number)
+            tried = faces[face[here]]
+            along, shapes, normal, flat = _cut(mesh.points[tried], positions[here], normals[here])
+            nodes[here, : faces.shape[1]], values[here, : faces.shape[1]] = tried, shapes
+            if blocks is faces_a:
+                positions[here] += along[:, None] * normals[here]
+                weights[here] /= np.abs(np.einsum("qi,qi->q", normal, normals[here]))
+                normals[here] = normal
+            else:
+                gap[here] = along
+                good[here] = (np.abs(along) <= reach) & (np.einsum("qi,qi->q", normal, normals[here]) < 0) & ~flat
+        sides.append((nodes, values))
+    if not np.any(good):
+        return None
+    return Interface(
+        positions=positions[good],
+        weights=weights[good],
+        normals=normals[good],
+        gap=gap[good],
+        first_nodes=sides[0][0][good],
+        first_values=sides[0][1][good],
+        second_nodes=sides[1][0][good],
+        second_values=sides[1][1][good],
         unknowns=mesh.unknowns,
     )
 
 
 def _project(
-    points: Array, triangles: Index, positions: Array, normals: Array, reach: float
-) -> tuple[Index, Array, Array]:
-    """For each position: triangle hit along its normal (-1 for none), local coordinates there, signed distance [m].
+    points: Array, blocks: Blocks, positions: Array, normals: Array, reach: float
+) -> tuple[Index, Array, Array, Any]:
+    """For each position: nodes and shape functions of the face hit along its normal, signed distance [m], whether hit.
 
-    Candidates are the triangles whose centres lie nearest; on each, Newton finds where the line along the normal cuts
-    the curved triangle.
+    Candidates are the element faces whose centres lie nearest; on each, Newton finds where the line along the normal
+    cuts the curved face.
     """
     from scipy.spatial import cKDTree
 
-    centres = points[triangles[:, :3]].mean(axis=1)
-    count = min(12, len(triangles))
-    _, near = cKDTree(centres).query(positions, k=count)
-    near = np.asarray(near).reshape(len(positions), count)
-    host = np.full(len(positions), -1, dtype=np.int64)
-    local = np.zeros((len(positions), 2))
-    distance = np.zeros(len(positions))
-    open_points = np.arange(len(positions))
+    centres = np.concatenate([points[faces[:, : FACES[faces.shape[1]].corners]].mean(axis=1) for faces in blocks])
+    block_of = np.repeat(np.arange(len(blocks)), [len(faces) for faces in blocks])
+    within = np.concatenate([np.arange(len(faces)) for faces in blocks])
+    count = min(12, len(centres))
+    near = np.asarray(cKDTree(centres).query(positions, k=count)[1]).reshape(len(positions), count)
+    width = max(faces.shape[1] for faces in blocks)
+    nodes = np.full((len(positions), width), blocks[0][0, 0])
+    values, distance = np.zeros((len(positions), width)), np.zeros(len(positions))
+    hit = np.zeros(len(positions), dtype=bool)
     for rank in range(count):
-        if not len(open_points):
+        for number, faces in enumerate(blocks):
+            left = np.flatnonzero(~hit & (block_of[near[:, rank]] == number))
+            if not len(left):
+                continue
+            tried = faces[within[near[left, rank]]]
+            along, shapes, normal, flat = _cut(points[tried], positions[left], normals[left])
+            good = _inside(tried, shapes) & ~flat & (np.abs(along) <= reach)
+            good &= np.einsum("qi,qi->q", normal, normals[left]) < 0
+            chosen, columns = left[good], slice(0, faces.shape[1])
+            hit[chosen], distance[chosen] = True, along[good]
+            nodes[chosen, columns], values[chosen, columns] = tried[good], shapes[good]
+    return nodes, values, distance, hit
+
+
+def _inside(faces: Index, shapes: Array) -> Any:
+    """Whether points with these shape functions (q, a) lie in the reference element, its edges included."""
+    kind = FACES[faces.shape[1]]
+    local, tolerance = shapes @ kind.nodes, 1e-6
+    if kind.shape == "tri":
+        return (local >= -tolerance).all(axis=1) & (local.sum(axis=1) <= 1 + tolerance)
+    return (np.abs(local) <= 1 + 2 * tolerance).all(axis=1)
+
+
+def _cut(faces: Array, targets: Array, normals: Array) -> tuple[Array, Array, Array, Any]:
+    """Where lines cut curved element faces (q, a, 3), by Newton's method.
+
+    Returns distance along the line (q,), shape functions (q, a) and unit normals (q, 3) of the face there, and whether
+    the line runs along the face, so that there is no such place.
+    """
+    kind = FACES[faces.shape[1]]
+    low, high = (-1.0, 2.0) if kind.shape == "tri" else (-2.0, 2.0)
+    guess = np.full((len(faces), 2), 1 / 3 if kind.shape == "tri" else 0.0)
+    along = np.zeros(len(faces))
+    for _ in range(8):
+        values, gradients = shape_at(kind.name, guess.T)
+        miss = np.einsum("qa,qai->qi", values, faces) - targets - along[:, None] * normals
+        tangent = np.einsum("qai,qaj->qij", faces, gradients)
+        jacobian = np.concatenate([tangent, -normals[:, :, None]], axis=2)
+        flat = np.abs(np.linalg.det(jacobian)) < 1e-30
+        jacobian[flat] = np.eye(3)
+        step = np.linalg.solve(jacobian, miss[:, :, None])[:, :, 0]
+        guess = np.clip(guess - step[:, :2], low, high)
+        along = along - step[:, 2]
+        if not len(step) or np.abs(step[:, :2]).max() < 1e-12:
             break
-        tri = near[open_points, rank]
-        corners = points[triangles[tri]]
-        target, normal = positions[open_points], normals[open_points]
-        guess = np.full((len(open_points), 2), 1 / 3)
-        along = np.zeros(len(open_points))
-        for _ in range(8):
-            values, gradients = shape_at("tri6", guess.T)
-            miss = np.einsum("qa,qai->qi", values, corners) - target - along[:, None] * normal
-            tangent = np.einsum("qai,qaj->qij", corners, gradients)
-            jacobian = np.concatenate([tangent, -normal[:, :, None]], axis=2)
-            flat = np.abs(np.linalg.det(jacobian)) < 1e-30
-            jacobian[flat] = np.eye(3)
-            step = np.linalg.solve(jacobian, miss[:, :, None])[:, :, 0]
-            guess = np.clip(guess - step[:, :2], -1.0, 2.0)
-            along = along - step[:, 2]
-        tolerance = 1e-6
-        facing = np.einsum("qi,qi->q", np.cross(tangent[..., 0], tangent[..., 1]), normal) < 0
-        inside = (guess >= -tolerance).all(axis=1) & (guess.sum(axis=1) <= 1 + tolerance)
-        good = inside & facing & (np.abs(along) <= reach) & ~flat
-        chosen = open_points[good]
-        host[chosen], local[chosen], distance[chosen] = tri[good], guess[good], along[good]
-        open_points = open_points[~good]
-    return host, local, distance
+    normal = np.cross(tangent[..., 0], tangent[..., 1])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    return along, shape_at(kind.name, guess.T)[0], normal, flat

@@ -1,4 +1,4 @@
-"""A mesh of named parts with named faces: second-order solid elements, nodes in metres."""
+"""A mesh of named parts with named faces: solid elements of any kind, nodes in metres."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -8,50 +8,72 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faying.errors import InputError
+from faying.fe.elements import FACES, KINDS, SOLIDS, reference
+from faying.fe.sides import Blocks, Index, nodes_of
 
 Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
-# node order of every kind is that of VTK: corners first, then the middles of the edges
-CORNERS = {"tet10": 4, "tri6": 3}
-EDGES = {
-    "tet10": ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)),
-    "tri6": ((0, 1), (1, 2), (0, 2)),
+# the rule for the stiffness of each kind: degree, and degree along the axis of a wedge; those of CalculiX, but for
+# wedge6, to which CalculiX gives two points and so a motion that costs nothing
+STIFFNESS_RULE: dict[str, tuple[int, int | None]] = {
+    "tet4": (1, None),
+    "tet10": (2, None),
+    "hex8": (3, None),
+    "hex20": (5, None),
+    "wedge6": (2, 3),
+    "wedge15": (2, 5),
+}
+# the rule for the mass: exact on straight elements
+MASS_RULE: dict[str, tuple[int, int | None]] = {
+    "tet4": (2, None),
+    "tet10": (4, None),
+    "hex8": (5, None),
+    "hex20": (5, None),
+    "wedge6": (4, 5),
+    "wedge15": (4, 5),
 }
 
 
 @dataclass(frozen=True, kw_only=True)
 class Mesh:
-    """Nodes, the tetrahedra of each part, and the triangles of each named face.
+    """Nodes, the solid elements of each part, and the faces of elements that make up each named face.
 
-    points [m], shape (n, 3); parts: name -> tet10 connectivity (e, 10); faces: name -> tri6 connectivity (f, 6), the
-    normal of each triangle pointing out of its part; face_part: name of the face -> name of its part. No node is shared
-    by two parts. Raises InputError for empty parts, elements of negative volume, and nodes that no element holds.
+    points [m], shape (n, 3); parts: name -> blocks of elements, one array (e, a) per kind, told by a, the nodes of an
+    element: tet4, wedge6, hex8, tet10, wedge15, hex20; faces: name -> blocks of element faces (f, a): tri3, quad4, tri6,
+    quad8, the normal of each pointing out of its part; a single array stands for one block. face_part: name of the face
+    -> name of its part; node_numbers (n,): the numbers of the nodes in the file they came from, 1, 2, ... where None.
+    Nodes of an element in VTK's order (corners against the clock seen from the far side). No node is shared by two
+    parts. Raises InputError for empty parts, elements of negative volume, and nodes that no element holds.
     """
 
     points: Array
-    parts: Mapping[str, Index]
-    faces: Mapping[str, Index]
+    parts: Mapping[str, Blocks]
+    faces: Mapping[str, Blocks]
     face_part: Mapping[str, str]
     source: str = field(default="")
+    node_numbers: Index | None = None
 
     def __post_init__(self) -> None:
         if not self.parts:
             raise InputError("the mesh has no parts; a structure needs at least one solid")
+        for name, kinds in (("parts", SOLIDS), ("faces", FACES)):
+            wrapped = {label: _blocks(blocks, f"{name[:-1]} {label!r}", kinds)
+                       for label, blocks in getattr(self, name).items()}  # fmt: skip
+            object.__setattr__(self, name, wrapped)
         if not np.all(np.isfinite(self.points)):
             raise InputError(f"the mesh has {np.count_nonzero(~np.isfinite(self.points))} coordinates that are NaN")
+        if self.node_numbers is not None and len(np.unique(self.node_numbers)) != len(self.points):
+            raise InputError(f"{len(self.points)} nodes have {len(np.unique(self.node_numbers))} different numbers; each "
+                             "node needs one of its own")  # fmt: skip
         used = np.zeros(len(self.points), dtype=int)
-        for name, cells in self.parts.items():
-            if cells.size == 0:
-                raise InputError(f"part {name!r} has no elements")
-            here = np.unique(cells)
+        for name, blocks in self.parts.items():
+            here = nodes_of(blocks)
             if np.any(used[here]):
                 raise InputError(f"part {name!r} shares nodes with another part; parts meet only through joints")
             used[here] = 1
-            corners = self.points[cells[:, :4]]
-            volumes = np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6
-            if np.any(volumes <= 0):
-                raise InputError(f"part {name!r}: {np.count_nonzero(volumes <= 0)} elements have no or negative volume; "
+            wrong = sum(int(np.count_nonzero(least_jacobian(self.points, cells) <= 0)) for cells in blocks)
+            if wrong:
+                raise InputError(f"part {name!r}: {wrong} elements have no or negative volume; "
                                  "repair the mesh or its node order")  # fmt: skip
         if not np.all(used):
             raise InputError(f"{np.count_nonzero(used == 0)} nodes belong to no element")
@@ -66,11 +88,65 @@ class Mesh:
         """Diagonal of the box around all nodes [m]."""
         return float(np.linalg.norm(np.ptp(self.points, axis=0)))
 
-    def face(self, name: str) -> Index:
-        """Triangles of a named face (f, 6). Raises InputError that lists the faces there are."""
+    @cached_property
+    def numbers(self) -> Index:
+        """Number of each node (n,): node_numbers, or 1, 2, ..."""
+        return np.arange(1, len(self.points) + 1) if self.node_numbers is None else self.node_numbers
+
+    @cached_property
+    def blocks(self) -> Blocks:
+        """The blocks of all parts, part by part."""
+        return tuple(block for blocks in self.parts.values() for block in blocks)
+
+    def face(self, name: str) -> Blocks:
+        """Blocks of a named face, each (f, a). Raises InputError that lists the faces there are."""
         if name not in self.faces:
             raise InputError(f"no face is called {name!r}; the faces are {', '.join(map(repr, sorted(self.faces)))}")
         return self.faces[name]
+
+    def face_nodes(self, name: str) -> Index:
+        """Nodes of a named face, each once. Raises InputError as `face` does."""
+        return nodes_of(self.face(name))
+
+    def part_nodes(self, name: str) -> Index:
+        """Nodes of a part, each once. Raises InputError that lists the parts there are."""
+        if name not in self.parts:
+            raise InputError(f"no part is called {name!r}; the parts are {', '.join(map(repr, self.parts))}")
+        return nodes_of(self.parts[name])
+
+
+def _blocks(given: Index | Blocks, what: str, kinds: Mapping[int, object]) -> Blocks:
+    blocks = (given,) if isinstance(given, np.ndarray) else tuple(given)
+    for block in blocks:
+        if block.ndim != 2 or (len(block) and block.shape[1] not in kinds):
+            raise InputError(f"{what} has an array of shape {block.shape}; rows of {', '.join(map(str, sorted(kinds)))} "
+                             "nodes are known")  # fmt: skip
+    if not sum(len(block) for block in blocks):
+        raise InputError(f"{what} has no elements")
+    return tuple(np.asarray(block, dtype=np.int64) for block in blocks if len(block))
+
+
+def least_jacobian(points: Array, cells: Index) -> Array:
+    """Least determinant of the map from the reference element [m3 per unit] at the points of integration (e,)."""
+    kind = SOLIDS[cells.shape[1]]
+    _, _, _, gradients = reference(kind.name, *STIFFNESS_RULE[kind.name])
+    out = np.empty(len(cells))
+    for begin in range(0, len(cells), 20000):
+        here = slice(begin, begin + 20000)
+        jacobian = np.einsum("eai,qaj->eqij", points[cells[here]], gradients, optimize=True)
+        x, y, z = (jacobian[..., i, :] for i in range(3))
+        out[here] = np.einsum("eqi,eqi->eq", np.cross(x, y), z).min(axis=1)
+    return out
+
+
+def kind_of(cells: Index) -> str:
+    """Name of the kind of a block of solid elements."""
+    return SOLIDS[cells.shape[1]].name
+
+
+def face_kind(faces: Index) -> str:
+    """Name of the kind of a block of element faces."""
+    return FACES[faces.shape[1]].name
 
 
 def split_at_joints(
@@ -86,3 +162,7 @@ def split_at_joints(
     new_cells = np.searchsorted(key, part_of_cell[:, None] * n + cells)
     faces = {name: np.searchsorted(key, triangle_part[name] * n + tri) for name, tri in triangles.items()}
     return points[key % n], new_cells.astype(np.int64), {k: v.astype(np.int64) for k, v in faces.items()}
+
+
+CORNERS = {name: kind.corners for name, kind in KINDS.items()}
+EDGES = {name: kind.edges for name, kind in KINDS.items()}

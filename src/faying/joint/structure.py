@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faying.errors import InputError
-from faying.fe.elasticity import Solid, assemble, face_centre, face_load, rigid_motions
+from faying.fe.elasticity import Solid, assemble, rigid_motions
+from faying.fe.faces import face_centre, face_load
 from faying.fe.interface import Interface
-from faying.fe.mesh import Index, Mesh
+from faying.fe.mesh import Mesh
+from faying.fe.sides import Index, skin, triangles_of
 from faying.joint.preload import Assembly
 from faying.joint.seat import Seat
 
@@ -87,18 +89,18 @@ class Structure:
     def bolt_load(self, first: str, second: str) -> Array:
         """Nodal forces [N] (unknowns,) of a bolt that pulls the two faces towards each other with 1 N."""
         mesh = self.mesh
-        tri_a, tri_b = mesh.face(first), mesh.face(second)
+        faces_a, faces_b = mesh.face(first), mesh.face(second)
         if mesh.face_part[first] == mesh.face_part[second]:
             raise InputError(f"the bolt's faces {first!r} and {second!r} are both on part {mesh.face_part[first]!r}; a bolt "
                              "pulls two parts together")  # fmt: skip
-        centre_a, normal_a, _ = face_centre(mesh.points, tri_a)
-        centre_b, normal_b, _ = face_centre(mesh.points, tri_b)
+        centre_a, normal_a, _ = face_centre(mesh.points, faces_a)
+        centre_b, normal_b, _ = face_centre(mesh.points, faces_b)
         axis = centre_b - centre_a
         length = float(np.linalg.norm(axis))
         if length < 1e-6 * mesh.size or normal_a @ axis > -0.5 * length or normal_b @ axis < 0.5 * length:
             raise InputError(f"the bolt's faces {first!r} and {second!r} do not look away from each other; name the two seats "
                              "that head and nut press on")  # fmt: skip
-        return face_load(mesh.points, tri_a, centre_a, axis) + face_load(mesh.points, tri_b, centre_a, -axis)
+        return face_load(mesh.points, faces_a, centre_a, axis) + face_load(mesh.points, faces_b, centre_a, -axis)
 
     def assembly(self, *, solver: str | None = None) -> Assembly:
         """Return the preload problem of this structure."""
@@ -132,11 +134,7 @@ class Structure:
 
     def outline(self) -> tuple[NDArray[np.int64], Index]:
         """Nodes of the outer surface and triangles between them (t, 3), for pictures."""
-        cells = np.concatenate(list(self.mesh.parts.values()))[:, :4]
-        faces = cells[:, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]].reshape(-1, 3)
-        ranked = np.sort(faces, axis=1)
-        _, first, count = np.unique(ranked, axis=0, return_index=True, return_counts=True)
-        outer = faces[first[count == 1]]
+        outer = triangles_of(skin(self.mesh.blocks, len(self.mesh.points)))
         nodes, triangles = np.unique(outer, return_inverse=True)
         return nodes, triangles.reshape(-1, 3).astype(np.int64)
 
@@ -152,7 +150,7 @@ def tie(mesh: Mesh, pairs: Sequence[tuple[str, str]]) -> Any | None:
     n = len(mesh.points)
     owner = np.arange(n)
     for first, second in pairs:
-        a, b = np.unique(mesh.face(first)), np.unique(mesh.face(second))
+        a, b = mesh.face_nodes(first), mesh.face_nodes(second)
         distance, index = cKDTree(mesh.points[a]).query(mesh.points[b])
         if not np.all(distance < 1e-6 * mesh.size):
             return None

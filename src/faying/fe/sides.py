@@ -1,0 +1,86 @@
+"""Sides of solid elements: which lie on the outside, and which of them make up a face."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.fe.elements import FACES, SOLIDS, Array
+
+Index = NDArray[np.int64]
+Blocks = tuple[Index, ...]
+
+
+def all_sides(cells: Index) -> list[tuple[Index, Index, Index]]:
+    """Sides of a block of elements as (nodes (f, a), element of each (f,), number of the side (f,)), kind by kind."""
+    sides = SOLIDS[cells.shape[1]].sides
+    out = []
+    for count in sorted({len(side) for side in sides}):
+        numbers = [i for i, side in enumerate(sides) if len(side) == count]
+        nodes = cells[:, [sides[i] for i in numbers]].reshape(-1, count)
+        out.append((nodes, np.repeat(np.arange(len(cells)), len(numbers)), np.tile(numbers, len(cells))))
+    return out
+
+
+def side_key(faces: Index, nodes: int) -> Index:
+    """One number per face, the same for faces with the same corners whatever their order; nodes: how many there are."""
+    corners = np.sort(faces[:, : FACES[faces.shape[1]].corners], axis=1)
+    return np.asarray((corners[:, 0] * nodes + corners[:, 1]) * nodes + corners[:, 2])
+
+
+def _by_kind(faces: Sequence[Index]) -> Blocks:
+    """Put faces of one kind together."""
+    counts = sorted({face.shape[1] for face in faces})
+    blocks = (np.concatenate([face for face in faces if face.shape[1] == count]) for count in counts)
+    return tuple(block for block in blocks if len(block))
+
+
+def skin(blocks: Blocks, nodes: int) -> Blocks:
+    """Sides that belong to one element only, normals outwards, kind by kind."""
+    found = _by_kind([side for block in blocks for side, _, _ in all_sides(block)])
+    outer = []
+    for faces in found:
+        _, first, count = np.unique(side_key(faces, nodes), return_index=True, return_counts=True)
+        outer.append(faces[np.sort(first[count == 1])])
+    return tuple(faces for faces in outer if len(faces))
+
+
+def sides_like(faces: Index, blocks: Blocks, nodes: int) -> tuple[Index, NDArray[np.bool_]]:
+    """The outer sides with the corners of the given faces, normals outwards, and which of the faces have one."""
+    outer = [side for side in skin(blocks, nodes) if side.shape[1] == faces.shape[1]]
+    if not outer:
+        return faces[:0], np.zeros(len(faces), dtype=bool)
+    key = side_key(outer[0], nodes)
+    order = np.argsort(key)
+    want = side_key(faces, nodes)
+    place = np.minimum(np.searchsorted(key[order], want), len(key) - 1)
+    hit = key[order[place]] == want
+    return outer[0][order[place[hit]]], hit
+
+
+def sides_on(chosen: Index, blocks: Blocks, nodes: int) -> Blocks:
+    """The outer sides all of whose nodes are among those chosen, normals outwards."""
+    inside = np.zeros(nodes, dtype=bool)
+    inside[chosen] = True
+    picked = (side[inside[side].all(axis=1)] for side in skin(blocks, nodes))
+    return tuple(side for side in picked if len(side))
+
+
+def triangles_of(blocks: Blocks) -> Index:
+    """Triangles between the corners of faces (t, 3), for pictures."""
+    out = [faces[:, corners] for faces in blocks
+           for corners in ([0, 1, 2], [0, 2, 3])[: FACES[faces.shape[1]].corners - 2]]  # fmt: skip
+    return np.concatenate(out)
+
+
+def nodes_of(blocks: Blocks) -> Index:
+    """Nodes that the elements of all blocks hold, each once, in rising order."""
+    return np.unique(np.concatenate([block.ravel() for block in blocks]))
+
+
+def padded(blocks: Sequence[tuple[Index, Array]]) -> tuple[Index, Array]:
+    """Put nodes (q, a) and values (q, a) of several kinds into one table; what is missing gets the value 0."""
+    width = max(nodes.shape[1] for nodes, _ in blocks)
+    nodes = [np.concatenate([n, np.repeat(n[:, :1], width - n.shape[1], axis=1)], axis=1) for n, _ in blocks]
+    values = [np.pad(v, ((0, 0), (0, width - v.shape[1]))) for _, v in blocks]
+    return np.concatenate(nodes), np.concatenate(values)
