@@ -29,6 +29,9 @@ UNITS = {
     "weights": "m2",
     "outline": "m",
     "shapes": "kg^-1/2",
+    "bolt_forces": "N",
+    "slipping": "1",
+    "mac": "1",
 }
 
 
@@ -51,6 +54,20 @@ class Comparison:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Receptance:
+    """Frequency response at one preload: values [m/N] (frequency, output, input) at frequencies [Hz].
+
+    inputs, outputs: point [m] and direction of each; error: the largest of the residuals that were checked [-].
+    """
+
+    frequencies: Array
+    values: NDArray[np.complex128]
+    inputs: tuple[tuple[tuple[float, ...], tuple[float, ...]], ...]
+    outputs: tuple[tuple[tuple[float, ...], tuple[float, ...]], ...]
+    error: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Result:
     """What a study gives. l loads, m elastic modes, q points on the joints, n nodes of the outline.
 
@@ -58,7 +75,9 @@ class Result:
     complex modes; tied, free [Hz] (m,), the same modes with the faces grown together and apart; rigid [Hz] (6,), the
     largest of the rigid-body values over the loads; pressure [Pa], k_n, k_t [Pa/m] (l, q) at points [m] (q, 3) with
     weights [m2] (q,) of joint_of_point (q,); unknowns; outline [m] (n, 3), triangles (t, 3) and shapes
-    (l, m, n, 3) of the mass-normalised real modes; sources, warnings: sentences for the reader.
+    (l, m, n, 3) of the mass-normalised real modes; bolt_forces [N] (l, b), what is left when all bolts are tight; slipping
+    [-] (l, joints), share of a joint's area at the limit of friction; mac [-] (l, m, m), modal assurance criterion of
+    the modes at the first load (rows) with those at each; response: frequency response per load, if asked for; sources, warnings: sentences for the reader.
     """
 
     title: str
@@ -81,6 +100,11 @@ class Result:
     outline: Array
     triangles: NDArray[np.int64]
     shapes: Array
+    bolts: tuple[str, ...]
+    bolt_forces: Array
+    slipping: Array
+    mac: Array
+    response: tuple[Receptance, ...] = ()
     surface: dict[str, Any] = field(default_factory=dict)
     law: dict[str, Any] = field(default_factory=dict)
     convergence: tuple[dict[str, float], ...] = ()
@@ -104,6 +128,8 @@ class Result:
         out |= {name: {"unit": UNITS[name], "values": getattr(self, name).tolist()} for name in names}
         out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
         out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
+        out["bolt_forces"] = {"unit": "N", "bolts": list(self.bolts), "values": self.bolt_forces.tolist()}
+        out["slipping_share"] = {"unit": "1", "values": self.slipping.tolist()}
         out |= {"surface": self.surface, "law": self.law, "convergence": list(self.convergence)}
         if self.comparison is not None:
             c = self.comparison
@@ -132,7 +158,8 @@ class Result:
             "loss_error": ("load", "mode"), "tied": ("mode",), "free": ("mode",), "rigid": ("rigid_motion",),
             "pressure": ("load", "point"), "k_n": ("load", "point"), "k_t": ("load", "point"),
             "points": ("point", "axis"), "weights": ("point",), "outline": ("node", "axis"),
-            "shapes": ("load", "mode", "node", "axis"),
+            "shapes": ("load", "mode", "node", "axis"), "bolt_forces": ("load", "bolt"),
+            "slipping": ("load", "joint"), "mac": ("load", "mode", "other_mode"),
         }  # fmt: skip
 
         def write(temporary: Path) -> None:
@@ -151,6 +178,9 @@ class Result:
                 for name, names in dims.items():
                     sizes |= dict(zip(names, getattr(self, name).shape, strict=True))
                 sizes |= {"triangle": len(self.triangles)}
+                if self.response:
+                    f, o, i = self.response[0].values.shape
+                    sizes |= {"response_frequency": f, "output": o, "input": i}
                 for name, size in sizes.items():
                     nc.createDimension(name, size)
                 for name, names in dims.items():
@@ -166,7 +196,28 @@ class Result:
                     variable[:] = values
                     variable.units = "1"
 
+                if self.response:
+                    self._write_response(nc)
+
         return whole(Path(path), write)
+
+    def _write_response(self, nc: Any) -> None:
+        first = self.response[0]
+        parts = [
+            ("response_frequencies", first.frequencies, ("response_frequency",), "Hz"),
+            ("input_points", np.array([point for point, _ in first.inputs]), ("input", "axis"), "m"),
+            ("input_directions", np.array([axis for _, axis in first.inputs]), ("input", "axis"), "1"),
+            ("output_points", np.array([point for point, _ in first.outputs]), ("output", "axis"), "m"),
+            ("output_directions", np.array([axis for _, axis in first.outputs]), ("output", "axis"), "1"),
+            ("response_error", np.array([one.error for one in self.response]), ("load",), "1"),
+        ]
+        stacked = np.stack([one.values for one in self.response])
+        names = ("load", "response_frequency", "output", "input")
+        parts += [("receptance_real", stacked.real, names, "m/N"), ("receptance_imaginary", stacked.imag, names, "m/N")]
+        for name, values, dims, unit in parts:
+            variable = nc.createVariable(name, "f8", dims)
+            variable[:] = values
+            variable.units = unit
 
     def to_csv(self, path: str | Path) -> Path:
         """Write one row for each load and mode, units in the heading; the file appears whole or not at all."""

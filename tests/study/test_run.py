@@ -46,8 +46,9 @@ def test_bolt_force_balance(result):
 def test_stiffness_at_the_points_is_that_of_the_law(study, result):
     steel = study.materials["45 steel"]
     law = faying.JK(D=2.39, G=1.53e-10, pair=faying.ContactPair(steel, steel), scan_area=16e-6)
-    assert result.k_n == pytest.approx(law.at_pressure(result.pressure).k_n)
-    assert result.k_t == pytest.approx(law.at_pressure(result.pressure).k_t)
+    # read between points 1 % apart in pressure, at a kink of the law
+    assert result.k_n == pytest.approx(law.at_pressure(result.pressure).k_n, rel=2e-5)
+    assert result.k_t == pytest.approx(law.at_pressure(result.pressure).k_t, rel=2e-5)
 
 
 def test_sum_of_springs_does_not_depend_on_the_mesh(study, result):

@@ -4,7 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from faying.fe.mesh import Array, Index
+from faying.fe.mesh import Array
+from faying.fe.sides import Index
 
 
 def hold(matrix: Any, held: Index, diagonal: float | None = None) -> Any:

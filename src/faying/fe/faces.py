@@ -17,7 +17,7 @@ def surface_frame(points: Array, faces: Index, gradients: Array) -> tuple[Array,
     return normal / area[..., None], area
 
 
-def _sampled(points: Array, blocks: Blocks) -> list[tuple[Index, Array, Array, Array, Array]]:
+def sampled(points: Array, blocks: Blocks) -> list[tuple[Index, Array, Array, Array, Array]]:
     """Per block: the element faces, shape functions (q, a), places (f, q, 3), normals (f, q, 3) and areas (f, q)."""
     out = []
     for faces in blocks:
@@ -38,24 +38,24 @@ def face_load(points: Array, blocks: Blocks, axis_point: Array, direction: Array
     helper = np.eye(3)[np.argmin(np.abs(unit))]
     across = np.stack([np.cross(unit, helper), np.cross(unit, np.cross(unit, helper))])
     across /= np.linalg.norm(across, axis=1)[:, None]
-    sampled = _sampled(points, blocks)
-    radius = float(np.sqrt(sum(share.sum() for *_, share in sampled)))
+    samples = sampled(points, blocks)
+    radius = float(np.sqrt(sum(share.sum() for *_, share in samples)))
     bases = [
         np.concatenate([np.ones((*share.shape, 1)), (place - axis_point) @ across.T / radius], axis=2)
-        for _, _, place, _, share in sampled
+        for _, _, place, _, share in samples
     ]
-    gram = sum(np.einsum("fq,fqi,fqj->ij", one[-1], basis, basis) for one, basis in zip(sampled, bases, strict=True))
+    gram = sum(np.einsum("fq,fqi,fqj->ij", one[-1], basis, basis) for one, basis in zip(samples, bases, strict=True))
     factors = np.linalg.solve(gram, [1.0, 0.0, 0.0])
     total = np.zeros(len(points))
-    for (faces, values, _, _, share), basis in zip(sampled, bases, strict=True):
+    for (faces, values, _, _, share), basis in zip(samples, bases, strict=True):
         np.add.at(total, faces.ravel(), np.einsum("fq,qa->fa", share * (basis @ factors), values).ravel())
     return np.asarray(total[:, None] * unit).reshape(-1)
 
 
 def face_centre(points: Array, blocks: Blocks) -> tuple[Array, Array, float]:
     """Centre [m] (3,), mean unit normal (3,), and area [m2] of a face."""
-    sampled = _sampled(points, blocks)
-    area = float(sum(share.sum() for *_, share in sampled))
-    centre = sum(np.einsum("fq,fqi->i", share, place) for _, _, place, _, share in sampled) / area
-    normal = np.sum([np.einsum("fq,fqi->i", share, normals) for _, _, _, normals, share in sampled], axis=0)
+    samples = sampled(points, blocks)
+    area = float(sum(share.sum() for *_, share in samples))
+    centre = sum(np.einsum("fq,fqi->i", share, place) for _, _, place, _, share in samples) / area
+    normal = np.sum([np.einsum("fq,fqi->i", share, normals) for _, _, _, normals, share in samples], axis=0)
     return np.asarray(centre), normal / np.linalg.norm(normal), area

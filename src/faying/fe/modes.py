@@ -1,10 +1,9 @@
-"""Vibration modes of a structure, free, joined or tied, real and with interface loss."""
+"""Vibration modes of a structure, free, joined or tied."""
 
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import NotConverged
 from faying.fe.mesh import Array
@@ -63,67 +62,4 @@ def lowest_modes(
         shapes=shapes[:, order],
         factorisation=factor,
         shift=shift,
-    )
-
-
-@dataclass(frozen=True, kw_only=True)
-class DampedModes:
-    """Frequencies [Hz] and loss factors [-] of the modes with hysteretic loss, and the estimated error of the latter."""
-
-    frequencies: Array
-    loss_factors: Array
-    residual: Array
-
-
-def damped_modes(modes: Modes, stiffness: Any, mass: Any, loss: Any, *, rigid: int) -> DampedModes:
-    """Find complex modes of K + i C by projection on the real modes enriched with the response to C.
-
-    loss: C, sparse: the imaginary part of the stiffness [N/m]; rigid: how many of the lowest modes are rigid motions.
-    Basis: elastic modes and A^-1 C modes with A = K + |shift| M. residual (m,): norm of what the projected mode leaves in
-    the full equations, in the A^-1 norm, relative: the relative error of the complex eigenvalue is of its square.
-    """
-    from scipy.linalg import eig, eigh
-
-    elastic = modes.shapes[:, rigid:]
-    driven = loss @ elastic
-    corrections = modes.factorisation.solve(driven)
-    basis = np.concatenate([elastic, corrections / np.linalg.norm(corrections, axis=0)], axis=1)
-    gram = basis.T @ (mass @ basis)
-    size = np.sqrt(np.diag(gram))
-    values, vectors = eigh(gram / np.outer(size, size))
-    keep = values > 1e-12
-    basis = (basis / size) @ (vectors[:, keep] / np.sqrt(values[keep]))
-    small_k, small_c = basis.T @ (stiffness @ basis), basis.T @ (loss @ basis)
-    squared, mixed = eig(small_k + 1j * small_c)
-    return _follow(modes, rigid, squared, mixed, basis, stiffness, mass, loss)
-
-
-def _follow(
-    modes: Modes,
-    rigid: int,
-    squared: NDArray[Any],
-    mixed: NDArray[Any],
-    basis: Array,
-    stiffness: Any,
-    mass: Any,
-    loss: Any,
-) -> DampedModes:
-    """Pick for each real mode, in turn, the complex one that overlaps it most."""
-    elastic = modes.shapes[:, rigid:]
-    overlap = np.abs((elastic.T @ (mass @ basis)) @ mixed) / np.linalg.norm(mixed, axis=0)
-    picked: list[int] = []
-    for row in overlap:
-        ranked = [int(i) for i in np.argsort(-row) if int(i) not in picked]
-        picked.append(ranked[0])
-    values = squared[picked]
-    order = np.argsort(values.real)
-    values, vectors = values[order], basis @ mixed[:, picked][:, order]
-    miss = stiffness @ vectors + 1j * (loss @ vectors) - (mass @ vectors) * values
-    solved = modes.factorisation.solve(np.ascontiguousarray(miss.real)) + 1j * modes.factorisation.solve(
-        np.ascontiguousarray(miss.imag)
-    )
-    numerator = np.sqrt(np.abs(np.einsum("im,im->m", miss.conj(), solved)))
-    residual = numerator / np.sqrt(np.abs(values) * np.abs(np.einsum("im,im->m", vectors.conj(), mass @ vectors)))
-    return DampedModes(
-        frequencies=np.sqrt(values.real) / (2 * np.pi), loss_factors=values.imag / values.real, residual=residual
     )

@@ -122,12 +122,13 @@ class Balance(ABC):
     def _direction(self, u: Array, force: Array, grips: list[Grip], accuracy: float) -> tuple[Array, int]:
         """Return the Newton step for an out-of-balance force and how many inner steps it took."""
 
+    def _check_load(self, load: Array) -> None:
+        """Raise InputError where no equilibrium exists under this load; any load will do unless told otherwise."""
+        return
+
     def _admissible(self, force: Array) -> Array:
         """Remove from a force what nothing can answer: rounding along rigid motions, forces on held unknowns."""
         return force
-
-    def _check_load(self, load: Array) -> None:
-        """Raise InputError where no equilibrium exists under this load."""
 
     def solve(
         self,
@@ -144,6 +145,8 @@ class Balance(ABC):
         the end of its law. Raises InputError when more is, or the load cannot balance, and NotConverged when Newton
         stops short.
         """
+        if not np.any(load):
+            raise InputError("no bolt pulls: the load is zero everywhere; give at least one bolt a preload")
         self._check_load(load)
         scale = float(np.linalg.norm(load))
         u = self._start(load) if self.last is None else self.last

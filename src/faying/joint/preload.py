@@ -12,7 +12,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.constraint import hold
 from faying.fe.interface import Interface
-from faying.fe.mesh import Index
+from faying.fe.sides import Index
 from faying.fe.solve import Factorisation, factorise
 from faying.joint.balance import Array, Balance, Grip
 from faying.joint.seat import Seat

@@ -238,11 +238,13 @@ class Reduction:
             found = self.equilibrium(seats, forces)
             residual = self._static_residual(seats, forces, found)
             answer = self.factor.solve(residual)
-            error = float(np.sqrt(max(residual @ answer, 0.0)) / np.linalg.norm(found.displacement))
+            error = float(np.sqrt(np.maximum(residual @ answer, 0.0)) / np.linalg.norm(found.displacement))
             if error < tolerance:
                 return error, added
             added += self.static.add(answer[:, None])
-        raise NotConverged(f"reduction: {FEW_STEPS} enrichments leave the preload wrong by {error:.1e}; raise the tolerance")
+        raise NotConverged(
+            f"reduction: {FEW_STEPS} enrichments leave the preload wrong by {error:.1e}; raise the tolerance"
+        )
 
     # -- vibration ---------------------------------------------------------------------------------------------------
 
@@ -275,7 +277,9 @@ class Reduction:
         order = np.array(picked)[np.argsort(values[picked].real)]
         return values[order], shapes @ inner[:, order], real[some], estimate
 
-    def _modal_residual(self, densities: Sequence[Densities], values: NDArray[Any], vectors: NDArray[Any]) -> NDArray[Any]:
+    def _modal_residual(
+        self, densities: Sequence[Densities], values: NDArray[Any], vectors: NDArray[Any]
+    ) -> NDArray[Any]:
         x = self.dynamic.vectors @ vectors
         residual = self.stiffness @ x - (self.mass @ x) * values
         for trace, relative, d in zip(self.traces, self.dynamic.relative, densities, strict=True):

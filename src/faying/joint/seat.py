@@ -93,7 +93,7 @@ class Seat:
         """ln closing, ln pressure, and d ln p/d ln w, from the least pressure to where the law ends."""
         p, k = self._grid, np.exp(self._samples[1][0])
         slope = np.gradient(np.log(k), np.log(p))
-        if np.any(k <= 0) or slope[0] >= 1:
+        if np.any(k <= 0) or slope[0] >= 1 - 1e-9:
             raise InputError(f"{self.law.name}: stiffness does not grow from zero slower than pressure; the faces would "
                              "never meet")  # fmt: skip
         # between two points k_n is a power of p, so that the integral of dp/k_n is exact there

@@ -1,4 +1,4 @@
-"""A bolted structure: meshed parts, the joints between them, and the bolts that pull them together."""
+"""A bolted structure: meshed parts, the joints between them, the bolts that pull them together, what holds them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,11 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faying.errors import InputError
+from faying.fe.constraint import free_motions, hold
 from faying.fe.elasticity import Solid, assemble, rigid_motions
-from faying.fe.faces import face_centre, face_load
 from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
 from faying.fe.sides import Index, skin, triangles_of
+from faying.joint.attachments import PointMass, Support
+from faying.joint.bolt import Bolt, FittedBolt
 from faying.joint.preload import Assembly
 from faying.joint.seat import Seat
 
@@ -22,7 +24,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Joint:
-    """Two faces, how they meet, and the law between them; per_node puts springs at nodes, as the JK paper does."""
+    """Two faces, how they meet, and the law between them; per_node puts springs at nodes, as the JK paper does.
+
+    friction: coefficient of Coulomb slip under the preload [-]; None where the joint sticks everywhere.
+    """
 
     name: str
     faces: tuple[str, str]
@@ -30,6 +35,12 @@ class Joint:
     seat: Seat
     per_node: bool = False
     scan_area: float | None = None
+    friction: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.friction is not None and not 0 <= self.friction < 10:
+            raise InputError(f"joint {self.name!r}: friction {self.friction:g} is no coefficient of friction; give one such as "
+                             "0.2, or leave it out for a joint that sticks")  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,6 +61,15 @@ class Springs:
         """Imaginary part of the stiffness matrix [N/m]: hysteretic loss."""
         return self.interface.springs(self.k_n * self.loss_n, self.k_t * self.loss_t)
 
+    def viscous(self, mass: float) -> Any:
+        """Damping matrix [N s/m] of the JK paper's dampers, c = eta sqrt(M k) at every point, M [kg] the whole mass.
+
+        k is the spring of a point, so that c grows with the root of its share of the area: the sum depends on the mesh.
+        """
+        w = self.interface.weights
+        c_n, c_t = (eta * np.sqrt(mass * k / w) for eta, k in ((self.loss_n, self.k_n), (self.loss_t, self.k_t)))
+        return self.interface.springs(c_n, c_t)
+
     def total(self) -> tuple[float, float]:
         """Sum of all normal and all tangential springs [N/m]."""
         w = self.interface.weights
@@ -58,27 +78,73 @@ class Springs:
 
 @dataclass(frozen=True, kw_only=True)
 class Structure:
-    """Mesh, material of each part, and joints. Raises InputError where a part belongs to no joint."""
+    """Mesh, material of each part, joints, bolts, supports and point masses.
+
+    Raises InputError where a part is held by nothing: neither a joint nor a support.
+    """
 
     mesh: Mesh
     materials: Mapping[str, Solid]
     joints: tuple[Joint, ...]
+    bolts: tuple[Bolt, ...] = ()
+    supports: tuple[Support, ...] = ()
+    masses: tuple[PointMass, ...] = ()
 
     def __post_init__(self) -> None:
-        held = {self.mesh.face_part[face] for joint in self.joints for face in joint.faces}
+        faces = [face for joint in self.joints for face in joint.faces] + [support.face for support in self.supports]
+        held = {self.mesh.face_part[face] for face in faces if face in self.mesh.face_part}
         loose = [part for part in self.mesh.parts if part not in held]
         if loose and len(self.mesh.parts) > 1:
             raise InputError(f"part {', '.join(loose)} has no joint; add a [[joint]] that holds it, or leave it out")
 
     @cached_property
     def matrices(self) -> tuple[Any, Any]:
-        """Stiffness [N/m] and mass [kg] of the parts without joints."""
+        """Stiffness [N/m] and mass [kg] of the parts alone."""
         return assemble(self.mesh, self.materials)
 
     @cached_property
+    def held(self) -> Index:
+        """Unknowns that supports keep at rest."""
+        found = [support.held(self.mesh) for support in self.supports]
+        return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.int64)
+
+    @cached_property
+    def fitted_bolts(self) -> tuple[FittedBolt, ...]:
+        """The bolts in their places."""
+        return tuple(bolt.fitted(self.mesh) for bolt in self.bolts)
+
+    @cached_property
+    def loads(self) -> Array:
+        """Nodal forces [N] (unknowns, bolts) of 1 N in each bolt."""
+        if not self.bolts:
+            return np.zeros((self.mesh.unknowns, 0))
+        return np.stack([bolt.load for bolt in self.fitted_bolts], axis=1)
+
+    @cached_property
+    def standing(self) -> Any:
+        """Stiffness [N/m] of the parts and of elastic supports, before any bolt is tight."""
+        return _added(self.matrices[0], [support.springs(self.mesh) for support in self.supports])
+
+    @cached_property
+    def vibrating(self) -> tuple[Any, Any]:
+        """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; held unknowns cleared."""
+        K = _added(self.standing, [bolt.stiffness for bolt in self.fitted_bolts])
+        M = _added(self.matrices[1], [bolt.mass for bolt in self.fitted_bolts])
+        M = _added(M, [mass.matrix(self.mesh) for mass in self.masses])
+        return hold(K, self.held), hold(M, self.held, 0.0)
+
+    @cached_property
     def rigid(self) -> Array:
-        """Six rigid motions of the whole (unknowns, 6)."""
-        return rigid_motions(self.mesh.points)
+        """Rigid motions of the whole that no support resists (unknowns, up to 6)."""
+        if any(support.stiffness is not None for support in self.supports):
+            springs = _added(None, [support.springs(self.mesh) for support in self.supports])
+            all_six = free_motions(rigid_motions(self.mesh.points), self.held)
+            if not all_six.shape[1]:
+                return all_six
+            energy = all_six.T @ (springs @ all_six)
+            values, vectors = np.linalg.eigh(energy)
+            return np.asarray(all_six @ vectors[:, values < 1e-10 * max(values.max(), 1e-300)])
+        return free_motions(rigid_motions(self.mesh.points), self.held)
 
     @cached_property
     def shift_frequency(self) -> float:
@@ -88,25 +154,23 @@ class Structure:
 
     def bolt_load(self, first: str, second: str) -> Array:
         """Nodal forces [N] (unknowns,) of a bolt that pulls the two faces towards each other with 1 N."""
-        mesh = self.mesh
-        faces_a, faces_b = mesh.face(first), mesh.face(second)
-        if mesh.face_part[first] == mesh.face_part[second]:
-            raise InputError(f"the bolt's faces {first!r} and {second!r} are both on part {mesh.face_part[first]!r}; a bolt "
-                             "pulls two parts together")  # fmt: skip
-        centre_a, normal_a, _ = face_centre(mesh.points, faces_a)
-        centre_b, normal_b, _ = face_centre(mesh.points, faces_b)
-        axis = centre_b - centre_a
-        length = float(np.linalg.norm(axis))
-        if length < 1e-6 * mesh.size or normal_a @ axis > -0.5 * length or normal_b @ axis < 0.5 * length:
-            raise InputError(f"the bolt's faces {first!r} and {second!r} do not look away from each other; name the two seats "
-                             "that head and nut press on")  # fmt: skip
-        return face_load(mesh.points, faces_a, centre_a, axis) + face_load(mesh.points, faces_b, centre_a, -axis)
+        return Bolt(name="bolt", faces=(first, second)).fitted(self.mesh).load
 
     def assembly(self, *, solver: str | None = None) -> Assembly:
         """Return the preload problem of this structure."""
-        K, M = self.matrices
         pairs = [(joint.interface, joint.seat) for joint in self.joints]
-        return Assembly(K, M, self.rigid, pairs, shift_frequency=self.shift_frequency, solver=solver)
+        return Assembly(self.standing, self.matrices[1], self.rigid, pairs, shift_frequency=self.shift_frequency,
+                        solver=solver, friction=[joint.friction for joint in self.joints], held=self.held)  # fmt: skip
+
+    def joined(self, springs: Sequence[Springs], *, viscous: bool = False) -> tuple[Any, Any]:
+        """Stiffness [N/m] with the springs of all joints, and their loss; held unknowns cleared.
+
+        The loss is the imaginary part of the stiffness [N/m], or where viscous the damping [N s/m] of the JK paper.
+        """
+        K = _added(self.vibrating[0], [hold(s.stiffness(), self.held, 0.0) for s in springs])
+        weight = float(self.matrices[1].sum()) / 3 if viscous else 0.0
+        losses = [hold(s.viscous(weight) if viscous else s.loss(), self.held, 0.0) for s in springs]
+        return K, _added(None, losses)
 
     def springs(self, pressures: tuple[Array, ...]) -> tuple[Springs, ...]:
         """Stiffness and loss of every joint at pressures [Pa], one array per joint at the points of its interface."""
@@ -137,6 +201,13 @@ class Structure:
         outer = triangles_of(skin(self.mesh.blocks, len(self.mesh.points)))
         nodes, triangles = np.unique(outer, return_inverse=True)
         return nodes, triangles.reshape(-1, 3).astype(np.int64)
+
+
+def _added(matrix: Any, more: Sequence[Any]) -> Any:
+    for one in more:
+        if one is not None:
+            matrix = one if matrix is None else matrix + one
+    return matrix
 
 
 def tie(mesh: Mesh, pairs: Sequence[tuple[str, str]]) -> Any | None:

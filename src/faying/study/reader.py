@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from pathlib import Path
 from typing import Any
 
 from faying import units
@@ -114,6 +115,20 @@ def quantity(value: Any, unit: str, name: str, *, positive: bool = True) -> floa
     if positive and number <= 0:
         raise InputError(f'{name} = "{value}" must be positive')
     return number
+
+
+def existing_path(folder: Path) -> Any:
+    """Return a converter of file names relative to `folder`; InputError where there is no such file."""
+
+    def convert(value: Any, name: str) -> Path:
+        if not isinstance(value, str):
+            raise InputError(f"{name} = {value!r} should be a file name in quotes")
+        path = folder / value
+        if not path.is_file():
+            raise InputError(f"{name}: no file {path}")
+        return path
+
+    return convert
 
 
 def number(value: Any, name: str) -> float:

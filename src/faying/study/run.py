@@ -1,4 +1,4 @@
-"""From a study to its result: surface, law, mesh, preload, modes."""
+"""From a study to its result: surface, law, mesh, preload, modes, response."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -8,22 +8,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faying.contact.law import ContactLaw
-from faying.errors import InputError
-from faying.fe.geometry import mesh_step
-from faying.fe.interface import join
-from faying.fe.modes import Modes, damped_modes, lowest_modes
+from faying.fe.constraint import hold
+from faying.fe.damped import DampedModes, damped_modes
+from faying.fe.modes import Modes, lowest_modes
+from faying.fe.response import frequency_response
 from faying.fe.solve import chosen
+from faying.joint.attachments import nearest_node
 from faying.joint.balance import Preload
-from faying.joint.seat import Seat
-from faying.joint.structure import Joint, Springs, Structure
-from faying.materials import RIGID, ContactPair
-from faying.result import Comparison, Result
+from faying.joint.structure import Springs, Structure
+from faying.joint.tighten import tighten
+from faying.result import Comparison, Receptance, Result
+from faying.study.build import build_all, mesh_of, surfaces_of
 from faying.study.schema import Study
-from faying.study.surface import Surface, law_facts, law_of, surface_of
+from faying.study.surface import Surface, law_facts
 
 Array = NDArray[np.float64]
 Report = Callable[[str], None]
 SPARE_MODES = 6  # beyond those asked for, so that the basis of the complex modes does not end at the last of them
+STILL = 0.01  # of the shift: a frequency below it is that of a motion that nothing resists
 
 
 def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
@@ -35,59 +37,62 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     study = study if isinstance(study, Study) else Study.read(study)
     tell = report or (lambda _: None)
     tell("surface")
-    surface = surface_of(study.surface)
+    surfaces = surfaces_of(study)
     tell("mesh")
-    structure, laws = _structure(study, surface)
-    K, M = structure.matrices
+    built = build_all(study, mesh=mesh_of(study), surfaces=surfaces)
+    structure = built.structure
+    notes: list[str] = list(dict.fromkeys(text for surface in surfaces for text in surface.warnings))
     loads = np.array(study.bolts[0].preload)
-    notes: list[str] = list(surface.warnings)
-
+    K, M = structure.vibrating
     assembly = structure.assembly(solver=study.solver)
-    units = [structure.bolt_load(*bolt.faces) for bolt in study.bolts]
     shift = study.shift_frequency or structure.shift_frequency
-    count = 6 + study.mode_count + SPARE_MODES
+    still = structure.rigid.shape[1]
+    count = still + study.mode_count + SPARE_MODES
     preloads: list[Preload] = []
     per_load: list[tuple[Springs, ...]] = []
     modes: list[Modes] = []
-    damped = []
+    damped: list[DampedModes] = []
+    responses: list[Receptance] = []
     for number, load in enumerate(loads):
         tell(f"preload {load / 1e3:g} kN")
-        force = sum(
-            (bolt.preload[number] * unit for bolt, unit in zip(study.bolts, units, strict=True)),
-            np.zeros(structure.mesh.unknowns),
-        )
-        preload = assembly.solve(np.asarray(force))
+        preload = tighten(structure, assembly, [bolt.preload[number] for bolt in study.bolts], order=study.order)
         springs = structure.springs(preload.pressures)
         tell(f"modes at {load / 1e3:g} kN")
-        stiffness = K + _sum(s.stiffness() for s in springs)
+        stiffness, loss = structure.joined(springs, viscous=study.damping == "viscous")
         found = lowest_modes(stiffness, M, count, shift_frequency=shift, solver=study.solver)
-        damped.append(damped_modes(found, stiffness, M, _sum(s.loss() for s in springs), rigid=6))
+        complex_modes = damped_modes(found, stiffness, M, loss, rigid=still, count=study.mode_count, kind=study.damping)
+        if study.response is not None:
+            tell(f"frequency response at {load / 1e3:g} kN")
+            responses.append(_response(study, structure, found, complex_modes, stiffness, M, loss))
         preloads.append(preload)
         per_load.append(springs)
         modes.append(found)
+        damped.append(complex_modes)
         notes += _flags(structure, preload, load)
     tell("modes free and tied")
     free = lowest_modes(K, M, count, shift_frequency=shift, solver=study.solver)
     tied = _tied(structure, count, shift, study.solver, notes)
 
     nodes, triangles = structure.outline()
-    keep = slice(0, study.mode_count)
-    elastic = slice(6, 6 + study.mode_count)
+    elastic = slice(still, still + study.mode_count)
     shapes = np.stack([m.shapes[:, elastic].T.reshape(study.mode_count, -1, 3)[:, nodes] for m in modes])
     comparison = _compare(study, loads, structure, modes, np.stack([d.frequencies for d in damped]), notes)
-    rigid = np.max([m.frequencies[:6] for m in modes], axis=0)
-    if rigid.max() > 1e-2:
+    rigid = np.max([m.frequencies[:still] for m in modes], axis=0)
+    if still and rigid.max() > 1e-2:
         notes.append(
             f"a rigid-body motion comes out at {rigid.max():.2g} Hz instead of 0: the solution has lost digits"
         )
+    if study.damping == "viscous":
+        notes.append("the dampers are those of the JK paper, c = eta sqrt(M k) point by point: their sum grows with the square "
+                     "root of the number of points, so loss factors depend on the mesh")  # fmt: skip
     return Result(
         title=study.title,
         loads=loads,
-        frequencies=np.stack([d.frequencies[keep] for d in damped]),
-        loss_factors=np.stack([d.loss_factors[keep] for d in damped]),
-        loss_error=np.stack([d.residual[keep] ** 2 for d in damped]),
+        frequencies=np.stack([d.frequencies for d in damped]),
+        loss_factors=np.stack([d.loss_factors for d in damped]),
+        loss_error=np.stack([d.error for d in damped]),
         tied=tied.frequencies[elastic],
-        free=np.where(np.arange(6, count) < 6 * len(structure.mesh.parts), 0.0, free.frequencies[6:])[keep],
+        free=np.where(free.frequencies < STILL * shift, 0.0, free.frequencies)[elastic],
         rigid=rigid,
         pressure=np.stack([np.concatenate(p.pressures) for p in preloads]),
         **_maps(structure, preloads),
@@ -100,77 +105,63 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         outline=structure.mesh.points[nodes],
         triangles=triangles,
         shapes=shapes,
-        surface=surface.facts,
-        law=law_facts(laws[0]),
+        bolts=tuple(bolt.name for bolt in study.bolts),
+        bolt_forces=np.array([p.bolt_forces for p in preloads]),
+        slipping=np.array([p.slipping for p in preloads]),
+        mac=np.stack([_mac(modes[0], m, elastic) for m in modes]),
+        response=tuple(responses),
+        surface=surfaces[0].facts,
+        law=law_facts(built.laws[0]),
         convergence=tuple(_convergence(p, s) for p, s in zip(preloads, per_load, strict=True)),
         comparison=comparison,
-        sources=_sources(study, surface, laws[0]),
+        sources=_sources(study, surfaces, built.laws),
         warnings=tuple(dict.fromkeys(notes)),
     )
 
 
-def build(study: Study) -> Structure:
-    """Return the structure of a study, meshed and with its law on the joints, for work that goes on by hand."""
-    return _structure(study, surface_of(study.surface))[0]
+def _response(
+    study: Study, structure: Structure, modes: Modes, damped: DampedModes, stiffness: Any, mass: Any, loss: Any
+) -> Receptance:
+    spec = study.response
+    assert spec is not None
+    columns = []
+    for place, axis in (*spec.inputs, *spec.outputs):
+        column = np.zeros(structure.mesh.unknowns)
+        node = nearest_node(structure.mesh, place, "point of the response")
+        column[3 * node : 3 * node + 3] = np.array(axis) / np.linalg.norm(axis)
+        column[structure.held] = 0.0
+        columns.append(column)
+    ends = len(spec.inputs)
+    found = frequency_response(
+        modes, damped, stiffness, mass, loss, forces=np.stack(columns[:ends], axis=1),
+        outputs=np.stack(columns[ends:], axis=1), frequencies=np.linspace(spec.first, spec.last, spec.points),
+        rigid=structure.rigid.shape[1], kind=study.damping, structural_loss=spec.structural_loss,
+    )  # fmt: skip
+    return Receptance(frequencies=found.frequencies, values=found.receptance, inputs=spec.inputs, outputs=spec.outputs,
+                      error=float(found.error.max()))  # fmt: skip
 
 
-def _sum(matrices: Any) -> Any:
-    total = None
-    for matrix in matrices:
-        total = matrix if total is None else total + matrix
-    return total
-
-
-def _structure(study: Study, surface: Surface) -> tuple[Structure, list[ContactLaw]]:
-    """Mesh, joints and the law of each joint; every name that does not fit the geometry is reported at once."""
-    spec = study.geometry
-    mesh = mesh_step(spec.step, size=spec.size, local_size=spec.face_size, face_points=spec.face_at)
-    faults = [
-        f"[part] says nothing of {name!r}, which {spec.step.name} holds"
-        for name in mesh.parts
-        if name not in study.parts
-    ]
-    faults += [f"part {name!r} is not in {spec.step.name}; it holds {', '.join(mesh.parts)}" for name in study.parts
-               if name not in mesh.parts]  # fmt: skip
-    known = ", ".join(sorted(mesh.faces))
-    for what, items in (("joint", study.joints), ("bolt", study.bolts)):
-        faults += [f"{what} {item.name!r} names the face {face!r}, which does not exist; the faces are {known}"
-                   for item in items for face in item.faces if face not in mesh.faces]  # fmt: skip
-    if faults:
-        raise InputError("the study does not fit its geometry:\n" + "\n".join(f"  - {line}" for line in faults))
-    materials = {name: study.materials[study.parts[name]] for name in mesh.parts}
-    joints, laws = [], []
-    for joint in study.joints:
-        rough, other = (materials[mesh.face_part[face]] for face in joint.faces)
-        pair = ContactPair(rough, RIGID if study.law.counterbody == "rigid" else other)
-        law = law_of(study.law, surface, pair)
-        laws.append(law)
-        joints.append(
-            Joint(
-                name=joint.name,
-                faces=joint.faces,
-                interface=join(mesh, *joint.faces),
-                seat=Seat(law=law, tangential=joint.tangential, nu=rough.nu),
-                per_node=joint.springs == "per-node",
-                scan_area=surface.scan_area,
-            )
-        )
-    return Structure(mesh=mesh, materials=materials, joints=tuple(joints)), laws
+def _mac(first: Modes, other: Modes, elastic: slice) -> Array:
+    """Modal assurance criterion [-] (m, m) of two sets of real modes (Allemang 2003, eq. 4)."""
+    a, b = first.shapes[:, elastic], other.shapes[:, elastic]
+    return np.asarray((a.T @ b) ** 2 / np.outer((a**2).sum(axis=0), (b**2).sum(axis=0)))
 
 
 def _tied(structure: Structure, count: int, shift: float, solver: str | None, notes: list[str]) -> Modes:
     """Modes with the faces of every joint grown together."""
-    K, M = structure.matrices
+    K, M = structure.vibrating
     merge = structure.tie()
-    if merge is not None:
+    if merge is not None and not len(structure.held):
         return lowest_modes(
             (merge.T @ K @ merge).tocsr(), (merge.T @ M @ merge).tocsr(), count, shift_frequency=shift, solver=solver
         )
-    notes.append("the faces of a joint do not match node for node: the tied modes use springs a thousand times as stiff as "
+    notes.append("the faces of a joint do not match node for node, or a support holds some of them: the tied modes use springs a thousand times as stiff as "
                  "the parts in place of grown-together faces")  # fmt: skip
     stiff = 1e3 * max(m.E for m in structure.materials.values()) / structure.mesh.size
-    springs = _sum(j.interface.springs(*2 * (np.full(len(j.interface.weights), stiff),)) for j in structure.joints)
-    return lowest_modes(K + springs, M, count, shift_frequency=shift, solver=solver)
+    for joint in structure.joints:
+        springs = joint.interface.springs(*2 * (np.full(len(joint.interface.weights), stiff),))
+        K = K + hold(springs, structure.held, 0.0)
+    return lowest_modes(K, M, count, shift_frequency=shift, solver=solver)
 
 
 def _flags(structure: Structure, preload: Preload, load: float) -> list[str]:
@@ -228,9 +219,11 @@ def _compare(
     axis = np.array(test.direction) / np.linalg.norm(test.direction)
     here = [int(np.argmin(np.linalg.norm(structure.mesh.points - np.array(p), axis=1))) for p in test.points]
     predicted, paired = np.empty_like(measured), np.empty(measured.shape, dtype=np.int64)
+    still = structure.rigid.shape[1]
     for row, found in enumerate(modes):
-        shape = found.shapes[:, 6:].T.reshape(found.shapes.shape[1] - 6, -1, 3)[:, here] @ axis
+        shape = found.shapes[:, still:].T.reshape(found.shapes.shape[1] - still, -1, 3)[:, here] @ axis
         motion = np.abs(shape).max(axis=1)
+        motion = motion[: study.mode_count]
         seen = np.flatnonzero(motion >= test.threshold * motion.max())
         if len(seen) < measured.shape[1]:
             notes.append(f"the test lists {measured.shape[1]} modes but only {len(seen)} of those computed move at its points; "
@@ -248,12 +241,12 @@ def _compare(
     )
 
 
-def _sources(study: Study, surface: Surface, law: ContactLaw) -> tuple[str, ...]:
+def _sources(study: Study, surfaces: tuple[Surface, ...], laws: tuple[ContactLaw, ...]) -> tuple[str, ...]:
     used = {study.parts[name] for name in study.parts}
     lines = [f"material {name}: {study.materials[name].source or 'given in the study'}" for name in sorted(used)]
-    lines += [f"contact law {law.name}: {law.source}", f"geometry: {study.geometry.step.name}"]
-    if surface.source:
-        lines.append(surface.source)
+    lines += [f"contact law {law.name}: {law.source}" for law in laws]
+    lines += [f"geometry: {study.geometry.step.name}"]
+    lines += [surface.source for surface in surfaces if surface.source]
     if study.test is not None:
         lines.append(f"test: {study.test.source}")
-    return tuple(lines)
+    return tuple(dict.fromkeys(lines))

@@ -2,16 +2,27 @@
 
 import tomllib
 from dataclasses import dataclass, field
-from itertools import pairwise
-from math import isclose
 from pathlib import Path
 from typing import Any, Literal, Self
 
 from faying.errors import InputError, ReadError
 from faying.materials import CATALOGUE, Material
-from faying.study.reader import Faults, Table, number, quantity
+from faying.study.connections import (
+    BoltSpec,
+    JointSpec,
+    MassSpec,
+    SupportSpec,
+    bolt_spec,
+    direction,
+    joint_spec,
+    mass_spec,
+    point,
+    support_spec,
+)
+from faying.study.contact import LawSpec, SurfaceSpec, law_spec, surface_spec
+from faying.study.reader import Faults, Table, existing_path, quantity
 
-LAW_NUMBERS = ("gamma", "alpha", "cutoff", "shear_ratio", "psi", "modulus_ratio")
+Point = tuple[float, float, float]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,47 +33,6 @@ class GeometrySpec:
     size: float
     face_size: dict[str, float] = field(default_factory=dict)
     face_at: dict[str, tuple[str, tuple[float, float, float]]] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, kw_only=True)
-class SurfaceSpec:
-    """The rough surface: a scan with its units and estimator, or D, G [m] and scan_area [m2] as given."""
-
-    scan: Path | None = None
-    xy_unit: str | None = None
-    z_unit: str | None = None
-    method: str = "psd"
-    D: float | None = None
-    G: float | None = None
-    scan_area: float | None = None
-
-
-@dataclass(frozen=True, kw_only=True)
-class LawSpec:
-    """The contact law of the joints and its options."""
-
-    model: str = "jk"
-    counterbody: Literal["part", "rigid"] = "part"
-    options: dict[str, Any] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, kw_only=True)
-class JointSpec:
-    """Two faces that meet."""
-
-    name: str
-    faces: tuple[str, str]
-    springs: Literal["per-area", "per-node"] = "per-area"
-    tangential: Literal["law", "mindlin"] = "law"
-
-
-@dataclass(frozen=True, kw_only=True)
-class BoltSpec:
-    """A bolt that pulls two faces towards each other with each of the preloads [N] in turn."""
-
-    name: str
-    faces: tuple[str, str]
-    preload: tuple[float, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,6 +53,18 @@ class TestSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ResponseSpec:
+    """Frequency response: inputs and outputs as (point [m], direction), from first to last [Hz] in so many points."""
+
+    inputs: tuple[tuple[Point, Point], ...]
+    outputs: tuple[tuple[Point, Point], ...]
+    first: float
+    last: float
+    points: int
+    structural_loss: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Study:
     """One whole study. Read it with Study.read(path); every fault of the file is reported in one InputError."""
 
@@ -91,11 +73,16 @@ class Study:
     materials: dict[str, Material]
     geometry: GeometrySpec
     parts: dict[str, str]
-    surface: SurfaceSpec
+    surface: SurfaceSpec | None
     law: LawSpec
     joints: tuple[JointSpec, ...]
     bolts: tuple[BoltSpec, ...]
+    supports: tuple[SupportSpec, ...] = ()
+    masses: tuple[MassSpec, ...] = ()
     mode_count: int = 10
+    damping: Literal["hysteretic", "viscous"] = "hysteretic"
+    order: tuple[int, ...] | None = None
+    response: ResponseSpec | None = None
     solver: str | None = None
     shift_frequency: float | None = None
     test: TestSpec | None = None
@@ -126,10 +113,14 @@ class Study:
         materials = _materials(top)
         geometry = _geometry(top, folder)
         parts = _parts(top, materials)
-        surface = _surface(top, folder)
-        law = _law(top)
-        joints = tuple(_joint(t, i) for i, t in enumerate(top.tables("joint", required=True)))
-        bolts = tuple(_bolt(t, i) for i, t in enumerate(top.tables("bolt", required=True)))
+        joints = tuple(joint_spec(t, i, folder) for i, t in enumerate(top.tables("joint", required=True)))
+        shared = top.table("surface", required=any(joint.surface is None for joint in joints))
+        surface = None if shared is None else surface_spec(shared, folder)
+        law = law_spec(top.table("law") or Table({}, "law", faults))
+        bolts = tuple(bolt_spec(t, i) for i, t in enumerate(top.tables("bolt", required=True)))
+        supports = tuple(support_spec(t) for t in top.tables("support"))
+        masses = tuple(mass_spec(t) for t in top.tables("mass"))
+        _known_materials(bolts, materials, faults)
         counts = {len(b.preload) for b in bolts if b.preload}
         if len(counts) > 1:
             faults.add(
@@ -139,12 +130,15 @@ class Study:
         mode_count = modes.count("count", 10)
         solver = modes.text("solver", None, ("pardiso", "mumps", "cholmod", "superlu"))
         shift = modes.quantity("shift_frequency", "Hz", None)
+        damping = modes.text("damping", "hysteretic", ("hysteretic", "viscous"))
         modes.close()
+        order = _order(top, bolts)
+        response = _response(top)
         test = _test(top, max(counts, default=0))
         top.close()
         faults.raise_if_any(where)
         return cls(title=title, folder=folder, materials=materials, geometry=geometry, parts=parts, surface=surface,
-                   law=law, joints=joints, bolts=bolts, mode_count=mode_count, solver=solver, shift_frequency=shift,
+                   law=law, joints=joints, bolts=bolts, supports=supports, masses=masses, mode_count=mode_count, damping=damping, order=order, response=response, solver=solver, shift_frequency=shift,
                    test=test)  # fmt: skip
 
 
@@ -173,28 +167,21 @@ def _materials(top: Table) -> dict[str, Material]:
     return materials
 
 
-def _path(folder: Path) -> Any:
-    def convert(value: Any, name: str) -> Path:
-        if not isinstance(value, str):
-            raise InputError(f"{name} = {value!r} should be a file name in quotes")
-        path = folder / value
-        if not path.is_file():
-            raise InputError(f"{name}: no file {path}")
-        return path
-
-    return convert
-
-
-def _point(value: Any, name: str) -> tuple[float, float, float]:
-    if not isinstance(value, list) or len(value) != 3:
-        raise InputError(f'{name} = {value!r} should be three lengths, for example ["0 mm", "10 mm", "0 mm"]')
-    x, y, z = (quantity(v, "m", name, positive=False) for v in value)
-    return x, y, z
+def _known_materials(bolts: tuple[BoltSpec, ...], materials: dict[str, Material], faults: Faults) -> None:
+    for bolt in bolts:
+        for name in (bolt.material, *(washer.material for washer in bolt.washers)):
+            if name is not None and name not in materials:
+                known = ", ".join(f'"{m}"' for m in materials)
+                faults.add(f'bolt {bolt.name!r}: material "{name}" is unknown; known are {known}')
+        if bolt.diameter is None and bolt.material is not None:
+            faults.add(
+                f"bolt {bolt.name!r} has a material but no diameter; give both, or neither for a bolt without stiffness"
+            )
 
 
 def _geometry(top: Table, folder: Path) -> GeometrySpec:
     table = top.table("geometry", required=True) or Table({}, "geometry", Faults())
-    step = table.take("step", _path(folder))
+    step = table.take("step", existing_path(folder))
     size = table.quantity("size", "m")
     sizes: dict[str, float] = {}
     inner = table.table("face_size")
@@ -205,7 +192,7 @@ def _geometry(top: Table, folder: Path) -> GeometrySpec:
     for name in list(inner.data) if inner else []:
         one = inner.table(name) if inner else None
         if one is not None:
-            at[name] = (one.text("part"), one.take("point", _point))
+            at[name] = (one.text("part"), one.take("point", point))
             one.close()
     table.close()
     return GeometrySpec(step=step, size=size, face_size=sizes, face_at=at)
@@ -229,84 +216,39 @@ def _parts(top: Table, materials: dict[str, Material]) -> dict[str, str]:
     return parts
 
 
-def _surface(top: Table, folder: Path) -> SurfaceSpec:
-    table = top.table("surface", required=True) or Table({}, "surface", Faults())
-    given = "scan" in table.data
-    spec = SurfaceSpec(
-        scan=table.take("scan", _path(folder), None),
-        xy_unit=table.text("xy_unit", None),
-        z_unit=table.text("z_unit", None),
-        method=table.text("method", "psd"),
-        D=table.number("D", None),
-        G=table.quantity("G", "m", None),
-        scan_area=table.quantity("scan_area", "m^2", None),
-    )
-    if not given and "scan" not in table.data:
-        lacking = [k for k in ("D", "G", "scan_area") if k not in table.data]
-        if lacking:
-            table.faults.add(f"surface: give scan, or D, G and scan_area ({', '.join(lacking)} missing)")
-    if spec.D is not None and not 2 < spec.D < 3:
-        table.faults.add(f"surface.D = {spec.D}: the dimension of a surface lies between 2 and 3, for example 2.4")
+def _order(top: Table, bolts: tuple[BoltSpec, ...]) -> tuple[int, ...] | None:
+    """The order of tightening as indices of bolts, pass after pass; None where all are pulled at once."""
+    table = top.table("tightening")
+    if table is None:
+        return None
+    names = [bolt.name for bolt in bolts]
+
+    def order(value: Any, name: str) -> tuple[int, ...]:
+        if not isinstance(value, list) or any(v not in names for v in value) or set(value) != set(names):
+            raise InputError(f"{name} = {value!r} should name every bolt: {', '.join(map(repr, names))}")
+        return tuple(names.index(v) for v in value)
+
+    found, passes = table.take("order", order), table.count("passes", 1)
     table.close()
-    return spec
+    return None if found is None else found * passes
 
 
-def _law(top: Table) -> LawSpec:
-    table = top.table("law") or Table({}, "law", top.faults)
-    options: dict[str, Any] = {key: value for key in LAW_NUMBERS if (value := table.number(key, None)) is not None}
-    for key, choices in (("closure", ("consistent", "printed")), ("loss", ("held", "literal"))):
-        if (chosen := table.text(key, None, choices)) is not None:
-            options[key] = chosen
-    share = table.take("substrate", lambda v, name: v if v == "exact" else number(v, name), None)
-    if share is not None:
-        options["substrate"] = share
-    model = table.take("model", _known_law, "jk")
-    counterbody = table.text("counterbody", "part", ("part", "rigid"))
-    table.close()
-    return LawSpec(model=model, counterbody=counterbody, options=options)
-
-
-def _known_law(value: Any, name: str) -> str:
-    from faying.contact.compare import ASPERITIES
-    from faying.contact.registry import find_law
-
-    if not isinstance(value, str):
-        raise InputError(f"{name} = {value!r} should be text in quotes")
-    if value.upper() not in ASPERITIES:
-        find_law(value)
-    return value
-
-
-def _joint(table: Table, index: int) -> JointSpec:
-    spec = JointSpec(
-        name=table.text("name", f"joint {index + 1}"),
-        faces=tuple(table.texts("faces", 2) or ("", "")),
-        springs=table.text("springs", "per-area", ("per-area", "per-node")),
-        tangential=table.text("tangential", "law", ("law", "mindlin")),
-    )
-    table.close()
-    return spec
-
-
-def _bolt(table: Table, index: int) -> BoltSpec:
-    def preloads(value: Any, name: str) -> tuple[float, ...]:
-        items = value if isinstance(value, list) else [value]
-        if not items:
-            raise InputError(f'{name} is empty; give one force or more, for example "12 kN"')
-        loads = [quantity(v, "N", name, positive=False) for v in items]
-        for text, load in zip(items, loads, strict=True):
-            if load <= 0:
-                raise InputError(f'{name} = "{text}": a preload pulls the joint together and must be positive')
-        if any(b <= a or isclose(a, b) for a, b in pairwise(loads)):
-            raise InputError(f"{name} = {value!r}: preloads must rise, since the law is one of loading; the joint remembers "
-                             "the greatest load it has seen")  # fmt: skip
-        return tuple(loads)
-
-    spec = BoltSpec(
-        name=table.text("name", f"bolt {index + 1}"),
-        faces=tuple(table.texts("faces", 2) or ("", "")),
-        preload=table.take("preload", preloads) or (),
-    )
+def _response(top: Table) -> ResponseSpec | None:
+    table = top.table("response")
+    if table is None:
+        return None
+    first, last = table.quantity("from", "Hz"), table.quantity("to", "Hz")
+    if first is not None and last is not None and not first < last:
+        table.faults.add(f"response: from = {first:g} Hz must lie below to = {last:g} Hz")
+    sides = []
+    for key in ("input", "output"):
+        pairs = []
+        for one in table.tables(key, required=True):
+            pairs.append((one.take("point", point), one.take("direction", direction)))
+            one.close()
+        sides.append(tuple(pairs))
+    spec = ResponseSpec(inputs=sides[0], outputs=sides[1], first=first, last=last, points=table.count("points", 1000),
+                        structural_loss=table.number("structural_loss", 0.0))  # fmt: skip
     table.close()
     return spec
 
@@ -326,15 +268,7 @@ def _test(top: Table, loads: int) -> TestSpec | None:
     def points(value: Any, name: str) -> tuple[tuple[float, float, float], ...]:
         if not isinstance(value, list) or not value:
             raise InputError(f"{name} should be a list of points, each three lengths")
-        return tuple(_point(v, name) for v in value)
-
-    def direction(value: Any, name: str) -> tuple[float, float, float]:
-        if not isinstance(value, list) or len(value) != 3:
-            raise InputError(f"{name} = {value!r} should be three numbers, for example [1, 0, 0]")
-        x, y, z = (number(v, name) for v in value)
-        if x == y == z == 0:
-            raise InputError(f"{name} = {value!r} has no length")
-        return x, y, z
+        return tuple(point(v, name) for v in value)
 
     spec = TestSpec(
         source=table.text("source", ""),

@@ -9,7 +9,7 @@ from faying.contact.jk import JK
 from faying.contact.law import ContactLaw
 from faying.errors import InputError
 from faying.materials import ContactPair
-from faying.study.schema import LawSpec, SurfaceSpec
+from faying.study.contact import LawSpec, SurfaceSpec
 from faying.surface.form import prepared
 from faying.surface.fractal import fit_fractal
 from faying.surface.read import read_scan

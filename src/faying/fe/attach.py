@@ -1,0 +1,71 @@
+"""Mean motion of a face: how a bolt's head, a mass or a bearing hangs on an elastic body without stiffening it."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.fe.elements import Array
+from faying.fe.faces import sampled
+from faying.fe.sides import Blocks
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ring:
+    """The part of a face between two radii [m] around an axis: point (3,) [m] on it and direction (3,)."""
+
+    point: Array
+    axis: Array
+    inner: float
+    outer: float
+
+    def covers(self, place: Array) -> Array:
+        """1 for places (..., 3) [m] inside the ring, 0 outside."""
+        unit = self.axis / np.linalg.norm(self.axis)
+        arm = place - self.point
+        radius = np.linalg.norm(arm - (arm @ unit)[..., None] * unit, axis=-1)
+        return np.asarray((radius >= self.inner) & (radius <= self.outer), dtype=float)
+
+
+def mean_motion(points: Array, blocks: Blocks, at: Array, ring: Ring | None = None) -> Any:
+    """Sparse operator (6, 3n) from nodal displacements to the translation [m] and rotation [rad] of a face about `at` (3,).
+
+    The rigid motion nearest to the face's own in the mean square over its area (or that of a ring on it). Its transpose
+    spreads a force and a moment at `at` over the face as tractions linear in position. Raises InputError where the ring
+    meets no point of the face, or all points lie on one line.
+    """
+    from scipy.sparse import csr_array
+
+    n = len(points)
+    gram = np.zeros((6, 6))
+    columns, entries = [], []
+    for faces, values, place, _, share in sampled(points, blocks):
+        weight = share if ring is None else share * ring.covers(place)
+        arm = place - at
+        rigid = np.zeros((*weight.shape, 3, 6))  # motion of a place under the six unit motions
+        rigid[..., :3] = np.eye(3)
+        rigid[..., 0, 4], rigid[..., 0, 5] = arm[..., 2], -arm[..., 1]
+        rigid[..., 1, 3], rigid[..., 1, 5] = -arm[..., 2], arm[..., 0]
+        rigid[..., 2, 3], rigid[..., 2, 4] = arm[..., 1], -arm[..., 0]
+        gram += np.einsum("fq,fqki,fqkj->ij", weight, rigid, rigid)
+        spread = np.einsum("fq,qa,fqki->ifak", weight, values, rigid)
+        columns.append((3 * faces[:, :, None] + np.arange(3)).reshape(-1))
+        entries.append(spread.reshape(6, -1))
+    area = gram[0, 0]
+    if area <= 0:
+        assert ring is not None
+        raise InputError(f"a ring of {ring.outer * 2e3:.4g} mm outer diameter meets nothing of its face; check the point on "
+                         "the axis, the diameters and the unit, or refine the mesh there")  # fmt: skip
+    size = np.sqrt(max(np.trace(gram[3:, 3:]) / area, 1e-300))
+    scale = np.diag([1, 1, 1, 1 / size, 1 / size, 1 / size])
+    if np.linalg.cond(scale @ gram @ scale) > 1e10:
+        raise InputError(
+            "the points of a face lie on one line, so that it has no rotation; widen the ring or refine the mesh"
+        )
+    column, entry = np.concatenate(columns), np.concatenate(entries, axis=1)
+    solved = np.linalg.solve(gram, entry)
+    rows = np.repeat(np.arange(6), len(column))
+    operator = csr_array((solved.ravel(), (rows, np.tile(column, 6))), shape=(6, 3 * n))
+    operator.sum_duplicates()
+    return operator

@@ -1,0 +1,156 @@
+"""Complex modes of a structure with loss on its joints, hysteretic or viscous.
+
+The loss is that of a few faces, so the complex modes lie near the span of the real modes and of the static response to
+the loss forces they cause. The equations are projected on that span; what the projected modes leave in the full
+equations, sent through the factorisation that the real modes have left, is both the estimate of their error and the
+next enrichment of the span.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.errors import NotConverged
+from faying.fe.mesh import Array
+from faying.fe.modes import Modes
+
+Complex = NDArray[np.complex128]
+ROUNDS = 12  # enrichments after which the loss must be so great that nothing here applies
+
+
+@dataclass(frozen=True, kw_only=True)
+class DampedModes:
+    """Complex modes in rising order.
+
+    frequencies [Hz], loss_factors [-] (m,): of the complex eigenvalue w^2 (1 + i eta) under hysteretic loss; under
+    viscous damping the undamped |lambda|/2pi and twice the damping ratio. error (m,): estimated relative error of the
+    eigenvalue. shapes (unknowns, m), complex, with shapes^T M shapes = 1.
+    """
+
+    frequencies: Array
+    loss_factors: Array
+    error: Array
+    shapes: Complex
+
+    @property
+    def damping_ratios(self) -> Array:
+        """Damping ratios [-] (m,): half of the loss factors."""
+        return self.loss_factors / 2
+
+
+def damped_modes(
+    modes: Modes,
+    stiffness: Any,
+    mass: Any,
+    loss: Any,
+    *,
+    rigid: int,
+    count: int | None = None,
+    kind: Literal["hysteretic", "viscous"] = "hysteretic",
+    tolerance: float = 1e-6,
+) -> DampedModes:
+    """Find complex modes of K + i C (hysteretic, C [N/m]) or K + i w C (viscous, C [N s/m]).
+
+    modes: real modes and their factorisation; rigid: how many of the lowest are rigid motions, which have no part in
+    this; count: how many complex modes are wanted, all elastic ones where None; tolerance: of the estimated relative
+    error of the complex eigenvalues. Raises NotConverged where it is not reached.
+    """
+    elastic = modes.shapes[:, rigid:]
+    count = elastic.shape[1] if count is None else min(count, elastic.shape[1])
+    rigid_shapes = modes.shapes[:, :rigid]
+    momentum = mass @ rigid_shapes
+    span = _Span(stiffness, mass, loss, elastic)
+    answer = modes.factorisation.solve(np.asfortranarray(loss @ elastic))
+    span.add(answer - rigid_shapes @ (momentum.T @ answer), least=0.0)
+    error = np.full(count, np.inf)
+    for _ in range(ROUNDS):
+        squared, root, inner = span.eigen(count, kind)
+        vectors = span.vectors @ inner
+        image = loss @ vectors
+        if kind == "hysteretic":
+            miss = stiffness @ vectors + 1j * image - (mass @ vectors) * squared
+        else:
+            miss = stiffness @ vectors + image * root + (mass @ vectors) * root**2
+        both = np.concatenate([miss.real, miss.imag], axis=1)
+        solved = modes.factorisation.solve(np.asfortranarray(both))
+        solved = solved - rigid_shapes @ (momentum.T @ solved)
+        energy = np.einsum("ij,ij->j", both, solved)
+        size = np.abs(squared) * np.einsum("im,im->m", vectors.conj(), mass @ vectors).real
+        error = np.abs(energy[:count] + energy[count:]) / size
+        if error.max() < tolerance:
+            norm = np.sqrt(np.einsum("im,im->m", vectors, mass @ vectors))
+            return DampedModes(
+                frequencies=_frequency(squared, root, kind),
+                loss_factors=_loss_factor(squared, root, kind),
+                error=error,
+                shapes=vectors / norm,
+            )
+        if not span.add(solved / np.sqrt(np.tile(size, 2)), least=0.01 * tolerance):
+            break
+    raise NotConverged(f"complex modes: the estimated error stays at {error.max():.1e} (tolerance {tolerance:.0e}); the loss "
+                       "of the joint may be too great for modes to mean anything")  # fmt: skip
+
+
+def _frequency(squared: Complex, root: Complex, kind: str) -> Array:
+    return (np.sqrt(squared.real) if kind == "hysteretic" else np.abs(root)) / (2 * np.pi)
+
+
+def _loss_factor(squared: Complex, root: Complex, kind: str) -> Array:
+    return squared.imag / squared.real if kind == "hysteretic" else -2 * root.real / np.abs(root)
+
+
+class _Span:
+    """A growing basis, orthonormal with the mass, and the matrices projected on it."""
+
+    def __init__(self, stiffness: Any, mass: Any, loss: Any, first: Array) -> None:
+        self.operators = (stiffness, loss)
+        self.mass = mass
+        self.vectors = first
+        self.leading = first.shape[1]
+        self.small = [first.T @ (operator @ first) for operator in self.operators]
+
+    def add(self, new: Array, *, least: float) -> int:
+        """Add columns; directions whose share of the stiffness energy is below `least` are left out."""
+        scale = np.einsum("ij,ij->j", new, self.operators[0] @ new).max()
+        for _ in range(2):
+            new = new - self.vectors @ (self.vectors.T @ (self.mass @ new))
+        gram = new.T @ (self.operators[0] @ new)
+        values, rotation = np.linalg.eigh((gram + gram.T) / 2)
+        new = new @ rotation[:, values > max(least, 1e-12 * scale)]
+        if not new.shape[1]:
+            return 0
+        new = new / np.linalg.norm(new, axis=0)
+        values, rotation = np.linalg.eigh(new.T @ (self.mass @ new))
+        keep = values > 1e-13 * values.max()
+        new = new @ (rotation[:, keep] / np.sqrt(values[keep]))
+        new = new - self.vectors @ (self.vectors.T @ (self.mass @ new))
+        for i, operator in enumerate(self.operators):
+            image = operator @ new
+            side = self.vectors.T @ image
+            self.small[i] = np.block([[self.small[i], side], [side.T, new.T @ image]])
+        self.vectors = np.concatenate([self.vectors, new], axis=1)
+        return int(new.shape[1])
+
+    def eigen(self, count: int, kind: str) -> tuple[Complex, Complex, Complex]:
+        """Squares w^2 (1 + i eta), roots lambda, and coefficients (size, count) of the modes that follow the real ones."""
+        from scipy.linalg import eig
+
+        K, C = self.small
+        if kind == "hysteretic":
+            values, vectors = eig(K + 1j * C)
+            squared, root = values, 1j * np.sqrt(values)
+        else:
+            n = len(K)
+            companion = np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]])
+            root, both = eig(companion)
+            above = root.imag > 0
+            root, vectors = root[above], both[:n, above]
+            vectors = vectors / np.linalg.norm(vectors, axis=0)
+            squared = -(root**2)
+        picked: list[int] = []
+        for row in np.abs(vectors[:count]):  # each real mode, in turn, takes the complex one that overlaps it most
+            picked.append(next(int(i) for i in np.argsort(-row) if int(i) not in picked))
+        order = np.array(picked)[np.argsort(np.abs(squared[picked].real))]
+        return squared[order], root[order], vectors[:, order]

@@ -1,0 +1,105 @@
+"""Supports that hold a structure and masses that hang on it."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.errors import InputError
+from faying.fe.attach import mean_motion
+from faying.fe.faces import face_centre, sampled
+from faying.fe.mesh import Mesh
+from faying.fe.sides import Index
+
+Array = NDArray[np.float64]
+AXES: dict[str, int] = {"x": 0, "y": 1, "z": 2}
+NEAR = 0.02  # of the structure's size: farther from any node than this, a point of the study is taken for a mistake
+
+
+@dataclass(frozen=True, kw_only=True)
+class Support:
+    """A face held in some directions: at rest where stiffness is None, else on springs per area [Pa/m]."""
+
+    face: str
+    directions: tuple[str, ...] = ("x", "y", "z")
+    stiffness: float | None = None
+
+    def __post_init__(self) -> None:
+        wrong = [axis for axis in self.directions if axis not in AXES]
+        if wrong or not self.directions:
+            raise InputError(f"support of {self.face!r}: directions {list(self.directions)} should be some of x, y, z")
+        if self.stiffness is not None and not self.stiffness > 0:
+            raise InputError(f"support of {self.face!r}: stiffness {self.stiffness:g} Pa/m must be positive")
+
+    def held(self, mesh: Mesh) -> Index:
+        """Unknowns at rest; none for springs."""
+        if self.stiffness is not None:
+            return np.zeros(0, dtype=np.int64)
+        nodes = mesh.face_nodes(self.face)
+        return np.sort((3 * nodes[:, None] + np.array([AXES[axis] for axis in self.directions])).ravel())
+
+    def springs(self, mesh: Mesh) -> Any | None:
+        """Sparse stiffness [N/m] of springs per area to the ground; None for a face at rest."""
+        if self.stiffness is None:
+            return None
+        from scipy.sparse import coo_array
+
+        rows, columns, entries = [], [], []
+        for faces, values, _, _, share in sampled(mesh.points, mesh.face(self.face)):
+            block = self.stiffness * np.einsum("fq,qa,qb->fab", share, values, values)
+            a = faces.shape[1]
+            for axis in self.directions:
+                rows.append(np.repeat(3 * faces + AXES[axis], a, axis=1).ravel())
+                columns.append(np.tile(3 * faces + AXES[axis], (1, a)).ravel())
+                entries.append(block.ravel())
+        n = mesh.unknowns
+        where = np.concatenate(rows), np.concatenate(columns)
+        return coo_array((np.concatenate(entries), where), shape=(n, n)).tocsr()
+
+
+@dataclass(frozen=True, kw_only=True)
+class PointMass:
+    """A mass [kg] that follows the mean motion of a face, or the node nearest to a point (3,) [m].
+
+    offset (3,) [m]: from the face's centre to the centre of the mass; its inertia about that is left out.
+    """
+
+    mass: float
+    face: str | None = None
+    point: tuple[float, float, float] | None = None
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        if not self.mass > 0:
+            raise InputError(f"point mass {self.mass:g} kg must be positive")
+        if (self.face is None) == (self.point is None):
+            raise InputError("a point mass sits on a face or at a point; give one of the two")
+
+    def matrix(self, mesh: Mesh) -> Any:
+        """Sparse mass matrix [kg] (unknowns, unknowns)."""
+        from scipy.sparse import csr_array
+
+        n = mesh.unknowns
+        if self.point is not None:
+            node = nearest_node(mesh, self.point, f"point mass of {self.mass:g} kg")
+            at = 3 * node + np.arange(3)
+            return csr_array((np.full(3, self.mass), (at, at)), shape=(n, n))
+        assert self.face is not None
+        centre, _, _ = face_centre(mesh.points, mesh.face(self.face))
+        moved = mean_motion(mesh.points, mesh.face(self.face), centre + np.array(self.offset))[:3]
+        return (self.mass * moved.T @ moved).tocsr()
+
+
+def nearest_node(mesh: Mesh, point: tuple[float, float, float], what: str) -> int:
+    """Index of the node nearest to a point [m]. Raises InputError where none is near."""
+    distance = np.linalg.norm(mesh.points - np.array(point), axis=1)
+    node = int(np.argmin(distance))
+    if distance[node] > NEAR * mesh.size:
+        raise InputError(
+            f"{what}: the nearest node to ({', '.join(f'{1e3 * x:.4g}' for x in point)}) mm is "
+            f"{1e3 * distance[node]:.3g} mm away; the structure lies between "
+            f"({', '.join(f'{1e3 * x:.4g}' for x in mesh.points.min(axis=0))}) and "
+            f"({', '.join(f'{1e3 * x:.4g}' for x in mesh.points.max(axis=0))}) mm; check the point and its unit"
+        )
+    return node

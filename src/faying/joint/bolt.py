@@ -1,0 +1,230 @@
+"""Bolts: the force they pull with, and the shank, head, nut and washers that move with the structure."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.errors import InputError
+from faying.fe.attach import Ring, mean_motion
+from faying.fe.elasticity import Solid
+from faying.fe.faces import face_centre
+from faying.fe.mesh import Mesh
+
+Array = NDArray[np.float64]
+# proportions of hexagon heads and nuts, of the thread's diameter: width across flats, heights (ISO 4014, ISO 4032)
+ACROSS_FLATS, HEAD_HEIGHT, NUT_HEIGHT = 1.5, 0.64, 0.85
+HEXAGON = 3**0.5 / 2  # area of a hexagon over the square of its width across flats
+
+
+def torque_to_preload(
+    torque: float,
+    diameter: float,
+    *,
+    nut_factor: float | None = None,
+    pitch: float | None = None,
+    thread_friction: float | None = None,
+    head_friction: float | None = None,
+) -> float:
+    """Return the preload [N] that a tightening torque [N m] gives a metric thread.
+
+    diameter of the thread [m]; either nut_factor K [-], F = T/(K d), or pitch [m] and both friction coefficients [-]:
+    F = T/(P/2pi + .577 d2 mu_thread + D_b/2 mu_head), with d2 = d - .6495 P and the bearing's mean diameter D_b = 1.3 d
+    (ISO 16047:2005; Bickford, doi:10.1201/9780849381898, for K). Raises InputError where neither set is complete.
+    """
+    if torque <= 0 or diameter <= 0:
+        raise InputError(f"torque {torque:g} N m and diameter {diameter:g} m must both be positive")
+    if nut_factor is not None:
+        if not 0.02 <= nut_factor <= 1:
+            raise InputError(f"nut_factor = {nut_factor:g}: it lies between 0.02 and 1, about 0.2 for dry steel")
+        return torque / (nut_factor * diameter)
+    if pitch is None or thread_friction is None or head_friction is None:
+        raise InputError("a torque gives no preload by itself; add nut_factor (about 0.2 for dry steel), or pitch, "
+                         "thread_friction and head_friction")  # fmt: skip
+    flank = (diameter - 0.6495 * pitch) / 2 * thread_friction / np.cos(np.pi / 6)
+    return float(torque / (pitch / (2 * pi) + flank + 0.65 * diameter * head_friction))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Washer:
+    """A washer: outer and inner diameter and thickness [m], material."""
+
+    outer: float
+    inner: float
+    thickness: float
+    material: Solid
+
+    @property
+    def area(self) -> float:
+        """Area of its flat side [m2]."""
+        return pi / 4 * (self.outer**2 - self.inner**2)
+
+    @property
+    def compliance(self) -> float:
+        """Axial compliance [m/N] under even pressure."""
+        return self.thickness / (self.material.E * self.area)
+
+    @property
+    def mass(self) -> float:
+        """Mass [kg]."""
+        return (self.material.density or 0.0) * self.area * self.thickness
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bolt:
+    """A bolt between two seats that look away from each other.
+
+    faces: those that head and nut press on; at [m] (3,): a point on the axis, the middle between the faces where None;
+    diameter [m] and material of the shank, None for a bolt that is a force and nothing else; seat: inner and outer
+    diameter [m] of the ring that head and nut press on, the whole faces where None (a washer gives its own); washers: under
+    head and nut together; head_mass, nut_mass [kg]: those of hexagon heads and nuts where None.
+    """
+
+    name: str
+    faces: tuple[str, str]
+    at: tuple[float, float, float] | None = None
+    diameter: float | None = None
+    material: Solid | None = None
+    seat: tuple[float, float] | None = None
+    washers: tuple[Washer, ...] = ()
+    head_mass: float | None = None
+    nut_mass: float | None = None
+
+    def __post_init__(self) -> None:
+        if (self.diameter is None) != (self.material is None):
+            raise InputError(
+                f"bolt {self.name!r} needs both diameter and material, or neither (a bolt without stiffness)"
+            )
+        if self.diameter is not None and self.diameter <= 0:
+            raise InputError(f"bolt {self.name!r}: diameter {self.diameter:g} m must be positive")
+        if self.seat is not None and not 0 <= self.seat[0] < self.seat[1]:
+            raise InputError(f"bolt {self.name!r}: the seat's inner diameter must be less than its outer")
+
+    def fitted(self, mesh: Mesh) -> "FittedBolt":
+        """Return the bolt in its place. Raises InputError where its faces do not look away from each other."""
+        first, second = self.faces
+        if mesh.face_part[first] == mesh.face_part[second] and self.diameter is None:
+            raise InputError(f"the bolt's faces {first!r} and {second!r} are both on part {mesh.face_part[first]!r}; a bolt "
+                             "pulls two parts together")  # fmt: skip
+        centre_a, normal_a, _ = face_centre(mesh.points, mesh.face(first))
+        centre_b, normal_b, _ = face_centre(mesh.points, mesh.face(second))
+        if self.at is not None:  # along the normal of the first seat, through the point given
+            axis = -normal_a
+            point = np.array(self.at)
+            centre_a = point + ((centre_a - point) @ axis) * axis
+            centre_b = point + ((centre_b - point) @ axis) * axis
+        axis = centre_b - centre_a
+        length = float(np.linalg.norm(axis))
+        if length < 1e-6 * mesh.size or normal_a @ axis > -0.5 * length or normal_b @ axis < 0.5 * length:
+            raise InputError(f"the bolt's faces {first!r} and {second!r} do not look away from each other; name the two seats "
+                             "that head and nut press on")  # fmt: skip
+        rings: list[Ring | None] = [None, None]
+        seat = self.seat
+        if seat is None and self.washers:
+            seat = (self.washers[0].inner, self.washers[0].outer)
+        if seat is not None:
+            rings = [Ring(point=centre_a, axis=axis, inner=seat[0] / 2, outer=seat[1] / 2)] * 2
+        ends = tuple(
+            mean_motion(mesh.points, mesh.face(name), centre, ring)
+            for name, centre, ring in zip(self.faces, (centre_a, centre_b), rings, strict=True)
+        )
+        return FittedBolt(bolt=self, axis=axis / length, length=length, ends=ends)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FittedBolt:
+    """A bolt in its place: axis (3,) from head to nut, clamped length [m], mean motions (6, unknowns) of both seats."""
+
+    bolt: Bolt
+    axis: Array
+    length: float
+    ends: tuple[Any, ...]
+
+    @cached_property
+    def motion(self) -> Any:
+        """Sparse operator (12, unknowns): translation and rotation at the head, then at the nut, in the bolt's axes."""
+        from scipy.sparse import block_diag, csr_array, vstack
+
+        helper = np.eye(3)[np.argmin(np.abs(self.axis))]
+        second = np.cross(self.axis, helper)
+        second /= np.linalg.norm(second)
+        frame = np.stack([self.axis, second, np.cross(self.axis, second)])
+        return csr_array(block_diag([frame] * 4) @ vstack(self.ends))
+
+    @cached_property
+    def load(self) -> Array:
+        """Nodal forces [N] (unknowns,) that pull the two seats towards each other with 1 N."""
+        pull = np.zeros(12)
+        pull[0], pull[6] = 1.0, -1.0
+        return np.asarray(self.motion.T @ pull)
+
+    @cached_property
+    def stiffness(self) -> Any | None:
+        """Sparse stiffness [N/m] of shank and washers: a beam with shear between the seats; None without a shank."""
+        beam = self._beam()
+        return None if beam is None else (self.motion.T @ beam @ self.motion).tocsr()
+
+    @cached_property
+    def mass(self) -> Any | None:
+        """Sparse mass [kg]: half of the shank, and head or nut with its washers, at each seat; None without a shank."""
+        bolt = self.bolt
+        if bolt.diameter is None or bolt.material is None:
+            return None
+        density, d = bolt.material.density or 0.0, bolt.diameter
+        shank = density * pi / 4 * d**2 * self.length
+        hexagon = density * HEXAGON * (ACROSS_FLATS * d) ** 2
+        head = hexagon * HEAD_HEIGHT * d if bolt.head_mass is None else bolt.head_mass
+        # the part of the bolt in the nut fills its thread, so the nut counts as solid
+        nut = hexagon * NUT_HEIGHT * d if bolt.nut_mass is None else bolt.nut_mass
+        washers = sum(w.mass for w in bolt.washers) / 2
+        ends = np.array([shank / 2 + head + washers, shank / 2 + nut + washers])
+        from scipy.sparse import diags_array
+
+        lumps = np.zeros(12)
+        lumps[:3], lumps[6:9] = ends
+        return (self.motion.T @ diags_array(lumps) @ self.motion).tocsr()
+
+    @property
+    def axial_stiffness(self) -> float:
+        """Stiffness of shank and washers in series [N/m]; 0 without a shank."""
+        bolt = self.bolt
+        if bolt.diameter is None or bolt.material is None:
+            return 0.0
+        shank = self.length / (bolt.material.E * pi / 4 * bolt.diameter**2)
+        return 1 / (shank + sum(w.compliance for w in bolt.washers))
+
+    def tension(self, displacement: Array) -> float:
+        """What the shank's stretch adds to the bolt's force [N] under a displacement (unknowns,)."""
+        ends = self.motion @ displacement
+        return float(self.axial_stiffness * (ends[6] - ends[0]))
+
+    def _beam(self) -> Array | None:
+        """Stiffness (12, 12) of a round beam with shear along the first axis (Przemieniecki 1968, section 5.6)."""
+        bolt = self.bolt
+        if bolt.diameter is None or bolt.material is None:
+            return None
+        E, nu, d, length = bolt.material.E, bolt.material.nu, bolt.diameter, self.length
+        area, bending = pi / 4 * d**2, pi / 64 * d**4
+        shear_modulus = E / (2 * (1 + nu))
+        kappa = 6 * (1 + nu) / (7 + 6 * nu)  # Cowper 1966, doi:10.1115/1.3625046
+        phi = 12 * E * bending / (kappa * shear_modulus * area * length**2)
+        beam = np.zeros((12, 12))
+        for row, value in ((0, self.axial_stiffness), (3, shear_modulus * 2 * bending / length)):
+            beam[np.ix_([row, row + 6], [row, row + 6])] = value * np.array([[1, -1], [-1, 1]])
+        c = E * bending / ((1 + phi) * length**3)
+        L = length
+        block = c * np.array(
+            [
+                [12, 6 * L, -12, 6 * L],
+                [6 * L, (4 + phi) * L**2, -6 * L, (2 - phi) * L**2],
+                [-12, -6 * L, 12, -6 * L],
+                [6 * L, (2 - phi) * L**2, -6 * L, (4 + phi) * L**2],
+            ]
+        )
+        beam[np.ix_([1, 5, 7, 11], [1, 5, 7, 11])] += block
+        turn = np.array([1, -1, 1, -1])  # in the other plane a positive rotation lowers the deflection
+        beam[np.ix_([2, 4, 8, 10], [2, 4, 8, 10])] += block * np.outer(turn, turn)
+        return beam

@@ -1,0 +1,65 @@
+"""Bolts tightened one after another: each later bolt changes the force in those that are tight already."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.errors import InputError
+from faying.joint.balance import Preload
+from faying.joint.preload import Assembly
+from faying.joint.structure import Structure
+
+Array = NDArray[np.float64]
+
+
+def tighten(
+    structure: Structure,
+    assembly: Assembly,
+    forces: Sequence[float],
+    *,
+    order: Sequence[int] | None = None,
+    report: Callable[[str], None] | None = None,
+) -> Preload:
+    """Find the preload of a structure whose bolts are brought to `forces` [N], one for each bolt.
+
+    order: indices of the bolts, in the order of tightening, any of them more than once; None pulls all at once, so that
+    each ends at its force. In an order, the bolt at hand is pulled to its force while those tightened before it are
+    springs of their shank's stiffness; bolts yet to come carry nothing. The forces left at the end are in
+    `bolt_forces`. Raises InputError where an order misses a bolt or a bolt in it has no shank.
+    """
+    force = np.asarray(forces, dtype=float)
+    loads = structure.loads
+    if order is None:
+        at_once = assembly.solve(loads @ force, report=report)
+        return replace(at_once, bolt_forces=tuple(float(f) for f in force))
+    bolts = structure.fitted_bolts
+    missing = sorted(set(range(len(bolts))) - set(order))
+    if missing or any(not 0 <= i < len(bolts) for i in order):
+        raise InputError(
+            f"the order of tightening must name every bolt; it misses {[bolts[i].bolt.name for i in missing]}"
+        )
+    soft = [bolt.bolt.name for bolt in bolts if bolt.stiffness is None]
+    if soft:
+        raise InputError(f"bolts {', '.join(soft)} have no shank, so tightening others cannot change them; give diameter and "
+                         "material, or leave out the order")  # fmt: skip
+    tight: dict[int, tuple[float, Array]] = {}  # force and displacement when the bolt was let go
+    found: Preload | None = None
+    standing = structure.standing
+    try:
+        for turn in order:
+            assembly.stiffness, load = standing, force[turn] * loads[:, turn]
+            for index, (held, moved) in tight.items():
+                if index != turn:
+                    shank = bolts[index].stiffness
+                    assembly.stiffness = assembly.stiffness + shank
+                    load = load + held * loads[:, index] + shank @ moved  # type: ignore[operator]
+            found = assembly.solve(load, report=report)
+            tight[turn] = (float(force[turn]), found.displacement)
+    finally:
+        assembly.stiffness = standing
+    assert found is not None
+    final = found.displacement
+    left = tuple(tight[i][0] + bolts[i].tension(final - tight[i][1]) for i in range(len(bolts)))
+    return replace(found, bolt_forces=left)
