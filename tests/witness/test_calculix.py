@@ -12,6 +12,7 @@ from scipy.sparse import coo_array, diags_array
 import faying
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
+from faying.fe.matrices import arranged, read_matrices
 from faying.fe.mesh import Mesh
 from faying.fe.modes import lowest_modes
 
@@ -54,6 +55,15 @@ def test_matrices(tmp_path, kind):
     theirs, weight = matrices(tmp_path, mesh)
     assert np.abs(K - theirs).max() < 1e-9 * np.abs(theirs).max()
     assert np.abs(M - weight).max() < 1e-9 * np.abs(weight).max()
+
+
+def test_stored_matrices_are_read(tmp_path):
+    points, cells = block("tet10", (2, 1, 1), SIZE, move=(0.1, 1))
+    mesh = Mesh(points=points, parts={"p": cells}, faces={}, face_part={})
+    matrices(tmp_path, mesh)
+    read = read_matrices(tmp_path / "job.sti", stiffness_unit="N/mm", mass_unit="t")
+    for got, want in zip(arranged(read, mesh), assemble(mesh, {"p": STEEL}, mass="stiffness"), strict=True):
+        assert np.abs(got - want).max() < 1e-9 * np.abs(want).max()
 
 
 def test_two_points_in_a_wedge_leave_a_motion_free(tmp_path):
