@@ -242,7 +242,9 @@ class Reduction:
             if error < tolerance:
                 return error, added
             added += self.static.add(answer[:, None])
-        raise NotConverged(f"reduction: {FEW_STEPS} enrichments leave the preload wrong by {error:.1e}; raise the tolerance")
+        raise NotConverged(
+            f"reduction: {FEW_STEPS} enrichments leave the preload wrong by {error:.1e}; raise the tolerance"
+        )
 
     # -- vibration ---------------------------------------------------------------------------------------------------
 
@@ -275,7 +277,9 @@ class Reduction:
         order = np.array(picked)[np.argsort(values[picked].real)]
         return values[order], shapes @ inner[:, order], real[some], estimate
 
-    def _modal_residual(self, densities: Sequence[Densities], values: NDArray[Any], vectors: NDArray[Any]) -> NDArray[Any]:
+    def _modal_residual(
+        self, densities: Sequence[Densities], values: NDArray[Any], vectors: NDArray[Any]
+    ) -> NDArray[Any]:
         x = self.dynamic.vectors @ vectors
         residual = self.stiffness @ x - (self.mass @ x) * values
         for trace, relative, d in zip(self.traces, self.dynamic.relative, densities, strict=True):

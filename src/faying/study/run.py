@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from faying.contact.law import ContactLaw
 from faying.errors import InputError
-from faying.fe.geometry import mesh_step
 from faying.fe.interface import join
 from faying.fe.modes import Modes, damped_modes, lowest_modes
 from faying.fe.solve import chosen
@@ -18,6 +17,7 @@ from faying.joint.seat import Seat
 from faying.joint.structure import Joint, Springs, Structure
 from faying.materials import RIGID, ContactPair
 from faying.result import Comparison, Result
+from faying.study.geometry import mesh_of
 from faying.study.schema import Study
 from faying.study.surface import Surface, law_facts, law_of, surface_of
 
@@ -124,13 +124,13 @@ def _sum(matrices: Any) -> Any:
 def _structure(study: Study, surface: Surface) -> tuple[Structure, list[ContactLaw]]:
     """Mesh, joints and the law of each joint; every name that does not fit the geometry is reported at once."""
     spec = study.geometry
-    mesh = mesh_step(spec.step, size=spec.size, local_size=spec.face_size, face_points=spec.face_at)
+    mesh = mesh_of(spec)
     faults = [
-        f"[part] says nothing of {name!r}, which {spec.step.name} holds"
+        f"[part] says nothing of {name!r}, which {spec.file.name} holds"
         for name in mesh.parts
         if name not in study.parts
     ]
-    faults += [f"part {name!r} is not in {spec.step.name}; it holds {', '.join(mesh.parts)}" for name in study.parts
+    faults += [f"part {name!r} is not in {spec.file.name}; it holds {', '.join(mesh.parts)}" for name in study.parts
                if name not in mesh.parts]  # fmt: skip
     known = ", ".join(sorted(mesh.faces))
     for what, items in (("joint", study.joints), ("bolt", study.bolts)):
@@ -251,7 +251,7 @@ def _compare(
 def _sources(study: Study, surface: Surface, law: ContactLaw) -> tuple[str, ...]:
     used = {study.parts[name] for name in study.parts}
     lines = [f"material {name}: {study.materials[name].source or 'given in the study'}" for name in sorted(used)]
-    lines += [f"contact law {law.name}: {law.source}", f"geometry: {study.geometry.step.name}"]
+    lines += [f"contact law {law.name}: {law.source}", f"geometry: {study.geometry.file.name}"]
     if surface.source:
         lines.append(surface.source)
     if study.test is not None:

@@ -9,19 +9,10 @@ from typing import Any, Literal, Self
 
 from faying.errors import InputError, ReadError
 from faying.materials import CATALOGUE, Material
+from faying.study.geometry import GeometrySpec, path_in, point_of, read_geometry
 from faying.study.reader import Faults, Table, number, quantity
 
 LAW_NUMBERS = ("gamma", "alpha", "cutoff", "shear_ratio", "psi", "modulus_ratio")
-
-
-@dataclass(frozen=True, kw_only=True)
-class GeometrySpec:
-    """A STEP file and how finely to mesh it. Lengths [m]."""
-
-    step: Path
-    size: float
-    face_size: dict[str, float] = field(default_factory=dict)
-    face_at: dict[str, tuple[str, tuple[float, float, float]]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,7 +115,7 @@ class Study:
         top = Table(data, "", faults)
         title = top.text("title", "untitled")
         materials = _materials(top)
-        geometry = _geometry(top, folder)
+        geometry = read_geometry(top, folder)
         parts = _parts(top, materials)
         surface = _surface(top, folder)
         law = _law(top)
@@ -173,44 +164,6 @@ def _materials(top: Table) -> dict[str, Material]:
     return materials
 
 
-def _path(folder: Path) -> Any:
-    def convert(value: Any, name: str) -> Path:
-        if not isinstance(value, str):
-            raise InputError(f"{name} = {value!r} should be a file name in quotes")
-        path = folder / value
-        if not path.is_file():
-            raise InputError(f"{name}: no file {path}")
-        return path
-
-    return convert
-
-
-def _point(value: Any, name: str) -> tuple[float, float, float]:
-    if not isinstance(value, list) or len(value) != 3:
-        raise InputError(f'{name} = {value!r} should be three lengths, for example ["0 mm", "10 mm", "0 mm"]')
-    x, y, z = (quantity(v, "m", name, positive=False) for v in value)
-    return x, y, z
-
-
-def _geometry(top: Table, folder: Path) -> GeometrySpec:
-    table = top.table("geometry", required=True) or Table({}, "geometry", Faults())
-    step = table.take("step", _path(folder))
-    size = table.quantity("size", "m")
-    sizes: dict[str, float] = {}
-    inner = table.table("face_size")
-    for name in list(inner.data) if inner else []:
-        sizes[name] = inner.quantity(name, "m") if inner else 0.0
-    at: dict[str, tuple[str, tuple[float, float, float]]] = {}
-    inner = table.table("face_at")
-    for name in list(inner.data) if inner else []:
-        one = inner.table(name) if inner else None
-        if one is not None:
-            at[name] = (one.text("part"), one.take("point", _point))
-            one.close()
-    table.close()
-    return GeometrySpec(step=step, size=size, face_size=sizes, face_at=at)
-
-
 def _parts(top: Table, materials: dict[str, Material]) -> dict[str, str]:
     parts: dict[str, str] = {}
     outer = top.table("part", required=True)
@@ -233,7 +186,7 @@ def _surface(top: Table, folder: Path) -> SurfaceSpec:
     table = top.table("surface", required=True) or Table({}, "surface", Faults())
     given = "scan" in table.data
     spec = SurfaceSpec(
-        scan=table.take("scan", _path(folder), None),
+        scan=table.take("scan", path_in(folder), None),
         xy_unit=table.text("xy_unit", None),
         z_unit=table.text("z_unit", None),
         method=table.text("method", "psd"),
@@ -326,7 +279,7 @@ def _test(top: Table, loads: int) -> TestSpec | None:
     def points(value: Any, name: str) -> tuple[tuple[float, float, float], ...]:
         if not isinstance(value, list) or not value:
             raise InputError(f"{name} should be a list of points, each three lengths")
-        return tuple(_point(v, name) for v in value)
+        return tuple(point_of(v, name) for v in value)
 
     def direction(value: Any, name: str) -> tuple[float, float, float]:
         if not isinstance(value, list) or len(value) != 3:
