@@ -210,6 +210,7 @@ def test_faults_of_a_mesh_file(tmp_path):
     fault(tmp_path, good[:at] + turned + good[end:], r"1 elements have no or negative volume: 9; repair")
     fault(tmp_path, good.replace("*Node, nset=NALL\n", "*Node, nset=NALL\n7, 1., 2., 3.\n"),
           r"1 nodes belong to no element: 7; delete them")  # fmt: skip
+    fault(tmp_path, good + "*ELEMENT, TYPE=C3D8\n" + turned + "\n", "element 9 is given twice")
     fault(tmp_path, good.replace("C3D8I", "C3D27"), "elements of type C3D27 are not known; known are C3D4")
     fault(tmp_path, good.replace("C3D8I", "C3D20"), "do not make elements of 20 nodes; is the file whole")
     fault(tmp_path, good[: good.index("*Element")], "0 kinds of solid elements")
@@ -267,6 +268,8 @@ def test_faults_of_other_formats(tmp_path):
     fault(tmp_path, archive.replace("SOLID186", "SOLID226"), "is of type 226; known are SOLID185", "m.cdb")
     fault(tmp_path, archive[: archive.index("EBLOCK") + 900], "is the archive whole", "m.cdb")
     fault(tmp_path, archive.replace("EBLOCK,19,SOLID", "EBLOCK,10,COMPACT"), "EBLOCK without the key SOLID", "m.cdb")
+    line = next(line for line in archive.splitlines() if line.startswith("      100"))
+    fault(tmp_path, archive.replace(line, f"{line}\n{line}"), "node 100 is given twice", "m.cdb")
     fault(tmp_path, "FINISH\n", "holds 0 nodes in NBLOCK", "m.cdb")
     if pytest.importorskip("meshio"):
         fault(tmp_path, "nonsense", "cannot be read as VTK", "m.vtu")

@@ -91,6 +91,10 @@ class _Builder:
         repeated, count = np.unique(self.raw.numbers, return_counts=True)
         if np.any(count > 1):
             raise ReadError(f"{self.name}: node {repeated[count > 1][0]} is given twice")
+        every = np.concatenate([numbers for numbers, _ in self.raw.elements.values()])
+        repeated, count = np.unique(every, return_counts=True)
+        if np.any(count > 1):
+            raise ReadError(f"{self.name}: element {repeated[count > 1][0]} is given twice")
         out = []
         for kind, (numbers, nodes) in self.raw.elements.items():
             flat = self._index(nodes.ravel(), f"an element ({kind}, {numbers[0]} to {numbers[-1]})")

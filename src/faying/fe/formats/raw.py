@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from faying.errors import ReadError
-from faying.fe.elements import FACES, KINDS, SOLIDS, Array
+from faying.fe.elements import KINDS, SOLIDS, Array
 from faying.fe.sides import Index
 
 
@@ -74,8 +74,3 @@ def from_edges(kind: str, edges: tuple[tuple[int, int], ...]) -> list[int]:
     corners = KINDS[kind].corners
     place = {frozenset(edge): corners + i for i, edge in enumerate(edges)}
     return [*range(corners), *(place[frozenset(edge)] for edge in KINDS[kind].edges)]
-
-
-def face_count(count: int) -> bool:
-    """Whether a face may have so many nodes."""
-    return count in FACES
