@@ -4,6 +4,8 @@ from .contact.halfspace import HalfSpace, solve_half_space
 from .contact.jk import JK
 from .errors import FayingError, InputError, NotConverged, OutsideValidity, ReadError
 from .fe.asperity import solve_asperity
+from .fe.matrices import read_matrices
+from .fe.meshfile import read_mesh
 from .materials import CATALOGUE, RIGID, ContactPair, Material
 from .result import Result
 from .study import Study, run

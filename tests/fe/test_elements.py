@@ -218,6 +218,7 @@ def test_springs_on_every_kind_of_face(kind):
     assert nodes.area == pytest.approx(0.12, rel=1e-12)
     assert mesh.points[nodes.first_nodes[:, 0]] == pytest.approx(mesh.points[nodes.second_nodes[:, 0]])
     assert nodes.positions == pytest.approx(mesh.points[nodes.first_nodes[:, 0]], abs=1e-12)
+    assert nodes.normals == pytest.approx(np.tile([1.0, 0, 0], (len(nodes.weights), 1)), abs=1e-12)
     assert tie(mesh, [("p0.right", "p1.left")]) is not None
 
 

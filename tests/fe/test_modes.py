@@ -8,9 +8,9 @@ from boxes import stack
 from scipy.optimize import brentq, fsolve
 
 import faying
+from faying.fe.damped import damped_modes
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
-from faying.fe.damped import damped_modes
 from faying.fe.modes import lowest_modes
 from faying.fe.solve import available, chosen, factorise
 from faying.joint.structure import tie

@@ -112,7 +112,7 @@ class Interface:
         partner[cross.row[same]] = others[cross.col[same]]
         if np.any(partner < 0):
             raise InputError("node-by-node springs need faces whose meshes match; use springs per area")
-        normal = weighted.T @ self.normals
+        normal = (weighted * one).T @ self.normals  # squared shape functions: those of corners may integrate to zero
         return Interface(
             positions=np.asarray(spsolve(gram, weighted.T @ self.positions)).reshape(-1, 3),
             weights=diagonal * (self.area / diagonal.sum()),

@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.fe.elements import FACES, KINDS, SOLIDS, reference
-from faying.fe.sides import Blocks, Index, nodes_of
+from faying.fe.sides import Blocks as Blocks
+from faying.fe.sides import Index as Index
+from faying.fe.sides import nodes_of
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from faying import units
 from faying.contact.law import ContactLaw
 from faying.errors import InputError
-from faying.fe.geometry import mesh_step
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.joint.attachments import PointMass, Support
@@ -16,6 +15,7 @@ from faying.joint.structure import Joint, Structure
 from faying.materials import RIGID, ContactPair, Material
 from faying.study.connections import BoltSpec, GapSpec
 from faying.study.contact import SurfaceSpec
+from faying.study.geometry import mesh_of
 from faying.study.schema import Study
 from faying.study.surface import Surface, law_of, surface_of
 
@@ -48,16 +48,16 @@ def surfaces_of(study: Study) -> tuple[Surface, ...]:
     return tuple(out)
 
 
-def mesh_of(study: Study) -> Mesh:
+def checked_mesh(study: Study) -> Mesh:
     """Return the mesh of a study; every name that does not fit the geometry is reported at once."""
     spec = study.geometry
-    mesh = mesh_step(spec.step, size=spec.size, local_size=spec.face_size, face_points=spec.face_at)
+    mesh = mesh_of(spec)
     faults = [
-        f"[part] says nothing of {name!r}, which {spec.step.name} holds"
+        f"[part] says nothing of {name!r}, which {spec.file.name} holds"
         for name in mesh.parts
         if name not in study.parts
     ]
-    faults += [f"part {name!r} is not in {spec.step.name}; it holds {', '.join(mesh.parts)}" for name in study.parts
+    faults += [f"part {name!r} is not in {spec.file.name}; it holds {', '.join(mesh.parts)}" for name in study.parts
                if name not in mesh.parts]  # fmt: skip
     known = ", ".join(sorted(mesh.faces))
     named = [("joint", item.name, face) for item in study.joints for face in item.faces]
@@ -73,7 +73,7 @@ def mesh_of(study: Study) -> Mesh:
 
 def build_all(study: Study, *, mesh: Mesh | None = None, surfaces: tuple[Surface, ...] | None = None) -> Built:
     """Return the structure of a study with what it was made of; a mesh or surfaces made before are used again."""
-    mesh = mesh_of(study) if mesh is None else mesh
+    mesh = checked_mesh(study) if mesh is None else mesh
     surfaces = surfaces_of(study) if surfaces is None else surfaces
     materials = {name: study.materials[study.parts[name]] for name in mesh.parts}
     joints, laws = [], []

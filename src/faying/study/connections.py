@@ -9,7 +9,7 @@ from typing import Any, Literal
 from faying.errors import InputError
 from faying.joint.bolt import torque_to_preload
 from faying.study.contact import LawSpec, SurfaceSpec, law_spec, surface_spec
-from faying.study.reader import Table, existing_path, number, quantity
+from faying.study.reader import Table, existing_path, number, point, quantity
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,14 +88,6 @@ class MassSpec:
     face: str | None
     point: tuple[float, float, float] | None
     offset: tuple[float, float, float]
-
-
-def point(value: Any, name: str) -> tuple[float, float, float]:
-    """Convert three lengths with units; InputError that shows the form."""
-    if not isinstance(value, list) or len(value) != 3:
-        raise InputError(f'{name} = {value!r} should be three lengths, for example ["0 mm", "10 mm", "0 mm"]')
-    x, y, z = (quantity(v, "m", name, positive=False) for v in value)
-    return x, y, z
 
 
 def direction(value: Any, name: str) -> tuple[float, float, float]:

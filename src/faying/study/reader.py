@@ -131,6 +131,14 @@ def existing_path(folder: Path) -> Any:
     return convert
 
 
+def point(value: Any, name: str) -> tuple[float, float, float]:
+    """Convert three lengths with units; InputError that shows the form."""
+    if not isinstance(value, list) or len(value) != 3:
+        raise InputError(f'{name} = {value!r} should be three lengths, for example ["0 mm", "10 mm", "0 mm"]')
+    x, y, z = (quantity(v, "m", name, positive=False) for v in value)
+    return x, y, z
+
+
 def number(value: Any, name: str) -> float:
     """Check one plain number."""
     if isinstance(value, bool) or not isinstance(value, int | float) or value != value or abs(value) == float("inf"):

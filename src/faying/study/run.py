@@ -18,7 +18,7 @@ from faying.joint.balance import Preload
 from faying.joint.structure import Springs, Structure
 from faying.joint.tighten import tighten
 from faying.result import Comparison, Receptance, Result
-from faying.study.build import build_all, mesh_of, surfaces_of
+from faying.study.build import build_all, checked_mesh, surfaces_of
 from faying.study.schema import Study
 from faying.study.surface import Surface, law_facts
 
@@ -39,7 +39,7 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     tell("surface")
     surfaces = surfaces_of(study)
     tell("mesh")
-    built = build_all(study, mesh=mesh_of(study), surfaces=surfaces)
+    built = build_all(study, mesh=checked_mesh(study), surfaces=surfaces)
     structure = built.structure
     notes: list[str] = list(dict.fromkeys(text for surface in surfaces for text in surface.warnings))
     loads = np.array(study.bolts[0].preload)
@@ -245,7 +245,7 @@ def _sources(study: Study, surfaces: tuple[Surface, ...], laws: tuple[ContactLaw
     used = {study.parts[name] for name in study.parts}
     lines = [f"material {name}: {study.materials[name].source or 'given in the study'}" for name in sorted(used)]
     lines += [f"contact law {law.name}: {law.source}" for law in laws]
-    lines += [f"geometry: {study.geometry.step.name}"]
+    lines += [f"geometry: {study.geometry.file.name}"]
     lines += [surface.source for surface in surfaces if surface.source]
     if study.test is not None:
         lines.append(f"test: {study.test.source}")

@@ -1,7 +1,7 @@
 """The study file: what a user writes in TOML, checked and in SI units."""
 
 import tomllib
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, Self
 
@@ -16,23 +16,13 @@ from faying.study.connections import (
     direction,
     joint_spec,
     mass_spec,
-    point,
     support_spec,
 )
 from faying.study.contact import LawSpec, SurfaceSpec, law_spec, surface_spec
-from faying.study.reader import Faults, Table, existing_path, quantity
+from faying.study.geometry import GeometrySpec, read_geometry
+from faying.study.reader import Faults, Table, point, quantity
 
 Point = tuple[float, float, float]
-
-
-@dataclass(frozen=True, kw_only=True)
-class GeometrySpec:
-    """A STEP file and how finely to mesh it. Lengths [m]."""
-
-    step: Path
-    size: float
-    face_size: dict[str, float] = field(default_factory=dict)
-    face_at: dict[str, tuple[str, tuple[float, float, float]]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,7 +101,7 @@ class Study:
         top = Table(data, "", faults)
         title = top.text("title", "untitled")
         materials = _materials(top)
-        geometry = _geometry(top, folder)
+        geometry = read_geometry(top, folder)
         parts = _parts(top, materials)
         joints = tuple(joint_spec(t, i, folder) for i, t in enumerate(top.tables("joint", required=True)))
         shared = top.table("surface", required=any(joint.surface is None for joint in joints))
@@ -177,25 +167,6 @@ def _known_materials(bolts: tuple[BoltSpec, ...], materials: dict[str, Material]
             faults.add(
                 f"bolt {bolt.name!r} has a material but no diameter; give both, or neither for a bolt without stiffness"
             )
-
-
-def _geometry(top: Table, folder: Path) -> GeometrySpec:
-    table = top.table("geometry", required=True) or Table({}, "geometry", Faults())
-    step = table.take("step", existing_path(folder))
-    size = table.quantity("size", "m")
-    sizes: dict[str, float] = {}
-    inner = table.table("face_size")
-    for name in list(inner.data) if inner else []:
-        sizes[name] = inner.quantity(name, "m") if inner else 0.0
-    at: dict[str, tuple[str, tuple[float, float, float]]] = {}
-    inner = table.table("face_at")
-    for name in list(inner.data) if inner else []:
-        one = inner.table(name) if inner else None
-        if one is not None:
-            at[name] = (one.text("part"), one.take("point", point))
-            one.close()
-    table.close()
-    return GeometrySpec(step=step, size=size, face_size=sizes, face_at=at)
 
 
 def _parts(top: Table, materials: dict[str, Material]) -> dict[str, str]:

@@ -18,6 +18,10 @@ size = "8 mm"                  # largest element
 # A face without a name in the file takes one here: the face of that part nearest to the point.
 # [geometry.face_at]
 # "upper.end" = {{ part = "upper", point = ["50 mm", "0 mm", "30 mm"] }}
+# Or a mesh of your own in place of step and size (.inp, .bdf, .msh, .cdb, .vtk, .vtu): its sets are parts and faces.
+# mesh = "model.inp"
+# unit = "mm"                  # of its coordinates; no such file says
+# sets = {{ upper = "ELSET1" }}  # part = element set, where the file's bodies are not the parts
 
 [part.upper]
 material = "45 steel"          # from the catalogue (45 steel, S355, EN AW-6082 T6) or a [material.NAME] of yours

@@ -1,0 +1,76 @@
+"""What a mesh file holds, before it becomes a mesh: the file's own numbers, its own unit, its sets."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from faying.errors import ReadError
+from faying.fe.elements import KINDS, SOLIDS, Array
+from faying.fe.sides import Index
+
+
+@dataclass(frozen=True, kw_only=True)
+class RawMesh:
+    """Nodes and solid elements by number, and every named set.
+
+    numbers (n,), points (n, 3); elements: kind -> (numbers (e,), node numbers (e, a)) in VTK's order; bodies: name ->
+    element numbers, the parts that the file itself makes of its elements; element_sets, node_sets: name -> numbers;
+    side_sets: name -> rows of (element number, side); face_elements: name -> arrays of node numbers (f, a); extra:
+    numbers of nodes that only elements other than solids hold.
+    """
+
+    numbers: Index
+    points: Array
+    elements: Mapping[str, tuple[Index, Index]]
+    bodies: Mapping[str, Index] = field(default_factory=dict)
+    element_sets: Mapping[str, Index] = field(default_factory=dict)
+    node_sets: Mapping[str, Index] = field(default_factory=dict)
+    side_sets: Mapping[str, Index] = field(default_factory=dict)
+    face_elements: Mapping[str, tuple[Index, ...]] = field(default_factory=dict)
+    extra: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+
+
+def index(values: Iterable[object]) -> Index:
+    """Whole numbers as an array."""
+    return np.array(list(values), dtype=np.int64)
+
+
+def gathered(rows: Mapping[str, list[tuple[int, list[int]]]]) -> dict[str, tuple[Index, Index]]:
+    """Turn kind -> [(number, nodes)] into the arrays of RawMesh.elements."""
+    return {kind: (index(number for number, _ in some), np.array([nodes for _, nodes in some], dtype=np.int64))
+            for kind, some in rows.items() if some}  # fmt: skip
+
+
+def face_blocks(rows: Iterable[list[int]]) -> tuple[Index, ...]:
+    """Faces of mixed kinds as one array per kind."""
+    some = list(rows)
+    return tuple(np.array([row for row in some if len(row) == count], dtype=np.int64)
+                 for count in sorted({len(row) for row in some}))  # fmt: skip
+
+
+def undoubled(nodes: list[int], what: str) -> tuple[str, list[int]]:
+    """Kind and nodes of a solid given as a brick with corners that coincide, as ANSYS writes wedges and tetrahedra.
+
+    Raises ReadError for other shapes, pyramids among them.
+    """
+    corners = nodes[:8]
+    different = len(set(corners))
+    quadratic = len(nodes) > 8
+    if len(nodes) in (4, 10) or different == 8:
+        return SOLIDS[len(nodes)].name, nodes
+    if different == 6 and corners[2] == corners[3] and corners[6] == corners[7]:
+        pick = [0, 1, 2, 4, 5, 6] + ([8, 9, 11, 12, 13, 15, 16, 17, 18] if quadratic else [])
+        return ("wedge15" if quadratic else "wedge6"), [nodes[i] for i in pick]
+    if different == 4 and corners[2] == corners[3] and len(set(corners[4:])) == 1:
+        pick = [0, 1, 2, 4] + ([8, 9, 11, 16, 17, 18] if quadratic else [])
+        return ("tet10" if quadratic else "tet4"), [nodes[i] for i in pick]
+    shape = "a pyramid" if different == 5 else f"a solid of {different} corners"
+    raise ReadError(f"{what} is {shape}; mesh with tetrahedra, wedges or bricks")
+
+
+def from_edges(kind: str, edges: tuple[tuple[int, int], ...]) -> list[int]:
+    """Order that turns a list of nodes whose middle nodes follow `edges` into VTK's order."""
+    corners = KINDS[kind].corners
+    place = {frozenset(edge): corners + i for i, edge in enumerate(edges)}
+    return [*range(corners), *(place[frozenset(edge)] for edge in KINDS[kind].edges)]

@@ -1,0 +1,331 @@
+"""Meshes of other programs: from what a file holds to parts and faces, with the faults that such files have."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from faying import units
+from faying.errors import InputError, ReadError
+from faying.fe.elements import FACES, SOLIDS, Array
+from faying.fe.formats.raw import RawMesh
+from faying.fe.mesh import Mesh, least_jacobian
+from faying.fe.sides import Blocks, Index, nodes_of, side_key, skin
+
+FORMATS = {".inp": "abaqus", ".bdf": "nastran", ".nas": "nastran", ".dat": "nastran", ".msh": "gmsh", ".cdb": "ansys",
+           ".vtk": "vtk", ".vtu": "vtk"}  # fmt: skip
+SMALLEST, LARGEST = 1e-3, 100.0  # sizes of a bolted structure [m] beyond which the unit is doubted
+CLOSE = 1e-7  # of the part's size: nodes nearer than this coincide
+
+
+def read_mesh(
+    path: str | Path, *, unit: str | None = None, parts: Mapping[str, str] | Sequence[str] | None = None
+) -> Mesh:
+    """Read a mesh file: Abaqus or CalculiX .inp, Nastran .bdf, Gmsh .msh, ANSYS .cdb, VTK .vtk or .vtu.
+
+    unit: the length unit of the coordinates, such as "mm"; no format says. parts: names of the element sets that are
+    the parts, or part -> element set; where None, the bodies that the file names, else its element sets if they divide
+    the elements, else what hangs together. Faces are the file's node sets, surfaces and face elements, turned outwards;
+    a set that lies on several parts gives PART.SET for each. Parts that share nodes on named faces get nodes of their
+    own there. Raises ReadError for the file and InputError for what it holds.
+    """
+    file = Path(path)
+    if not file.is_file():
+        raise ReadError(f"no file {file}")
+    if file.suffix.lower() not in FORMATS:
+        raise ReadError(
+            f"{file}: files of the kind {file.suffix or '(none)'} are not known; known are {', '.join(FORMATS)}"
+        )
+    if unit is None:
+        raise InputError(f'{file.name} does not say in which unit its coordinates are; say it, for example unit = "mm"')
+    scale = units.scale(unit, "m", name="unit of the mesh")
+    from importlib import import_module
+
+    raw: RawMesh = import_module(f"faying.fe.formats.{FORMATS[file.suffix.lower()]}").read(file)
+    return _Builder(raw, file.name, unit, scale).mesh(parts)
+
+
+@dataclass(frozen=True)
+class _Builder:
+    raw: RawMesh
+    name: str
+    unit: str
+    scale: float
+
+    def mesh(self, wanted: Mapping[str, str] | Sequence[str] | None) -> Mesh:
+        """Put it all together."""
+        points = self.raw.points * self.scale
+        size = float(np.linalg.norm(np.ptp(points, axis=0)))
+        if not SMALLEST <= size <= LARGEST:
+            raise InputError(f"{self.name}: in {self.unit} the structure is {size:.3g} m long; is that its unit? Sizes from "
+                             f"{SMALLEST * 1e3:g} mm to {LARGEST:g} m are taken")  # fmt: skip
+        cells = self._cells()
+        numbers = np.concatenate([n for n, _ in self.raw.elements.values()])
+        self._check(points, cells)
+        names, owner = self._parts(numbers, cells, wanted)
+        blocks: dict[str, Blocks] = {}
+        for i, part in enumerate(names):
+            start, some = 0, []
+            for block in cells:
+                mine = owner[start : start + len(block)] == i
+                start += len(block)
+                if mine.any():
+                    some.append(block[mine])
+            blocks[part] = tuple(some)
+        faces, face_part = self._faces(numbers, cells, blocks, names, owner)
+        return self._split(points, blocks, faces, face_part)
+
+    def _index(self, numbers: Index, what: str) -> Index:
+        """Places of nodes by number."""
+        order = np.argsort(self.raw.numbers)
+        ranked = self.raw.numbers[order]
+        place = np.minimum(np.searchsorted(ranked, numbers), len(ranked) - 1)
+        lost = ranked[place] != numbers
+        if np.any(lost):
+            raise ReadError(f"{self.name}: {what} names node {np.asarray(numbers)[lost][0]}, which the file does not hold; "
+                            "is the file whole?")  # fmt: skip
+        return order[place]
+
+    def _cells(self) -> list[Index]:
+        repeated, count = np.unique(self.raw.numbers, return_counts=True)
+        if np.any(count > 1):
+            raise ReadError(f"{self.name}: node {repeated[count > 1][0]} is given twice")
+        every = np.concatenate([numbers for numbers, _ in self.raw.elements.values()])
+        repeated, count = np.unique(every, return_counts=True)
+        if np.any(count > 1):
+            raise ReadError(f"{self.name}: element {repeated[count > 1][0]} is given twice")
+        out = []
+        for kind, (numbers, nodes) in self.raw.elements.items():
+            flat = self._index(nodes.ravel(), f"an element ({kind}, {numbers[0]} to {numbers[-1]})")
+            out.append(flat.reshape(nodes.shape))
+        return out
+
+    def _check(self, points: Array, cells: list[Index]) -> None:
+        for (numbers, _), block in zip(self.raw.elements.values(), cells, strict=True):
+            wrong = numbers[least_jacobian(points, block) <= 0]
+            if len(wrong):
+                raise InputError(f"{self.name}: {len(wrong)} elements have no or negative volume: {_some(wrong)}; repair the "
+                                 "mesh or its node order")  # fmt: skip
+        used = np.zeros(len(points), dtype=bool)
+        for block in cells:
+            used[block] = True
+        held = np.isin(self.raw.numbers, self.raw.extra)
+        loose = self.raw.numbers[~used & ~held]
+        if len(loose):
+            raise InputError(f"{self.name}: {len(loose)} nodes belong to no element: {_some(loose)}; delete them")
+
+    def _parts(
+        self, numbers: Index, cells: list[Index], wanted: Mapping[str, str] | Sequence[str] | None
+    ) -> tuple[list[str], Index]:
+        """Names of the parts and the part of every element."""
+        sets = {**self.raw.element_sets, **self.raw.bodies}
+        if wanted is not None:
+            chosen = dict(wanted) if isinstance(wanted, Mapping) else {name: name for name in wanted}
+            for part, name in chosen.items():
+                if name not in sets:
+                    raise InputError(f"{self.name}: part {part!r} names the element set {name!r}; the file holds "
+                                     f"{', '.join(map(repr, sets)) or 'none'}")  # fmt: skip
+            divided = _dividing(numbers, {part: sets[name] for part, name in chosen.items()})
+            if divided is None:
+                raise InputError(f"{self.name}: the element sets {', '.join(chosen.values())} do not divide the elements; each "
+                                 "must belong to one of them")  # fmt: skip
+            return list(chosen), divided
+        piece = _pieces(cells, len(self.raw.numbers))
+        bodies: Mapping[str, Index] = self.raw.bodies
+        owner = _dividing(numbers, bodies)
+        if owner is None or len(bodies) == 1:
+            subsets = {name: some for name, some in self.raw.element_sets.items()
+                       if 0 < np.isin(numbers, some).sum() < len(numbers)}  # fmt: skip
+            divided = _dividing(numbers, subsets)
+            if divided is not None:
+                bodies, owner = subsets, divided
+        if owner is None:
+            bodies, owner = {}, np.full(len(numbers), -1, dtype=np.int64)
+        # a body of several pieces that do not hang together is as many parts
+        pairs, place = np.unique(np.column_stack([owner, piece]), axis=0, return_inverse=True)
+        given = list(bodies)
+        names: list[str] = []
+        for body, one in pairs.tolist():
+            alike = [int(p) for b, p in pairs if b == body]
+            called = self._called(numbers[(owner == body) & (piece == one)])
+            if body >= 0 and len(alike) == 1:
+                called = given[body]
+            elif body >= 0 and called is None:
+                called = f"{given[body]}_{alike.index(one) + 1}"
+            names.append(called or f"part{len(names) + 1}")
+        return names, np.asarray(place, dtype=np.int64).ravel()
+
+    def _called(self, numbers: Index) -> str | None:
+        """Name of the element set that holds just these elements."""
+        for name, some in self.raw.element_sets.items():
+            if len(some) == len(numbers) and np.array_equal(np.sort(some), np.sort(numbers)):
+                return name
+        return None
+
+    def _faces(
+        self, numbers: Index, cells: list[Index], blocks: Mapping[str, Blocks], names: list[str], owner: Index
+    ) -> tuple[dict[str, Blocks], dict[str, str]]:
+        n = len(self.raw.numbers)
+        skins = {part: skin(some, n) for part, some in blocks.items()}
+        found: dict[str, dict[str, Blocks]] = {}
+        for label, some in self.raw.node_sets.items():
+            inside = np.zeros(n, dtype=bool)
+            inside[self._index(some, f"the set {label!r}")] = True
+            if inside.all():
+                continue
+            for part, outer in skins.items():
+                here = _on(outer, inside)
+                if here:
+                    found.setdefault(label, {})[part] = here
+        for label, rows in self.raw.face_elements.items():
+            given = [self._index(block.ravel(), f"the face {label!r}").reshape(block.shape) for block in rows]
+            self._by_key(label, np.concatenate([side_key(block, n) for block in given]), skins, found)
+        order = np.argsort(numbers)
+        for label, pairs in self.raw.side_sets.items():
+            place = np.minimum(np.searchsorted(numbers[order], pairs[:, 0]), len(numbers) - 1)
+            at = order[place]
+            if np.any(numbers[at] != pairs[:, 0]):
+                raise ReadError(f"{self.name}: the surface {label!r} names element {pairs[numbers[at] != pairs[:, 0], 0][0]}, "
+                                "which is no solid of the file")  # fmt: skip
+            key, whole = self._side_keys(label, at, pairs[:, 1], cells)
+            if len(key):
+                self._by_key(label, key, skins, found)
+            if len(whole):
+                for part, outer in skins.items():
+                    free = tuple(f[np.isin(side_key(f, n), whole)] for f in outer)
+                    if any(len(f) for f in free):
+                        found.setdefault(label, {})[part] = tuple(f for f in free if len(f))
+        faces: dict[str, Blocks] = {}
+        face_part: dict[str, str] = {}
+        for label, by_part in found.items():
+            for part, block in by_part.items():
+                name = label if len(by_part) == 1 else f"{part}.{label}"
+                faces[name], face_part[name] = block, part
+        return faces, face_part
+
+    def _side_keys(self, label: str, at: Index, sides: Index, cells: list[Index]) -> tuple[Index, Index]:
+        """Keys of the sides named one by one, and of all sides of elements named as a whole."""
+        n, start = len(self.raw.numbers), 0
+        named: list[Index] = []
+        whole: list[Index] = []
+        for block in cells:
+            mine = (at >= start) & (at < start + len(block))
+            for number, places in enumerate(SOLIDS[block.shape[1]].sides):
+                for some, kept in ((sides == number, named), (sides < 0, whole)):
+                    rows = at[mine & some] - start
+                    if len(rows):
+                        kept.append(side_key(block[rows][:, places], n))
+            count = len(SOLIDS[block.shape[1]].sides)
+            if np.any(sides[mine] >= count):
+                raise ReadError(f"{self.name}: the surface {label!r} names side S{sides[mine].max() + 1} of an element that has "
+                                f"{count}")  # fmt: skip
+            start += len(block)
+        empty = np.zeros(0, dtype=np.int64)
+        return np.concatenate([empty, *named]), np.concatenate([empty, *whole])
+
+    def _by_key(self, label: str, key: Index, skins: Mapping[str, Blocks], found: dict[str, dict[str, Blocks]]) -> None:
+        n = len(self.raw.numbers)
+        hit = np.zeros(len(key), dtype=bool)
+        for part, outer in skins.items():
+            here = tuple(faces[np.isin(side_key(faces, n), key)] for faces in outer)
+            here = tuple(faces for faces in here if len(faces))
+            if here:
+                found.setdefault(label, {})[part] = here
+                hit |= np.isin(key, np.concatenate([side_key(faces, n) for faces in here]))
+        if not hit.all():
+            raise InputError(f"{self.name}: {np.count_nonzero(~hit)} of the {len(key)} element faces of {label!r} are no outer "
+                             "side of a solid")  # fmt: skip
+
+    def _split(
+        self, points: Array, blocks: dict[str, Blocks], faces: dict[str, Blocks], face_part: dict[str, str]
+    ) -> Mesh:
+        """Give each part nodes of its own where parts share them on named faces."""
+        n = len(points)
+        held = [i * n + nodes_of(some) for i, some in enumerate(blocks.values())]
+        key = np.unique(np.concatenate(held))
+        place = {part: i for i, part in enumerate(blocks)}
+        node, count = np.unique(key % n, return_counts=True)
+        shared = node[count > 1]
+        if len(shared):
+            on = [place[face_part[name]] * n + nodes_of(some) for name, some in faces.items()]
+            loose = key[np.isin(key % n, shared) & ~np.isin(key, np.concatenate(on) if on else [])]
+            if len(loose):
+                near = list(blocks)[int(loose[0] // n)]
+                raise InputError(f"{self.name}: part {near!r} shares {len(loose)} nodes with other parts outside of any named face "
+                                 f"(node {self.raw.numbers[loose[0] % n]} is one); name the faces of the joint on both sides, or make "
+                                 "one part of them")  # fmt: skip
+        old = key % n
+        numbers = self.raw.numbers[old].copy()
+        again = np.ones(len(key), dtype=bool)
+        again[np.unique(old, return_index=True)[1]] = False
+        numbers[again] = self.raw.numbers.max() + 1 + np.arange(np.count_nonzero(again))
+        made = {part: tuple(np.searchsorted(key, i * n + block) for block in some)
+                for i, (part, some) in enumerate(blocks.items())}  # fmt: skip
+        new_points = points[old]
+        for part, some in made.items():
+            self._unmerged(new_points, nodes_of(some), numbers, part)
+        return Mesh(
+            points=new_points,
+            parts=made,
+            faces={name: tuple(np.searchsorted(key, place[face_part[name]] * n + f) for f in some)
+                   for name, some in faces.items()},
+            face_part=face_part,
+            source=self.name,
+            node_numbers=numbers,
+        )  # fmt: skip
+
+    def _unmerged(self, points: Array, nodes: Index, numbers: Index, part: str) -> None:
+        from scipy.spatial import cKDTree
+
+        where = points[nodes]
+        reach = CLOSE * float(np.linalg.norm(np.ptp(where, axis=0)))
+        pairs = cKDTree(where).query_pairs(reach, output_type="ndarray")
+        if len(pairs):
+            a, b = numbers[nodes[pairs[0]]]
+            raise InputError(f"{self.name}: {len(pairs)} pairs of nodes of part {part!r} coincide ({a} and {b}, for one), so that "
+                             "its elements do not hang together there; merge the nodes, or make two parts and a joint")  # fmt: skip
+
+
+def _some(numbers: Index) -> str:
+    return ", ".join(map(str, numbers[:5])) + (", ..." if len(numbers) > 5 else "")
+
+
+def _dividing(numbers: Index, sets: Mapping[str, Index]) -> Index | None:
+    """Which set each element is in; None where some is in none or in two."""
+    owner, count = np.zeros(len(numbers), dtype=np.int64), np.zeros(len(numbers), dtype=np.int64)
+    for i, some in enumerate(sets.values()):
+        inside = np.isin(numbers, some)
+        owner[inside] = i
+        count += inside
+    return owner if len(sets) and np.all(count == 1) else None
+
+
+def _pieces(cells: list[Index], nodes: int) -> Index:
+    """Number of the connected piece that each element belongs to."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    count = sum(len(block) for block in cells)
+    rows = np.concatenate(list(_rows(cells)))
+    columns = np.concatenate([block.ravel() for block in cells]) + count
+    graph = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(count + nodes, count + nodes))
+    label = connected_components(graph, directed=False)[1][:count]
+    return np.unique(label, return_inverse=True)[1]
+
+
+def _rows(cells: list[Index]) -> Iterator[Index]:
+    start = 0
+    for block in cells:
+        yield start + np.repeat(np.arange(len(block)), block.shape[1])
+        start += len(block)
+
+
+def _on(outer: Blocks, inside: Index) -> Blocks:
+    """Element faces all of whose nodes are inside; all of whose corners, where no middle node is."""
+    here = tuple(faces[inside[faces].all(axis=1)] for faces in outer)
+    if not any(len(faces) for faces in here):
+        middles = [faces[:, FACES[faces.shape[1]].corners :] for faces in outer]
+        if not any(inside[some].any() for some in middles if some.size):
+            here = tuple(faces[inside[faces[:, : FACES[faces.shape[1]].corners]].all(axis=1)] for faces in outer)
+    return tuple(faces for faces in here if len(faces))

@@ -1,0 +1,300 @@
+"""Mesh files: the same two blocks in every format give the same mesh, and every fault is told."""
+
+import re
+import subprocess
+
+import meshfiles
+import numpy as np
+import pytest
+from blocks import SOLID_KINDS, row
+
+import faying
+from faying.fe.elasticity import assemble
+from faying.fe.faces import face_centre
+from faying.fe.formats.nastran import number
+from faying.fe.interface import join
+
+STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0)
+MIXED = ("hex20", "tet10")
+
+
+def two(kinds=("hex8", "hex8"), gap=0.0, move=(0.1, 1)):
+    return row(
+        [0.05, 0.04], [2, 1], kinds=kinds, sections=((2, 1), (2, 1)), width=0.02, height=0.01, gap=gap, move=move
+    )
+
+
+def same(mesh, expected, rename=lambda name: name, parts=None, digits=1e-9):
+    """Same parts, faces (area, normal, centre, part), mass matrix, stiffness and node numbers."""
+    names = parts or {part: part for part in expected.parts}
+    assert list(mesh.parts) == [names[part] for part in expected.parts]
+    for name in expected.faces:
+        assert mesh.face_part[rename(name)] == names[expected.face_part[name]]
+        for got, want in zip(face_centre(mesh.points, mesh.face(rename(name))),
+                             face_centre(expected.points, expected.faces[name]), strict=True):  # fmt: skip
+            assert got == pytest.approx(want, abs=digits)
+    rigid = np.tile([1.0, 0, 0], len(mesh.points))
+    _, M = assemble(mesh, dict.fromkeys(mesh.parts, STEEL))
+    assert rigid @ (M @ rigid) == pytest.approx(7800 * 0.09 * 0.02 * 0.01, rel=1e3 * digits)
+    order = np.lexsort(np.round(mesh.points, 9).T)
+    assert mesh.points[order] == pytest.approx(expected.points[np.lexsort(np.round(expected.points, 9).T)], abs=digits)
+    stretch = [(m.points @ np.diag([1, 2, 3])).ravel() for m in (mesh, expected)]
+    energy = [
+        u @ (assemble(m, dict.fromkeys(m.parts, STEEL))[0] @ u) for u, m in zip(stretch, (mesh, expected), strict=True)
+    ]
+    assert energy[0] == pytest.approx(energy[1], rel=1e4 * digits)
+
+
+def written(tmp_path, text, name):
+    path = tmp_path / name
+    path.write_text(text)
+    return path
+
+
+ALL = [(kind, kind) for kind in SOLID_KINDS] + [MIXED]
+
+
+@pytest.mark.parametrize("kinds", ALL, ids="-".join)
+@pytest.mark.parametrize("faces", ["surface", "nodes"])
+def test_abaqus(tmp_path, kinds, faces):
+    expected = two(kinds, gap=1e-4)
+    mesh = faying.read_mesh(written(tmp_path, meshfiles.abaqus(expected, faces=faces), "m.inp"), unit="mm")
+    same(mesh, expected)
+    assert sorted(mesh.numbers) == sorted(meshfiles.numbers(expected))
+    assert np.array_equal(mesh.numbers, meshfiles.numbers(expected))
+    assert join(mesh, "p0.right", "p1.left").area == pytest.approx(2e-4, rel=1e-8)
+
+
+@pytest.mark.parametrize("kinds", ALL, ids="-".join)
+@pytest.mark.parametrize(("field", "faces"), [("small", "load"), ("large", "set"), ("free", "load"), ("free", "case")])
+def test_nastran(tmp_path, kinds, field, faces):
+    expected = two(kinds, gap=1e-4)
+    text = meshfiles.nastran(expected, field=field, faces=faces)
+    mesh = faying.read_mesh(written(tmp_path, text, "m.bdf"), unit="mm")
+    face = {name: f"{'PLOAD4_' if faces == 'load' else 'SET'}{k + 1}" for k, name in enumerate(expected.faces)}
+    same(mesh, expected, face.get, {"p0": "part1", "p1": "part2"}, digits=1e-8)
+    assert set(mesh.numbers) == set(meshfiles.numbers(expected))
+
+
+@pytest.mark.parametrize("kinds", ALL, ids="-".join)
+@pytest.mark.parametrize("version", ["2.2", "4.1"])
+def test_gmsh(tmp_path, kinds, version):
+    expected = two(kinds, gap=1e-4)
+    mesh = faying.read_mesh(written(tmp_path, meshfiles.gmsh(expected, version=version), "m.msh"), unit="mm")
+    same(mesh, expected)
+    assert set(mesh.numbers) == set(meshfiles.numbers(expected))
+
+
+@pytest.mark.parametrize("kinds", ALL, ids="-".join)
+def test_ansys(tmp_path, kinds):
+    expected = two(kinds, gap=1e-4)
+    mesh = faying.read_mesh(written(tmp_path, meshfiles.ansys(expected), "m.cdb"), unit="mm")
+    same(mesh, expected, lambda name: name.replace(".", "_").upper(), {"p0": "P0", "p1": "P1"})
+    assert set(mesh.numbers) == set(meshfiles.numbers(expected))
+
+
+@pytest.mark.parametrize("kinds", ALL, ids="-".join)
+@pytest.mark.parametrize("name", ["m.vtu", "m.vtk", "m.msh", "m.inp"])
+def test_files_that_meshio_writes(tmp_path, kinds, name):
+    """A writer that is not ours: node orders of VTK, Gmsh and Abaqus as meshio has them."""
+    meshio = pytest.importorskip("meshio")
+    meshio._mesh.topological_dimension["wedge15"] = 3  # forgotten in meshio 5.3.5
+    expected = two(kinds, gap=1e-4)
+    names = {"tet4": "tetra", "tet10": "tetra10", "hex8": "hexahedron", "hex20": "hexahedron20", "wedge6": "wedge",
+             "wedge15": "wedge15", 3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8"}  # fmt: skip
+    cells = [(names[kind], block) for kind, block in zip(kinds, expected.blocks, strict=True)]
+    labels = [np.full(len(block), 10 + i) for i, (_, block) in enumerate(cells)]
+    if not name.endswith("inp"):
+        for i, face in enumerate(expected.faces.values()):
+            cells += [(names[block.shape[1]], block) for block in face]
+            labels += [np.full(len(block), i) for block in face]
+    data = {"gmsh:physical" if name.endswith("msh") else "region": labels}
+    if name.endswith("msh"):
+        data["gmsh:geometrical"] = labels
+    out = meshio.Mesh(expected.points * 1e3, cells, cell_data=data)
+    if name.endswith("inp"):
+        out = meshio.Mesh(expected.points * 1e3, cells)
+    out.write(tmp_path / name, **({"file_format": "gmsh22", "binary": False} if name.endswith("msh") else {}))
+    mesh = faying.read_mesh(tmp_path / name, unit="mm")
+    if name.endswith("inp"):
+        assert list(mesh.parts) == ["part1", "part2"]
+        assert not mesh.faces
+        return
+    face = {label: f"face{i}" if i or not name.endswith("msh") else "face0" for i, label in enumerate(expected.faces)}
+    if name.endswith("msh"):  # Gmsh's group 0 is none
+        expected = faying.fe.mesh.Mesh(points=expected.points, parts=expected.parts, face_part=expected.face_part,
+                                       faces={k: v for k, v in expected.faces.items() if face[k] != "face0"})  # fmt: skip
+    same(mesh, expected, face.get, {"p0": "part10", "p1": "part11"})
+
+
+def test_abaqus_parts_and_instances(tmp_path):
+    """Instances moved and turned, numbers that clash, sets of an instance, and an included file."""
+    expected = two(MIXED, gap=1e-4)
+    text = meshfiles.assembly(expected)
+    cut = text.index("*Assembly")
+    written(tmp_path, text[:cut], "parts.inp")
+    path = written(tmp_path, "*Include, input=parts.inp\n" + text[cut:], "m.inp")
+    mesh = faying.read_mesh(path, unit="mm")
+    same(mesh, expected, lambda name: name.replace(".", "-"))
+    assert len(np.unique(mesh.numbers)) == len(mesh.points)
+
+
+@pytest.mark.parametrize("kind", SOLID_KINDS)
+def test_parts_that_share_nodes_are_split_at_a_named_face(tmp_path, kind):
+    """The two blocks grown together at x = 50 mm; one set of nodes names the joint on both."""
+    apart = two((kind, kind), move=None)
+    merged = meshfiles.abaqus(apart, faces="nodes")
+    n = meshfiles.numbers(apart)
+    for node in apart.face_nodes("p1.left"):
+        twin = next(k for k in apart.face_nodes("p0.right") if np.allclose(apart.points[k], apart.points[node]))
+        nodes, rest = merged.split("*Element", 1)
+        merged = re.sub(rf"^{n[node]}, .*\n", "", nodes, flags=re.M) + "*Element" + rest
+        merged = re.sub(rf"(?<![\d.-]){n[node]}(?![\d.])", str(n[twin]), merged)
+    mesh = faying.read_mesh(written(tmp_path, merged, "m.inp"), unit="mm")
+    assert len(mesh.points) == len(apart.points)
+    assert len(np.unique(mesh.numbers)) == len(mesh.points)
+    assert {"p0.p0.right", "p1.p0.right"} <= set(mesh.faces)
+    assert join(mesh, "p0.p0.right", "p1.p0.right").area == pytest.approx(2e-4, rel=1e-9)
+    unnamed = merged[: merged.index("*NSET")]
+    assert "*NSET" not in unnamed
+    with pytest.raises(
+        faying.InputError, match=r"part 'p0' shares \d+ nodes with other parts outside of any named face"
+    ):
+        faying.read_mesh(written(tmp_path, unnamed, "m.inp"), unit="mm")
+
+
+def test_parts_by_choice_by_set_and_by_connection(tmp_path):
+    text = meshfiles.abaqus(two(gap=1e-4))
+    path = written(tmp_path, text, "m.inp")
+    chosen = faying.read_mesh(path, unit="mm", parts={"upper": "p0", "lower": "p1"})
+    assert list(chosen.parts) == ["upper", "lower"]
+    assert chosen.face_part["p0.right"] == "upper"
+    assert list(faying.read_mesh(path, unit="mm", parts=["p1", "p0"]).parts) == ["p1", "p0"]
+    bare = re.sub(r",\n elset=p\d", "", text)
+    assert list(faying.read_mesh(written(tmp_path, bare, "b.inp"), unit="mm").parts) == ["part1", "part2"]
+    both = text.replace("elset=p0", "elset=all").replace("elset=p1", "elset=all")
+    both += "*SOLID SECTION, ELSET=ALL, MATERIAL=steel\n"
+    assert list(faying.read_mesh(written(tmp_path, both, "c.inp"), unit="mm").parts) == ["ALL_1", "ALL_2"]
+    with pytest.raises(faying.InputError, match=r"part 'roof' names the element set 'roof'; the file holds .*'p0'"):
+        faying.read_mesh(path, unit="mm", parts=["roof"])
+    with pytest.raises(faying.InputError, match="do not divide the elements"):
+        faying.read_mesh(path, unit="mm", parts=["p0"])
+
+
+def test_units(tmp_path):
+    path = written(tmp_path, meshfiles.abaqus(two(gap=1e-4)), "m.inp")
+    with pytest.raises(faying.InputError, match='does not say in which unit .* unit = "mm"'):
+        faying.read_mesh(path)
+    with pytest.raises(faying.InputError, match="unit of the mesh"):
+        faying.read_mesh(path, unit="kN")
+    with pytest.raises(faying.InputError, match=r"in um the structure is 9.*e-05 m long; is that its unit\?"):
+        faying.read_mesh(path, unit="um")
+    with pytest.raises(faying.InputError, match=r"in km the structure is .* m long"):
+        faying.read_mesh(path, unit="km")
+    assert faying.read_mesh(path, unit="inch").size == pytest.approx(25.4 * faying.read_mesh(path, unit="mm").size)
+
+
+def fault(tmp_path, text, match, name="m.inp", kind=faying.InputError):
+    with pytest.raises(kind, match=match):
+        faying.read_mesh(written(tmp_path, text, name), unit="mm")
+
+
+def test_faults_of_a_mesh_file(tmp_path):
+    mesh = two(gap=1e-4)
+    good = meshfiles.abaqus(mesh)
+    first = next(iter(meshfiles.solids(mesh)))
+    line = ", ".join(map(str, [first[1], *first[3]]))[:20]
+    at = good.index(line)
+    end = good.index("\n", good.index("\n", at) + 1)
+    turned = ", ".join(map(str, [first[1], *first[3][4:], *first[3][:4]]))
+    fault(tmp_path, good[:at] + turned + good[end:], r"1 elements have no or negative volume: 9; repair")
+    fault(tmp_path, good.replace("*Node, nset=NALL\n", "*Node, nset=NALL\n7, 1., 2., 3.\n"),
+          r"1 nodes belong to no element: 7; delete them")  # fmt: skip
+    fault(tmp_path, good + "*ELEMENT, TYPE=C3D8\n" + turned + "\n", "element 9 is given twice")
+    fault(tmp_path, good.replace("C3D8I", "C3D27"), "elements of type C3D27 are not known; known are C3D4")
+    fault(tmp_path, good.replace("C3D8I", "C3D20"), "do not make elements of 20 nodes; is the file whole")
+    fault(tmp_path, good[: good.index("*Element")], "0 kinds of solid elements")
+    fault(tmp_path, good[: at + 20], r"is the file whole", kind=faying.ReadError)
+    fault(
+        tmp_path,
+        good.replace("_p0.left_S6, S6", "_p0.front_S6, S6"),
+        "element set '_p0.front_S6', which m.inp does not hold",
+    )
+    fault(tmp_path, good.replace("_p0.left_S6, S6", "_p0.left_S6, S9"), "side 'S9'; the sides of solids are S1 to S6")
+    fault(tmp_path, good.replace("_p0.left_S6, S6", "_p0.left_S6, S4"), "are no outer side of a solid")
+    fault(tmp_path, good + "*NSET, NSET=x\ny\n", "set 'x' names the set 'y', which the file does not hold above it")
+    fault(tmp_path, good + "*NSET, NSET=x\n5\n", "the set 'x' names node 5, which the file does not hold")
+    fault(tmp_path, good + "*NSET\n5\n", r"\*NSET without a name")
+    fault(tmp_path, good + "*INCLUDE, INPUT=none.inp\n", "cannot read .*none.inp")
+    fault(tmp_path, good + "*INCLUDE, INPUT=m.inp\n", "includes itself")
+    fault(tmp_path, "1, 2, 3\n", "data before the first keyword")
+    fault(tmp_path, good.replace("100, 0,", "100, zero,"), r"\*NODE holds something that is not a number")
+    fault(tmp_path, "", "is not a Gmsh mesh file", name="m.msh")
+    with pytest.raises(faying.ReadError, match="no file"):
+        faying.read_mesh(tmp_path / "none.inp", unit="mm")
+    with pytest.raises(faying.ReadError, match=r"files of the kind \.stl are not known; known are \.inp"):
+        faying.read_mesh(written(tmp_path, "", "m.stl"), unit="mm")
+
+
+def test_nodes_that_should_be_one(tmp_path):
+    """Two blocks that touch, in one element set by choice: nothing joins them, and that is told."""
+    text = meshfiles.abaqus(two(move=None)).replace("elset=p0", "elset=all").replace("elset=p1", "elset=all")
+    path = written(tmp_path, text, "m.inp")
+    assert list(faying.read_mesh(path, unit="mm").parts) == ["part1", "part2"]
+    with pytest.raises(faying.InputError, match=r"6 pairs of nodes of part 'all' coincide \(\d+ and \d+, for one\)"):
+        faying.read_mesh(path, unit="mm", parts=["all"])
+
+
+def test_faults_of_other_formats(tmp_path):
+    mesh = two(MIXED, gap=1e-4)
+    bulk = meshfiles.nastran(mesh, field="free")
+    fault(tmp_path, bulk.replace("GRID,100,,", "GRID,100,5,"), "GRID 100 is given in coordinate system 5", "m.bdf")
+    fault(tmp_path, bulk.replace("CTETRA", "CTETRX"), "elements CTETRX are not known; known are CTETRA", "m.bdf")
+    fault(tmp_path, bulk[: bulk.index("PLOAD4")].rsplit(",", 3)[0] + "\n", "has 7 nodes; 4 or 10 are known", "m.bdf")
+    fault(tmp_path, bulk.replace("GRID,100,,", "GRID,100,,x"), "GRID 100 cannot be read", "m.bdf")
+    fault(tmp_path, "BEGIN BULK\nENDDATA\n", "holds 0 GRID cards", "m.bdf")
+    text = meshfiles.gmsh(mesh)
+    fault(tmp_path, text.replace("2.2 0 8", "2.2 1 8"), "is a binary mesh file; save it as text", "m.msh")
+    fault(tmp_path, text.replace("2.2 0 8", "3 0 8"), "has format 3; save it in 4.1 or 2.2", "m.msh")
+    fault(tmp_path, text[:-100], "has no .EndElements; the file is cut short", "m.msh")
+    fault(tmp_path, re.sub(r"^(\d+) 17 2", r"\1 12 2", text, flags=re.M), "bricks of 27 nodes are not known", "m.msh")
+    fault(
+        tmp_path,
+        text.replace("$EndElements", "").replace(text[-60:-14], "") + "$EndElements\n",
+        "is the file whole",
+        "m.msh",
+    )
+    archive = meshfiles.ansys(mesh)
+    fault(tmp_path, archive.replace("SOLID186", "SOLID226"), "is of type 226; known are SOLID185", "m.cdb")
+    fault(tmp_path, archive[: archive.index("EBLOCK") + 900], "is the archive whole", "m.cdb")
+    fault(tmp_path, archive.replace("EBLOCK,19,SOLID", "EBLOCK,10,COMPACT"), "EBLOCK without the key SOLID", "m.cdb")
+    line = next(line for line in archive.splitlines() if line.startswith("      100"))
+    fault(tmp_path, archive.replace(line, f"{line}\n{line}"), "node 100 is given twice", "m.cdb")
+    fault(tmp_path, "FINISH\n", "holds 0 nodes in NBLOCK", "m.cdb")
+    if pytest.importorskip("meshio"):
+        fault(tmp_path, "nonsense", "cannot be read as VTK", "m.vtu")
+
+
+def test_pyramids_in_an_archive_are_named(tmp_path):
+    mesh = two(("hex8", "hex8"), gap=1e-4)
+    archive = meshfiles.ansys(mesh)
+    _, number_, _, nodes = next(iter(meshfiles.solids(mesh)))
+    whole = "".join(f"{w:9d}" for w in nodes)
+    pyramid = "".join(f"{w:9d}" for w in [*nodes[:4], *[nodes[4]] * 4])
+    fault(tmp_path, archive.replace(whole, pyramid), rf"element {number_} \(SOLID185\) is a pyramid", "m.cdb")
+
+
+@pytest.mark.parametrize(("text", "value"), [("1.5", 1.5), ("1.5+3", 1500.0), ("-2.-1", -0.2), ("1.5D3", 1500.0), (".7E-2", 0.007),
+                                             ("-7", -7.0)])  # fmt: skip
+def test_reals_of_nastran(text, value):
+    assert number(text) == pytest.approx(value, rel=1e-15)
+
+
+def test_vtk_needs_meshio(tmp_path, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "meshio", None)
+    fault(tmp_path, "x", r"VTK files are read by meshio; install it: pip install 'faying\[vtk\]'", "m.vtk")
+
+
+def test_the_core_does_not_load_meshio():
+    code = "import faying, sys; faying.read_mesh; assert 'meshio' not in sys.modules and 'scipy' not in sys.modules"
+    assert subprocess.run([__import__("sys").executable, "-c", code], check=False).returncode == 0
