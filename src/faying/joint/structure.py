@@ -102,6 +102,12 @@ class Structure:
         """Stiffness [N/m] and mass [kg] of the parts alone."""
         return assemble(self.mesh, self.materials)
 
+    def sharing(self, other: "Structure") -> "Structure":
+        """Return this structure with what `other`, which differs in its laws alone, has assembled already."""
+        for name in ("matrices", "held", "fitted_bolts", "loads", "standing", "vibrating", "rigid"):
+            self.__dict__[name] = getattr(other, name)
+        return self
+
     @cached_property
     def held(self) -> Index:
         """Unknowns that supports keep at rest."""

@@ -1,0 +1,99 @@
+"""The small bases against full solutions of the same variants."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from boxes import stack
+
+import faying
+from faying.fe.damped import damped_modes
+from faying.fe.interface import join
+from faying.fe.modes import lowest_modes
+from faying.joint.attachments import Support
+from faying.joint.bolt import Bolt
+from faying.joint.reduce import Reduction
+from faying.joint.reduced import densities
+from faying.joint.seat import Seat
+from faying.joint.structure import Joint, Structure
+
+STEEL = faying.CATALOGUE["45 steel"]
+COUNT = 6
+TOLERANCE = 1e-7
+
+
+def seat(D=2.39, G=1.5e-10):
+    return Seat(law=faying.JK(D=D, G=G, pair=faying.ContactPair(STEEL, STEEL), scan_area=16e-6))
+
+
+def beam(**changes):
+    mesh = stack([0.06, 0.05], [5, 4], width=0.02, height=0.015)
+    joint = Joint(name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), seat=seat())
+    bolt = Bolt(name="b", faces=("p0.left", "p1.right"), at=(0.0, 0.009, 0.0075))
+    return Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=(joint,), bolts=(bolt,), **changes)
+
+
+def full(structure, law, force):
+    joint = replace(structure.joints[0], seat=law)
+    structure = replace(structure, joints=(joint,)).sharing(structure)
+    found = structure.assembly().solve(structure.loads @ [force])
+    K, loss = structure.joined(structure.springs(found.pressures))
+    M, still = structure.vibrating[1], structure.rigid.shape[1]
+    modes = lowest_modes(K, M, still + COUNT + 15, shift_frequency=structure.shift_frequency)
+    return found, damped_modes(modes, K, M, loss, rigid=still, count=COUNT, tolerance=1e-9)
+
+
+CORNERS = [(D, G, F) for D in (2.3, 2.5) for G in (3e-11, 3e-10) for F in (300.0, 3000.0)]
+
+
+@pytest.fixture(scope="module", params=["free", "clamped"])
+def trained(request):
+    structure = beam(supports=(Support(face="p0.left"),) if request.param == "clamped" else ())
+    reduction = Reduction.of(structure, [seat()], np.array([1000.0]), count=COUNT)
+    for D, G, F in CORNERS:
+        reduction.train([seat(D, G)], np.array([F]), tolerance=TOLERANCE)
+    reduction.compress(TOLERANCE)
+    return structure, reduction
+
+
+# inside the corners trained on, and outside them
+@pytest.mark.parametrize(("D", "G", "F"), [(2.41, 1e-10, 900.0), (2.33, 5e-11, 2100.0), (2.55, 4e-10, 200.0)])
+def test_frequencies_and_damping_are_those_of_the_full_solution(trained, D, G, F):
+    structure, reduction = trained
+    found, damped = full(structure, seat(D, G), F)
+    variant = reduction.evaluate([seat(D, G)], np.array([F]))
+    assert variant.frequencies == pytest.approx(damped.frequencies, rel=1e-5)
+    assert variant.loss_factors == pytest.approx(damped.loss_factors, rel=1e-2)
+    pressed = found.pressures[0]
+    assert variant.preload.pressures[0] == pytest.approx(pressed, abs=0.02 * pressed.max())
+
+
+def test_the_estimate_covers_the_error(trained):
+    structure, reduction = trained
+    for D, G, F in [(2.41, 1e-10, 900.0), (2.55, 4e-10, 200.0)]:
+        _, damped = full(structure, seat(D, G), F)
+        variant = reduction.evaluate([seat(D, G)], np.array([F]))
+        error = np.abs(variant.frequencies / damped.frequencies - 1)
+        assert error.max() < variant.estimate.max() + 5e-7  # the share of the force balance
+
+
+def test_a_variant_trained_on_is_solved_and_adds_nothing(trained):
+    _, reduction = trained
+    D, G, F = CORNERS[3]
+    found = reduction.model.equilibrium([seat(D, G)], np.array([F]))
+    error, _ = reduction.modal_error(densities([seat(D, G)], found.pressures))
+    assert error.max() < 3 * TOLERANCE
+
+
+def test_the_reduced_model_travels(trained):
+    import pickle
+
+    _, reduction = trained
+    law, force = [seat(2.4, 1e-10)], np.array([800.0])
+    there = pickle.loads(pickle.dumps(reduction.model)).evaluate(law, force)
+    assert there.frequencies == pytest.approx(reduction.evaluate(law, force).frequencies, rel=1e-9)
+
+
+def test_wrong_number_of_forces(trained):
+    with pytest.raises(faying.InputError, match="2 bolt forces for 1 bolts"):
+        trained[1].evaluate([seat()], np.array([1.0, 2.0]))
