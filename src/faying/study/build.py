@@ -108,7 +108,7 @@ def build_all(study: Study, *, mesh: Mesh | None = None, surfaces: tuple[Surface
 
 
 def _gap(spec: GapSpec, interface: Interface) -> Interface:
-    xy, gap = (units.parse(f"1 {unit}", "m", name=name)
+    xy, gap = (units.scale(unit, "m", name=name)
                for unit, name in ((spec.xy_unit, "gap.xy_unit"), (spec.gap_unit, "gap.gap_unit")))  # fmt: skip
     made = read_gap_map(spec.file, xy_unit=xy, gap_unit=gap, origin=spec.origin, x_axis=spec.x_axis, y_axis=spec.y_axis)
     return made.on(interface)

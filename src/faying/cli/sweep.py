@@ -1,0 +1,70 @@
+"""faying sweep STUDY.toml --set KEY=FIRST:LAST:COUNT"""
+
+import json
+import sys
+from pathlib import Path
+
+import click
+
+
+@click.command()
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option("--set", "settings", multiple=True, required=True, metavar="KEY=VALUES",
+              help="What varies: surface.D=2.2:2.6:40, bolt.preload='1 kN:20 kN:30', surface.G='1e-12 m:1e-10 m:9:log', "
+                   "law.model=jk,gw. Several give all combinations.")  # fmt: skip
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="NetCDF file (default: results/sweep.nc beside the study)."
+)
+@click.option("--tolerance", type=float, default=1e-6, show_default=True, help="Relative error of a frequency.")
+@click.option("--jobs", type=click.IntRange(1), default=1, show_default=True, help="Processes on this machine.")
+@click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
+@click.option("--json", "as_json", is_flag=True, help="Print a summary as JSON.")
+def command(
+    study: Path,
+    settings: tuple[str, ...],
+    out: Path | None,
+    tolerance: float,
+    jobs: int,
+    dask: str | None,
+    as_json: bool,
+) -> None:
+    """Evaluate STUDY for many laws, surfaces and preloads: the parts are solved once, only the joint changes.
+
+    What is done is kept beside the output; the same command goes on after an interruption.
+    """
+    from faying.errors import InputError
+    from faying.study import Study
+    from faying.study.axes import axis_of
+    from faying.study.sweep import sweep
+
+    axes = [axis_of(text) for text in settings]
+    plan = Study.read(study)
+    if out is None:
+        folder = plan.folder / "results"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as fault:
+            raise InputError(f"cannot make the folder {folder}: {fault.strerror}; give a file with --out") from None
+        out = folder / "sweep.nc"
+    size = 1
+    for axis in axes:
+        size *= len(axis.values)
+    with click.progressbar(length=size, file=sys.stderr, label="sweep", item_show_func=lambda s: s or "") as bar:
+        done = sweep(
+            plan, axes, out, tolerance=tolerance, jobs=jobs, dask=dask, report=lambda text, n: bar.update(n, text)
+        )
+    summary = done.to_dict()
+    if as_json:
+        click.echo(json.dumps(summary, indent=2))
+        return
+    click.echo(f"{done.title}: {summary['points']} points, {summary['answered']} with an answer; {done.unknowns:,} unknowns, "
+               f"bases of {done.basis[0]} and {done.basis[1]} vectors")  # fmt: skip
+    for axis in axes:
+        click.echo(f"  {axis.read()}")
+    span = summary["frequency_range"]
+    click.echo("\nmode   lowest     highest")
+    for mode, (low, high) in enumerate(zip(span["lowest"], span["highest"], strict=True), start=1):
+        click.echo(f"{mode:4d} {low:9.2f} Hz {high:9.2f} Hz")
+    for text, count in done.reasons.items():
+        click.echo(f"note: {count} points have no answer: {text}")
+    click.echo(f"\nwritten to {done.path}")

@@ -1,0 +1,249 @@
+"""Many laws and preloads on one structure: reduced once, then evaluated in milliseconds each."""
+
+import hashlib
+import json
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.errors import FayingError, InputError
+from faying.joint.reduce import Reduction
+from faying.joint.reduced import ReducedModel, densities
+from faying.joint.seat import Seat
+from faying.joint.structure import Structure
+from faying.materials import RIGID, ContactPair, Material
+from faying.study.axes import Axis, Grid
+from faying.study.build import build_all, checked_mesh, surfaces_of
+from faying.study.schema import Study
+from faying.study.surface import law_of
+from faying.study.sweep_files import Store, Sweep
+
+Array = NDArray[np.float64]
+CORNERS, RANDOM, CHECKS = 16, 8, 5  # variants trained on, and those that are looked at afterwards
+CHUNK = 25  # evaluations between two writings to disk
+# the estimate is that of a basis a hundred times coarser; beyond this multiple of the tolerance a point is trained on
+FAR = 60.0
+BEYOND = 0.1  # share of the contact beyond the end of the law up to which a point counts
+SEED = 20241121
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recipe:
+    """All that makes the laws and forces of a point: the grid, and the materials that meet at each joint."""
+
+    grid: Grid
+    pairs: tuple[tuple[Material, Material], ...]
+
+    def seats(self, index: int) -> tuple[list[Seat], Array, list[float | None]]:
+        """Law of each joint, force of each bolt [N] and friction of each joint at one point of the grid."""
+        point = self.grid.point(index)
+        seats = []
+        for joint, surface, (rough, other) in zip(point.study.joints, point.surfaces, self.pairs, strict=True):
+            spec = joint.law or point.study.law
+            law = law_of(spec, surface, ContactPair(rough, RIGID if spec.counterbody == "rigid" else other))
+            seats.append(Seat(law=law, tangential=joint.tangential, nu=rough.nu))
+        return seats, point.forces, [joint.friction for joint in point.study.joints]
+
+
+def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dict[str, Array]:
+    """Evaluate some points; rows of what the sweep stores, NaN where a point has no answer, and `reasons`."""
+    rows: dict[str, list[Any]] = {name: [] for name in (*Store.COLUMNS, "reasons")}
+    weights = np.concatenate(model.weights)
+    for index in indices:
+        nothing = np.full(model.count, np.nan)
+        row: dict[str, Any] = {"frequencies": nothing, "loss_factors": nothing, "estimate": np.nan,
+                               "greatest_pressure": np.nan, "open_share": np.nan, "beyond_share": np.nan}  # fmt: skip
+        reason = ""
+        try:
+            seats, forces, model.friction = recipe.seats(index)
+            found = model.evaluate(seats, forces)
+            p = np.concatenate(found.preload.pressures)
+            end = np.concatenate([np.full(len(q), s.law.greatest_pressure) for q, s in zip(found.preload.pressures, seats,
+                                                                                           strict=True)])  # fmt: skip
+            touching = float(weights @ (p > 0))
+            beyond = float(weights @ (p > end)) / touching if touching else 0.0
+            row |= {"estimate": found.estimate.max(), "greatest_pressure": p.max(), "beyond_share": beyond,
+                    "open_share": 1 - touching / weights.sum()}  # fmt: skip
+            if beyond > BEYOND:
+                reason = f"{beyond:.0%} of the contact is pressed beyond the end of the law"
+            else:
+                row |= {"frequencies": found.frequencies, "loss_factors": found.loss_factors}
+        except FayingError as fault:
+            reason = str(fault)
+            model.last = None
+        for name, value in row.items():
+            rows[name].append(value)
+        rows["reasons"].append(reason)
+    return {name: np.array(values) for name, values in rows.items()}
+
+
+def sweep(
+    study: Study | str | Path,
+    axes: Sequence[Axis],
+    out: str | Path,
+    *,
+    tolerance: float = 1e-6,
+    jobs: int = 1,
+    dask: str | None = None,
+    report: Callable[[str, int], None] | None = None,
+) -> Sweep:
+    """Evaluate a study at all combinations of the values of `axes` and write them to `out` (NetCDF).
+
+    tolerance: relative error of a frequency that the bases are made for; jobs: processes on this machine; dask: address
+    of a Dask scheduler instead; report: called with a sentence and the points just done. What is done is kept beside
+    `out` until all is: a sweep that was interrupted goes on where it stopped. Raises InputError for axes that do not fit
+    the study and for leftovers of another sweep.
+    """
+    study = study if isinstance(study, Study) else Study.read(study)
+    tell = report or (lambda _text, _done: None)
+    if not 1e-10 <= tolerance <= 1e-2:
+        raise InputError(f"tolerance {tolerance:g} should lie between 1e-10 and 1e-2, for example 1e-6")
+    if study.damping == "viscous":
+        raise InputError("a sweep gives hysteretic loss; leave out modes.damping, or run studies one by one")
+    if any(joint.springs == "per-node" for joint in study.joints):
+        raise InputError('a sweep takes springs per area; leave out springs = "per-node", or run studies one by one')
+    tell("surface", 0)
+    grid = Grid(study=study, surfaces=surfaces_of(study), axes=tuple(axes))
+    store = Store(Path(out), _fingerprint(study, axes, tolerance), grid.size, study.mode_count)
+    tell("mesh", 0)
+    mesh = checked_mesh(study)
+    structure = build_all(study, mesh=mesh, surfaces=grid.surfaces).structure
+    pairs = [
+        tuple(study.materials[study.parts[mesh.face_part[face]]] for face in joint.faces) for joint in study.joints
+    ]
+    recipe = Recipe(grid=grid, pairs=tuple(pairs))  # type: ignore[arg-type]
+    trainer = _Trainer(study, structure, recipe, tolerance, tell)
+    model = store.model()
+    if model is None:
+        model = trainer.trained().model
+        store.keep_model(model)
+    tell("evaluations", int(store.done.sum()))
+    todo = [i for i in grid.winding() if not store.done[i]]
+    chunks = [todo[i : i + CHUNK] for i in range(0, len(todo), CHUNK)]
+    for indices, rows in _each(model, recipe, chunks, jobs, dask):
+        store.keep(indices, rows)
+        tell("evaluations", len(indices))
+    for _ in range(20):
+        far = np.flatnonzero(store.rows["estimate"] > FAR * tolerance)
+        if not len(far):
+            break
+        worst = far[np.argsort(-store.rows["estimate"][far])][:4]
+        tell(f"enrichment: {len(far)} points", 0)
+        model = trainer.trained(worst.tolist()).model
+        store.keep_model(model)
+        before = store.rows["estimate"][far].copy()
+        for indices, rows in _each(model, recipe, [far.tolist()], 1, None):
+            store.keep(indices, rows)
+        if not np.any(store.rows["estimate"][far] < before):
+            break
+    return store.finish(grid, title=study.title, tolerance=tolerance, unknowns=structure.mesh.unknowns, model=model)
+
+
+class _Trainer:
+    """Makes the bases when they are first needed, and enriches them at points of the grid."""
+
+    def __init__(self, study: Study, structure: Structure, recipe: Recipe, tolerance: float,
+                 tell: Callable[[str, int], None]) -> None:  # fmt: skip
+        self.study, self.structure, self.recipe, self.tolerance, self.tell = study, structure, recipe, tolerance, tell
+        self.reduction: Reduction | None = None
+
+    def trained(self, more: Sequence[int] = ()) -> Reduction:
+        """Return the bases, trained on the corners and some points between, and on the points of `more`."""
+        grid = self.recipe.grid
+        generator = np.random.default_rng(SEED)
+        if self.reduction is None:
+            self.tell("reference solution", 0)
+            middle = int(np.ravel_multi_index(tuple(n // 2 for n in grid.shape), grid.shape))
+            seats, forces, _ = self.recipe.seats(middle)
+            self.reduction = Reduction.of(self.structure, seats, forces, count=self.study.mode_count,
+                                          shift_frequency=self.study.shift_frequency, solver=self.study.solver)  # fmt: skip
+            points = grid.corners(CORNERS)
+            points += generator.choice(grid.size, min(RANDOM, grid.size), replace=False).tolist()
+            self._train(self.reduction, [*points, *more], "training")
+            self.reduction.compress(self.tolerance)
+            checks = generator.choice(grid.size, min(CHECKS, grid.size), replace=False).tolist()
+            self._check(self.reduction, checks)
+        else:
+            self._train(self.reduction, more, "training")
+        return self.reduction
+
+    def _train(self, reduction: Reduction, points: Iterable[int], what: str) -> None:
+        for number, index in enumerate(points):
+            self.tell(f"{what} {number + 1}", 0)
+            try:
+                seats, forces, reduction.model.friction = self.recipe.seats(index)
+                reduction.train(seats, forces, tolerance=self.tolerance)
+            except FayingError:  # a point without an answer is reported when it is evaluated
+                reduction.model.last = None
+
+    def _check(self, reduction: Reduction, points: Sequence[int]) -> None:
+        """Look at points that were not trained on by their full residual; train on those that are not good enough."""
+        poor = []
+        for index in points:
+            self.tell("check", 0)
+            try:
+                seats, forces, reduction.model.friction = self.recipe.seats(index)
+                found = reduction.model.equilibrium(seats, forces)
+                error, _ = reduction.modal_error(densities(seats, found.pressures))
+            except FayingError:
+                reduction.model.last = None
+                continue
+            if error.max() > 4 * self.tolerance:
+                poor.append(index)
+        self._train(reduction, poor, "training")
+
+
+def _each(
+    model: ReducedModel, recipe: Recipe, chunks: Sequence[Sequence[int]], jobs: int, dask: str | None
+) -> Iterable[tuple[Sequence[int], dict[str, Array]]]:
+    """Evaluate chunk by chunk, here, in processes, or on a cluster, as they come."""
+    if dask is None and jobs == 1:
+        for indices in chunks:
+            yield indices, evaluate(model, recipe, indices)
+        return
+    if dask is not None:
+        try:
+            from distributed import Client, as_completed
+        except ImportError:
+            raise InputError("--dask needs the package distributed: pip install 'faying[dask]'") from None
+        try:
+            client = Client(dask, timeout="10s")
+        except OSError as fault:
+            raise InputError(f"no Dask scheduler answers at {dask} ({fault}); start one with: dask scheduler") from None
+        with client:
+            there = client.scatter((model, recipe), broadcast=True)
+            futures = {client.submit(_evaluate_there, there, list(indices)): indices for indices in chunks}
+            for future in as_completed(futures):
+                yield futures[future], future.result()
+        return
+    from joblib import Parallel, delayed
+
+    work = (delayed(_with_indices)(model, recipe, indices) for indices in chunks)
+    yield from Parallel(n_jobs=jobs, return_as="generator_unordered")(work)
+
+
+def _with_indices(
+    model: ReducedModel, recipe: Recipe, indices: Sequence[int]
+) -> tuple[Sequence[int], dict[str, Array]]:
+    return indices, evaluate(model, recipe, indices)
+
+
+def _evaluate_there(there: tuple[ReducedModel, Recipe], indices: Sequence[int]) -> dict[str, Array]:
+    return evaluate(*there, indices)
+
+
+def _fingerprint(study: Study, axes: Sequence[Axis], tolerance: float) -> str:
+    """What tells one sweep from another: the study, the bytes of its files, the axes and the tolerance."""
+    digest = hashlib.sha256(repr(study).encode())
+    files = [study.geometry.file]
+    specs = (study.surface, *(joint.surface for joint in study.joints))
+    files += [spec.scan for spec in specs if spec is not None and spec.scan is not None]
+    files += [joint.gap_map.file for joint in study.joints if joint.gap_map is not None]
+    for file in files:
+        digest.update(file.read_bytes())
+    digest.update(json.dumps([[a.key, list(a.values)] for a in axes] + [tolerance]).encode())
+    return digest.hexdigest()

@@ -1,0 +1,193 @@
+"""What a sweep keeps on disk while it runs, and the NetCDF file it ends in."""
+
+import json
+import shutil
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.errors import InputError
+from faying.files import whole
+from faying.joint.reduced import ReducedModel
+from faying.study.axes import Axis, Grid
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sweep:
+    """A finished sweep over a grid of shape g.
+
+    axes; frequencies [Hz], loss_factors [-] (*g, modes); estimate [-], greatest_pressure [Pa], open_share and
+    beyond_share [-] (*g): NaN where a point has no answer, for the reason in `reasons` (text -> number of points).
+    estimate: relative change of the frequencies when the last part of the basis is left out, far above their error;
+    basis: sizes of the bases for equilibrium and vibration; path: the NetCDF file.
+    """
+
+    title: str
+    axes: tuple[Axis, ...]
+    frequencies: Array
+    loss_factors: Array
+    estimate: Array
+    greatest_pressure: Array
+    open_share: Array
+    beyond_share: Array
+    reasons: dict[str, int]
+    tolerance: float
+    unknowns: int
+    basis: tuple[int, int]
+    path: Path
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return a summary ready for JSON; the values themselves are in the file."""
+        answered = np.isfinite(self.estimate) & np.isfinite(self.frequencies[..., 0])
+        first = self.frequencies[answered]
+        span = (first.min(axis=0).tolist(), first.max(axis=0).tolist()) if len(first) else ([], [])
+        return {
+            "title": self.title,
+            "unknowns": self.unknowns,
+            "points": int(self.estimate.size),
+            "answered": int(answered.sum()),
+            "axes": [{"key": a.key, "unit": a.unit or "1", "values": list(a.values)} for a in self.axes],
+            "frequency_range": {"unit": "Hz", "lowest": span[0], "highest": span[1]},
+            "largest_estimate": float(self.estimate[answered].max()) if np.any(answered) else None,
+            "tolerance": self.tolerance,
+            "basis": {"equilibrium": self.basis[0], "vibration": self.basis[1]},
+            "without_answer": self.reasons,
+            "file": str(self.path),
+        }
+
+
+class Store:
+    """The folder OUT.part beside the output: the reduced model and every chunk that is done."""
+
+    COLUMNS: ClassVar[tuple[str, ...]] = (
+        "frequencies", "loss_factors", "estimate", "greatest_pressure", "open_share", "beyond_share",
+    )  # fmt: skip
+
+    def __init__(self, out: Path, fingerprint: str, size: int, count: int) -> None:
+        if out.suffix != ".nc":
+            raise InputError(f"the output {out} should end in .nc: a sweep is written as NetCDF")
+        if not out.parent.is_dir():
+            raise InputError(f"no folder {out.parent} to write {out.name} in; make it first")
+        self.out, self.folder = out, out.with_name(out.name + ".part")
+        self.rows: dict[str, Array] = {
+            name: np.full((size, count) if name in ("frequencies", "loss_factors") else size, np.nan)
+            for name in self.COLUMNS
+        }
+        self.reasons = np.full(size, "", dtype=object)
+        self.done = np.zeros(size, dtype=bool)
+        label = self.folder / "sweep.json"
+        if self.folder.exists():
+            try:
+                known = json.loads(label.read_text(encoding="utf-8"))["fingerprint"]
+            except (OSError, ValueError, KeyError):
+                known = None
+            if known != fingerprint:
+                raise InputError(f"{self.folder} is what another sweep has left, or another version of this study; remove it, "
+                                 "or choose another output with --out")  # fmt: skip
+            for file in sorted(self.folder.glob("chunk-*.npz")):
+                with np.load(file) as chunk:
+                    self._take(chunk["indices"], {name: chunk[name] for name in (*self.COLUMNS, "reasons")})
+        else:
+            try:
+                self.folder.mkdir()
+            except OSError as fault:
+                raise InputError(f"cannot make {self.folder}: {fault.strerror}; choose another output") from None
+            text = json.dumps({"fingerprint": fingerprint, "points": size})
+            whole(label, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+        self.number = len(list(self.folder.glob("chunk-*.npz")))
+
+    def _take(self, indices: Any, rows: dict[str, Array]) -> None:
+        for name in self.COLUMNS:
+            self.rows[name][indices] = rows[name]
+        self.reasons[indices] = rows["reasons"]
+        self.done[indices] = True
+
+    def keep(self, indices: Sequence[int], rows: dict[str, Array]) -> None:
+        """Note rows and write them, whole or not at all."""
+        self._take(np.asarray(indices), rows)
+        _save(self.folder / f"chunk-{self.number:06d}.npz", {"indices": np.asarray(indices), **rows})
+        self.number += 1
+
+    def keep_model(self, model: ReducedModel) -> None:
+        """Write the reduced model."""
+        arrays: dict[str, Any] = {
+            name: getattr(model, name)
+            for name in ("static_stiffness", "static_loads", "dynamic_stiffness", "dynamic_mass", "count", "coarse")
+        }
+        for i in range(len(model.weights)):
+            for name in ("weights", "gaps", "static_relative", "dynamic_relative"):
+                arrays[f"{name}_{i}"] = getattr(model, name)[i]
+        _save(self.folder / "model.npz", arrays)
+
+    def model(self) -> ReducedModel | None:
+        """Return the reduced model that an interrupted sweep left, if it came that far."""
+        file = self.folder / "model.npz"
+        if not file.is_file():
+            return None
+        with np.load(file) as data:
+            joints = sum(name.startswith("weights_") for name in data.files)
+            lists = {
+                name: [data[f"{name}_{i}"] for i in range(joints)]
+                for name in ("weights", "gaps", "static_relative", "dynamic_relative")
+            }
+            single = ("static_stiffness", "static_loads", "dynamic_stiffness", "dynamic_mass")
+            arrays: dict[str, Any] = lists | {name: data[name] for name in single}
+            return ReducedModel(
+                friction=[None] * joints, count=int(data["count"]), coarse=int(data["coarse"]), **arrays
+            )
+
+    def finish(self, grid: Grid, *, title: str, tolerance: float, unknowns: int, model: ReducedModel) -> Sweep:
+        """Write the NetCDF file and remove what was kept on the way."""
+        shaped = {name: self.rows[name].reshape(*grid.shape, *self.rows[name].shape[1:]) for name in self.COLUMNS}
+        texts, counts = np.unique(self.reasons[self.reasons != ""].astype(str), return_counts=True)
+        done = Sweep(
+            title=title, axes=grid.axes, reasons=dict(zip(texts.tolist(), counts.tolist(), strict=True)),
+            tolerance=tolerance, unknowns=unknowns, basis=(len(model.static_stiffness), len(model.dynamic_mass)),
+            path=self.out, **shaped,
+        )  # fmt: skip
+        whole(self.out, lambda temporary: _netcdf(done, temporary))
+        shutil.rmtree(self.folder)
+        return done
+
+
+def _save(path: Path, arrays: dict[str, Any]) -> None:
+    def write(temporary: Path) -> None:
+        with temporary.open("wb") as file:  # a file, since savez adds .npz to names
+            np.savez(file, **arrays)
+
+    whole(path, write)
+
+
+UNITS = {"frequencies": "Hz", "greatest_pressure": "Pa"}
+
+
+def _netcdf(sweep: Sweep, path: Path) -> None:
+    from scipy.io import netcdf_file
+
+    with netcdf_file(path, "w", version=2) as nc:
+        nc.title, nc.tolerance, nc.unknowns = sweep.title, sweep.tolerance, sweep.unknowns
+        nc.without_answer = "\n".join(f"{n} points: {text}" for text, n in sweep.reasons.items()) or " "
+        names = []
+        for axis in sweep.axes:
+            name = axis.key.replace(".", "_")
+            nc.createDimension(name, len(axis.values))
+            names.append(name)
+            variable = nc.createVariable(name, "f8" if axis.numeric else "i4", (name,))
+            variable[:] = np.array(axis.values) if axis.numeric else np.arange(len(axis.values))
+            variable.units = axis.unit or "1"
+            variable.key = axis.key
+            if not axis.numeric:
+                variable.names = "\n".join(map(str, axis.values))
+        nc.createDimension("mode", sweep.frequencies.shape[-1])
+        for column in Store.COLUMNS:
+            values = getattr(sweep, column)
+            dims = (*names, "mode") if column in ("frequencies", "loss_factors") else tuple(names)
+            variable = nc.createVariable(column, "f8", dims)
+            variable[:] = values
+            variable.units = UNITS.get(column, "1")

@@ -1,0 +1,161 @@
+"""Sweeps against full runs, and what they leave on disk when they are interrupted."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.io import netcdf_file
+
+import faying
+from faying.study import Study, run
+from faying.study import sweep as module
+from faying.study.axes import Grid, axis_of
+from faying.study.build import surfaces_of
+from faying.study.sweep import sweep
+
+
+@pytest.fixture(scope="module")
+def plan(study_path):
+    study = Study.read(study_path)
+    bolts = tuple(replace(bolt, preload=bolt.preload[-1:]) for bolt in study.bolts)
+    return replace(study, bolts=bolts, mode_count=5, test=None)
+
+
+AXES = ("surface.D=2.3:2.5:4", "bolt.preload=1 kN:3 kN:3")
+
+
+def axes(*texts):
+    return tuple(axis_of(text) for text in texts or AXES)
+
+
+@pytest.fixture(scope="module")
+def done(plan, tmp_path_factory):
+    return sweep(plan, axes(), tmp_path_factory.mktemp("sweep") / "out.nc")
+
+
+@pytest.mark.parametrize("place", [(0, 0), (1, 1), (3, 2), (2, 0)])
+def test_points_are_those_of_full_runs(plan, done, place):
+    D, force = (axis.values[i] for axis, i in zip(done.axes, place, strict=True))
+    full = run(replace(plan, surface=replace(plan.surface, D=D), bolts=tuple(replace(b, preload=(force,)) for b in plan.bolts)))
+    assert done.frequencies[place] == pytest.approx(full.frequencies[0], rel=1e-5)
+    assert done.loss_factors[place] == pytest.approx(full.loss_factors[0], rel=1e-2)
+    assert done.greatest_pressure[place] == pytest.approx(full.pressure.max(), rel=0.02)
+
+
+def test_a_stiffer_joint_does_not_lower_a_frequency(done):
+    """More preload on the same surface: every spring grows."""
+    assert np.all(np.diff(done.frequencies, axis=1) > -1e-6 * done.frequencies[:, 1:])
+
+
+def test_the_file_holds_axes_and_values_with_units(done):
+    with netcdf_file(done.path, mmap=False) as nc:
+        assert nc.variables["frequencies"].dimensions == ("surface_D", "bolt_preload", "mode")
+        assert nc.variables["frequencies"][:] == pytest.approx(done.frequencies)
+        assert nc.variables["bolt_preload"].units == b"N"
+        assert nc.variables["bolt_preload"][:].tolist() == [1000.0, 2000.0, 3000.0]
+    assert not done.path.with_name("out.nc.part").exists()
+
+
+def test_an_interrupted_sweep_goes_on_where_it_stopped(plan, done, tmp_path, monkeypatch):
+    out = tmp_path / "out.nc"
+    monkeypatch.setattr(module, "CHUNK", 5)
+    calls = []
+    real = module.evaluate
+
+    def stops(model, recipe, indices):
+        calls.append(list(indices))
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        return real(model, recipe, indices)
+
+    monkeypatch.setattr(module, "evaluate", stops)
+    with pytest.raises(KeyboardInterrupt):
+        sweep(plan, axes(), out)
+    assert not out.exists()
+    monkeypatch.setattr(module, "evaluate", lambda *given: calls.append(list(given[2])) or real(*given))
+    monkeypatch.setattr(module.Reduction, "of", None)  # the bases are not made again
+    again = sweep(plan, axes(), out)
+    assert again.frequencies == pytest.approx(done.frequencies, rel=1e-6)
+    assert sorted(sum(calls[2:], [])) == sorted(set(range(12)) - set(calls[0]))
+
+
+def test_leftovers_of_another_sweep_are_refused(plan, tmp_path):
+    (tmp_path / "out.nc.part").mkdir()
+    with pytest.raises(faying.InputError, match=r"out.nc.part is what another sweep has left"):
+        sweep(plan, axes(), tmp_path / "out.nc")
+
+
+def test_processes_give_the_same(plan, done, tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "CHUNK", 6)
+    there = sweep(plan, axes(), tmp_path / "out.nc", jobs=2)
+    assert there.frequencies == pytest.approx(done.frequencies, rel=1e-6)
+
+
+def test_a_cluster_gives_the_same(plan, done, tmp_path, monkeypatch):
+    distributed = pytest.importorskip("distributed", reason="the extra dask is not installed")
+    monkeypatch.setattr(module, "CHUNK", 6)
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None) as cluster:
+        there = sweep(plan, axes(), tmp_path / "out.nc", dask=cluster.scheduler_address)
+    assert there.frequencies == pytest.approx(done.frequencies, rel=1e-6)
+
+
+def test_points_beyond_the_law_have_no_answer_and_say_why(plan, tmp_path):
+    found = sweep(plan, axes("bolt.preload=1 kN,2 kN,400 kN"), tmp_path / "out.nc")
+    assert np.isfinite(found.frequencies[:2]).all()
+    assert np.isnan(found.frequencies[2]).all()
+    assert any("beyond the end of the law" in reason for reason in found.reasons)
+
+
+def test_values_of_an_axis():
+    assert axis_of("surface.D=2.2:2.6:5").values == pytest.approx((2.2, 2.3, 2.4, 2.5, 2.6))
+    assert axis_of("surface.G=1e-12 m:1e-10 m:3:log").values == pytest.approx((1e-12, 1e-11, 1e-10))
+    assert axis_of("bolt.left.preload=1 kN, 5 kN").values == (1000.0, 5000.0)
+    assert axis_of("law.model=jk,gw").values == ("jk", "gw")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("surface.D", "give key=first:last:count"),
+        ("part.upper=1:2:3", "a sweep varies what acts on the joints alone"),
+        ("bolt.preload=1:20:30", "give the unit|unit"),
+        ("surface.D=2.2:2.6:1", "whole number of 2 or more"),
+        ("surface.D=2.2:2.2:3", "ends must differ"),
+        ("surface.D=a,b", "should be a plain number"),
+        ("surface.D=2.2:2.6", "first:last:count"),
+    ],
+)
+def test_faults_of_an_axis(text, message):
+    with pytest.raises(faying.InputError, match=message):
+        axis_of(text)
+
+
+def test_faults_of_a_grid(plan):
+    surfaces = surfaces_of(plan)
+    for text, message in (
+        ("bolt.nobody.preload=1 kN,2 kN", "no bolt is called 'nobody'"),
+        ("surface.D=1.5:2.5:3", "lies between 2 and 3"),
+        ("bolt.preload=-1 kN:2 kN:3", "must be positive"),
+    ):
+        with pytest.raises(faying.InputError, match=message):
+            Grid(study=plan, surfaces=surfaces, axes=axes(text))
+    with pytest.raises(faying.InputError, match="each axis once"):
+        Grid(study=plan, surfaces=surfaces, axes=axes("surface.D=2.2:2.6:3", "surface.D=2.2:2.6:3"))
+
+
+def test_the_path_through_the_grid_meets_every_point_once_and_steps_to_neighbours(plan):
+    grid = Grid(study=plan, surfaces=surfaces_of(plan), axes=axes("surface.D=2.2:2.6:3", "law.alpha=0.1:0.3:4"))
+    path = grid.winding()
+    assert sorted(path) == list(range(12))
+    places = np.array(np.unravel_index(path, grid.shape)).T
+    assert np.all(np.abs(np.diff(places, axis=0)).sum(axis=1) == 1)
+
+
+def test_what_a_sweep_cannot_do(plan, tmp_path):
+    for changes, message in (({"damping": "viscous"}, "hysteretic loss"), ({"order": (0, 1)}, "pulls all bolts at once")):
+        with pytest.raises(faying.InputError, match=message):
+            sweep(replace(plan, **changes), axes(), tmp_path / "out.nc")
+    with pytest.raises(faying.InputError, match="should end in .nc"):
+        sweep(plan, axes(), tmp_path / "out.csv")
+    with pytest.raises(faying.InputError, match="between 1e-10 and 1e-2"):
+        sweep(plan, axes(), tmp_path / "out.nc", tolerance=1.0)
