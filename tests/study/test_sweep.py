@@ -12,16 +12,21 @@ from faying.study import sweep as module
 from faying.study.axes import Grid, axis_of
 from faying.study.build import surfaces_of
 from faying.study.sweep import sweep
+from faying.study.template import write
 
 
 @pytest.fixture(scope="module")
-def plan(study_path):
-    study = Study.read(study_path)
+def plan(tmp_path_factory):
+    path = tmp_path_factory.mktemp("study") / "study.toml"
+    write(path)
+    study = Study.read(path)
     bolts = tuple(replace(bolt, preload=bolt.preload[-1:]) for bolt in study.bolts)
-    return replace(study, bolts=bolts, mode_count=5, test=None)
+    sizes = {name: 1.6 * size for name, size in study.geometry.face_size.items()}
+    geometry = replace(study.geometry, size=1.6 * study.geometry.size, face_size=sizes)
+    return replace(study, bolts=bolts, geometry=geometry, mode_count=5, test=None)
 
 
-AXES = ("surface.D=2.3:2.5:4", "bolt.preload=1 kN:3 kN:3")
+AXES = ("surface.D=2.3:2.42:4", "bolt.preload=1 kN:3 kN:3")
 
 
 def axes(*texts):
@@ -36,15 +41,16 @@ def done(plan, tmp_path_factory):
 @pytest.mark.parametrize("place", [(0, 0), (1, 1), (3, 2), (2, 0)])
 def test_points_are_those_of_full_runs(plan, done, place):
     D, force = (axis.values[i] for axis, i in zip(done.axes, place, strict=True))
-    full = run(replace(plan, surface=replace(plan.surface, D=D), bolts=tuple(replace(b, preload=(force,)) for b in plan.bolts)))
+    full = run(
+        replace(plan, surface=replace(plan.surface, D=D), bolts=tuple(replace(b, preload=(force,)) for b in plan.bolts))
+    )
     assert done.frequencies[place] == pytest.approx(full.frequencies[0], rel=1e-5)
     assert done.loss_factors[place] == pytest.approx(full.loss_factors[0], rel=1e-2)
     assert done.greatest_pressure[place] == pytest.approx(full.pressure.max(), rel=0.02)
 
 
-def test_a_stiffer_joint_does_not_lower_a_frequency(done):
-    """More preload on the same surface: every spring grows."""
-    assert np.all(np.diff(done.frequencies, axis=1) > -1e-6 * done.frequencies[:, 1:])
+def test_pressure_grows_with_preload(done):
+    assert np.all(np.diff(done.greatest_pressure, axis=1) > 0)
 
 
 def test_the_file_holds_axes_and_values_with_units(done):
@@ -76,7 +82,7 @@ def test_an_interrupted_sweep_goes_on_where_it_stopped(plan, done, tmp_path, mon
     monkeypatch.setattr(module.Reduction, "of", None)  # the bases are not made again
     again = sweep(plan, axes(), out)
     assert again.frequencies == pytest.approx(done.frequencies, rel=1e-6)
-    assert sorted(sum(calls[2:], [])) == sorted(set(range(12)) - set(calls[0]))
+    assert sorted(i for call in calls[2:] for i in call) == sorted(set(range(12)) - set(calls[0]))
 
 
 def test_leftovers_of_another_sweep_are_refused(plan, tmp_path):
@@ -94,7 +100,9 @@ def test_processes_give_the_same(plan, done, tmp_path, monkeypatch):
 def test_a_cluster_gives_the_same(plan, done, tmp_path, monkeypatch):
     distributed = pytest.importorskip("distributed", reason="the extra dask is not installed")
     monkeypatch.setattr(module, "CHUNK", 6)
-    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None) as cluster:
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster:
         there = sweep(plan, axes(), tmp_path / "out.nc", dask=cluster.scheduler_address)
     assert there.frequencies == pytest.approx(done.frequencies, rel=1e-6)
 
@@ -152,7 +160,10 @@ def test_the_path_through_the_grid_meets_every_point_once_and_steps_to_neighbour
 
 
 def test_what_a_sweep_cannot_do(plan, tmp_path):
-    for changes, message in (({"damping": "viscous"}, "hysteretic loss"), ({"order": (0, 1)}, "pulls all bolts at once")):
+    for changes, message in (
+        ({"damping": "viscous"}, "hysteretic loss"),
+        ({"order": (0, 1)}, "pulls all bolts at once"),
+    ):
         with pytest.raises(faying.InputError, match=message):
             sweep(replace(plan, **changes), axes(), tmp_path / "out.nc")
     with pytest.raises(faying.InputError, match="should end in .nc"):
