@@ -12,13 +12,11 @@ import click
 @click.argument("test", type=click.Path(path_type=Path))
 @click.option("--load", help='Preload of the result to compare with, for example "8 kN". Default: the greatest.')
 @click.option(
-    "--points", type=click.Path(path_type=Path), help="CSV table point,x,y,z of the test's positions, in --length-unit."
+    "--points", type=click.Path(path_type=Path), help="CSV table of the test's positions: point,x [mm],y [mm],z [mm]."
 )
 @click.option("--frame", type=click.Path(path_type=Path),
-              help="CSV table point,x,y,z: where three or more of the test's points lie in the model, in --length-unit.")  # fmt: skip
-@click.option(
-    "--length-unit", help='Unit of these tables, and of the test\'s positions where it states none, for example "mm".'
-)
+              help="The same table for three points or more, where they lie in the model; turns and shifts the test.")  # fmt: skip
+@click.option("--length-unit", help='Unit of the positions in TEST, where it states none, for example "mm".')
 @click.option("--tolerance", help='Greatest distance of point and node, for example "5 mm". Default: 2 % of the model.')
 @click.option(
     "--direction", type=click.Choice(["x", "y", "z"]), help="Direction of the test, where the file states none."
@@ -54,7 +52,7 @@ def command(result: Path, test: Path, load: str | None, points: Path | None, fra
     model = read_model_modes(result, load=units.parse(load, "N", name="--load") if load else None)
     reach = units.parse(tolerance, "m", name="--tolerance") if tolerance else None
     modes, frf, notes = read_test(test, points, length_unit, direction, quantity)
-    transform = _transform(frame, modes, length_unit) if frame else None
+    transform = _transform(frame, modes) if frame else None
     comparison = compare_modes(modes, model, transform=transform, tolerance=reach, frf=frf, least_mac=least_mac,
                                greatest_shift=greatest_shift)  # fmt: skip
     files: list[Path] = []
@@ -86,12 +84,11 @@ def read_test(
     """Modes and FRFs (or None) of a universal file, and what to tell the reader."""
     from dataclasses import replace
 
-    from faying import units
     from faying.measured.identify import identify_modes
     from faying.measured.mapping import read_points
     from faying.measured.uff import read_uff
 
-    file = read_uff(path, length_unit=None if points else length_unit)
+    file = read_uff(path, length_unit=length_unit)
     frf = file.frf(quantity=quantity) if any(f.kind == "FRF" for f in file.functions) or not file.shapes else None
     if file.shapes:
         modes = file.modes()
@@ -99,19 +96,17 @@ def read_test(
         click.echo(f"{path}: no mode shapes; modes are identified from its FRFs", err=True)
         modes = identify_modes(frf).modes  # type: ignore[arg-type]
     if points:
-        there = read_points(points, metre=units.scale(length_unit, "m", name="--length-unit") if length_unit else 1.0)
-        modes = replace(modes, positions=there)
+        modes = replace(modes, positions=read_points(points))
     if direction:
         modes, frf = modes.directed(direction), frf and frf.directed(direction)
     return modes, frf, list(frf.warnings if frf else file.warnings)
 
 
-def _transform(frame: Path, modes: Any, length_unit: str | None) -> Any:
-    from faying import units
+def _transform(frame: Path, modes: Any) -> Any:
     from faying.errors import InputError
     from faying.measured.mapping import fit_transform, read_points
 
-    there = read_points(frame, metre=units.scale(length_unit, "m", name="--length-unit") if length_unit else 1.0)
+    there = read_points(frame)
     unknown = [str(p) for p in there if p not in modes.positions]
     if unknown:
         raise InputError(f"{frame}: the test has no position of point {', '.join(unknown)}; it has those of "

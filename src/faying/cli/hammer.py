@@ -23,16 +23,16 @@ TEXT = (".txt", ".csv", ".dat", ".asc")
 )
 @click.option("--length-unit", help='Unit of the positions, where the file states none, for example "mm".')
 @click.option(
-    "--points", type=click.Path(path_type=Path), help="CSV table point,x,y,z of the positions, in --length-unit."
+    "--points", type=click.Path(path_type=Path), help="CSV table of the positions: point,x [mm],y [mm],z [mm]."
 )
 @click.option("--band", metavar="LOW:HIGH", help='Lines to use, for example "20 Hz:800 Hz". Default: all above 0 Hz.')
-@click.option("--order", type=click.IntRange(2, 200), default=40, show_default=True, help="Highest order of the poles.")
+@click.option(
+    "--order", type=click.IntRange(2, 200), help="Highest order of the poles. Default: 40, or a quarter of the lines."
+)
 @click.option(
     "--stays",
     type=click.IntRange(1, 200),
-    default=8,
-    show_default=True,
-    help="Orders over which a pole must stay to be a mode.",
+    help="Orders over which a pole must stay to be a mode. Default: 8.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 @click.option(
@@ -42,7 +42,7 @@ TEXT = (".txt", ".csv", ".dat", ".asc")
     "--out", type=click.Path(dir_okay=False, path_type=Path), help="Write modes and FRFs as a universal file."
 )
 def command(files: tuple[Path, ...], quantity: str | None, frequency_step: str | None, direction: str | None, length_unit: str | None,
-            points: Path | None, band: str | None, order: int, stays: int, as_json: bool, plot: str | None,
+            points: Path | None, band: str | None, order: int | None, stays: int | None, as_json: bool, plot: str | None,
             out: Path | None) -> None:  # fmt: skip
     """Identify the modes of a hammer test from the FRFs in FILES: one universal file, or text files of one FRF each."""
     from faying.measured.identify import identify_modes
@@ -50,9 +50,11 @@ def command(files: tuple[Path, ...], quantity: str | None, frequency_step: str |
     from faying.measured.uff_write import write_uff
 
     limits = _band(band)
-    rule = Rule(highest_order=order, orders=stays)
     frf = read_frf(files, quantity, frequency_step, direction, length_unit, points)
-    click.echo(f"{len(frf.measured)} FRFs, {len(frf.frequency)} lines: poles up to order {order}", err=True)
+    low, high = limits or (0.0, float("inf"))
+    lines = int(((frf.frequency > 0) & (frf.frequency >= low) & (frf.frequency <= high)).sum())
+    rule = Rule.fitting(lines, highest_order=order, orders=stays)
+    click.echo(f"{len(frf.measured)} FRFs, {lines} lines: poles up to order {rule.highest_order}", err=True)
     found = identify_modes(frf, band=limits, rule=rule)
     if plot:
         draw(found, plot)
@@ -86,10 +88,9 @@ def read_frf(files: tuple[Path, ...], quantity: str | None, frequency_step: str 
             "give one universal file, or text files (.txt, .csv) of one FRF each; several tests are several runs"
         )
     else:
-        frf = read_uff(files[0], length_unit=None if points else length_unit).frf(quantity=quantity)
+        frf = read_uff(files[0], length_unit=length_unit).frf(quantity=quantity)
     if points:
-        metre = units.scale(length_unit, "m", name="--length-unit") if length_unit else 1.0
-        frf = replace(frf, positions=read_points(points, metre=metre))
+        frf = replace(frf, positions=read_points(points))
     return frf.directed(direction) if direction else frf
 
 
@@ -112,7 +113,7 @@ def table(found: Any) -> str:
     rows = [["mode", "frequency [Hz]", "95 % interval", "loss factor", "95 % interval", "orders"]]
     for k in range(len(modes.frequencies)):
         f, z = modes.frequency_interval[k], modes.loss_interval[k]
-        rows.append([str(k + 1), f"{modes.frequencies[k]:.2f}", f"{f[0]:.2f} .. {f[1]:.2f}", f"{modes.loss_factors[k]:.2e}",
+        rows.append([str(k + 1), f"{modes.frequencies[k]:.2f}", f"{f[0]:.3f} .. {f[1]:.3f}", f"{modes.loss_factors[k]:.2e}",
                      f"{z[0]:.1e} .. {z[1]:.1e}", f"{modes.found_in[k]} of {found.rule.highest_order}"])  # fmt: skip
     widths = [max(len(row[c]) for row in rows) for c in range(len(rows[0]))]
     lines = ["  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in rows]

@@ -35,16 +35,16 @@ class Identified:
 def identify_modes(
     frf: FRF, *, band: tuple[float, float] | None = None, rule: Rule | None = None, refined: bool = True
 ) -> Identified:
-    """Identify the modes of a test in `band` [Hz] (default: all lines above 0 Hz) by the rule (default: Rule()).
+    """Identify the modes of a test in `band` [Hz] (default: all lines above 0 Hz) by the rule (default: Rule.fitting).
 
     The poles of each mode are the medians over its track; then, unless refined=False, poles and residues are moved together
     to the best fit. Intervals (95 %) take the wider of twice the scatter over the track and twice the standard error of that
     fit, and reach at least to the median, so that they tell where the two estimates part. Shapes are those of the outputs, or of the inputs where there are more of them (a roving hammer; reciprocity).
     Raises InputError where no mode is found.
     """
-    rule = rule or Rule()
     low, high = band or (0.0, np.inf)
     used = frf.band(max(low, np.nextafter(0, 1)), high)
+    rule = rule or Rule.fitting(len(used.frequency))
     diagram, found = tracks(used, poles_by_order(used, rule.highest_order), rule)
     if not found:
         raise InputError(

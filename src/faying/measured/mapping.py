@@ -1,6 +1,7 @@
 """Points of a test to nodes of a model: a rigid transformation, given or fitted, and the nearest node."""
 
 import csv
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from faying.errors import InputError, ReadError
 from faying.measured.frf import Position
+from faying.units import scale
 
 Array = NDArray[np.float64]
 
@@ -97,7 +99,7 @@ def map_points(
         raise InputError(f"tolerance = {reach}: the distance allowed between point and node must be positive")
     if not positions:
         raise InputError(
-            "the test states no positions of its points; give them in a table: --points points.csv (point,x,y,z)"
+            "the test states no positions of its points; give them in a table: --points points.csv (point,x [mm],y [mm],z [mm])"
         )
     labels = list(positions)
     there = transform.points([positions[k] for k in labels])
@@ -119,30 +121,30 @@ def map_points(
     )
 
 
-def read_points(path: str | Path, *, metre: float = 1.0) -> dict[int, Position]:
-    """Read a table point,x,y,z (a line of names may stand first), lengths times `metre`. ReadError where it is none."""
+def read_points(path: str | Path) -> dict[int, Position]:
+    """Read a table of points with a heading that states the unit: point,x [mm],y [mm],z [mm]. Positions in [m].
+
+    Raises ReadError where the file is no such table or a point stands twice.
+    """
     file = Path(path)
     try:
-        rows = [
-            [c.strip() for c in row]
-            for row in csv.reader(file.read_text(encoding="utf-8-sig").splitlines())
-            if any(row)
-        ]
-    except (OSError, UnicodeDecodeError, csv.Error) as fault:
-        raise ReadError(f"{file}: cannot be read ({fault}); give a CSV table point,x,y,z") from None
-    if rows and not rows[0][0].lstrip("-").isdigit():
-        rows = rows[1:]
+        text = file.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as fault:
+        raise ReadError(f"{file}: cannot be read ({fault}); give a CSV table point,x [mm],y [mm],z [mm]") from None
+    rows = [[c.strip() for c in row] for row in csv.reader(text.splitlines()) if any(row)]
+    units = re.findall(r"\[([^\]]+)\]", ",".join(rows[0])) if rows else []
+    if len(units) != 3 or len(set(units)) > 1:
+        raise ReadError(f"{file}: its first line states no unit of length; begin with: point,x [mm],y [mm],z [mm]")
+    metre = scale(units[0], "m", name=f"{file}, heading")
     out: dict[int, Position] = {}
-    for number, row in enumerate(rows, start=1):
+    for row in rows[1:]:
         try:
             label, x, y, z = int(row[0]), *(float(c) * metre for c in row[1:])
         except ValueError:
-            raise ReadError(
-                f"{file}: row {number}, {','.join(row)}, is not a point number and three lengths: point,x,y,z"
-            ) from None
+            raise ReadError(f"{file}: {','.join(row)} is not a point number and three lengths: point,x,y,z") from None
         if label in out:
             raise ReadError(f"{file}: point {label} stands twice; give each point once")
         out[label] = (x, y, z)
     if not out:
-        raise ReadError(f"{file}: no points in it; give a CSV table point,x,y,z")
+        raise ReadError(f"{file}: no points under its heading; give a CSV table point,x [mm],y [mm],z [mm]")
     return out

@@ -21,7 +21,7 @@ class ModeSet:
     frequencies [Hz] (m,), undamped: |pole| / 2 pi; loss_factors [-] (m,): twice the damping ratio; shapes (m, d), complex, of
     any scale; dofs (d,): (point, direction); positions: point -> x, y, z [m]; frequency_interval, loss_interval (m, 2): 95 %
     intervals, or None; found_in (m,): at how many orders a mode was found, or None; notes (m,): what a reader should know
-    of each mode. Raises InputError where shapes do not fit.
+    of each mode; lines: pairs of points to join in a drawing. Raises InputError where shapes do not fit.
     """
 
     frequencies: Array
@@ -33,6 +33,7 @@ class ModeSet:
     loss_interval: Array | None = None
     found_in: NDArray[np.int64] | None = None
     notes: tuple[tuple[str, ...], ...] = ()
+    lines: tuple[tuple[int, int], ...] = ()
     source: str = ""
 
     def __post_init__(self) -> None:

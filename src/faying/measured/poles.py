@@ -2,7 +2,7 @@
 
 import warnings
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,12 @@ class Rule:
     gap: int = 3
     orders: int = 8
     highest_damping: float = 0.2
+
+    @classmethod
+    def fitting(cls, lines: int, *, highest_order: int | None = None, orders: int | None = None) -> Self:
+        """The rule for FRFs of so many lines: order 40, less where there are fewer than four lines for each order."""
+        highest = highest_order or max(2, min(cls.highest_order, lines // 4))
+        return cls(highest_order=highest, orders=orders or max(2, min(cls.orders, highest // 3)))
 
     def __post_init__(self) -> None:
         if not 1 <= self.orders <= self.highest_order:

@@ -3,6 +3,7 @@
 The formats: University of Cincinnati, Structural Dynamics Research Lab, https://www.ceas3.uc.edu/sdrluff.
 """
 
+import re
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -42,7 +43,8 @@ class Function:
 
 @dataclass(frozen=True, kw_only=True)
 class UniversalFile:
-    """What a universal file holds. positions [m]; lines: pairs of points to draw; warnings: sentences for the reader."""
+    """What a universal file holds. positions [m]; lines: pairs of points to draw; kinds: numbers
+    of the data sets; warnings: sentences for the reader."""
 
     source: str
     title: str = ""
@@ -52,6 +54,7 @@ class UniversalFile:
     positions: Mapping[int, Position] = field(default_factory=dict)
     rotations: Mapping[int, Array] = field(default_factory=dict)
     lines: tuple[tuple[int, int], ...] = ()
+    kinds: tuple[int, ...] = ()
     warnings: tuple[str, ...] = ()
 
     def frf(self, *, quantity: str | None = None) -> FRF:
@@ -62,7 +65,7 @@ class UniversalFile:
         """
         found = [f for f in self.functions if f.kind == "FRF"]
         if not found:
-            held = ", ".join(sorted({f.kind for f in self.functions})) or "no function"
+            held = ", ".join(sorted({f.kind for f in self.functions})) or f"data sets {', '.join(map(str, self.kinds))}"
             raise ReadError(f"{self.source}: no FRF (function type 4) in it, only {held}; export the FRFs of the test")
         notes: list[str] = list(self.warnings)
         nameless = len({(f.output, f.input) for f in found}) < len(found) and all(f.output.point == 0 for f in found)
@@ -144,6 +147,9 @@ class UniversalFile:
             loss_factors=np.array([s["loss"] for s in shapes]),
             shapes=values[:, moves[:, 0], moves[:, 1]],
             dofs=tuple(Dof(int(points[p]), "xyz"[k]) for p, k in moves),
+            frequency_interval=_spans(shapes, "frequency_interval"),
+            loss_interval=_spans(shapes, "loss_interval"),
+            lines=self.lines,
             positions=self.positions,
             source=self.source,
         )
@@ -192,6 +198,7 @@ def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFi
         positions=positions,
         rotations=rotations,
         lines=_lines(sets),
+        kinds=tuple(s["type"] for s in sets),
         warnings=tuple(notes),
     )
 
@@ -272,7 +279,28 @@ def _shape(data: dict[str, Any], where: str) -> dict[str, Any]:
     else:
         pole = data["eig"]
         frequency, loss = abs(pole) / (2 * np.pi), -2 * pole.real / abs(pole) if abs(pole) else 0.0
-    return {"frequency": float(frequency), "loss": float(loss), "points": points, "values": np.stack(parts, axis=1)}
+    spans = {key: re.fullmatch(r"95 % of [a-z ]+: (\S+) \.\. (\S+)", data[key].strip()) for key in ("id2", "id3")}
+    return {
+        "frequency_interval": _span(spans["id2"]),
+        "loss_interval": _span(spans["id3"]),
+        "frequency": float(frequency),
+        "loss": float(loss),
+        "points": points,
+        "values": np.stack(parts, axis=1),
+    }
+
+
+def _spans(shapes: list[Mapping[str, Any]], name: str) -> Array | None:
+    """Intervals of all modes (m, 2), or None where one of them states none."""
+    spans = np.array([s[name] for s in shapes], float)
+    return spans if np.all(np.isfinite(spans)) else None
+
+
+def _span(found: re.Match[str] | None) -> tuple[float, float]:
+    try:
+        return (float(found[1]), float(found[2])) if found else (np.nan, np.nan)
+    except ValueError:
+        return np.nan, np.nan
 
 
 def _points(

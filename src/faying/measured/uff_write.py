@@ -20,7 +20,7 @@ def write_uff(path: str | Path, *contents: ModeSet | FRF, title: str = "Faying")
 
     The format keeps six digits of frequencies and shapes, twelve of FRFs. A loss factor is written as a viscous damping
     ratio of half its size; complex shapes with their pole. Modes are written in x, y, z, with zeros where a direction is
-    not known. The file appears whole or not at all. Raises InputError for modes in rotations or in no direction.
+    not known; intervals stand in the header. The file appears whole or not at all. Raises InputError for modes in rotations or in no direction.
     """
     import pyuff
 
@@ -73,7 +73,7 @@ def _shapes(modes: ModeSet) -> list[dict[str, Any]]:
     for k, (f, loss) in enumerate(zip(modes.frequencies, modes.loss_factors, strict=True)):
         motion = values[k].real if real else values[k]
         data: dict[str, Any] = {
-            "type": 55, "model_type": 1, "id1": f"mode {k + 1}", "analysis_type": 2 if real else 3, "data_ch": 2, "spec_data_type": 8,
+            "type": 55, "model_type": 1, "id1": f"mode {k + 1}", **_intervals(modes, k), "analysis_type": 2 if real else 3, "data_ch": 2, "spec_data_type": 8,
             "load_case": 1, "mode_n": k + 1, "node_nums": points, "r1": motion[:, 0], "r2": motion[:, 1], "r3": motion[:, 2],
         }  # fmt: skip
         if real:
@@ -82,6 +82,16 @@ def _shapes(modes: ModeSet) -> list[dict[str, Any]]:
             data["eig"] = 2 * np.pi * f * (-loss / 2 + 1j * np.sqrt(1 - min(loss / 2, 1.0) ** 2))
         out.append(data)
     return out
+
+
+def _intervals(modes: ModeSet, k: int) -> dict[str, str]:
+    """The intervals of one mode as words for its header, which `read_uff` finds again."""
+    spans = {"id2": ("frequency", modes.frequency_interval), "id3": ("loss factor", modes.loss_interval)}
+    return {
+        key: f"95 % of {name}: {span[k, 0]:.8g} .. {span[k, 1]:.8g}"
+        for key, (name, span) in spans.items()
+        if span is not None
+    }
 
 
 def _functions(frf: FRF) -> list[dict[str, Any]]:

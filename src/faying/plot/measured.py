@@ -28,7 +28,7 @@ def stabilisation(ax: Any, found: Identified) -> Any:
         xlim=(frf.frequency[0], frf.frequency[-1]),
         ylim=(0, poles.order.max() + 1),
     )
-    ax.legend(fontsize=7, loc="upper left")
+    ax.legend(fontsize=7, loc="lower right", bbox_to_anchor=(1, 1), ncols=2, frameon=False)
     return ax
 
 
@@ -78,6 +78,11 @@ def frf_overlay(ax: Any, comparison: ModalComparison, output: int = 0, input: in
     ax.semilogy(frf.frequency, np.abs(frf.values[output, input]), color="0.45", lw=1.2, label="test")
     ax.semilogy(frf.frequency, np.abs(predicted[output, input]), color="C0", lw=1.0, label="model, elastic modes")
     _frf_axes(ax, frf, output, input)
+    size = np.abs(frf.values[output, input])
+    ax.set_ylim(
+        0.3 * max(np.quantile(size, 0.02), 1e-9 * size.max()),
+        3 * max(size.max(), np.abs(predicted[output, input]).max()),
+    )
     ax.set_title(f"{ax.get_title()}, FRAC {comparison.frac[output, input]:.2f}", fontsize=9)
     return ax
 
@@ -94,6 +99,10 @@ def shape_test(ax: Any, comparison: ModalComparison, pair: int) -> Any:
     t, m = comparison.pairs[pair]
     moved, rest = _test_motion(comparison, int(t), int(m))
     _outline(ax, comparison)
+    order = list(dict.fromkeys(d.point for d in comparison.dofs))
+    for a, b in comparison.test.lines:
+        if a in order and b in order:
+            ax.plot(*moved[[order.index(a), order.index(b)]].T, color="C3", lw=0.7, alpha=0.6)
     for a, b in zip(rest, moved, strict=True):
         ax.plot(*np.stack([a, b]).T, color="C3", lw=1.2)
     ax.plot(*rest.T, "o", color="0.5", ms=2.5)
@@ -164,7 +173,7 @@ def _box(ax: Any, comparison: ModalComparison) -> None:
     ax.set_xlim(low[0], high[0])
     ax.set_ylim(low[1], high[1])
     ax.set_zlim(low[2], high[2])
-    ax.set_box_aspect(high - low)
+    ax.set_box_aspect(high - low, zoom=1.35)
     ax.set_axis_off()
     ax.view_init(elev=12, azim=-62)
 
