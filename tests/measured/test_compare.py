@@ -33,7 +33,7 @@ def turned(seed):
     return Transform(rotation=q if np.linalg.det(q) > 0 else -q, shift=rng.standard_normal(3))
 
 
-def test_of(theirs, nodes, transform, *, noise=0.0, order=None, directions="xyz", scale=1.0, rng=None):
+def hammered(theirs, nodes, transform, *, noise=0.0, order=None, directions="xyz", scale=1.0, rng=None):
     """A test of a model: its modes at some nodes, in a frame of its own, each of any complex scale."""
     rng = rng or np.random.default_rng(1)
     order = np.arange(len(theirs.frequencies)) if order is None else order
@@ -54,12 +54,9 @@ def test_of(theirs, nodes, transform, *, noise=0.0, order=None, directions="xyz"
     )
 
 
-test_of.__test__ = False
-
-
 def test_a_model_against_itself_is_the_unit_matrix():
     theirs = model()
-    c = compare_modes(test_of(theirs, np.arange(NODES), Transform()), theirs)
+    c = compare_modes(hammered(theirs, np.arange(NODES), Transform()), theirs)
     np.testing.assert_allclose(c.mac, np.eye(COUNT), atol=1e-12)
     np.testing.assert_array_equal(c.pairs, np.stack([np.arange(COUNT)] * 2, axis=1))
     np.testing.assert_allclose(c.frequency_difference, 0, atol=1e-12)
@@ -73,7 +70,7 @@ def test_a_noisy_sparse_turned_copy_in_another_order_still_pairs(seed):
     rng = np.random.default_rng(seed)
     theirs, nodes, order = model(seed), rng.choice(NODES, 12, replace=False), rng.permutation(COUNT)
     wider = ModelModes(**{**vars(theirs), "frequencies": np.linspace(500, 540, COUNT)})
-    c = compare_modes(test_of(wider, nodes, turned(seed), noise=0.05, order=order, scale=0.9, rng=rng), wider,
+    c = compare_modes(hammered(wider, nodes, turned(seed), noise=0.05, order=order, scale=0.9, rng=rng), wider,
                       transform=turned(seed))  # fmt: skip
     np.testing.assert_array_equal(c.pairs[:, 1], order)
     np.testing.assert_allclose(c.nodes[::3], nodes)
@@ -83,14 +80,14 @@ def test_a_noisy_sparse_turned_copy_in_another_order_still_pairs(seed):
 
 def test_without_the_transformation_nothing_fits():
     theirs = model()
-    test = test_of(theirs, np.arange(12), Transform(shift=np.array([5.0, 0, 0])))
+    test = hammered(theirs, np.arange(12), Transform(shift=np.array([5.0, 0, 0])))
     with pytest.raises(InputError, match="--frame pairs.csv"):
         compare_modes(test, theirs)
 
 
 def test_points_without_partner_or_position_are_left_out_and_named():
     theirs = model()
-    test = test_of(theirs, np.arange(12), Transform())
+    test = hammered(theirs, np.arange(12), Transform())
     positions = dict(test.positions) | {3: (7.0, 0.0, 0.0)}
     del positions[5]
     c = compare_modes(ModeSet(**{**vars(test), "positions": positions}), theirs)
@@ -102,21 +99,21 @@ def test_points_without_partner_or_position_are_left_out_and_named():
 
 def test_one_direction_at_few_points():
     theirs = model()
-    c = compare_modes(test_of(theirs, np.arange(20), turned(3), directions="y"), theirs, transform=turned(3))
+    c = compare_modes(hammered(theirs, np.arange(20), turned(3), directions="y"), theirs, transform=turned(3))
     np.testing.assert_allclose(np.diag(c.mac), 1)
     assert mac(c.model_shapes(), c.model_shapes()).shape == (COUNT, COUNT)
 
 
 def test_shapes_that_the_points_cannot_tell_apart_are_named():
     theirs = model()
-    c = compare_modes(test_of(theirs, np.arange(1), Transform(), directions="z"), theirs)
+    c = compare_modes(hammered(theirs, np.arange(1), Transform(), directions="z"), theirs)
     assert any("looks like" in note and "rests on frequency" in note for note in c.notes)
     np.testing.assert_array_equal(c.pairs[:, 0], c.pairs[:, 1])
 
 
 def test_a_direction_that_is_no_translation():
     theirs = model()
-    test = test_of(theirs, np.arange(3), Transform(), directions="x")
+    test = hammered(theirs, np.arange(3), Transform(), directions="x")
     odd = ModeSet(**{**vars(test), "dofs": [(1, "x"), (2, "rx"), (3, "x")]})
     with pytest.raises(InputError, match="no translation"):
         compare_modes(odd, theirs)
@@ -173,7 +170,7 @@ def test_frfs_of_the_model_itself_fit_and_obey_reciprocity():
     values = theirs.frf(f, (nodes, axes), (nodes, axes), "mobility")
     np.testing.assert_allclose(values, values.transpose(1, 0, 2))
     dofs = [(k + 1, "z") for k in range(3)]
-    test = test_of(theirs, nodes, frame)
+    test = hammered(theirs, nodes, frame)
     frf = FRF(frequency=f, values=values * 2, outputs=dofs, inputs=dofs, quantity="mobility")
     c = compare_modes(test, theirs, transform=frame, frf=frf)
     np.testing.assert_allclose(c.predicted * 2, values * 2 * 1.0, rtol=1e-9)
@@ -189,7 +186,7 @@ def test_frfs_of_the_model_itself_fit_and_obey_reciprocity():
 
 def test_table_csv_and_json(tmp_path):
     theirs = model()
-    test = test_of(theirs, np.arange(12), Transform())
+    test = hammered(theirs, np.arange(12), Transform())
     test = ModeSet(**{**vars(test), "frequencies": test.frequencies * np.where(np.arange(COUNT) == 2, 5, 1.02),
                       "loss_interval": np.tile([0.02, 0.04], (COUNT, 1))})  # fmt: skip
     c = compare_modes(test, theirs)

@@ -146,7 +146,7 @@ def _test_motion(comparison: ModalComparison, t: int, m: int) -> tuple[Any, Any]
     """Points of the test moved and at rest (p, 3) [mm], with the sign of the model's shape and its size at those points."""
     shapes = comparison.test.at(comparison.dofs)[t]
     model = comparison.model_shapes()[m]
-    values = (shapes * np.vdot(shapes, model).conj()).real  # turned to the model's phase
+    values = (shapes * np.vdot(shapes, model)).real  # turned to the model's phase
     peak = np.abs(model).max() / np.linalg.norm(comparison.model.shapes[m], axis=1).max()
     values = values * peak / max(np.abs(values).max(), 1e-300)
     points = list(dict.fromkeys(d.point for d in comparison.dofs))
