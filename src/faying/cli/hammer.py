@@ -27,12 +27,12 @@ TEXT = (".txt", ".csv", ".dat", ".asc")
 )
 @click.option("--band", metavar="LOW:HIGH", help='Lines to use, for example "20 Hz:800 Hz". Default: all above 0 Hz.')
 @click.option(
-    "--order", type=click.IntRange(2, 200), help="Highest order of the poles. Default: 40, or a quarter of the lines."
+    "--order", type=click.IntRange(2, 200), help="Highest order of the poles. Default: 80, or an eighth of the lines."
 )
 @click.option(
     "--stays",
     type=click.IntRange(1, 200),
-    help="Orders over which a pole must stay to be a mode. Default: 8.",
+    help="Orders over which a pole must stay to be a mode. Default: a fifth of them.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 @click.option(

@@ -15,9 +15,10 @@ Complex = NDArray[np.complex128]
 def basis(poles: Complex, frequency: Array, quantity: str) -> Complex:
     """Functions of frequency that an FRF is made of, with real coefficients (f, 2 m + 2).
 
-    Receptance: sum of A/(i w - s) + A*/(i w - s*) - L/w2 + U (Heylen, Lammens and Sas, Modal Analysis Theory and Testing,
-    KU Leuven 1997, section A.3): real and imaginary part of each residue A, then the lower residual L [1/kg], the inertia
-    of what lies below, and the upper one U [m/N], the compliance of what lies above. Other quantities carry factors i w.
+    Receptance: sum of A/(i w - s) + A*/(i w - s*) - L/w2 + U (Heylen, Lammens and Sas, Modal Analysis Theory and
+    Testing, KU Leuven 1997, section A.3): real and imaginary part of each residue A, then the lower residual L [1/kg],
+    the inertia of what lies below, and the upper one U [m/N], the compliance of what lies above. Other quantities carry
+    factors i w.
     """
     iw = 2j * np.pi * frequency[:, None]
     one, other = 1 / (iw - poles), 1 / (iw - poles.conj())
@@ -33,6 +34,18 @@ def residues(poles: Complex, frequency: Array, rows: Complex, quantity: str) -> 
     found = np.linalg.lstsq(stacked / size, target, rcond=None)[0] / size[:, None]
     m = len(poles)
     return found[:m] + 1j * found[m : 2 * m], (b @ found).T
+
+
+def compressed(rows: Complex, rank: int) -> Complex:
+    """The rows (n, f) turned into at most `rank` rows that hold their strongest parts; lengths and angles of residues stay.
+
+    A real rotation of the pairs, by singular values: m modes and two residuals fill 2 m + 2 of them, what is cut is
+    noise.
+    """
+    if len(rows) <= rank:
+        return rows
+    turn = np.linalg.svd(_stack(rows.T), full_matrices=False)[2][:rank]
+    return np.asarray(turn @ rows)
 
 
 def _stack(values: Complex) -> Array:
@@ -60,7 +73,7 @@ def refine(poles: Complex, frequency: Array, rows: Complex, quantity: str, *, re
 
     m = len(poles)
     f0, z0 = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
-    target = _stack(rows.T)
+    target = _stack(compressed(rows, 2 * m + 2).T)
     scale = float(np.sqrt(np.mean(target**2)))
 
     def miss(x: Array) -> Array:

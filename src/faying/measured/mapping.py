@@ -43,9 +43,9 @@ class Transform:
 def fit_transform(test: Any, model: Any) -> Transform:
     """The rigid transformation that carries test points (k, 3) onto model points (k, 3) best, k of 3 or more.
 
-    Least squares by singular values (Arun, Huang and Blostein 1987, doi:10.1109/TPAMI.1987.4767965; proper rotation after
-    Umeyama 1991, doi:10.1109/34.88573). Raises InputError for fewer than three pairs or pairs on one line, and where the
-    fit leaves more than a tenth of the points' spread: a mirrored frame, a wrong unit or a wrong pair.
+    Least squares by singular values (Arun, Huang and Blostein 1987, doi:10.1109/TPAMI.1987.4767965; proper rotation
+    after Umeyama 1991, doi:10.1109/34.88573). Raises InputError for fewer than three pairs or pairs on one line, and
+    where the fit leaves more than a tenth of the points' spread: a mirrored frame, a wrong unit or a wrong pair.
     """
     a, b = np.asarray(test, float), np.asarray(model, float)
     if a.shape != b.shape or a.ndim != 2 or a.shape[1:] != (3,) or len(a) < 3:

@@ -14,9 +14,9 @@ def pair_modes(
     """Pairs (k, 2) of indices (test, model), in the order of the test.
 
     mac (t, m); test, model: frequencies [Hz] (t,), (m,). A pair is allowed where MAC is at least least_mac and the
-    frequencies differ by at most greatest_shift of the test's. Of all sets of allowed pairs the one with the greatest sum
-    of MAC - weight |df| / (greatest_shift f) is taken (optimal assignment), so that frequency decides where shapes look alike
-    at the points of the test. Raises InputError for limits that cannot be.
+    frequencies differ by at most greatest_shift of the test's. Of all sets of allowed pairs the one with the greatest
+    sum of MAC - weight |df| / (greatest_shift f) is taken (optimal assignment), so that frequency decides where shapes
+    look alike at the points of the test. Raises InputError for limits that cannot be.
     """
     if not (0 < least_mac <= 1 and greatest_shift > 0 and 0 <= weight < least_mac):
         raise InputError(f"least_mac = {least_mac}, greatest_shift = {greatest_shift}, weight = {weight}: give 0 < least_mac <= 1, a "

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.measured.frf import FRF
-from faying.measured.lsfd import residues
+from faying.measured.lsfd import compressed, residues
 from faying.measured.mac import mac
 
 Array = NDArray[np.float64]
@@ -23,23 +23,23 @@ class Rule:
     Poles are computed at orders 1, 2, ... highest_order (number of modes in the polynomial). Those with damping ratio
     between 0 and highest_damping whose frequency lies in the band are kept. A pole continues a track when it differs
     from the track's last pole by less than `frequency` and `damping` (both relative) and the MAC of their residues
-    exceeds `mac`; each pole continues one track and each track takes one pole of an order, the nearest in the sum. A track
-    ends when `gap` orders in a row do not continue it. A mode is a track of at least `orders` poles.
+    exceeds `mac`; each pole continues one track and each track takes one pole of an order, the nearest in the sum. A
+    track ends when `gap` orders in a row do not continue it. A mode is a track of at least `orders` poles.
     """
 
-    highest_order: int = 40
+    highest_order: int = 80
     frequency: float = 0.01
     damping: float = 0.05
     mac: float = 0.95
     gap: int = 3
-    orders: int = 8
+    orders: int = 16
     highest_damping: float = 0.2
 
     @classmethod
     def fitting(cls, lines: int, *, highest_order: int | None = None, orders: int | None = None) -> Self:
-        """The rule for FRFs of so many lines: order 40, less where there are fewer than four lines for each order."""
-        highest = highest_order or max(2, min(cls.highest_order, lines // 4))
-        return cls(highest_order=highest, orders=orders or max(2, min(cls.orders, highest // 3)))
+        """The rule for FRFs of so many lines: an order for eight lines, 80 at most; a mode stays over a fifth of the orders."""
+        highest = highest_order or max(4, min(cls.highest_order, lines // 8))
+        return cls(highest_order=highest, orders=orders or max(3, highest // 5))
 
     def __post_init__(self) -> None:
         if not 1 <= self.orders <= self.highest_order:
@@ -73,7 +73,7 @@ def poles_by_order(frf: FRF, highest_order: int) -> list[Complex]:
         raise InputError(f"the first line, {frf.frequency[0]:g} Hz, is no multiple of the spacing {step:g} Hz; interpolate the "
                          "FRFs to lines at multiples of the spacing")  # fmt: skip
     lines = round(first)
-    rows = frf.rows()
+    rows = compressed(frf.rows(), 2 * highest_order)
     if len(rows[0]) < 4 * highest_order:
         raise InputError(f"{len(rows[0])} lines are too few for order {highest_order}; widen the band or take an order of at most "
                          f"{len(rows[0]) // 4}")  # fmt: skip
@@ -100,7 +100,7 @@ def tracks(frf: FRF, by_order: list[Complex], rule: Rule) -> tuple[Poles, list[C
     """Apply the rule: all poles with their track, and the poles of each track, tracks rising in frequency."""
     from scipy.optimize import linear_sum_assignment
 
-    rows = frf.rows()
+    rows = compressed(frf.rows(), 2 * rule.highest_order)
     last: list[tuple[complex, Complex, int]] = []  # pole, residues, order of the end of each track
     members: list[list[tuple[int, int]]] = []
     table: list[tuple[int, complex]] = []

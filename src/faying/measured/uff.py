@@ -60,8 +60,8 @@ class UniversalFile:
     def frf(self, *, quantity: str | None = None) -> FRF:
         """All FRFs as one object in SI, with the coherence of the same pairs.
 
-        quantity: what was measured, where the file does not say it. Raises ReadError where there is no FRF, the quantities
-        or the frequency lines differ, or the directions of a point are turned against the axes.
+        quantity: what was measured, where the file does not say it. Raises ReadError where there is no FRF, the
+        quantities or the frequency lines differ, or the directions of a point are turned against the axes.
         """
         found = [f for f in self.functions if f.kind == "FRF"]
         if not found:
@@ -121,8 +121,9 @@ class UniversalFile:
     def modes(self) -> ModeSet:
         """The mode shapes of data sets 55, at the degrees of freedom that move in at least one mode.
 
-        Real modes carry a viscous damping ratio (loss factor twice that) or a hysteretic one (taken as the loss factor);
-        complex modes their pole. Raises ReadError where there is no mode shape or the modes are known at different points.
+        Real modes carry a viscous damping ratio (loss factor twice that) or a hysteretic one (taken as the loss
+        factor); complex modes their pole. Raises ReadError where there is no mode shape or the modes are known at
+        different points.
         """
         if not self.shapes:
             raise ReadError(

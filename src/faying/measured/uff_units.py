@@ -57,8 +57,8 @@ def frf_scale(
 ) -> tuple[str, float, str]:
     """Quantity of an FRF, the factor that makes it SI, and a note ("" where the file says enough).
 
-    Order of trust: the caller's quantity, the type codes, the labels; for the unit the labels, then data set 164, then SI.
-    Raises ReadError where nothing says what was measured.
+    Order of trust: the caller's quantity, the type codes, the labels; for the unit the labels, then data set 164, then
+    SI. Raises ReadError where nothing says what was measured.
     """
     top, bottom = data["ordinate_axis_units_lab"], data["orddenom_axis_units_lab"]
     named = quantity or MOTION.get(data["ordinate_spec_data_type"])

@@ -19,8 +19,9 @@ def write_uff(path: str | Path, *contents: ModeSet | FRF, title: str = "Faying")
     """Write modes (55) and FRFs (58) with units (164) and the positions of the points (2411); SI.
 
     The format keeps six digits of frequencies and shapes, twelve of FRFs. A loss factor is written as a viscous damping
-    ratio of half its size; complex shapes with their pole. Modes are written in x, y, z, with zeros where a direction is
-    not known; intervals stand in the header. The file appears whole or not at all. Raises InputError for modes in rotations or in no direction.
+    ratio of half its size; complex shapes with their pole. Modes are written in x, y, z, with zeros where a direction
+    is not known; intervals stand in the header. The file appears whole or not at all. Raises InputError for modes in
+    rotations or in no direction.
     """
     import pyuff
 

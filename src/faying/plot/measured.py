@@ -173,7 +173,7 @@ def _box(ax: Any, comparison: ModalComparison) -> None:
     ax.set_xlim(low[0], high[0])
     ax.set_ylim(low[1], high[1])
     ax.set_zlim(low[2], high[2])
-    ax.set_box_aspect(high - low, zoom=1.35)
+    ax.set_box_aspect(high - low, zoom=1.1)
     ax.set_axis_off()
     ax.view_init(elev=12, azim=-62)
 
