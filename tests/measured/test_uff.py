@@ -298,6 +298,12 @@ def test_files_cut_short(tmp_path, share):
         read_uff(path)
 
 
+def test_a_file_that_ends_in_blanks_and_a_mark_of_old_systems(tmp_path):
+    path = raw(tmp_path / "a.uff", function())
+    path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n") + b"  \r\n\x1a")
+    assert read_uff(path).frf().values.shape == (1, 1, 20)
+
+
 def test_damaged_data_sets(tmp_path):
     text = raw(tmp_path / "a.uff", function()).read_text()
     path = tmp_path / "b.uff"

@@ -221,7 +221,7 @@ def _sets(file: Path) -> list[dict[str, Any]]:
         raise ReadError(
             f"{file}: no universal file: it holds no data set between lines of -1. Export the test as UFF or UNV"
         )
-    if not file.read_bytes().rstrip().endswith(b"-1"):
+    if not file.read_bytes().rstrip(b"\x00\x1a \t\r\n").endswith(b"    -1"):
         raise ReadError(
             f"{file}: it ends in the middle of data set {len(kinds) + 1}; it was cut short, export or copy it again"
         )
