@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from faying import FRF, InputError, ReadError, compare_modes
+from faying import FRF, InputError, ReadError, compare_modes, report_measured
 from faying.measured.mac import mac
 from faying.measured.mapping import Transform
 from faying.measured.model import ModelModes, read_model_modes
@@ -212,3 +212,13 @@ def test_models_that_do_not_fit(tmp_path):
         file.write_bytes(content)
         with pytest.raises(ReadError, match="no result of Faying"):
             read_model_modes(file)
+
+
+def test_a_test_without_any_partner_still_gives_a_table_and_files(tmp_path):
+    theirs = model()
+    test = hammered(theirs, np.arange(12), Transform(), scale=9.0)
+    c = compare_modes(test, theirs)
+    assert len(c.pairs) == 0
+    assert all("at best" in row[5] for row in c.rows()[1:])
+    made = report_measured.write(c, tmp_path)
+    assert {p.name for p in made} == {"comparison.csv", "mac.svg", "shapes.png", "comparison.html"}
