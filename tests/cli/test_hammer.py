@@ -36,7 +36,8 @@ def result(tmp_path):
         title="plate", loads=np.array([2e3, 8e3]), frequencies=np.stack([0.9 * FREQUENCIES, FREQUENCIES]), loss_factors=np.full((2, 4), 0.01),
         loss_error=np.zeros((2, 4)), tied=FREQUENCIES, free=FREQUENCIES, rigid=np.zeros(6), pressure=q, k_n=q, k_t=q,
         points=np.zeros((5, 3)), weights=np.ones(5), joint_of_point=np.zeros(5, dtype=np.int64), joints=("joint",), unknowns=90,
-        solver="none", outline=m.points, triangles=np.array([[0, 1, 2], [2, 3, 4]]), shapes=np.stack([m.shapes, m.shapes]),
+        solver="none", outline=m.points, triangles=np.array([[0, 1, 2], [2, 3, 4]]), shapes=np.stack([m.shapes, m.shapes]), bolts=("bolt",),
+        bolt_forces=np.ones((2, 1)), slipping=np.zeros((2, 1)), mac=np.ones((2, 4, 4)),
     ).to_netcdf(tmp_path / "result.nc")  # fmt: skip
 
 
