@@ -19,6 +19,7 @@ ORDER = [
     {"study"},
     {"plot", "table"},
     {"report"},
+    {"report_measured"},
     {"cli", "web"},
     {"__main__"},
 ]

@@ -7,6 +7,13 @@ from .fe.asperity import solve_asperity
 from .fe.matrices import read_matrices
 from .fe.meshfile import read_mesh
 from .materials import CATALOGUE, RIGID, ContactPair, Material
+from .measured.compare import compare_modes
+from .measured.frf import FRF
+from .measured.identify import identify_modes
+from .measured.model import ModelModes, read_model_modes
+from .measured.records import frf_from_records
+from .measured.uff import read_uff
+from .measured.uff_write import write_uff
 from .result import Result
 from .study import Study, run
 from .surface import synthesize

@@ -1,0 +1,114 @@
+"""`faying compare RESULT.nc TEST.uff`: a hammer test beside the result of a study."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("result", type=click.Path(path_type=Path))
+@click.argument("test", type=click.Path(path_type=Path))
+@click.option("--load", help='Preload of the result to compare with, for example "8 kN". Default: the greatest.')
+@click.option(
+    "--points", type=click.Path(path_type=Path), help="CSV table of the test's positions: point,x [mm],y [mm],z [mm]."
+)
+@click.option("--frame", type=click.Path(path_type=Path),
+              help="The same table for three points or more, where they lie in the model; turns and shifts the test.")  # fmt: skip
+@click.option("--length-unit", help='Unit of the positions in TEST, where it states none, for example "mm".')
+@click.option("--tolerance", help='Greatest distance of point and node, for example "5 mm". Default: 2 % of the model.')
+@click.option(
+    "--direction", type=click.Choice(["x", "y", "z"]), help="Direction of the test, where the file states none."
+)
+@click.option(
+    "--quantity",
+    type=click.Choice(["receptance", "mobility", "accelerance"]),
+    help="What the FRFs are, where the file is silent.",
+)
+@click.option(
+    "--least-mac",
+    type=click.FloatRange(0, 1, min_open=True),
+    default=0.5,
+    show_default=True,
+    help="MAC that a pair must have.",
+)
+@click.option("--greatest-shift", type=click.FloatRange(0, min_open=True), default=0.3, show_default=True,
+              help="Difference of frequency that a pair may have, relative to the test.")  # fmt: skip
+@click.option("--out", type=click.Path(path_type=Path), help="Folder for the table, the figures and the report.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
+def command(result: Path, test: Path, load: str | None, points: Path | None, frame: Path | None, length_unit: str | None,
+            tolerance: str | None, direction: str | None, quantity: str | None, least_mac: float, greatest_shift: float,
+            out: Path | None, as_json: bool) -> None:  # fmt: skip
+    """Set the hammer test in TEST (a universal file) beside RESULT (result.nc of `faying run`).
+
+    The mode shapes of TEST are taken where it holds some; otherwise they are identified from its FRFs.
+    """
+    from faying import report_measured, table, units
+    from faying.errors import InputError
+    from faying.measured.compare import compare_modes
+    from faying.measured.model import read_model_modes
+
+    model = read_model_modes(result, load=units.parse(load, "N", name="--load") if load else None)
+    reach = units.parse(tolerance, "m", name="--tolerance") if tolerance else None
+    modes, frf, notes = read_test(test, points, length_unit, direction, quantity)
+    transform = _transform(frame, modes) if frame else None
+    comparison = compare_modes(modes, model, transform=transform, tolerance=reach, frf=frf, least_mac=least_mac,
+                               greatest_shift=greatest_shift)  # fmt: skip
+    files: list[Path] = []
+    if out:
+        click.echo("figures and report", err=True)
+        try:
+            out.mkdir(parents=True, exist_ok=True)
+        except OSError as fault:
+            raise InputError(f"cannot make the folder {out}: {fault.strerror}; give another with --out") from None
+        files = report_measured.write(comparison, out)
+    for line in notes:
+        click.echo(f"note: {line}", err=True)
+    if as_json:
+        click.echo(json.dumps(comparison.to_dict() | {"files": [str(f) for f in files]}, indent=2, allow_nan=False))
+        return
+    click.echo(
+        f"{model.title} at {model.load / 1e3:g} kN; {len(comparison.point_map.nodes)} points of the test found a node\n"
+    )
+    click.echo(table.text(comparison.rows()))
+    for line in comparison.notes:
+        click.echo(f"note: {line}")
+    if files:
+        click.echo(f"\nwritten to {out}: {', '.join(f.name for f in files)}")
+
+
+def read_test(
+    path: Path, points: Path | None, length_unit: str | None, direction: str | None, quantity: str | None
+) -> tuple[Any, Any, list[str]]:
+    """Modes and FRFs (or None) of a universal file, and what to tell the reader."""
+    from dataclasses import replace
+
+    from faying.measured.identify import identify_modes
+    from faying.measured.mapping import read_points
+    from faying.measured.uff import read_uff
+
+    file = read_uff(path, length_unit=length_unit)
+    frf = file.frf(quantity=quantity) if any(f.kind == "FRF" for f in file.functions) or not file.shapes else None
+    if file.shapes:
+        modes = file.modes()
+    else:
+        click.echo(f"{path}: no mode shapes; modes are identified from its FRFs", err=True)
+        modes = identify_modes(frf).modes  # type: ignore[arg-type]
+    if points:
+        modes = replace(modes, positions=read_points(points))
+    if direction:
+        modes, frf = modes.directed(direction), frf and frf.directed(direction)
+    return modes, frf, list(frf.warnings if frf else file.warnings)
+
+
+def _transform(frame: Path, modes: Any) -> Any:
+    from faying.errors import InputError
+    from faying.measured.mapping import fit_transform, read_points
+
+    there = read_points(frame)
+    unknown = [str(p) for p in there if p not in modes.positions]
+    if unknown:
+        raise InputError(f"{frame}: the test has no position of point {', '.join(unknown)}; it has those of "
+                         f"{', '.join(map(str, modes.positions)) or 'none'}")  # fmt: skip
+    return fit_transform([modes.positions[p] for p in there], list(there.values()))

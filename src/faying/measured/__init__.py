@@ -1,0 +1,1 @@
+"""Hammer tests: frequency response functions and modes read, identified, and set beside the model's."""

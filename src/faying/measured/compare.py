@@ -1,0 +1,209 @@
+"""A hammer test beside a model: MAC, paired modes, frequencies, damping, FRFs."""
+
+import csv
+import io
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.measured.frf import FRF, Dof
+from faying.measured.mac import frac, mac
+from faying.measured.mapping import PointMap, Transform, map_points
+from faying.measured.model import ModelModes
+from faying.measured.modes import ModeSet
+from faying.measured.pairing import pair_modes
+
+Array = NDArray[np.float64]
+ALIKE = 0.9
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModalComparison:
+    """A test beside a model.
+
+    test, model: the modes; dofs (d,): degrees of freedom of the test that found a node; nodes (d,), axes (d, 3): where and
+    along what in the model; mac (t, m); pairs (k, 2): indices (test, model); point_map: nodes, distances, points without
+    partner; frf: the measured FRFs between such degrees of freedom, predicted (o, i, f) the model's, frac (o, i), or None;
+    notes: sentences for the reader.
+    """
+
+    test: ModeSet
+    model: ModelModes
+    dofs: tuple[Dof, ...]
+    nodes: NDArray[np.int64]
+    axes: Array
+    mac: Array
+    pairs: NDArray[np.int64]
+    point_map: PointMap
+    frf: FRF | None = None
+    predicted: NDArray[np.complex128] | None = None
+    frac: Array | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def frequency_difference(self) -> Array:
+        """Model over test minus one (k,)."""
+        t, m = self.pairs.T
+        return np.asarray(self.model.frequencies[m] / self.test.frequencies[t] - 1)
+
+    def model_shapes(self) -> Array:
+        """The model's shapes along the test's degrees of freedom (m, d)."""
+        return np.asarray(np.einsum("mdx,dx->md", self.model.shapes[:, self.nodes], self.axes))
+
+    def rows(self) -> list[list[str]]:
+        """One row per mode of the test, with its partner where there is one; then the model's modes without."""
+        head = [
+            "test mode",
+            "test [Hz]",
+            "model mode",
+            "model [Hz]",
+            "difference [%]",
+            "MAC",
+            "test loss",
+            "interval",
+            "model loss",
+        ]
+        partner = {int(t): int(m) for t, m in self.pairs}
+        out = [head]
+        for t, (f, loss) in enumerate(zip(self.test.frequencies, self.test.loss_factors, strict=True)):
+            span = self.test.loss_interval
+            interval = "-" if span is None else f"{span[t, 0]:.1e} .. {span[t, 1]:.1e}"
+            m = partner.get(t)
+            if m is None:
+                out.append(
+                    [
+                        str(t + 1),
+                        f"{f:.2f}",
+                        "-",
+                        "-",
+                        "-",
+                        f"{self.mac[t].max():.2f} at best",
+                        f"{loss:.2e}",
+                        interval,
+                        "-",
+                    ]
+                )
+                continue
+            out.append([str(t + 1), f"{f:.2f}", str(m + 1), f"{self.model.frequencies[m]:.2f}",
+                        f"{100 * (self.model.frequencies[m] / f - 1):+.2f}", f"{self.mac[t, m]:.3f}", f"{loss:.2e}", interval,
+                        f"{self.model.loss_factors[m]:.2e}"])  # fmt: skip
+        return out
+
+    def csv_text(self) -> str:
+        """The pairs as CSV, SI, units in the heading; a mode of the test without partner has empty cells."""
+        out = io.StringIO()
+        table = csv.writer(out, lineterminator="\n")
+        table.writerow(["test mode", "test frequency [Hz]", "test loss factor [-]", "loss low [-]", "loss high [-]", "model mode",
+                        "model frequency [Hz]", "model loss factor [-]", "frequency difference [-]", "MAC [-]"])  # fmt: skip
+        partner = {int(t): int(m) for t, m in self.pairs}
+        for t, (f, loss) in enumerate(zip(self.test.frequencies, self.test.loss_factors, strict=True)):
+            span = ["", ""] if self.test.loss_interval is None else [f"{v:.8g}" for v in self.test.loss_interval[t]]
+            row = [t + 1, f"{f:.8g}", f"{loss:.8g}", *span]
+            m = partner.get(t)
+            if m is not None:
+                values = (
+                    self.model.frequencies[m],
+                    self.model.loss_factors[m],
+                    self.model.frequencies[m] / f - 1,
+                    self.mac[t, m],
+                )
+                row += [m + 1, *(f"{v:.8g}" for v in values)]
+            table.writerow(row + [""] * (10 - len(row)))
+        return out.getvalue()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything but maps and FRFs, ready for JSON."""
+        return {
+            "test": {"source": self.test.source, "frequencies": self.test.frequencies.tolist(),
+                     "loss_factors": self.test.loss_factors.tolist(),
+                     "loss_interval": None if self.test.loss_interval is None else self.test.loss_interval.tolist()},
+            "model": {"source": self.model.source, "title": self.model.title, "preload": self.model.load,
+                      "frequencies": self.model.frequencies.tolist(), "loss_factors": self.model.loss_factors.tolist()},
+            "mac": self.mac.tolist(),
+            "pairs": [{"test": int(t), "model": int(m), "frequency_difference": float(d), "mac": float(self.mac[t, m])}
+                      for (t, m), d in zip(self.pairs, self.frequency_difference, strict=True)],
+            "points": {"nodes": {str(k): v for k, v in self.point_map.nodes.items()},
+                       "distance": {str(k): v for k, v in self.point_map.distance.items()},
+                       "without_partner": {str(k): v for k, v in self.point_map.missing.items()},
+                       "tolerance": self.point_map.tolerance},
+            "frac": None if self.frac is None or self.frf is None else [
+                {"output": str(self.frf.outputs[o]), "input": str(self.frf.inputs[i]), "frac": float(self.frac[o, i])}
+                for o, i in self.frf.measured],
+            "units": "SI: Hz, m, N; loss factors, MAC and FRAC without unit; modes count from 0",
+            "notes": list(self.notes),
+        }  # fmt: skip
+
+
+def compare_modes(
+    test: ModeSet,
+    model: ModelModes,
+    *,
+    transform: Transform | None = None,
+    tolerance: float | None = None,
+    frf: FRF | None = None,
+    least_mac: float = 0.5,
+    greatest_shift: float = 0.3,
+) -> ModalComparison:
+    """Set a test beside a model: map its points, compute MAC at what both know, pair the modes, superpose the FRFs.
+
+    transform: test frame to model frame (default: the same frame); tolerance [m] between point and node; least_mac and
+    greatest_shift: what a pair must have (`pair_modes`). Raises InputError where no point finds a node or a direction is
+    no translation.
+    """
+    known = {d.point for d in test.dofs}
+    nowhere = sorted(known - set(test.positions))
+    notes = []
+    if test.positions and nowhere:
+        notes.append(f"points {', '.join(map(str, nowhere))} have modes but no position; they are left out")
+    points = map_points({p: x for p, x in test.positions.items() if p in known}, model.points, transform=transform,
+                        tolerance=tolerance)  # fmt: skip
+    if points.missing:
+        far = ", ".join(f"{p} ({d * 1e3:.3g} mm away)" for p, d in points.missing.items())
+        notes.append(f"points without a node within {points.tolerance * 1e3:.3g} mm, left out: {far}")
+    used = tuple(d for d in test.dofs if d.point in points.nodes)
+    nodes = np.array([points.nodes[d.point] for d in used])
+    axes = points.transform.directions([d.axis() for d in used])
+    theirs = np.einsum("mdx,dx->md", model.shapes[:, nodes], axes)
+    table = mac(test.at(used), theirs)
+    pairs = pair_modes(table, test.frequencies, model.frequencies, least_mac=least_mac, greatest_shift=greatest_shift)
+    notes += _alike(theirs, pairs, len(used))
+    shared, predicted, score = (None, None, None) if frf is None else _overlay(frf, model, points, notes)
+    return ModalComparison(test=test, model=model, dofs=used, nodes=nodes, axes=axes, mac=table, pairs=pairs, point_map=points,
+                           frf=shared, predicted=predicted, frac=score, notes=tuple(notes))  # fmt: skip
+
+
+def _alike(shapes: Array, pairs: NDArray[np.int64], count: int) -> list[str]:
+    """Say which of the paired model modes the points of the test cannot tell from another."""
+    own = mac(shapes, shapes)
+    words = []
+    for m in pairs[:, 1]:
+        same = [k for k in np.flatnonzero(own[m] > ALIKE) if k != m]
+        if same:
+            others = ", ".join(str(k + 1) for k in same)
+            words.append(f"at the {count} degrees of freedom of the test, model mode {m + 1} looks like {others} (MAC above {ALIKE}); "
+                         "the pair rests on frequency")  # fmt: skip
+    return words
+
+
+def _overlay(
+    frf: FRF, model: ModelModes, points: PointMap, notes: list[str]
+) -> tuple[FRF | None, NDArray[np.complex128] | None, Array | None]:
+    """The FRFs between mapped degrees of freedom, the model's by superposition, and their FRAC."""
+    o = [k for k, d in enumerate(frf.outputs) if d.point in points.nodes]
+    i = [k for k, d in enumerate(frf.inputs) if d.point in points.nodes]
+    if not o or not i or not np.isfinite(frf.values[np.ix_(o, i)]).any():
+        notes.append("no FRF lies between points that found a node; FRFs are not compared")
+        return None, None, None
+    outputs, inputs = tuple(frf.outputs[k] for k in o), tuple(frf.inputs[k] for k in i)
+    shared = FRF(frequency=frf.frequency, values=frf.values[np.ix_(o, i)], outputs=outputs, inputs=inputs, quantity=frf.quantity,
+                 positions=frf.positions, source=frf.source)  # fmt: skip
+    places = [(np.array([points.nodes[d.point] for d in side]), points.transform.directions([d.axis() for d in side]))
+              for side in (outputs, inputs)]  # fmt: skip
+    predicted = model.frf(shared.frequency, places[0], places[1], shared.quantity)
+    score = np.full(predicted.shape[:2], np.nan)
+    for pair in shared.measured:
+        score[pair] = frac(shared.values[pair], predicted[pair])
+    notes.append("the model's FRFs are its elastic modes superposed: rigid motion and higher modes are not in them")
+    return shared, predicted, score

@@ -1,0 +1,149 @@
+"""Frequency response functions between degrees of freedom, and what turns one quantity into another."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.errors import InputError
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Position = tuple[float, float, float]
+
+# how often the displacement is differentiated in time
+QUANTITIES = {"receptance": 0, "mobility": 1, "accelerance": 2}
+UNITS = {"receptance": "m/N", "mobility": "m/(N*s)", "accelerance": "m/(N*s^2)"}
+AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+DIRECTIONS = ("x", "y", "z", "-x", "-y", "-z", "rx", "ry", "rz", "-rx", "-ry", "-rz", "")
+
+
+class Dof(NamedTuple):
+    """A degree of freedom of a test: the number of its point and one of DIRECTIONS ("" where none is stated)."""
+
+    point: int
+    direction: str
+
+    def __str__(self) -> str:
+        return f"{self.point}{self.direction if self.direction.startswith('-') else f'+{self.direction}'}"
+
+    def axis(self) -> Array:
+        """Unit vector of the direction (3,). InputError for rotations and where no direction is stated."""
+        sign, name = (-1.0, self.direction[1:]) if self.direction.startswith("-") else (1.0, self.direction)
+        if name not in AXES:
+            raise InputError(
+                f"point {self.point} has the direction {self.direction!r}, which is no translation; give x, y or z, for "
+                'example .directed("z"), or on the command line --direction z'
+            )
+        return sign * np.array(AXES[name])
+
+
+def dofs(pairs: object) -> tuple[Dof, ...]:
+    """Check (point, direction) pairs. InputError where a direction is none of DIRECTIONS or a pair stands twice."""
+    out = []
+    for pair in pairs:  # type: ignore[attr-defined]
+        point, direction = pair
+        if direction not in DIRECTIONS:
+            raise InputError(f"direction {direction!r} of point {point}: use one of {', '.join(map(repr, DIRECTIONS))}")
+        out.append(Dof(int(point), direction))
+    if len(set(out)) < len(out):
+        twice = next(d for d in out if out.count(d) > 1)
+        raise InputError(f"the degree of freedom {twice} stands twice; give each point and direction once")
+    return tuple(out)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FRF:
+    """Frequency response functions from inputs to outputs.
+
+    frequency [Hz] (f,), rising; values (o, i, f) complex in the SI unit of `quantity` (receptance m/N, mobility
+    m/(N s), accelerance m/(N s2)), NaN where a pair of output and input was not measured; outputs (o,) and inputs (i,):
+    degrees of freedom as (point, direction); coherence (o, i, f) [-] or None; positions: point -> x, y, z [m];
+    window_decay [1/s]: decay of an exponential window that the records were multiplied by, which adds to the damping.
+    Made from plain arrays; raises InputError where their shapes do not fit.
+    """
+
+    frequency: Array
+    values: Complex
+    outputs: tuple[Dof, ...]
+    inputs: tuple[Dof, ...]
+    quantity: str
+    coherence: Array | None = None
+    positions: Mapping[int, Position] = field(default_factory=dict)
+    window_decay: float = 0.0
+    source: str = ""
+    warnings: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.quantity not in QUANTITIES:
+            raise InputError(f"quantity {self.quantity!r}: use one of {', '.join(QUANTITIES)}")
+        object.__setattr__(self, "outputs", dofs(self.outputs))
+        object.__setattr__(self, "inputs", dofs(self.inputs))
+        frequency, values = np.array(self.frequency, float), np.array(self.values, complex)
+        shape = (len(self.outputs), len(self.inputs), frequency.size)
+        if frequency.ndim != 1 or values.shape != shape:
+            raise InputError(f"values have the shape {values.shape}; {len(self.outputs)} outputs, {len(self.inputs)} inputs and "
+                             f"{frequency.size} frequencies need {shape}")  # fmt: skip
+        if frequency.size < 2 or not np.all(np.diff(frequency) > 0) or not frequency[0] >= 0:
+            raise InputError("the frequencies of an FRF must be two or more, not negative, and rise")
+        measured = np.isfinite(values)
+        if np.any(measured.any(axis=2) != measured.all(axis=2)) or not measured.any():
+            raise InputError("an FRF holds NaN at some of its frequencies only; leave such lines out, or the whole FRF")
+        if self.coherence is not None and np.shape(self.coherence) != shape:
+            raise InputError(
+                f"coherence has the shape {np.shape(self.coherence)}; it needs that of the values, {shape}"
+            )
+        for name, array in (("frequency", frequency), ("values", values)):
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+
+    @property
+    def unit(self) -> str:
+        """SI unit of the values."""
+        return UNITS[self.quantity]
+
+    @property
+    def step(self) -> float:
+        """Spacing of the frequency lines [Hz]. InputError where they are not evenly spaced."""
+        gaps = np.diff(self.frequency)
+        if np.ptp(gaps) > 1e-3 * gaps.mean():
+            raise InputError(
+                f"the frequency lines are {gaps.min():g} to {gaps.max():g} Hz apart; this needs evenly spaced lines"
+            )
+        return float(gaps.mean())
+
+    @property
+    def measured(self) -> list[tuple[int, int]]:
+        """Indices (output, input) of the pairs that were measured."""
+        return [(int(o), int(i)) for o, i in np.argwhere(np.isfinite(self.values[:, :, 0]))]
+
+    def rows(self) -> Complex:
+        """Values of the measured pairs, one row each (n, f)."""
+        return np.array([self.values[pair] for pair in self.measured])
+
+    def to(self, quantity: str) -> Self:
+        """The same functions as another quantity; a line at 0 Hz is left out where it would be divided by zero."""
+        if quantity not in QUANTITIES:
+            raise InputError(f"quantity {quantity!r}: use one of {', '.join(QUANTITIES)}")
+        power = QUANTITIES[quantity] - QUANTITIES[self.quantity]
+        frf = self.band(np.nextafter(0, 1), np.inf) if power < 0 and self.frequency[0] == 0 else self
+        factor = (2j * np.pi * frf.frequency) ** power
+        return replace(frf, values=frf.values * factor, quantity=quantity)
+
+    def directed(self, direction: str) -> Self:
+        """The same functions, with this direction where the test states none."""
+        outputs, inputs = (
+            tuple(d if d.direction else Dof(d.point, direction) for d in row) for row in (self.outputs, self.inputs)
+        )
+        return replace(self, outputs=outputs, inputs=inputs)
+
+    def band(self, low: float, high: float) -> Self:
+        """Only the lines from low to high [Hz]. InputError where fewer than two are left."""
+        keep = (self.frequency >= low) & (self.frequency <= high)
+        if keep.sum() < 2:
+            raise InputError(f"no two lines between {low:g} and {high:g} Hz; the FRFs reach from {self.frequency[0]:g} to "
+                             f"{self.frequency[-1]:g} Hz")  # fmt: skip
+        coherence = None if self.coherence is None else self.coherence[:, :, keep]
+        return replace(self, frequency=self.frequency[keep], values=self.values[:, :, keep], coherence=coherence)

@@ -1,0 +1,342 @@
+"""Universal files (UFF, UNV) of modal tests, through pyuff: data sets 15, 55, 58, 58b, 82, 151, 164, 2411, 2412, 2420.
+
+The formats: University of Cincinnati, Structural Dynamics Research Lab, https://www.ceas3.uc.edu/sdrluff.
+"""
+
+import re
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.errors import InputError, ReadError
+from faying.measured.frf import FRF, Dof, Position
+from faying.measured.modes import ModeSet
+from faying.measured.uff_units import FileUnits, frf_scale
+from faying.units import scale
+
+Array = NDArray[np.float64]
+KINDS = {0: "general", 1: "time response", 2: "auto spectrum", 3: "cross spectrum", 4: "FRF", 5: "transmissibility",
+         6: "coherence", 7: "auto correlation", 8: "cross correlation", 9: "power spectral density",
+         10: "energy spectral density", 12: "spectrum", 13: "cumulative distribution", 22: "impulse response"}  # fmt: skip
+DIRECTION_CODES = {0: "", 1: "x", 2: "y", 3: "z", 4: "rx", 5: "ry", 6: "rz"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Function:
+    """One function of a data set 58 as it stands in the file: kind, abscissa, values, places, label of its unit."""
+
+    kind: str
+    x: Array
+    values: NDArray[Any]
+    output: Dof
+    input: Dof
+    unit: str
+    header: Mapping[str, Any]
+    where: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class UniversalFile:
+    """What a universal file holds. positions [m]; lines: pairs of points to draw; kinds: numbers
+    of the data sets; warnings: sentences for the reader."""
+
+    source: str
+    title: str = ""
+    units: FileUnits | None = None
+    functions: tuple[Function, ...] = ()
+    shapes: tuple[Mapping[str, Any], ...] = ()
+    positions: Mapping[int, Position] = field(default_factory=dict)
+    rotations: Mapping[int, Array] = field(default_factory=dict)
+    lines: tuple[tuple[int, int], ...] = ()
+    kinds: tuple[int, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    def frf(self, *, quantity: str | None = None) -> FRF:
+        """All FRFs as one object in SI, with the coherence of the same pairs.
+
+        quantity: what was measured, where the file does not say it. Raises ReadError where there is no FRF, the
+        quantities or the frequency lines differ, or the directions of a point are turned against the axes.
+        """
+        found = [f for f in self.functions if f.kind == "FRF"]
+        if not found:
+            held = ", ".join(sorted({f.kind for f in self.functions})) or f"data sets {', '.join(map(str, self.kinds))}"
+            raise ReadError(f"{self.source}: no FRF (function type 4) in it, only {held}; export the FRFs of the test")
+        notes: list[str] = list(self.warnings)
+        nameless = len({(f.output, f.input) for f in found}) < len(found) and all(f.output.point == 0 for f in found)
+        if nameless:
+            notes.append(f"{self.source}: the FRFs name no points; they are numbered in their order")
+        pairs: dict[tuple[Dof, Dof], tuple[str, NDArray[Any]]] = {}
+        for n, f in enumerate(found):
+            kind, factor, note = frf_scale(dict(f.header), self.units, quantity, f.where)
+            if note and note.partition(": ")[2] not in {w.partition(": ")[2] for w in notes}:
+                notes.append(note)
+            pair = (Dof(n + 1, f.output.direction) if nameless else self._straight(f.output), self._straight(f.input))
+            if not np.array_equal(f.x, found[0].x):
+                raise ReadError(
+                    f"{f.where}: its lines are not those of the first FRF; split the file into tests of one set of lines"
+                )
+            if pair in pairs:
+                notes.append(f"{f.where}: {pair[0]} / {pair[1]} stands twice; the first is taken")
+            else:
+                pairs[pair] = (kind, np.asarray(f.values, complex) * factor)
+        kinds = {kind for kind, _ in pairs.values()}
+        if len(kinds) > 1:
+            raise ReadError(
+                f"{self.source}: {' and '.join(sorted(kinds))} stand together; split the file, or convert them"
+            )
+        outputs = tuple(dict.fromkeys(o for o, _ in pairs))
+        inputs = tuple(dict.fromkeys(i for _, i in pairs))
+        values = np.full((len(outputs), len(inputs), len(found[0].x)), np.nan + 0j)
+        for (o, i), (_, data) in pairs.items():
+            values[outputs.index(o), inputs.index(i)] = data
+        return FRF(frequency=found[0].x, values=values, outputs=outputs, inputs=inputs, quantity=kinds.pop(),
+                   coherence=self._coherence(outputs, inputs, values.shape), positions=self.positions, source=self.source,
+                   warnings=tuple(dict.fromkeys(notes)))  # fmt: skip
+
+    def _coherence(self, outputs: tuple[Dof, ...], inputs: tuple[Dof, ...], shape: tuple[int, ...]) -> Array | None:
+        out = np.full(shape, np.nan)
+        for f in self.functions:
+            if f.kind == "coherence" and f.output in outputs and f.input in inputs and f.values.size == shape[2]:
+                out[outputs.index(f.output), inputs.index(f.input)] = f.values.real
+        return None if np.isnan(out).all() else out
+
+    def _straight(self, dof: Dof) -> Dof:
+        """The degree of freedom in the file's own axes, which is possible where the point's axes are a permutation."""
+        turn = self.rotations.get(dof.point)
+        if turn is None or dof.direction == "" or dof.direction.startswith(("r", "-r")):
+            return dof
+        axis = dof.axis() @ turn
+        if np.abs(axis).max() < 1 - 1e-6:
+            raise ReadError(f"{self.source}: the directions of point {dof.point} are turned against the axes of the file "
+                            "(data set 2420); export the FRFs in global directions")  # fmt: skip
+        k = int(np.abs(axis).argmax())
+        return Dof(dof.point, ("-" if axis[k] < 0 else "") + "xyz"[k])
+
+    def modes(self) -> ModeSet:
+        """The mode shapes of data sets 55, at the degrees of freedom that move in at least one mode.
+
+        Real modes carry a viscous damping ratio (loss factor twice that) or a hysteretic one (taken as the loss
+        factor); complex modes their pole. Raises ReadError where there is no mode shape or the modes are known at
+        different points.
+        """
+        if not self.shapes:
+            raise ReadError(
+                f"{self.source}: no mode shape (data set 55) in it; identify the modes first: faying test {self.source}"
+            )
+        shapes = sorted(self.shapes, key=lambda s: float(s["frequency"]))
+        points = shapes[0]["points"]
+        if any(not np.array_equal(s["points"], points) for s in shapes):
+            raise ReadError(
+                f"{self.source}: its mode shapes are known at different points; export all modes at the same points"
+            )
+        values = np.stack([s["values"] for s in shapes])  # (m, p, 3)
+        for row, point in enumerate(points):
+            if int(point) in self.rotations:
+                values[:, row] = values[:, row] @ self.rotations[int(point)]
+        size = np.abs(values).max(axis=(1, 2), keepdims=True)
+        moves = np.argwhere((np.abs(values) > 1e-9 * size).any(axis=0))
+        if not len(moves):
+            raise ReadError(f"{self.source}: nothing moves in its mode shapes; export them again")
+        return ModeSet(
+            frequencies=np.array([s["frequency"] for s in shapes]),
+            loss_factors=np.array([s["loss"] for s in shapes]),
+            shapes=values[:, moves[:, 0], moves[:, 1]],
+            dofs=tuple(Dof(int(points[p]), "xyz"[k]) for p, k in moves),
+            frequency_interval=_spans(shapes, "frequency_interval"),
+            loss_interval=_spans(shapes, "loss_interval"),
+            lines=self.lines,
+            positions=self.positions,
+            source=self.source,
+        )
+
+
+def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFile:
+    """Read a universal file, ascii or binary.
+
+    length_unit: of the positions, where the file states no units (data set 164). Raises ReadError where the file is missing,
+    no universal file, cut short, or a data set cannot be read.
+    """
+    file = Path(path)
+    sets = _sets(file)
+    units = FileUnits.of(sets, str(file))
+    notes: list[str] = []
+    if length_unit is not None and units is not None:
+        raise InputError(
+            f"{file}: the file states its units ({units.words.strip() or 'data set 164'}); leave out length_unit"
+        )
+    metre = scale(length_unit, "m", name="length_unit") if length_unit else 1 / units.length if units else 1.0
+    systems = {label: np.asarray(matrix) for s in sets if s["type"] == 2420
+               for label, matrix in zip(s["CS_sys_labels"], s["CS_matrices"], strict=True)}  # fmt: skip
+    kinds = {
+        label: kind
+        for s in sets
+        if s["type"] == 2420
+        for label, kind in zip(s["CS_sys_labels"], s["CS_types"], strict=True)
+    }
+    positions, rotations = _points(file, sets, systems, kinds, metre)
+    if positions:
+        size = float(np.linalg.norm(np.ptp(np.array(list(positions.values())), axis=0)))
+        if units is None and length_unit is None:
+            notes.append(
+                f"{file}: the file states no unit of length; metres are assumed (the points span {size:.3g} m)"
+            )
+        if size > 100:
+            notes.append(
+                f'{file}: the points span {size:.3g} m; are they in mm? Then give length_unit="mm" (--length-unit mm)'
+            )
+    return UniversalFile(
+        source=str(file),
+        title=next((s["model_name"] for s in sets if s["type"] == 151), ""),
+        units=units,
+        functions=tuple(_function(s, f"{file}, data set {s['number']}") for s in sets if s["type"] == 58),
+        shapes=tuple(_shape(s, f"{file}, data set {s['number']}") for s in sets if s["type"] == 55),
+        positions=positions,
+        rotations=rotations,
+        lines=_lines(sets),
+        kinds=tuple(s["type"] for s in sets),
+        warnings=tuple(notes),
+    )
+
+
+def _sets(file: Path) -> list[dict[str, Any]]:
+    """All data sets that pyuff can read, each with its number in the file."""
+    import pyuff
+
+    if not file.is_file():
+        raise ReadError(f"{file}: no such file")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            uff = pyuff.UFF(str(file))
+            kinds = [int(k) for k in uff.get_set_types()]
+    except Exception as fault:  # pyuff raises nothing more precise
+        raise ReadError(f"{file}: cannot be read ({fault})") from None
+    if not kinds:
+        raise ReadError(
+            f"{file}: no universal file: it holds no data set between lines of -1. Export the test as UFF or UNV"
+        )
+    if not file.read_bytes().rstrip(b"\x00\x1a \t\r\n").endswith(b"    -1"):
+        raise ReadError(
+            f"{file}: it ends in the middle of data set {len(kinds) + 1}; it was cut short, export or copy it again"
+        )
+    out = []
+    for number, kind in enumerate(kinds):
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                data = uff.read_sets(number)
+        except Exception as fault:
+            raise ReadError(
+                f"{file}: data set {number + 1} (type {kind}) cannot be read ({fault}); it is damaged or of a variant that pyuff "
+                "does not know: export it again, as ascii where it is binary"
+            ) from None
+        out.append({**data, "type": kind, "number": number + 1})
+    return out
+
+
+def _dof(point: int, code: int) -> Dof:
+    name = DIRECTION_CODES.get(abs(code), "")
+    return Dof(point, f"-{name}" if code < 0 and name else name)
+
+
+def _function(data: dict[str, Any], where: str) -> Function:
+    x, values = np.asarray(data["x"], float), np.asarray(data["data"])
+    count = data["num_pts"]
+    if len(values) < count:
+        raise ReadError(f"{where}: {len(values)} of the {count} values that its header announces; the file is damaged or was cut "
+                        "short, export it again")  # fmt: skip
+    if not np.all(np.isfinite(values[:count])):
+        raise ReadError(f"{where}: it holds NaN; measure or export that function again")
+    return Function(
+        kind=KINDS.get(data["func_type"], f"function of type {data['func_type']}"),
+        x=x[:count],
+        values=values[:count],
+        output=_dof(data["rsp_node"], data["rsp_dir"]),
+        input=_dof(data["ref_node"], data["ref_dir"]),
+        unit=data["ordinate_axis_units_lab"],
+        header={k: v for k, v in data.items() if k not in ("x", "data")},
+        where=where,
+    )
+
+
+def _shape(data: dict[str, Any], where: str) -> dict[str, Any]:
+    """Frequency [Hz], loss factor, points (p,) and motion (p, 3) of one mode."""
+    kind = data["analysis_type"]
+    if kind not in (2, 3, 7):
+        raise ReadError(f"{where}: data at nodes of analysis type {kind}, which is no mode; modes are types 2, 3 and 7")
+    points = np.asarray(data["node_nums"], int)
+    parts = [np.asarray(data[r]) for r in ("r1", "r2", "r3")]
+    if any(len(p) != len(points) for p in parts):
+        raise ReadError(f"{where}: {len(points)} points but {[len(p) for p in parts]} values in x, y, z; export translations in three "
+                        "directions")  # fmt: skip
+    if kind == 2:
+        frequency, loss = data["freq"], 2 * data["modal_damp_vis"] or data["modal_damp_his"]
+    else:
+        pole = data["eig"]
+        frequency, loss = abs(pole) / (2 * np.pi), -2 * pole.real / abs(pole) if abs(pole) else 0.0
+    spans = {key: re.fullmatch(r"95 % of [a-z ]+: (\S+) \.\. (\S+)", data[key].strip()) for key in ("id2", "id3")}
+    return {
+        "frequency_interval": _span(spans["id2"]),
+        "loss_interval": _span(spans["id3"]),
+        "frequency": float(frequency),
+        "loss": float(loss),
+        "points": points,
+        "values": np.stack(parts, axis=1),
+    }
+
+
+def _spans(shapes: list[Mapping[str, Any]], name: str) -> Array | None:
+    """Intervals of all modes (m, 2), or None where one of them states none."""
+    spans = np.array([s[name] for s in shapes], float)
+    return spans if np.all(np.isfinite(spans)) else None
+
+
+def _span(found: re.Match[str] | None) -> tuple[float, float]:
+    try:
+        return (float(found[1]), float(found[2])) if found else (np.nan, np.nan)
+    except ValueError:
+        return np.nan, np.nan
+
+
+def _points(
+    file: Path, sets: list[dict[str, Any]], systems: dict[int, Array], kinds: dict[int, int], metre: float
+) -> tuple[dict[int, Position], dict[int, Array]]:
+    """Positions [m] by point, and for points whose directions are turned the rows of their axes."""
+    positions: dict[int, Position] = {}
+    rotations: dict[int, Array] = {}
+    for s in sets:
+        if s["type"] not in (15, 2411):
+            continue
+        for k, label in enumerate(np.asarray(s["node_nums"], int)):
+            own, motion = int(s["def_cs"][k]), int(s["disp_cs"][k])
+            if any(kinds.get(c, 0) != 0 for c in (own, motion)):
+                raise ReadError(
+                    f"{file}: point {label} is given in a cylindrical or spherical system; export it in Cartesian ones"
+                )
+            xyz = np.array([s["x"][k], s["y"][k], s["z"][k]], float)
+            if own in systems:  # rows 1 to 3: the axes, row 4: the origin
+                xyz = xyz @ systems[own][:3] + systems[own][3]
+            positions[int(label)] = tuple(float(v) * metre for v in xyz)  # type: ignore[assignment]
+            if motion in systems and not np.allclose(systems[motion][:3], np.eye(3), atol=1e-9):
+                rotations[int(label)] = systems[motion][:3]
+    return positions, rotations
+
+
+def _lines(sets: list[dict[str, Any]]) -> tuple[tuple[int, int], ...]:
+    """Pairs of points to join in a drawing: trace lines (82; 0 lifts the pen) and the sides of elements (2412)."""
+    out: dict[tuple[int, int], None] = {}
+    for s in sets:
+        if s["type"] == 82:
+            nodes = np.asarray(s["nodes"], int)
+            out |= {(int(a), int(b)): None for a, b in pairwise(nodes) if a and b}
+        for elements in (v for k, v in s.items() if s["type"] == 2412 and str(k).isdigit()):
+            for element in elements:
+                nodes = element["nodes_nums"]
+                out |= {(a, b): None for a, b in zip(nodes, [*nodes[1:], nodes[0]], strict=True) if a != b}
+    return tuple(out)
