@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -207,17 +208,17 @@ def _each(
         return
     if dask is not None:
         try:
-            from distributed import Client, as_completed
+            distributed: Any = import_module("distributed")
         except ImportError:
             raise InputError("--dask needs the package distributed: pip install 'faying[dask]'") from None
         try:
-            client = Client(dask, timeout="10s")
+            client = distributed.Client(dask, timeout="10s")
         except OSError as fault:
             raise InputError(f"no Dask scheduler answers at {dask} ({fault}); start one with: dask scheduler") from None
         with client:
             there = client.scatter((model, recipe), broadcast=True)
             futures = {client.submit(_evaluate_there, there, list(indices)): indices for indices in chunks}
-            for future in as_completed(futures):
+            for future in distributed.as_completed(futures):
                 yield futures[future], future.result()
         return
     from joblib import Parallel, delayed
