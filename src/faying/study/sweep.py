@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -30,6 +30,7 @@ CHUNK = 25  # evaluations between two writings to disk
 FAR = 60.0
 BEYOND = 0.1  # share of the contact beyond the end of the law up to which a point counts
 SEED = 20241121
+LATELY = 32  # laws kept with their tables
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,15 +39,26 @@ class Recipe:
 
     grid: Grid
     pairs: tuple[tuple[Material, Material], ...]
+    # laws made lately, with their tables: along an axis of preload they stay the same
+    _lately: dict[tuple[Any, ...], Seat] = field(default_factory=dict, repr=False, compare=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"grid": self.grid, "pairs": self.pairs, "_lately": {}}
 
     def seats(self, index: int) -> tuple[list[Seat], Array, list[float | None]]:
         """Law of each joint, force of each bolt [N] and friction of each joint at one point of the grid."""
         point = self.grid.point(index)
         seats = []
-        for joint, surface, (rough, other) in zip(point.study.joints, point.surfaces, self.pairs, strict=True):
+        for number, (joint, surface) in enumerate(zip(point.study.joints, point.surfaces, strict=True)):
             spec = joint.law or point.study.law
-            law = law_of(spec, surface, ContactPair(rough, RIGID if spec.counterbody == "rigid" else other))
-            seats.append(Seat(law=law, tangential=joint.tangential, nu=rough.nu))
+            key = (number, repr(spec), surface.D, surface.G, surface.scan_area)
+            if key not in self._lately:
+                rough, other = self.pairs[number]
+                law = law_of(spec, surface, ContactPair(rough, RIGID if spec.counterbody == "rigid" else other))
+                if len(self._lately) >= LATELY:
+                    self._lately.pop(next(iter(self._lately)))
+                self._lately[key] = Seat(law=law, tangential=joint.tangential, nu=rough.nu)
+            seats.append(self._lately[key])
         return seats, point.forces, [joint.friction for joint in point.study.joints]
 
 
