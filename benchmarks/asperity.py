@@ -17,6 +17,8 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
 
 from faying import Material, solve_asperity  # noqa: E402  the thread limits are read when NumPy is loaded
+from faying.fe.asperity import AsperityResult  # noqa: E402
+from faying.fe.asperity.cases import AsperityCase, solve_cases  # noqa: E402
 from faying.fe.solve import available  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "fe"))
@@ -40,6 +42,18 @@ def table_1(elements: int, solver: str) -> list[float]:
     return seconds
 
 
+def runner(elements: int, processes: int) -> None:
+    cases = [AsperityCase(R=R * 1e-6, h_a=h_a * 1e-9, cap=material(ratio * 100e9), substrate=material(100e9),
+                          displacement=(h_a * 1e-10,), elements=elements)
+             for ratio in (1.0, 1.5, 2.0) for R, h_a in CAPS]  # fmt: skip
+    before, start = os.times(), time.perf_counter()
+    found = solve_cases(cases, processes=processes)
+    after, wall = os.times(), time.perf_counter() - start
+    assert all(isinstance(result, AsperityResult) for result in found)
+    cpu = after.children_user + after.children_system - before.children_user - before.children_system
+    print(f"all {len(cases)} rows by the runner, {processes} processes: {wall:.0f} s on the clock, {cpu:.0f} s of CPU")
+
+
 def against_calculix(elements: int, repeats: int = 3) -> None:
     import calculix
 
@@ -51,7 +65,7 @@ def against_calculix(elements: int, repeats: int = 3) -> None:
             touching, force = calculix.history(model, 0.1 * h_a, round(1.5 * elements))
             ours.append(time.process_time() - start)
             with tempfile.TemporaryDirectory() as folder:
-                seen = calculix.run(Path(folder), model, touching, element="CAX4")
+                seen = calculix.run(Path(folder), model, touching, element="CAX4", increments=1)
             theirs.append(seen.seconds)
         a, b = statistics.median(ours), statistics.median(theirs)
         print(f"  R {R * 1e6:.0f} um, Ea/Eb {ratio}: {len(model.mesh.nodes)} nodes, force over CalculiX's"
@@ -69,6 +83,7 @@ def main() -> None:
         print(
             f"  a row: median {statistics.median(seconds):.2f} s, most {max(seconds):.2f} s; all {sum(seconds):.1f} s"
         )
+    runner(given.elements, 2)
     if shutil.which("ccx"):
         print("CalculiX, same mesh and steps")
         against_calculix(given.calculix)

@@ -1,7 +1,7 @@
 """A sphere pressed to x = 110: load, area and residual displacement beside the published laws, as a figure.
 
 Run `python benchmarks/asperity_sphere.py FIGURE.png`: differences in per cent over x, for a perfectly plastic sphere
-and for one that hardens by 2 % of E.
+and for tangent moduli of 1 and 2 % of E.
 """
 
 import sys
@@ -22,7 +22,7 @@ def main(path: str, elements: int = 32) -> None:
     pair = ContactPair(STEEL, RIGID)
     ke, jg = KogutEtsion(R=1.0, pair=pair), JacksonGreen(R=1.0, pair=pair)
     fig = figure(3, width=4.4, height=3.6)
-    for hardening, style in ((0.0, "-"), (0.02, "--")):
+    for hardening, style in ((0.0, "-"), (0.01, "--"), (0.02, ":")):
         rows = []
         for x in X:
             d = x * ke.critical

@@ -2,7 +2,9 @@
 
 Run `python benchmarks/asperity_substrate.py`. A sphere's computed force F(delta; E) is the measuring stick. A cap on a
 substrate is compared with: the sphere at delta_a of eq. (1), delta = delta_a (1 + (c/sqrt 2) Er sqrt(delta_a/h_a));
-and the sphere at delta with 1/E = x/Ea + (1 - x)/Eb, x = 1 - exp(-alpha h_a/sqrt(R delta)).
+and the sphere at delta with 1/E = x/Ea + (1 - x)/Eb, x = 1 - exp(-alpha h_a/sqrt(R delta)). The second table goes beyond
+the fit: flatter caps, Ea/Eb = 4, delta up to h_a; there a cap differs from a sphere also at Ea = Eb, so the measuring
+stick is the force over that of the same cap with Ea = Eb.
 """
 
 import os
@@ -13,6 +15,8 @@ from faying import RIGID, Material
 from faying.fe.asperity.cases import AsperityCase, solve_cases
 
 RATIOS = (1.0, 1.5, 2.0)
+WIDER_RATIOS = (1.0, 1.5, 2.0, 4.0)
+WIDER_CAPS = ((500e-6, 0.1e-6), (100e-6, 0.1e-6), (15e-6, 0.1e-6), (20e-6, 0.75e-6), (40e-6, 3e-6))
 CAPS = ((15e-6, 0.1e-6), (20e-6, 0.75e-6), (40e-6, 3e-6))
 
 
@@ -36,15 +40,21 @@ def computed(elements: int) -> tuple[list[AsperityCase], list]:
 
 
 class Sphere:
-    """Force over R^2 of a sphere at delta/R for any modulus between those computed: ln F quadratic in 1/E."""
+    """Force over R^2 of a sphere at delta/R for any modulus between those computed: a polynomial in 1/E for ln F.
 
-    def __init__(self, histories: list) -> None:
-        self.histories = histories
+    histories: for each modulus, runs to rising displacements; the shortest run that reaches delta is read.
+    """
+
+    def __init__(self, ratios: tuple[float, ...], histories: list[list]) -> None:
+        self.ratios, self.histories = ratios, histories
 
     def force(self, delta: np.ndarray, ratio: np.ndarray) -> np.ndarray:
-        nodes, total = [1 / e for e in RATIOS], 0.0
-        for i, history in enumerate(self.histories):
-            value = np.log(np.interp(delta, history.displacement, history.force))
+        nodes, total = [1 / e for e in self.ratios], 0.0
+        for i, runs in enumerate(self.histories):
+            value = np.full(np.shape(delta), np.nan)
+            for run in runs:
+                read = np.interp(np.log(delta), np.log(run.displacement), np.log(run.force), right=np.nan)
+                value = np.where(np.isnan(value), read, value)
             for j, other in enumerate(nodes):
                 if j != i:
                     value = value * (1 / ratio - other) / (nodes[i] - other)
@@ -65,7 +75,7 @@ def main(elements: int = 40) -> None:
     from scipy.optimize import least_squares
 
     cases, results = computed(elements)
-    sphere = Sphere([r.history for r in results[: len(RATIOS)]])
+    sphere = Sphere(RATIOS, [[r.history] for r in results[: len(RATIOS)]])
     rows = []
     for case, result in zip(cases[len(RATIOS) :], results[len(RATIOS) :], strict=True):
         history = result.history
@@ -97,7 +107,44 @@ def main(elements: int = 40) -> None:
               f" rms at Ea = Eb {100 * np.sqrt(np.mean(error[same] ** 2)):5.1f} %")  # fmt: skip
 
 
+def wider(alpha: float, elements: int = 32) -> None:
+    """How far the effective modulus holds beyond the caps that it was fitted to."""
+    tops = (2e-5, 5e-4, 0.076)
+    spheres = [AsperityCase(R=1.0, h_a=1.0, cap=material(e), substrate=RIGID, foot="sliding", displacement=(d,),
+                            elements=elements) for e in WIDER_RATIOS for d in tops]  # fmt: skip
+    keys = [(R, h, top, e) for R, h in WIDER_CAPS for top in (0.1, 0.6, 1.0) for e in WIDER_RATIOS]
+    caps = [AsperityCase(R=R, h_a=h, cap=material(e), substrate=material(1.0), displacement=(top * h,),
+                         elements=elements) for R, h, top, e in keys]  # fmt: skip
+    found = solve_cases(spheres + caps, progress=lambda done: print(f"{done} of {len(spheres + caps)}", end="\r"))
+    runs = [r.history for r in found]
+    n = len(tops)
+    sphere = Sphere(WIDER_RATIOS, [runs[i * n : (i + 1) * n] for i in range(len(WIDER_RATIOS))])
+    by_key = dict(zip(keys, runs[len(spheres) :], strict=True))
+    print("beyond the fit: rms and largest error of F over that with Ea = Eb, in bands of delta/h_a, delta/h_a > 0.01")
+    for R, h in WIDER_CAPS:
+        for e in WIDER_RATIOS[1:]:
+            d, error = [], []
+            for top in (0.1, 0.6, 1.0):
+                run, own = by_key[R, h, top, e], by_key[R, h, top, 1.0]
+                kept = (run.displacement > 0.15 * top * h) & (run.displacement > 0.01 * h)
+                here = run.displacement[kept]
+                x = 1 - np.exp(-alpha * h / np.sqrt(R * here))
+                ratio = sphere.force(here / R, 1 / (x / e + 1 - x)) / sphere.force(here / R, np.ones_like(here))
+                same = np.exp(np.interp(np.log(here), np.log(own.displacement), np.log(own.force)))
+                d.append(here / h)
+                error.append(np.log(ratio * same / run.force[kept]))
+            at, miss = np.concatenate(d), np.concatenate(error)
+            text = ""
+            for low, high in ((0.01, 0.1), (0.1, 0.3), (0.3, 1.01)):
+                part = miss[(at > low) & (at <= high)]
+                text += (
+                    f"  {low:.2f}-{high:.1f}: {100 * np.sqrt(np.mean(part**2)):4.1f}, {100 * abs(part).max():4.1f} %"
+                )
+            print(f"h_a/R {h / R:.4f}  Ea/Eb {e:.1f} {text}")
+
+
 if __name__ == "__main__":
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ[name] = "1"
     main()
+    wider(0.453)

@@ -20,21 +20,12 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
 
 import numpy as np  # noqa: E402  the thread counts come first
+from self_affine import self_affine  # noqa: E402
 
 from faying.contact.halfspace import certify, solve_half_space  # noqa: E402
 
 WITNESS = Path(__file__).with_name("halfspace_witness.py")
 PEERS = {"tamaas": 1e-6, "contactmechanics": 1e-6, "aspher-periodic": 1e-7}
-
-
-def self_affine(n, seed=0, hurst=0.8, slope=0.1):
-    white = np.fft.rfft2(np.random.default_rng(seed).standard_normal((n, n)))
-    ky, kx = np.fft.fftfreq(n, 1 / n)[:, None], np.arange(n // 2 + 1)[None, :]
-    k = np.hypot(kx, ky)
-    k[0, 0] = np.inf
-    spectrum = np.where((k >= 4) & (k <= n / 8), white * k ** -(1 + hurst), 0)
-    dx, dy = (np.fft.irfft2(2j * np.pi * q * spectrum, s=(n, n)) for q in (kx, ky))
-    return np.fft.irfft2(spectrum, s=(n, n)) * slope / np.sqrt((dx**2 + dy**2).mean())
 
 
 def ours(h, pressure, hardness, repeats=3):

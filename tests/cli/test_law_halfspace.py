@@ -52,6 +52,16 @@ def test_the_half_space_alone_takes_the_scan(scan_file):
     assert np.all(np.diff(given["k_n"]) > 0)
 
 
+def test_what_the_scan_does_not_resolve_is_said_beside_the_numbers(scan_file):
+    words = "k_n changes by more than 10% on half the points each way"
+    both = [*scan_file, *STEEL, "--models", "jk,halfspace"]
+    assert words in run(*both).stdout
+    assert words in json.loads(run(*both, "--json").stdout)["laws"]["half-space"]["reasons"]
+    alone = run(*scan_file, *STEEL, "--model", "halfspace").stdout
+    assert words in alone
+    assert " *" in alone
+
+
 def test_a_contact_map_without_a_numerical_contact_is_refused(scan_file):
     with pytest.raises(InputError, match="put halfspace among --models"):
         run(*scan_file, *STEEL, "--models", "jk,gw", "--contact-map", "x.png")

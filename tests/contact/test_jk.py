@@ -397,7 +397,7 @@ def test_every_sign_of_leaving_the_ground_is_reported() -> None:
     ({"cutoff": 0.0}, "between 0 and 1"), ({"cutoff": 1.0}, "between 0 and 1"),
     ({"psi": 0.5}, "1 or more"), ({"psi": float("nan")}, "1 or more"),
     ({"substrate": 0.0}, "a share lies above 0"), ({"substrate": 1.2}, "a share lies above 0"),
-    ({"substrate": "other"}, '"exact" or a share'), ({"modulus_ratio": 0.0}, "positive"),
+    ({"substrate": "other"}, '"computed" or a share'), ({"modulus_ratio": 0.0}, "positive"),
     ({"shear_ratio": -0.1}, "0 or more"), ({"shear_ratio": 1.0}, "slips as a whole"),
     ({"shear_stress": -1.0}, "0 or more"), ({"shear_stress": 1e6, "shear_ratio": 0.1}, "give one of them"),
     ({"shear_ratio": 0.1, "pair": ContactPair(Material(name="m", E=1e9, nu=0.3, hardness=1e7, friction=0.0), RIGID)},

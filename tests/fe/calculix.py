@@ -2,11 +2,15 @@
 
 CalculiX gets, step by step, the heights of the nodes that touch the plane and finds everything else itself: plastic
 flow, reactions, and the heights of the free nodes, which tell whether the contact was the right one.
+
+Its CAX4 is the fully integrated element, without a mean dilatation, and it cuts our load steps in two unless told to
+take each in one increment; both change the force by up to 2 % on meshes of 8 to 16 elements over the contact radius.
+With `plain` elements on our side and one increment a step the two programs solve the same equations.
 """
 
 import os
 import subprocess
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -34,6 +38,7 @@ def history(model, displacement, steps):
 
 
 def table_1_model(R, h_a, ratio, elements, material):
+    """A row of Table 1, meshed more coarsely."""
     cap, below = material(100e9 * ratio), material(100e9)
     a = np.sqrt(2 * R * 0.1 * h_a / (1 + 0.24 * ratio))
     return build(R=R, h_a=h_a, materials=(cap, cap, below), hardening=(0.0,) * 3, rigid=False, sliding=False,
@@ -41,7 +46,15 @@ def table_1_model(R, h_a, ratio, elements, material):
                  solver=None)  # fmt: skip
 
 
-def deck(model, touching, *, element="CAX8R", large=False):
+def sphere_model(displacement, elements, material):
+    """Half of a sphere of 1 mm radius on a sliding foot, meshed for a contact at full plastic flow; all may yield."""
+    model = build(R=1e-3, h_a=1e-3, materials=(material(100e9),) * 3, hardening=(0.0,) * 3, rigid=True, sliding=True,
+                  contact_radius=float(np.sqrt(1.85 * 1e-3 * displacement)), elements=elements, domain=1.0,
+                  layer_thickness=0.0, solver=None)  # fmt: skip
+    return replace(model, reach=np.inf)
+
+
+def deck(model, touching, *, element="CAX8R", large=False, increments=2):
     """Write the input: lengths in um, stresses in MPa, so forces in uN."""
     mesh = model.mesh
     nodes = [tuple(p) for p in mesh.nodes * 1e6]
@@ -72,12 +85,19 @@ def deck(model, touching, *, element="CAX8R", large=False):
     r, z = np.array(nodes).T
     bottom, wall = np.flatnonzero(z < z.min() + 1e-9), np.flatnonzero(r > r.max() - 1e-9)
     lines += ["*BOUNDARY", *(f"{n + 1},1,1" for n in np.flatnonzero(r < 1e-12))]
-    lines += [f"{n + 1},1,2" for n in bottom] + [f"{n + 1},1,1" for n in np.setdiff1d(wall, bottom)]
+    bonded = bool(np.isin(2 * np.setdiff1d(bottom, np.flatnonzero(r < 1e-12)), model.held).all())
+    lines += [f"{n + 1},{1 if bonded else 2},2" for n in bottom]
+    lines += [f"{n + 1},1,1" for n in np.setdiff1d(wall, bottom)] if len(mesh.wall) else []
     top = {(int(a), int(b)) for a, b in zip(mesh.surface[:-1], mesh.surface[1:], strict=True)}
     lines += ["*NSET,NSET=TOP", *(f"{n + 1}," for n in [*mesh.surface[: 2 * len(touching[-1][1])]])]
     known = set()
     for d, held in touching:
-        lines += [f"*STEP,INC=500{',NLGEOM' if large else ''}", "*STATIC", "0.5,1.,1e-6,0.5", "*BOUNDARY"]
+        lines += [
+            f"*STEP,INC=500{',NLGEOM' if large else ''}",
+            "*STATIC",
+            f"{1 / increments},1.,1e-6,{1 / increments}",
+            "*BOUNDARY",
+        ]
         held = [int(n) for n in held]
         assert known <= set(held)
         known = set(held)
@@ -88,7 +108,11 @@ def deck(model, touching, *, element="CAX8R", large=False):
         if d == touching[-1][0]:
             lines += ["*NODE PRINT,NSET=TOP", "U", "*NODE PRINT,NSET=ALLTOP,TOTALS=YES", "RF"]
         lines.append("*END STEP")
-    everything = [*map(int, mesh.surface), *(middle[k] for k in middle if k in {(min(p), max(p)) for p in top})]
+    # a sphere's rim belongs to its foot: its reaction is not the plane's
+    everything = [
+        *(int(n) for n in np.setdiff1d(mesh.surface, bottom)),
+        *(middle[k] for k in middle if k in {(min(p), max(p)) for p in top}),
+    ]
     at = lines.index("*NSET,NSET=TOP")
     lines[at:at] = ["*NSET,NSET=ALLTOP", *(f"{n + 1}," for n in everything)]
     return "\n".join(lines) + "\n"

@@ -73,6 +73,11 @@ def test_faults(folder, changes, text):
         study(folder, **changes)
 
 
+@pytest.mark.parametrize("share", ["exact", "computed", 0.9])
+def test_what_the_substrate_takes(folder, share):
+    assert study(folder, law__substrate=share).law.options["substrate"] == share
+
+
 def test_all_faults_are_reported_in_one_go(folder):
     with pytest.raises(faying.InputError) as caught:
         study(folder, geometry__sice="3 mm", law__modle="jk", joint__0__name=3, surface__D=1.0, bolt__0__preload="4")

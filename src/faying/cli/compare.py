@@ -80,7 +80,8 @@ def document(inputs: Any, comparison: Any) -> dict[str, Any]:
         "surface": vars(inputs),
         "pressure": comparison.pressure.tolist(),
         "laws": {
-            name: {n: clean(v) for n, v in r.quantities().items()} | {"valid": r.valid.tolist()}
+            name: {n: clean(v) for n, v in r.quantities().items()}
+            | {"valid": r.valid.tolist(), "reasons": {k: m.tolist() for k, m in r.reasons.items() if m.any()}}
             for name, r in comparison.responses.items()
         },
         "largest over smallest": {q: clean(comparison.spread(q)) for q in quantities},
@@ -113,11 +114,25 @@ def table(inputs: Any, comparison: Any) -> str:
         spread = comparison.spread(quantity)
         lines.append(f"  {'max / min':<12}" + "".join(f"{spread[i]:>11.4g}" for i in shown))
     lines += ["", "* the model stands outside its ground (`faying models`); - outside what it covers"]
+    for name, response in comparison.responses.items():
+        lines += [f"  {name}: {reason}" for reason in told(response)]
     without = [n for n, r in comparison.responses.items() if r.k_n is None]
     if without:
         lines.append(f"without a stiffness of their own: {', '.join(without)}")
     lines += [f"left out: {name}: {why}" for name, why in comparison.left_out.items()]
     return "\n".join(lines)
+
+
+def told(response: Any) -> list[str]:
+    """Return why a response leaves its ground, with the pressures from and to; coverage is shown by - already."""
+    from faying.units import show as unit
+
+    lines = []
+    for reason, mask in response.reasons.items():
+        if mask.any() and not reason.startswith("pressure "):
+            p = response.pressure[mask]
+            lines.append(f"{reason}, at {unit(float(p.min()), 'Pa')} to {unit(float(p.max()), 'Pa')}")
+    return lines
 
 
 def csv(comparison: Any) -> str:

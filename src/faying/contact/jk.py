@@ -19,7 +19,9 @@ Where the print is ambiguous or wrong we read it so:
   reaches 1 under tau slips: it adds no tangential stiffness, and the response says so;
 - stiffness grows with load throughout for 2.1 <= D <= 2.9 while cutoff <= .01; with a cutoff of .1 it falls over part
   of the meso stage above D = 2.76, with .3 above D = 2.5: there the cut-off leaves too little of the elastic part;
-- asperities at hardness add no stiffness, normal or tangential, as printed (eqs. A8, A14).
+- asperities at hardness add no stiffness, normal or tangential, as printed (eqs. A8, A14);
+- substrate="computed" is not the paper's: the asperity takes all of delta with the effective modulus that finite
+  elements found (`substrate`); its k_n is d(force)/d(delta), its energies those of a sphere of that modulus.
 """
 
 from collections.abc import Sequence
@@ -34,10 +36,19 @@ from numpy.typing import ArrayLike
 from faying.contact.inputs import SurfaceInputs
 from faying.contact.islands import Array, Islands
 from faying.contact.law import ContactLaw, Parameter, Response, checked, require
-from faying.contact.substrate import SHAPE, WeightedIslands, asperity_share, substrate_share
+from faying.contact.substrate import (
+    MOST_RATIO,
+    SHAPE,
+    MixedIslands,
+    WeightedIslands,
+    asperity_share,
+    mixed_place,
+    substrate_share,
+)
 from faying.materials import ContactPair
 
 QUANTITIES = ("force", "area", "k_n", "k_t", "energy_n", "energy_t")
+SOFTNESS = {"force": 2, "area": 2, "k_n": 0, "k_t": 0, "energy_n": 4, "energy_t": 4}  # power of the compliance
 Term = tuple[float, float]  # coefficient and power of y
 
 
@@ -111,11 +122,13 @@ class JK(ContactLaw):
     D surface dimension, 2 < D < 3; G fractal roughness [m]; pair of materials; scan_area A0, the area that the scan
     covers and to which al' belongs [m2]; gamma frequency index; alpha elastic-plastic load index, 0 to 1; closure,
     loss and cutoff as in the module's text; substrate the share lam of the deformation that the asperity takes (a
-    constant), or "exact" for eq. (1) at every asperity with modulus_ratio E_asperity/E_substrate; shear_ratio
-    X = T/(mu F), 0 <= X < 1, or in its place shear_stress tau [Pa]; psi the domain extension (solved where None).
+    constant), "exact" for eq. (1) at every asperity, or "computed" for the effective modulus found by finite elements,
+    both with modulus_ratio E_asperity/E_substrate and the asperity's E in the pair; shear_ratio X = T/(mu F),
+    0 <= X < 1, or in its place shear_stress tau [Pa]; psi the domain extension (solved where None).
 
     Closure variable: the largest truncated area al' [m2]. Raises InputError for parameters out of these ranges.
-    Valid while real area <= 0.3, k_n below that of the bulk, al' <= al3', al1' < al2' < al3', 2.1 <= D <= 2.9.
+    Valid while real area <= 0.3, k_n below that of the bulk, al' <= al3', al1' < al2' < al3', 2.1 <= D <= 2.9; with
+    substrate="computed" also modulus_ratio 1 to 4 and h_a/R up to 0.075.
     """
 
     D: float
@@ -125,7 +138,7 @@ class JK(ContactLaw):
     gamma: float = 1.5
     alpha: float = 0.2
     closure: Literal["consistent", "printed"] = "consistent"
-    substrate: float | Literal["exact"] = 1.0
+    substrate: float | Literal["exact", "computed"] = 1.0
     cutoff: float = 0.01
     loss: Literal["held", "literal"] = "held"
     shear_ratio: float = 0.0
@@ -145,7 +158,9 @@ class JK(ContactLaw):
         "gamma": Parameter("", "frequency index of the surface", "above 1"),
         "alpha": Parameter("", "elastic-plastic load index", "0 up to 1"),
         "closure": Parameter("text", "exponents and borders of the elastic-plastic regime", "consistent or printed"),
-        "substrate": Parameter("", "share of the deformation that the asperity takes", "above 0 up to 1, or exact"),
+        "substrate": Parameter(
+            "", "share of the deformation that the asperity takes", "above 0 up to 1, exact or computed"
+        ),
         "cutoff": Parameter("", "least area that adds stiffness, over the smaller of a1c' and al'", "between 0 and 1"),
         "loss": Parameter("text", "loss factor beyond the small stage", "held or literal"),
         "shear_ratio": Parameter("", "tangential load over mu times normal load", "0 up to 1"),
@@ -182,8 +197,12 @@ class JK(ContactLaw):
         need(0 < self.modulus_ratio < np.inf, f"modulus_ratio = {self.modulus_ratio}; it must be positive")
         if isinstance(self.substrate, str):
             need(
-                self.substrate == "exact",
-                f'substrate = {self.substrate!r}; use "exact" or a share such as 0.95',
+                self.substrate in ("exact", "computed"),
+                f'substrate = {self.substrate!r}; use "exact", "computed" or a share such as 0.95',
+            )
+            need(
+                self.substrate == "exact" or self.modulus_ratio <= MOST_RATIO,
+                f'modulus_ratio = {self.modulus_ratio} with substrate="computed"; it goes up to {MOST_RATIO:g}',
             )
         else:
             need(0 < self.substrate <= 1, f"substrate = {self.substrate}; a share lies above 0 and up to 1")
@@ -208,6 +227,8 @@ class JK(ContactLaw):
     def _islands(self) -> Islands:
         if self.substrate == "exact":
             return WeightedIslands(self.D, self.psi, self.modulus_ratio)
+        if self.substrate == "computed":
+            return MixedIslands(self.D, self.psi, self.modulus_ratio)
         return Islands(self.D, self.psi)
 
     @cached_property
@@ -237,13 +258,16 @@ class JK(ContactLaw):
         x_p = self._regimes[0]
         if self.closure == "printed":
             reach = 1.0
-        elif isinstance(self.substrate, str):
+        elif self.substrate == "exact":
             reach = SHAPE * float(asperity_share(SHAPE, self.modulus_ratio))
         else:
-            reach = SHAPE * self.substrate
+            reach = SHAPE * (1.0 if self.substrate == "computed" else self.substrate)
         base = KH**2 / (2 ** (9 - 2 * D) * pi ** (D - 4) * self.pair.E_star**2 * log(self.gamma)) / reach
         log_al2 = (log(base) - 2 * (D - 2) * log(self.G)) / (2 - D)  # eqs. (26), (27)
         log_al1 = log_al2 - log(x_p) / (D - 2)
+        if isinstance(self._islands, MixedIslands) and self.closure == "consistent":
+            slopes = self._yield_strain * np.sqrt(np.array([x_p, 1.0]) / (2 * SHAPE))  # h_a/r_a there, without it
+            log_al1, log_al2 = (log_al1, log_al2) - 2 * self._islands.log_compliance(slopes) / (D - 2)
         al3 = self.scan_area * (3 - D) / self._islands.weight  # eq. (28)
         with np.errstate(over="ignore", under="ignore"):
             return float(np.exp(log_al1)), float(np.exp(log_al2)), al3
@@ -272,6 +296,9 @@ class JK(ContactLaw):
         elif self.substrate == "exact":
             first = substrate_share(d1c / h_a, self.modulus_ratio)
             second = substrate_share(x_p * d1c / h_a, self.modulus_ratio)
+        elif self.substrate == "computed":
+            first = mixed_place(1 / scale, self._slope(al), self.modulus_ratio)
+            second = mixed_place(x_p / scale, self._slope(al), self.modulus_ratio)
         else:
             first, second = 1 / scale, x_p / scale
         first, second = np.minimum(first, 1.0), np.minimum(second, 1.0)
@@ -291,9 +318,18 @@ class JK(ContactLaw):
                     lower = self.cutoff * upper
                 part = np.zeros_like(al)
                 for coefficient, power in getattr(regime, quantity):
-                    part = part + coefficient * scale**power * self._islands.total(power, lower, upper)
+                    part = part + coefficient * scale**power * self._total(quantity, power, lower, upper, al)
                 out[quantity].append(units[quantity] * part)
         return out
+
+    def _slope(self, al: Array) -> Array:
+        """h_a/r_a [-] of the caps."""
+        return self._cap(al)[0] / np.sqrt(al / pi)
+
+    def _total(self, quantity: str, power: float, lower: Array, upper: Array, al: Array) -> Array:
+        if not isinstance(self._islands, MixedIslands):
+            return self._islands.total(power, lower, upper)
+        return self._islands.mixed(power, SOFTNESS[quantity], lower, upper, self._slope(al), tangent=quantity == "k_n")
 
     def _shear(self, parts: dict[str, list[Array]]) -> list[Array]:
         """X = T/(mu F) of each regime, at most 1 (eq. A11)."""
@@ -353,6 +389,7 @@ class JK(ContactLaw):
                 "k_n above the stiffness of the bulk, 1.129 E*/sqrt(A0)": k_n > 2 / sqrt(pi * A0) * self.pair.E_star,
                 "al' above al3'": a > al3,
                 "the limits of the stages are not in the order al1' < al2' < al3'": flag | (not al1 < al2 < al3),
+                **(self._islands.ground(self._slope(a)) if isinstance(self._islands, MixedIslands) else {}),
                 "D outside 2.1 to 2.9": flag | (not 2.1 <= self.D <= 2.9),
                 "tau exceeds friction over the elastic or elastic-plastic asperities, which slip": flag
                 | ((shear[0] >= 1) | (shear[1] >= 1)),

@@ -60,7 +60,7 @@ def law_spec(table: Table) -> LawSpec:
     for key, choices in (("closure", ("consistent", "printed")), ("loss", ("held", "literal"))):
         if (chosen := table.text(key, None, choices)) is not None:
             options[key] = chosen
-    share = table.take("substrate", lambda v, name: v if v == "exact" else number(v, name), None)
+    share = table.take("substrate", lambda v, name: v if v in ("exact", "computed") else number(v, name), None)
     if share is not None:
         options["substrate"] = share
     model = table.take("model", _known_law, "jk")

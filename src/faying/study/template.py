@@ -53,7 +53,7 @@ model = "jk"                   # any name that `faying models` lists; all but jk
 closure = "consistent"         # or "printed": the numbers of the paper
 loss = "held"                  # or "literal"
 cutoff = 0.01                  # smallest asperity that counts for stiffness, as a share of a1c'
-substrate = 1.0                # share of the deformation that the asperity takes, or "exact"
+substrate = 1.0                # share of the deformation that the asperity takes, or "exact", "computed"
 counterbody = "part"           # or "rigid", as the paper has it
 
 [[joint]]

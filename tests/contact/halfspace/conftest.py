@@ -1,18 +1,14 @@
-import numpy as np
+import sys
+from pathlib import Path
+
 import pytest
 
+sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
 
-def self_affine(n: int, seed: int = 0, *, hurst: float = 0.8, slope: float = 0.1) -> np.ndarray:
-    """Random self-affine heights on a unit square, wave numbers 4 to n/8 per side, given rms slope."""
-    white = np.fft.rfft2(np.random.default_rng(seed).standard_normal((n, n)))
-    ky, kx = np.fft.fftfreq(n, 1 / n)[:, None], np.arange(n // 2 + 1)[None, :]
-    k = np.hypot(kx, ky)
-    k[0, 0] = np.inf
-    spectrum = np.where((k >= 4) & (k <= n / 8), white * k ** -(1 + hurst), 0)
-    dx, dy = (np.fft.irfft2(2j * np.pi * q * spectrum, s=(n, n)) for q in (kx, ky))
-    return np.fft.irfft2(spectrum, s=(n, n)) * slope / np.sqrt((dx**2 + dy**2).mean())
+from self_affine import self_affine
 
 
 @pytest.fixture(scope="session")
 def rough():
-    return self_affine
+    """Self-affine heights by side and seed."""
+    return lambda n, seed=0, **changes: self_affine(n, seed, **changes)

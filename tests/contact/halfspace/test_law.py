@@ -98,6 +98,19 @@ def test_too_few_points_and_closed_surfaces_are_flagged(rough):
     assert closed.area == 1
 
 
+def test_a_scan_that_does_not_resolve_its_stiffness_is_flagged(rough):
+    words = "k_n changes by more than 10% on half the points each way"
+    noise = SimpleNamespace(heights=np.random.default_rng(0).standard_normal((64, 64)) * 1e-6, spacing=(1e-6, 1e-6))
+    law = HalfSpace(noise, PAIR, points=4, lowest=20e6, highest=400e6)
+    pressure = np.geomspace(20e6, 400e6, 4)
+    change = np.array([law.resolution_error(float(p))["k_n"] for p in pressure])
+    said = law.at_pressure(pressure)
+    assert said.reasons[words].tolist() == (np.abs(change) > 0.1).tolist()
+    assert said.reasons[words].any()
+    smooth = HalfSpace(scan_of(rough, 256), PAIR, elastic=True, points=4, lowest=300e6, highest=900e6)
+    assert not smooth.at_pressure(400e6).reasons[words]
+
+
 def test_the_pair_enters_by_its_compliances():
     # two like bodies: half the modulus of one against a rigid plane, the same Poisson's ratio
     scan = SimpleNamespace(heights=np.eye(8), spacing=(1.0, 1.0))

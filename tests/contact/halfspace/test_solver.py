@@ -318,3 +318,24 @@ def test_bounds_that_vary_from_cell_to_cell():
     found = minimise(kernel, np.zeros(64), lower=-upper, upper=upper, mean=1.0, scale=1.0, tol=1e-10)
     assert found.x[:32] == pytest.approx(0.1)
     assert found.x.mean() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("n", "pressure", "area"), [(512, 0.002, 0.0468), (512, 0.01, 0.2082), (1024, 0.002, 0.0444), (1024, 0.01, 0.2040)]
+)
+def test_real_area_of_the_reference_maps(rough, n, pressure, area):
+    """Hurst exponent .8, wave numbers 4 to n/8, rms gradient .1; areas given to four digits, found by other codes."""
+    assert solve_half_space(rough(n, 1), 1 / n, E_star=1.0, pressure=pressure).area == pytest.approx(area, abs=6e-5)
+
+
+@pytest.mark.slow
+def test_real_area_of_the_reference_map_under_the_greatest_load(rough):
+    contact = solve_half_space(rough(1024, 1), 1 / 1024, E_star=1.0, pressure=0.02)
+    assert contact.area == pytest.approx(0.3782, abs=6e-5)
+
+
+@pytest.mark.slow
+def test_steps_do_not_grow_with_the_map(rough):
+    """From 512 to 2048 points a side, over a band of waves that grows with it."""
+    steps = [solve_half_space(rough(n, 1), 1 / n, E_star=1.0, pressure=0.01).iterations for n in (512, 1024, 2048)]
+    assert max(steps) <= min(steps) + 3

@@ -44,21 +44,20 @@ def test_loading_at_hardness_is_softer_than_unloading_and_each_is_its_own_finite
 
 def test_k_n_times_rms_height_over_pressure_stays_near_two_to_three(rough):
     # Persson 2007, doi:10.1103/PhysRevLett.99.125502: k_n is p over a length near .4 to .5 rms heights
-    h = rough(256)
+    h = rough(512, 1)
     start = None
-    for pressure in np.geomspace(5e-4, 1e-2, 5):
-        start = solve_half_space(h, 1 / 256, E_star=1.0, pressure=pressure, start=start)
-        assert 1.9 < start.tangent().k_n * h.std() / pressure < 3
+    for pressure in np.geomspace(2e-4, 1e-2, 5):  # real area from .5 to 21 %
+        start = solve_half_space(h, 1 / 512, E_star=1.0, pressure=pressure, start=start)
+        assert 2 < start.tangent().k_n * h.std() / pressure < 3
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.49])
 def test_shear_without_slip_over_normal_stiffness(rough, nu):
-    h = rough(256)
-    tangent = solve_half_space(h, 1 / 256, E_star=1.0, pressure=2e-4, nu=nu).tangent()
+    tangent = solve_half_space(rough(512, 1), 1 / 512, E_star=1.0, pressure=1e-4, nu=nu).tangent()
     mindlin = 2 * (1 - nu) / (2 - nu)
     ratio = tangent.k_t / tangent.k_n
     # the normal traction scaled and laid along x would give Mindlin's ratio: the true one is stiffer, and little
-    assert mindlin * (1 - 1e-6) < ratio < mindlin * (1 + 1e-6 + 0.04 * nu)
+    assert mindlin * (1 - 1e-6) < ratio < mindlin * (1 + 1e-6 + 0.02 * nu)
     if nu == 0:
         assert ratio == pytest.approx(1, rel=1e-6)
 

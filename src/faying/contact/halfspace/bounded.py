@@ -3,9 +3,11 @@
     minimise  x.A x/2 - b.x   over   lower <= x <= upper,  mean(x) = mean
 
 A projected Newton method. Each step solves the linear problem on the cells that are between their bounds, or at a
-bound and pressed off it, by conjugate gradients in single precision, preconditioned by |q|; projects the outcome on
-the bounds and the mean; and keeps it if the energy falls, else halves the step. Where many cells sit at the upper
-bound, a projected-gradient step goes before it (More and Toraldo 1991, doi:10.1137/0801008; Bertsekas 1982,
+bound and pressed off it, by conjugate gradients in single precision, preconditioned by |q|, and projects the outcome
+on the bounds and the mean. What the projection cuts off in one place it must not put back everywhere, since long waves
+cost the most energy: so up to twice more the problem is solved on the cells that are left between their bounds. The
+point of least energy is kept; where none is below the start, the first step is halved. Where many cells sit at the
+upper bound, a projected-gradient step goes before it (More and Toraldo 1991, doi:10.1137/0801008; Bertsekas 1982,
 doi:10.1137/0320018). Gradient, energy and certificate are in double precision.
 
 The certificate is the duality gap. With g = A x - b and any level d, and G = g + d,
@@ -30,7 +32,9 @@ from faying.errors import NotConverged
 Bound = float | Array
 Progress = Callable[[int, float], object]
 STEPS = 200
-TRIALS = (1.0, 0.5, 0.25, 0.125)
+HALVES = (0.5, 0.25, 0.125)
+ROUNDS = ((0.3, 20), (0.1, 10), (0.1, 10))  # reduction of the residual and most iterations, round after round
+FEW = 1e-3  # share of the cells cut off by the projection below which another round is not worth its price
 
 
 @final
@@ -195,7 +199,7 @@ class _Search:
         return level
 
     def _newton_step(self, free: NDArray[np.bool_], shift: float | None) -> bool:
-        """Solve on the working set, project, keep what lowers the energy; False where nothing did."""
+        """Solve on the working set, project, repeat on what is left of it; False where no point lowers the energy."""
         if free.any():
             level = -float(self.g[free].mean())
         else:
@@ -207,25 +211,51 @@ class _Search:
         if isinstance(self.upper, np.ndarray):
             working &= np.asarray(self.lower < self.upper)
         index = np.flatnonzero(working)
-        if index.size < 2:
-            return False
-        G = G[index]
-        largest = float(np.abs(G).max())
-        if largest == 0.0:
-            return False
-        solved, used = constrained_gradients(
-            self.kernel, index, (-G / largest).astype(np.float32)[None], np.zeros(1), reduction=0.1, limit=20
-        )
-        self.applications += used
-        old, step = self.x[index], largest * solved[0].astype(np.float64)
-        lower, upper = _at(self.lower, index), _at(self.upper, index)
-        rest, v = float(old.sum()), np.zeros(self.x.size)
-        for share in TRIALS:
-            new = project(old + share * step, lower, upper, rest)[0]
-            v[index] = new - old
-            Av = self.apply(v)
-            if float(G @ v[index]) + float(v[index] @ Av[index]) / 2 < 0:
-                self.x[index] = new
-                self.g += Av
+        x, g, energy, least, start = self.x, self.g, 0.0, 0.0, (self.x, self.g)
+        first: tuple[NDArray[np.intp], Array] | None = None
+        for reduction, limit in ROUNDS:
+            way = self._way(g, index, level, reduction, limit)
+            if way is None:
+                break
+            first = first or (index, way)
+            x, g, change, left = self._moved(x, g, index, way, level)
+            energy += change
+            if energy < least:
+                self.x, self.g, least = x, g, energy
+            if index.size - left.size < FEW * index.size or left.size < 2:
+                break
+            index, level = left, -float(g[left].mean())
+        if least < 0 or first is None:
+            return least < 0
+        for share in HALVES:
+            index, way = first
+            x, g, change, _ = self._moved(*start, index, share * way, level)
+            if change < 0:
+                self.x, self.g = x, g
                 return True
         return False
+
+    def _way(self, g: Array, index: NDArray[np.intp], level: float, reduction: float, limit: int) -> Array | None:
+        """What to add to the tractions of the cells `index` so that their gaps close; None where nothing is to do."""
+        G = g[index] + level
+        largest = float(np.abs(G).max()) if index.size >= 2 else 0.0
+        if largest == 0.0:
+            return None
+        right = (-G / largest).astype(np.float32)[None]
+        solved, used = constrained_gradients(self.kernel, index, right, np.zeros(1), reduction=reduction, limit=limit)
+        self.applications += used
+        return np.asarray(largest * solved[0].astype(np.float64))
+
+    def _moved(
+        self, x: Array, g: Array, index: NDArray[np.intp], way: Array, level: float
+    ) -> tuple[Array, Array, float, NDArray[np.intp]]:
+        """Go that way and project; returns x, g, what the energy has changed by, and the cells between their bounds."""
+        old, lower, upper = x[index], _at(self.lower, index), _at(self.upper, index)
+        new = project(old + way, lower, upper, float(old.sum()))[0]
+        v = np.zeros(x.size)
+        v[index] = new - old
+        Av = self.apply(v)
+        change = float((g[index] + level) @ v[index]) + float(v[index] @ Av[index]) / 2
+        v += x
+        Av += g
+        return v, Av, change, index[(new > lower) & (new < upper)]

@@ -16,6 +16,7 @@ from faying.errors import InputError
 from faying.materials import ContactPair
 
 FEWEST_POINTS = 30
+RESOLVED = 0.1  # greatest change of k_n on half the points each way
 WORDS = {"stiffness": ("unloading", "loading"), "area": ("corrected", "counted")}
 
 
@@ -41,6 +42,7 @@ class _Ladder:
     pressure: Array
     values: Mapping[str, Array]
     contact_points: Array
+    k_n_change: Array
 
 
 @final
@@ -58,7 +60,8 @@ class HalfSpace(ContactLaw):
     highest pressure [Pa]; between them each quantity is a monotone cubic in logarithms. tol as in `solve_half_space`.
     progress: called with (rungs done, points) while the ladder is climbed, on first use.
 
-    Closure variable: the pressure [Pa]. Flagged where fewer than 30 points touch or none is open.
+    Closure variable: the pressure [Pa]. Flagged where fewer than 30 points touch or none is open, and where k_n changes
+    by more than 10 % when the ladder is climbed on half as many points each way (a quarter of the work on top).
     Raises InputError for parameters out of range and whatever `solve_half_space` does not accept.
     """
 
@@ -86,7 +89,10 @@ class HalfSpace(ContactLaw):
         "highest": Parameter("Pa", "greatest pressure covered", "> lowest, below hardness"),
         "tol": Parameter("", "certificate asked of every contact", "0 < tol < 1"),
     }
-    ground: ClassVar[str] = "the scan resolves the roughness that touches: at least 30 points in contact, some open"
+    ground: ClassVar[str] = (
+        "the scan resolves the roughness that touches: at least 30 points in contact, some open, and "
+        "k_n within 10 % on half the points each way"
+    )
 
     def __post_init__(self) -> None:
         for name, words in WORDS.items():
@@ -171,7 +177,20 @@ class HalfSpace(ContactLaw):
             pressure=np.geomspace(*self.closure_range, self.points),
             values={name: np.array([row[name] for row in rows]) for name in rows[0]},
             contact_points=np.array([np.count_nonzero(c.traction) for c in self.ladder], dtype=float),
+            k_n_change=self._k_n_change(np.array([row["k_n"] for row in rows])),
         )
+
+    def _k_n_change(self, fine: Array) -> Array:
+        """Relative change of k_n [Pa/m] at the rungs on half as many points each way; 0 where all points touch."""
+        heights, spacing = halved_map(np.asarray(self.scan.heights), self.scan.spacing)
+        change, contact = np.zeros(fine.shape), None
+        for i, pressure in enumerate(np.geomspace(*self.closure_range, self.points)):
+            if np.isfinite(fine[i]):
+                contact = self._solve(heights, spacing, float(pressure), start=contact)
+                tangent = contact.tangent()
+                coarse = tangent.k_n_unloading if self.stiffness == "unloading" else tangent.k_n_loading
+                change[i] = coarse / fine[i] - 1
+        return change
 
     def at_closure(self, closure: ArrayLike) -> Response:
         """Return the response at pressures [Pa] within `closure_range`, any shape."""
@@ -191,11 +210,13 @@ class HalfSpace(ContactLaw):
             return np.where(at > x[finite][-1], values[-1], inside) if not finite.all() else np.asarray(inside)
 
         points = between(table.contact_points)
+        change = np.interp(at, x, np.abs(table.k_n_change))
         return Response(
             pressure=p,
             **{name: between(values) for name, values in table.values.items()},
             reasons={
                 f"fewer than {FEWEST_POINTS} points of the scan touch": points < FEWEST_POINTS,
+                f"k_n changes by more than {RESOLVED:.0%} on half the points each way": change > RESOLVED,
                 "every point of the scan touches": points >= self.scan.heights.size * (1 - 1e-9),
             },
         )

@@ -196,9 +196,9 @@ class Body:
     @cached_property
     def _elastic(self) -> Array:
         """Data of the elastic matrix."""
-        mean = self.quads.B[:, 0, :3, :].sum(axis=-2)  # the same at the four points
-        bulk = (self.flow.bulk * self._weight).reshape(-1, 4).sum(axis=1)
-        local = bulk[:, None, None] * mean[:, :, None] * mean[:, None, :]
+        dilatation = self.quads.B[..., :3, :].sum(axis=-2)
+        dilatation *= np.sqrt(self.flow.bulk * self._weight).reshape(-1, 4, 1)
+        local = dilatation.transpose(0, 2, 1) @ dilatation
         entries = (local.reshape(-1, 64) + self._deviator.sum(axis=1)).reshape(-1)
         if self.far is not None:
             entries = np.concatenate([entries, self.far.stiffness.reshape(-1)])

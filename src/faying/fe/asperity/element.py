@@ -58,8 +58,8 @@ class Quads:
         return np.asarray(2 * np.pi * self.place[..., 0] * self._slopes[1])
 
     @cached_property
-    def B(self) -> Array:
-        """Strain operators (m, 4, 4, 8)."""
+    def plain(self) -> Array:
+        """Strain operators (m, 4, 4, 8) before the dilatation is averaged: the fully integrated element, which locks."""
         slopes, _ = self._slopes
         radius = self.place[..., 0]
         m = len(self.corners)
@@ -69,6 +69,12 @@ class Quads:
         B[..., 2, 0::2] = self._shape / radius[..., None]
         B[..., 3, 0::2] = slopes[:, :, 1]
         B[..., 3, 1::2] = slopes[:, :, 0]
+        return B
+
+    @cached_property
+    def B(self) -> Array:
+        """Strain operators (m, 4, 4, 8)."""
+        B = self.plain.copy()
         dilatation = B[..., :3, :].sum(axis=-2)
         mean = np.einsum("eg,egi->ei", self.weight, dilatation) / self.weight.sum(axis=1)[:, None]
         B[..., :3, :] += ((mean[:, None] - dilatation) / 3)[..., None, :]
