@@ -9,6 +9,7 @@ import click
 # command -> (module, one line for `faying --help`)
 COMMANDS = {
     "asperity": ("asperity", "Press one asperity by finite elements: force, area, stresses."),
+    "attach": ("attach", "Lay a joint on a model of another solver, and write it in its words."),
     "compare": ("compare_test", "Set a hammer test beside the result of a study: MAC, pairs, FRFs."),
     "init": ("init", "Write a commented study file to start from."),
     "law": ("law", "Curves of a contact law: area, stiffness and loss against pressure."),

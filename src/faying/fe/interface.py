@@ -125,6 +125,18 @@ class Interface:
             unknowns=self.unknowns,
         )
 
+    def to_nodes(self, nodes: "Interface", values: Array) -> Array:
+        """Mean of values (q,) at points around each node of the first face (p,); nodes: what `at_nodes` gave.
+
+        The weight is area times squared shape function.
+        """
+        index = np.searchsorted(nodes.first_nodes[:, 0], self.first_nodes)
+        share = self.weights[:, None] * self.first_values**2
+        total, weight = np.zeros(len(nodes.weights)), np.zeros(len(nodes.weights))
+        np.add.at(total, index, share * values[:, None])
+        np.add.at(weight, index, share)
+        return np.asarray(total / weight)
+
 
 def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> Interface:
     """Pair two faces: where their meshes match, point by point; else over every overlap of two element faces.

@@ -46,6 +46,15 @@ def read_mesh(
     return _Builder(raw, file.name, unit, scale).mesh(parts)
 
 
+def last_element(path: str | Path) -> int:
+    """Greatest number of a solid element in a mesh file, for whoever adds elements to it."""
+    from importlib import import_module
+
+    file = Path(path)
+    raw: RawMesh = import_module(f"faying.fe.formats.{FORMATS[file.suffix.lower()]}").read(file)
+    return max((int(numbers.max()) for numbers, _ in raw.elements.values() if len(numbers)), default=0)
+
+
 @dataclass(frozen=True)
 class _Builder:
     raw: RawMesh

@@ -187,7 +187,7 @@ class Structure:
             if joint.per_node:
                 # the paper's use: each node's force goes straight into the law as if the node were a whole scan
                 nodes = interface.at_nodes()
-                forces = np.maximum(_to_nodes(interface, nodes, pressure), 0.0) * nodes.weights
+                forces = np.maximum(interface.to_nodes(nodes, pressure), 0.0) * nodes.weights
                 area = joint.scan_area or 1.0
                 pressure, interface = forces / area, nodes
                 per_area = area / nodes.weights
@@ -235,13 +235,3 @@ def tie(mesh: Mesh, pairs: Sequence[tuple[str, str]]) -> Any | None:
     kept, column = np.unique(owner, return_inverse=True)
     columns = (3 * column.reshape(-1, 1) + np.arange(3)).ravel()
     return csr_array((np.ones(3 * n), (np.arange(3 * n), columns)), shape=(3 * n, 3 * len(kept)))
-
-
-def _to_nodes(interface: Interface, nodes: Interface, pressure: Array) -> Array:
-    """Mean pressure around each node of the first face, weighted by area and squared shape function."""
-    index = np.searchsorted(nodes.first_nodes[:, 0], interface.first_nodes)
-    share = interface.weights[:, None] * interface.first_values**2
-    total, weight = np.zeros(len(nodes.weights)), np.zeros(len(nodes.weights))
-    np.add.at(total, index, share * pressure[:, None])
-    np.add.at(weight, index, share)
-    return np.asarray(total / weight)

@@ -1,0 +1,111 @@
+"""faying attach MODEL: the joint into a deck of another solver, or into matrices that one has assembled."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+
+SOLVERS = ("mapdl", "abaqus", "nastran", "calculix", "aster")
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("model", type=click.Path(path_type=Path))
+@click.option("--face-a", required=True, metavar="NAME", help="Face, set or component of the rough part.")
+@click.option("--face-b", required=True, metavar="NAME", help="The face it meets.")
+@click.option("--unit", required=True, help='Unit of the coordinates, such as "mm"; no mesh file says.')
+@click.option("--force-unit", default="N", show_default=True, help="Unit of force of the model.")
+@click.option("--law", required=True, type=click.Path(path_type=Path), metavar="STUDY.toml",
+              help="Study that gives surface, law and materials, and for --pressure solve the bolts.")  # fmt: skip
+@click.option(
+    "--joint", metavar="NAME", help="Which of the study's joints; else the one with these faces, or the only one."
+)
+@click.option("--pressure", required=True, metavar="FILE|VALUE|solve",
+              help='CSV with the heading "node,pressure [MPa]", or "5 MPa", or solve.')  # fmt: skip
+@click.option("--preload", metavar="FORCE", help='With solve: which of the study\'s preloads, such as "8 kN".')
+@click.option(
+    "--tolerance", metavar="LENGTH", help="How far apart the faces may lie (default: 1 % of the model's size)."
+)
+@click.option("--coupling", type=click.Choice(["auto", "nodes", "faces"]), default="auto", show_default=True,
+              help="Springs node by node, or per area between all nodes that share an overlap.")  # fmt: skip
+@click.option(
+    "--frequency", metavar="FREQUENCY", help="Where viscous dampers c = eta k/omega stand for the loss factor."
+)
+@click.option("--damping", type=click.Choice(["loss", "paper"]), default="loss", show_default=True,
+              help="paper: the JK paper's dampers eta sqrt(M k), which depend on the mesh.")  # fmt: skip
+@click.option("--to", "solver", type=click.Choice(SOLVERS), help="The solver to write for.")
+@click.option("--out", type=click.Path(path_type=Path), help="Folder of the decks (default: joint/ beside the model).")
+@click.option("--any-size", is_flag=True, help="Take a joint of any area.")
+@click.option("--matrices", type=click.Path(path_type=Path), metavar="FILE",
+              help="Stiffness and mass of the bare parts: job.sti of CalculiX, .mtx, DMIG; gives modes with the joint.")  # fmt: skip
+@click.option("--mass", type=click.Path(path_type=Path), help="With a .mtx: the mass, another.")
+@click.option("--dofs", type=click.Path(path_type=Path), help='With a .mtx: "node direction" of each row.')
+@click.option("--stiffness-unit", metavar="UNIT", help='Of the matrices, such as "N/mm".')
+@click.option("--mass-unit", metavar="UNIT", help='Of the matrices, such as "t".')
+@click.option("--modes", "count", default=10, show_default=True, help="With --matrices: how many.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
+def command(
+    model: Path,
+    face_a: str,
+    face_b: str,
+    unit: str,
+    force_unit: str,
+    law: Path,
+    joint: str | None,
+    pressure: str,
+    preload: str | None,
+    tolerance: str | None,
+    coupling: Any,
+    frequency: str | None,
+    damping: Any,
+    solver: str | None,
+    out: Path | None,
+    any_size: bool,
+    matrices: Path | None,
+    mass: Path | None,
+    dofs: Path | None,
+    stiffness_unit: str | None,
+    mass_unit: str | None,
+    count: int,
+    as_json: bool,
+) -> None:
+    """Lay the law of a study on two faces of MODEL and write the joint for another solver.
+
+    MODEL: .inp of Abaqus or CalculiX, .bdf, .msh, .cdb.
+    """
+    from faying import units
+    from faying.errors import InputError
+    from faying.export.write import write
+    from faying.study import Study
+    from faying.study.attach import attach
+    from faying.study.bare import modes_with_joint
+
+    if solver is None and matrices is None:
+        raise InputError(f"nothing to do: name a solver with --to ({', '.join(SOLVERS)}), or matrices with --matrices")
+    at = None if frequency is None else units.parse(frequency, "Hz", name="--frequency")
+    if at is not None and at <= 0:
+        raise InputError(f'--frequency "{frequency}" must be above 0')
+    reach = None if tolerance is None else units.parse(tolerance, "m", name="--tolerance")
+    made = attach(model, (face_a, face_b), unit=unit, study=Study.read(law), pressure=pressure, joint=joint,
+                  preload=preload, tolerance=reach, coupling=coupling, frequency=at, damping=damping,
+                  force_unit=force_unit, any_size=any_size)  # fmt: skip
+    document = made.to_dict()
+    files: list[Path] = []
+    lines = [*made.deck.facts, f"{len(made.pairs)} pairs of nodes"]
+    if matrices is not None:
+        found, rigid = modes_with_joint(made, matrices, stiffness_unit=stiffness_unit, mass_unit=mass_unit, mass=mass,
+                                        dofs=dofs, count=count)  # fmt: skip
+        document["modes"] = {"frequencies [Hz]": found.frequencies.tolist(), "rigid": rigid,
+                             "loss_factors": found.loss_factors.tolist()}  # fmt: skip
+        lines += ["", f"{'mode':>6}{'f [Hz]':>14}{'loss factor':>14}"]
+        lines += [f"{i:>6}{f:>14.4f}{eta:>14.3e}"
+                  for i, (f, eta) in enumerate(zip(found.frequencies, found.loss_factors, strict=True), 1)]  # fmt: skip
+    if solver is not None:
+        files = write(made.deck, solver, out or model.parent / "joint")
+        document["files"] = [str(file) for file in files]
+    if as_json:
+        click.echo(json.dumps(document, indent=2, allow_nan=False))
+        return
+    lines += [f"note: {note}" for note in made.notes]
+    lines += [f"written: {file}" for file in files]
+    click.echo("\n".join(lines))

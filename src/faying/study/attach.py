@@ -1,0 +1,325 @@
+"""A law laid on two faces of a user's own model: from mesh, study and pressure to the springs of the joint."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying import units
+from faying.errors import InputError
+from faying.export.deck import Contact, JointDeck
+from faying.export.system import System
+from faying.fe.faces import face_centre
+from faying.fe.interface import Interface, join
+from faying.fe.mesh import Mesh
+from faying.joint.pairs import NodePairs, consistent, lumped
+from faying.joint.seat import Seat
+from faying.materials import RIGID, ContactPair, Material
+from faying.study.build import build_all, checked_mesh, surfaces_of
+from faying.study.connections import JointSpec
+from faying.study.geometry import GeometrySpec
+from faying.study.pressure import read_pressure
+from faying.study.schema import Study
+from faying.study.surface import law_of
+
+Array = NDArray[np.float64]
+SMALLEST, LARGEST = 1e-7, 10.0  # areas of a joint [m2] beyond which the unit is doubted
+TOUCHING = 1e-6  # of the structure's size: a gap above it is told
+UNKNOWN_FRICTION = 0.2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Attachment:
+    """A joint on a model: its deck, the springs, their interface, area [m2], and what the user should know."""
+
+    deck: JointDeck
+    interface: Interface
+    materials: Mapping[str, Material]
+    notes: tuple[str, ...]
+
+    @property
+    def pairs(self) -> NodePairs:
+        """The springs between nodes."""
+        return self.deck.pairs
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything but the pairs themselves, in SI units."""
+        k_n, k_t = self.pairs.totals()
+        return {
+            "faces": list(self.deck.faces),
+            "pairs": len(self.pairs),
+            "lumped": self.pairs.lumped,
+            "area [m^2]": self.interface.area,
+            "total_k_n [N/m]": k_n,
+            "total_k_t [N/m]": k_t,
+            "facts": list(self.deck.facts),
+            "notes": list(self.notes),
+        }
+
+
+def attach(
+    model: str | Path,
+    faces: tuple[str, str],
+    *,
+    unit: str,
+    study: Study,
+    pressure: str | Path,
+    joint: str | None = None,
+    preload: str | None = None,
+    tolerance: float | None = None,
+    coupling: Literal["auto", "nodes", "faces"] = "auto",
+    frequency: float | None = None,
+    damping: Literal["loss", "paper"] = "loss",
+    force_unit: str = "N",
+    any_size: bool = False,
+) -> Attachment:
+    """Lay the law of a study on two faces of a mesh file.
+
+    unit: of the model's coordinates; pressure: a value with unit, a CSV file of node and pressure, or "solve" for the
+    preload of the study's bolts on this mesh; joint: which of the study's joints, by name; preload [text with unit]:
+    which of its preloads; tolerance [m]: how far apart the faces may lie; coupling: "nodes" (pair by pair), "faces"
+    (springs per area, exact on any meshes) or what the meshes allow; frequency [Hz] of equivalent dampers; damping:
+    "paper" for the JK paper's dampers. Raises ReadError and InputError for files, faces that are missing, apart, turned
+    the same way or of doubtful size, and pressures that do not cover the face.
+    """
+    file = Path(model)
+    spec = _joint(study, faces, joint)
+    solving = str(pressure) == "solve"
+    if solving:
+        moved = replace(study, geometry=GeometrySpec(mesh=file, unit=unit, sets=study.geometry.sets),
+                        joints=tuple(replace(j, faces=faces, reach=tolerance) if j is spec else j for j in study.joints))  # fmt: skip
+        mesh = checked_mesh(moved)
+    else:
+        from faying.fe.meshfile import read_mesh
+
+        mesh = read_mesh(file, unit=unit)
+    interface = _interface(mesh, faces, tolerance, any_size, unit)
+    materials = _materials(study, mesh, faces)
+    notes = _apart(mesh, faces, interface)
+    if solving:
+        seat, at_points, said = _solved(moved, mesh, faces, preload)
+    else:
+        seat = _seat(study, spec, mesh, faces, materials)
+        at_points, said = read_pressure(pressure, mesh, faces, interface)
+    pairs, used = _pairs(interface, seat, at_points, coupling)
+    if coupling == "auto" and not pairs.lumped:
+        notes.append("the meshes of the faces do not match: springs per area, exact, between all nodes that share an overlap; "
+                     "some of them are negative")  # fmt: skip
+    flags = _flags(seat, used, pairs.area if pairs.lumped else interface.weights)
+    system = System(unit, force_unit)
+    viscous = None
+    if damping == "paper":
+        viscous = _paper_dampers(pairs, mesh, materials)
+    elif frequency is not None:
+        viscous = pairs.loss / (2 * np.pi * frequency)
+    k_n, k_t = pairs.totals()
+    from importlib.metadata import version
+
+    weights = pairs.area if pairs.lumped else interface.weights
+    mean = float(weights @ used / weights.sum())
+    facts = (
+        f"Joint of {faces[0]} and {faces[1]} in {file.name}, written by Faying {version('faying')}",
+        system.describe(),
+        f"law: {seat.law.name}, {getattr(seat.law, 'source', 'no source')}",
+        f"pressure: {said}; least {used.min() * system.pressure:.6g}, mean {mean * system.pressure:.6g}, "
+        f"greatest {used.max() * system.pressure:.6g} {force_unit}/{unit}2",
+        f"area {interface.area * system.metre**2:.8g} {unit}2; sum of normal springs {k_n * system.stiffness:.8g}, of tangential springs "
+        f"{k_t * system.stiffness:.8g} {force_unit}/{unit}",
+        "shares of the area after the diagonal of the consistent mass of the face (HRZ, doi:10.1002/eqe.4290040305)"
+        if pairs.lumped
+        else "springs per area, consistent with the shape functions of both faces: pairs within a face are negative",
+        *(flags or ["validity: the law stands on its own ground everywhere"]),
+    )
+    deck = JointDeck(
+        pairs=pairs,
+        mesh=mesh,
+        faces=faces,
+        system=system,
+        facts=facts,
+        viscous=viscous,
+        paper=damping == "paper",
+        frequency=frequency,
+        first_element=_first_free(file),
+        contact=_contact(seat, spec, float(used.max()), mean),
+    )
+    return Attachment(deck=deck, interface=interface, materials=materials, notes=tuple(dict.fromkeys([*notes, *flags])))
+
+
+def _joint(study: Study, faces: tuple[str, str], name: str | None) -> JointSpec:
+    for spec in study.joints:
+        if spec.name == name or (name is None and set(spec.faces) == set(faces)):
+            return spec
+    if name is None and len(study.joints) == 1:
+        return study.joints[0]
+    names = ", ".join(repr(spec.name) for spec in study.joints)
+    raise InputError(f"the study has the joints {names}; say whose law to take with --joint NAME")
+
+
+def _interface(mesh: Mesh, faces: tuple[str, str], tolerance: float | None, any_size: bool, unit: str) -> Interface:
+    normals = [face_centre(mesh.points, mesh.face(name))[1] for name in faces]
+    if mesh.face_part[faces[0]] != mesh.face_part[faces[1]] and float(normals[0] @ normals[1]) > 0.5:
+        raise InputError(f"faces {faces[0]!r} and {faces[1]!r} are turned the same way (normals {_vector(normals[0])} and "
+                         f"{_vector(normals[1])}); a joint needs two that face each other: was the opposite side meant?")  # fmt: skip
+    interface = join(mesh, *faces, reach=tolerance)
+    if not any_size and not SMALLEST <= interface.area <= LARGEST:
+        raise InputError(f"in {unit} the joint has {interface.area:.3g} m2; is that the unit of the model? Areas from "
+                         f"{SMALLEST * 1e6:g} mm2 to {LARGEST:g} m2 are taken; if it is right, add --any-size")  # fmt: skip
+    return interface
+
+
+def _vector(v: Array) -> str:
+    return "(" + ", ".join(f"{x:.3g}" for x in v + 0.0) + ")"
+
+
+def _apart(mesh: Mesh, faces: tuple[str, str], interface: Interface) -> list[str]:
+    """What finds no partner, and how far the faces are apart."""
+    notes = []
+    for name, nodes, values in ((faces[0], interface.first_nodes, interface.first_values),
+                                (faces[1], interface.second_nodes, interface.second_values)):  # fmt: skip
+        every = mesh.face_nodes(name)
+        lost = mesh.numbers[np.setdiff1d(every, nodes[values != 0])]
+        if len(lost):
+            some = ", ".join(map(str, lost[:5])) + (", ..." if len(lost) > 5 else "")
+            notes.append(f"{len(lost)} of {len(every)} nodes of {name!r} have no partner within the tolerance: {some}")
+    gap = float(np.abs(interface.gap).max())
+    if gap > TOUCHING * mesh.size:
+        notes.append(f"the faces lie up to {gap * 1e3:.3g} mm apart: springs between nodes that do not coincide resist a "
+                     "rotation of the whole model")  # fmt: skip
+    return notes
+
+
+def _materials(study: Study, mesh: Mesh, faces: tuple[str, str]) -> dict[str, Material]:
+    """Material of every part: by the study's name for it, or the only one that the study uses."""
+    used = set(study.parts.values())
+    out = {}
+    for part in mesh.parts:
+        if part in study.parts:
+            out[part] = study.materials[study.parts[part]]
+        elif len(used) == 1:
+            out[part] = study.materials[next(iter(used))]
+        else:
+            raise InputError(f"[part] of the study says nothing of {part!r}, which the model holds, and uses several materials; "
+                             f"add [part.{part}]")  # fmt: skip
+    return out
+
+
+def _seat(study: Study, spec: JointSpec, mesh: Mesh, faces: tuple[str, str], materials: Mapping[str, Material]) -> Seat:
+    surface = surfaces_of(replace(study, joints=(spec,)))[0]
+    rough, other = (materials[mesh.face_part[face]] for face in faces)
+    law = spec.law or study.law
+    pair = ContactPair(rough, RIGID if law.counterbody == "rigid" else other)
+    return Seat(law=law_of(law, surface, pair), tangential=spec.tangential, nu=rough.nu)
+
+
+def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | None) -> tuple[Seat, Array, str]:
+    """Seat and pressure [Pa] at the points of the interface under the study's bolts."""
+    from faying.joint.tighten import tighten
+
+    loads = study.bolts[0].preload
+    number = 0
+    if preload is not None:
+        wanted = units.parse(preload, "N", name="--preload")
+        near = [i for i, load in enumerate(loads) if abs(load - wanted) <= 1e-6 * abs(wanted)]
+        if not near:
+            raise InputError(f"--preload {preload}: the study has {_kilo(loads)}")
+        number = near[0]
+    elif len(loads) > 1:
+        raise InputError(f"the study has the preloads {_kilo(loads)}; say which with --preload")
+    structure = build_all(study, mesh=mesh).structure
+    found = tighten(
+        structure,
+        structure.assembly(solver=study.solver),
+        [bolt.preload[number] for bolt in study.bolts],
+        order=study.order,
+    )
+    place = next(i for i, joint in enumerate(structure.joints) if joint.faces == faces)
+    return (
+        structure.joints[place].seat,
+        found.pressures[place],
+        f"of the study's bolts at {units.show(loads[number], 'N')}",
+    )
+
+
+def _kilo(loads: tuple[float, ...]) -> str:
+    return ", ".join(units.show(load, "N") for load in loads)
+
+
+def _pairs(interface: Interface, seat: Seat, pressure: Array, coupling: str) -> tuple[NodePairs, Array]:
+    """Return the springs and the pressures [Pa] that they belong to."""
+    if coupling != "faces":
+        try:
+            nodes = interface.at_nodes()
+        except InputError:
+            if coupling == "nodes":
+                raise
+        else:
+            at_nodes = interface.to_nodes(nodes, pressure)
+            return lumped(nodes, (*seat.stiffness(at_nodes), *seat.loss(at_nodes)), at_nodes), at_nodes
+    return consistent(interface, (*seat.stiffness(pressure), *seat.loss(pressure))), pressure
+
+
+def _flags(seat: Seat, pressure: Array, area: Array) -> list[str]:
+    """Where the law has left its ground."""
+    out = []
+    law, total = seat.law, float(area.sum())
+    beyond = pressure > law.greatest_pressure
+    if np.any(beyond):
+        out.append(f"validity: on {float(area @ beyond) / total:.2%} of the joint the pressure exceeds the "
+                   f"{law.greatest_pressure / 1e6:.3g} MPa at which {law.name} ends; stiffness is held there")  # fmt: skip
+    for text, mask in getattr(seat.answer(pressure), "reasons", {}).items():
+        share = float(area @ mask) / total
+        if share > 0:
+            out.append(f"validity: {law.name} is outside its ground on {share:.0%} of the joint: {text}")
+    if not np.any(pressure > 0):
+        out.append("validity: the joint carries no pressure, so it has no stiffness")
+    return out
+
+
+def _paper_dampers(pairs: NodePairs, mesh: Mesh, materials: Mapping[str, Material]) -> Array:
+    """Dampers c = eta sqrt(M k) [N s/m] (p, 3, 3) of the JK paper, M the whole mass."""
+    if not pairs.lumped:
+        raise InputError(
+            "the JK paper's dampers belong to pairs of nodes; the faces' meshes must match (coupling nodes)"
+        )
+    from faying.fe.elasticity import element_mass
+
+    mass = sum(
+        float(element_mass(mesh.points, cells, materials[part].density or 0.0).sum())
+        for part, blocks in mesh.parts.items()
+        for cells in blocks
+    )
+    k, lost = pairs.own(pairs.stiffness), pairs.own(pairs.loss)
+    eta = np.divide(lost, k, out=np.zeros_like(k), where=k > 0)
+    c = eta * np.sqrt(mass * k)
+    return np.asarray(np.einsum("pik,pi,pil->pkl", pairs.frames, c, pairs.frames))
+
+
+def _contact(seat: Seat, spec: JointSpec, greatest: float, mean: float) -> Contact | None:
+    """Sample the law from a ten-thousandth of the end of the table, three times the greatest pressure."""
+    if mean <= seat.least_pressure or spec.gap_map is not None:
+        return None
+    end = min(seat.law.greatest_pressure, 3 * greatest)
+    pressure = np.geomspace(max(1e-4 * end, seat.least_pressure), end, 199)
+    closing = np.array([seat.closing(float(p)) for p in pressure])
+    (k_n,), (k_t,) = seat.stiffness(np.array([mean]))
+    (loss_n,), _ = seat.loss(np.array([mean]))
+    return Contact(
+        closing=closing,
+        pressure=pressure,
+        k_n=float(k_n),
+        k_t=float(k_t),
+        loss_n=float(loss_n),
+        mean_pressure=mean,
+        friction=UNKNOWN_FRICTION if spec.friction is None else spec.friction,
+        given=spec.friction is not None,
+    )
+
+
+def _first_free(file: Path) -> int:
+    """A round number above those of all elements of the file."""
+    from faying.fe.meshfile import last_element
+
+    return (last_element(file) // 100_000 + 1) * 100_000 + 1
