@@ -16,6 +16,7 @@ from .measured.uff import read_uff
 from .measured.uff_write import write_uff
 from .result import Result
 from .study import Study, run
+from .study.attach import attach
 from .surface import synthesize
 from .surface.combine import Combined, combine
 from .surface.fractal import FractalFit, fit_fractal

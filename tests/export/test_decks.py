@@ -1,5 +1,7 @@
 """Every deck, read back by a reader of its grammar, is the matrix of the pairs; units; dampers; what headers say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import readers
@@ -110,6 +112,7 @@ def test_the_listing_of_matrix27_line_by_line():
     deck = deck_of(mesh(), seed=None, unit="m", frequency=None)
     lines = mapdl.matrix27(deck).splitlines()
     start = next(i for i, line in enumerate(lines) if line.startswith("R,"))
+    assert max(map(len, lines)) <= 128
     assert [line.split(",")[0] for line in lines[start : start + 13]] == ["R"] + 12 * ["RMORE"]
     words = [float(w) for line in lines[start : start + 13] for w in line.split(",")[1 + line.startswith("R,") :]]
     assert len(words) == 78
@@ -199,3 +202,31 @@ def test_nothing_is_half_written(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["file"]
     files = write(deck_of(mesh()), "nastran", tmp_path / "out")
     assert sorted(p.name for p in (tmp_path / "out").iterdir()) == sorted(p.name for p in files)
+
+
+def test_springs_per_area_on_a_curved_face():
+    """They couple the axes of a pair: forms with full blocks take them, the others say that they cannot."""
+    flat = two(("hex8", "hex8"), ((4, 1), (4, 1)), counts=(1, 1))
+    bent = flat.points.copy()
+    bent[:, 0] += 2.0 * (bent[:, 1] - 0.015) ** 2
+    curved = faying.fe.mesh.Mesh(points=bent, parts=flat.parts, faces=flat.faces, face_part=flat.face_part)
+    deck = deck_of(curved, "faces")
+    assert sorted(abaqus.decks(deck)) == ["joint_contact.inp", "joint_matrix.inp"]
+    same(readers.matrix27(mapdl.decks(deck)["joint_matrix27.inp"])[0], deck, deck.stiffness)
+    same(readers.celas2(nastran.decks(deck)["joint_celas2.bdf"])[0], deck, deck.stiffness)
+    same(readers.matrix_input(abaqus.matrix(deck))["STIFFNESS"], deck, deck.stiffness)
+    for module in (calculix, aster):
+        with pytest.raises(faying.InputError, match=r"do not act along one normal; take them node by node"):
+            module.decks(deck)
+    lumped = deck_of(curved)
+    same(readers.one_way(calculix.spring2(lumped)), lumped, lumped.stiffness)
+    same(readers.cbush(nastran.cbush(lumped))[0], lumped, lumped.stiffness)
+
+
+def test_an_open_joint_has_no_springs():
+    pairs = deck_of(mesh()).pairs
+    deck = deck_of(mesh(), pairs=replace(pairs, stiffness=0 * pairs.stiffness, loss=0 * pairs.loss), viscous=None,
+                   contact=None)  # fmt: skip
+    assert deck.pairs.totals() == (0.0, 0.0)
+    assert "*SPRING" not in calculix.spring2(deck)
+    assert not readers.matrix27(mapdl.matrix27(deck))[0].any()

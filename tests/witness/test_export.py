@@ -223,7 +223,7 @@ def renumbered(mesh):
 
 
 def test_mystran_runs_cbush_and_celas2(tmp_path):
-    """Straight and turned by 30 degrees. MYSTRAN 18 turns CBUSH to a part in ten thousand only: CELAS2 it does exactly."""
+    """Straight and turned by 30 degrees. MYSTRAN 18's CBUSH depends on how the model is turned, which none should."""
     found, bare = {}, {}
     for angle in (0.0, np.pi / 6):
         mesh = renumbered(two(("tet10", "tet10"), ((2, 2), (2, 2)), angle, counts=(2, 2)))
@@ -297,6 +297,34 @@ def test_the_t_specimen_in_calculix(tmp_path):
                        "8", "*END STEP"]) + "\n"  # fmt: skip
     ccx.run(tmp_path, text)
     assert ours == pytest.approx(np.sort(ccx.frequencies(tmp_path))[:8], rel=1e-6)
+
+
+@needs_ccx
+def test_modes_of_matrices_that_calculix_stores(tmp_path):
+    """Bare parts stored by MATRIXSTORAGE, the joint added here: the frequencies of CalculiX with SPRING2."""
+    from faying.study.attach import attach
+    from faying.study.bare import modes_with_joint
+
+    made = two(("hex20", "hex20"), ((2, 2), (2, 2)), counts=(3, 2))
+    (tmp_path / "model.inp").write_text(meshfiles.abaqus(made))
+    study = study_on(tmp_path, ("p0", "p1"), FACES, [("p1.right", "p0.left", "3 kN")])
+    found = attach(tmp_path / "model.inp", FACES, unit="mm", study=study, pressure="5 MPa")
+    materials = dict.fromkeys(found.deck.mesh.parts, faying.CATALOGUE["45 steel"])
+    text = calculix_model(made, materials)
+    ccx.run(tmp_path, text + "*STEP\n*FREQUENCY,SOLVER=MATRIXSTORAGE\n1\n*END STEP\n")
+    modes, rigid = modes_with_joint(found, tmp_path / "job.sti", stiffness_unit="N/mm", mass_unit="t", count=6)
+    assert rigid == 6
+    K, M = assemble(found.deck.mesh, materials, mass="stiffness")
+    pairs = found.pairs
+    real = lowest_modes(K + pairs.matrix(), M, 12, shift_frequency=1000.0)
+    from faying.fe.damped import damped_modes
+
+    ours = damped_modes(real, K + pairs.matrix(), M, pairs.matrix(pairs.loss), rigid=6, count=6)
+    assert modes.frequencies == pytest.approx(ours.frequencies, rel=1e-6)
+    assert modes.loss_factors == pytest.approx(ours.loss_factors, rel=1e-3, abs=1e-9)
+    (tmp_path / "job.sti").unlink()
+    ccx.run(tmp_path, text + calculix.spring2(found.deck) + "*STEP\n*FREQUENCY,SOLVER=ARPACK\n12\n*END STEP\n")
+    assert np.sort(ccx.frequencies(tmp_path))[6:12] == pytest.approx(real.frequencies[6:12], rel=1e-5)
 
 
 @needs_ccx

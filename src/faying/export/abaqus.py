@@ -13,7 +13,9 @@ from faying.export.keywords import elements, orientations, table
 
 def decks(deck: JointDeck) -> dict[str, str]:
     """Files to include in an input deck before its first step, by name; one of them, not all."""
-    out = {"joint_matrix.inp": matrix(deck), "joint_spring2.inp": spring2(deck)}
+    out = {"joint_matrix.inp": matrix(deck)}
+    if deck.uncoupled:
+        out["joint_spring2.inp"] = spring2(deck)
     if deck.pairs.lumped:
         out["joint_connector.inp"] = connector(deck)
     if deck.contact is not None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from faying.errors import InputError
 from faying.export.system import System
 from faying.fe.mesh import Mesh
 from faying.fe.sides import Index
@@ -71,6 +72,15 @@ class JointDeck:
     def loss(self) -> Array:
         """Imaginary part of the stiffness in the deck's units (p, 3, 3)."""
         return _clean(self.pairs.loss) * self.system.stiffness
+
+    @property
+    def uncoupled(self) -> bool:
+        """Whether every pair acts along its own axes, so that it can be turned into them."""
+        try:
+            self.pairs.own(self.pairs.stiffness)
+        except InputError:
+            return False
+        return True
 
     @property
     def dampers(self) -> Array | None:

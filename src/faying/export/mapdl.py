@@ -55,7 +55,7 @@ def matrix27(deck: JointDeck) -> str:
     for kind, sets, group in _sets(deck):
         lines += [f"ET,{kind},MATRIX27", f"KEYOPT,{kind},2,0", f"KEYOPT,{kind},3,{4 if kind == TYPE else 5}"]
         for k, row in enumerate(sets):
-            words = ["0" if v == 0 else real(float(v), 20) for v in row]
+            words = ["0" if v == 0 else real(float(v), 17) for v in row]  # six in a line of 128 columns
             lines.append(f"R,{real_set + k}," + ",".join(words[:6]))
             lines += ["RMORE," + ",".join(words[j : j + 6]) for j in range(6, 78, 6)]
         lines.append(f"TYPE,{kind}")

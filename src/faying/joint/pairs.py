@@ -70,6 +70,8 @@ class NodePairs:
         """Sum of all normal and all tangential springs [N/m], along the mean normal and across it."""
         total = self.stiffness[self.across].sum(axis=0)
         normal = (self.frames[:, 0] * np.abs(np.einsum("pii->p", self.stiffness))[:, None])[self.across].sum(axis=0)
+        if not np.any(normal):  # no pressure, no stiffness
+            return 0.0, 0.0
         normal /= np.linalg.norm(normal)
         along = float(normal @ total @ normal)
         return along, (float(np.trace(total)) - along) / 2

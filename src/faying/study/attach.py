@@ -171,7 +171,7 @@ def _interface(mesh: Mesh, faces: tuple[str, str], tolerance: float | None, any_
 
 
 def _vector(v: Array) -> str:
-    return "(" + ", ".join(f"{x:.3g}" for x in v + 0.0) + ")"
+    return "(" + ", ".join(f"{x:.3g}" for x in np.round(v, 3) + 0.0) + ")"
 
 
 def _apart(mesh: Mesh, faces: tuple[str, str], interface: Interface) -> list[str]:
