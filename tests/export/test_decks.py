@@ -5,10 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import readers
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 from models import K_N, K_T, LOSS_N, deck_of, two
 
 import faying
 from faying.export import abaqus, aster, calculix, mapdl, nastran
+from faying.export.deck import real, springs_of
 from faying.export.system import System
 from faying.export.write import SOLVERS, write
 
@@ -230,3 +234,26 @@ def test_an_open_joint_has_no_springs():
     assert deck.pairs.totals() == (0.0, 0.0)
     assert "*SPRING" not in calculix.spring2(deck)
     assert not readers.matrix27(mapdl.matrix27(deck))[0].any()
+
+
+@given(arrays(float, (3, 3, 3), elements=st.floats(-1e6, 1e6)))
+def test_springs_between_single_directions_add_up(values):
+    """Any symmetric blocks, of pairs that share no node: sums of springs whose crossed diagonals cancel."""
+    blocks = values + values.transpose(0, 2, 1)
+    for p, block in enumerate(blocks):
+        A = np.zeros((6, 6))
+        for a, c, b, d, k in springs_of(blocks):
+            i, j = 3 * a + c, 3 * b + d
+            A[[i, j], [i, j]] += k[p]
+            A[i, j] -= k[p]
+            A[j, i] -= k[p]
+        assert np.abs(A - np.block([[block, -block], [-block, block]])).max() <= 1e-9 * max(np.abs(blocks).max(), 1e-9)
+
+
+@given(st.floats(-1e200, 1e200), st.integers(13, 23))
+def test_numbers_fit_their_columns(value, width):
+    word = real(value, width)
+    assert len(word) <= width
+    assert "." in word
+    if abs(value) > 1e-200:
+        assert float(word) == pytest.approx(value, rel=10.0 ** (9 - width))
