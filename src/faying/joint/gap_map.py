@@ -27,6 +27,11 @@ class GapMap:
         good = np.isfinite(self.gaps) & np.isfinite(self.places).all(axis=1)
         if np.count_nonzero(good) < 4:
             raise InputError(f"the gap map has {np.count_nonzero(good)} points with numbers; a map needs four or more")
+        spread = np.linalg.svd(self.places[good] - self.places[good].mean(axis=0), compute_uv=False)
+        if spread[1] < 1e-9 * spread[0]:
+            raise InputError(
+                "the points of the gap map lie on one line; a map covers an area, with x and y both varying"
+            )
         object.__setattr__(self, "places", self.places[good])
         object.__setattr__(self, "gaps", self.gaps[good])
 
