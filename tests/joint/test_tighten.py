@@ -22,7 +22,7 @@ class LinearLaw:
 
     def at_pressure(self, pressure, *, exact=None):
         p = np.asarray(pressure, dtype=float)
-        k = self.k * p / (p + 1e-3 * 1e6)  # rises from zero, then holds
+        k = self.k * np.sqrt(p / (p + 1e3))  # rises from zero, then holds
         from types import SimpleNamespace
 
         return SimpleNamespace(k_n=k, k_t=k, loss_n=None, loss_t=None, valid=p >= 0)
@@ -39,19 +39,18 @@ def two_bolts(material=RIGID_LIKE, k=1e10, thickness=0.03):
 def test_two_bolts_in_turn_against_springs_by_hand():
     """Rigid plates on a bed of springs k: bolt two closes and tilts the joint, and relaxes bolt one.
 
-    Bed: axial A k, tilt k b a^3/12 about the middle. Bolt one, a spring c at -x after its force F1; then F2 at +x.
+    Bed: axial A k, tilt k b a^3/12 about the middle. Bolt one, once tight: a spring c at -x, and EI/L against tilt.
     """
     made = two_bolts()
     k, a, b, x = 1e10, 0.08, 0.04, 0.02
-    c = made.fitted_bolts[0].axial_stiffness
+    bolt = made.fitted_bolts[0]
+    c, bending = bolt.axial_stiffness, STEEL.E * np.pi / 64 * 8e-3**4 / bolt.length
     F1, F2 = 4e3, 5e3
     bed = np.diag([k * a * b, k * b * a**3 / 12])
     at_one, at_two = np.array([1.0, -x]), np.array([1.0, x])
     before = np.linalg.solve(bed, F1 * at_one)
-    # afterwards bolt one pulls F1 - c (closing at one - closing when it was let go)
-    after = np.linalg.solve(
-        bed + c * np.outer(at_one, at_one), F1 * at_one + c * (at_one @ before) * at_one + F2 * at_two
-    )
+    shank = c * np.outer(at_one, at_one) + np.diag([0.0, bending])
+    after = np.linalg.solve(bed + shank, F1 * at_one + shank @ before + F2 * at_two)
     left = F1 - c * (at_one @ after - at_one @ before)
     found = tighten(made, made.assembly(), [F1, F2], order=(0, 1))
     assert found.bolt_forces[1] == pytest.approx(F2, rel=1e-9)
