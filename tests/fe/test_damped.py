@@ -89,7 +89,9 @@ def test_shapes_solve_the_full_equations():
 def test_a_loss_that_is_too_great_is_told():
     K, M, C = jointed([2, 3], (1, 1), c=1e7)
     with pytest.raises(faying.NotConverged, match="the estimated error stays at"):
-        damped_modes(lowest_modes(K, M, 10, shift_frequency=50.0), K, M, C, rigid=6, count=4, kind="viscous", tolerance=1e-30)
+        damped_modes(
+            lowest_modes(K, M, 10, shift_frequency=50.0), K, M, C, rigid=6, count=4, kind="viscous", tolerance=1e-30
+        )
 
 
 def test_held_unknowns_stay_at_rest_and_the_rest_is_as_without_them():

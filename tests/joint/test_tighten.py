@@ -30,7 +30,7 @@ class LinearLaw:
 
 def two_bolts(material=RIGID_LIKE, k=1e10, thickness=0.03):
     bolts = tuple(Bolt(name=name, faces=FACES, at=(x, 0.02, 0.0), seat=(0.0, 24e-3), diameter=8e-3, material=STEEL)
-                  for name, x in (("one", 0.02), ("two", 0.06)))  # fmt: skip
+                  for name, x in (("one", 0.03), ("two", 0.05)))  # fmt: skip
     return plates(
         stacked(counts=(8, 4, 1), size=(0.08, 0.04, thickness)), material=material, bolts=bolts, law=LinearLaw(k)
     )
@@ -42,7 +42,7 @@ def test_two_bolts_in_turn_against_springs_by_hand():
     Bed: axial A k, tilt k b a^3/12 about the middle. Bolt one, once tight: a spring c at -x, and EI/L against tilt.
     """
     made = two_bolts()
-    k, a, b, x = 1e10, 0.08, 0.04, 0.02
+    k, a, b, x = 1e10, 0.08, 0.04, 0.01
     bolt = made.fitted_bolts[0]
     c, bending = bolt.axial_stiffness, STEEL.E * np.pi / 64 * 8e-3**4 / bolt.length
     F1, F2 = 4e3, 5e3
@@ -65,7 +65,7 @@ def test_two_bolts_in_turn_against_springs_by_hand():
 def test_more_passes_approach_the_forces_asked_for():
     made = two_bolts(STEEL)
     miss = [abs(tighten(made, made.assembly(), [4e3, 4e3], order=(0, 1) * n).bolt_forces[0] - 4e3) for n in (1, 2, 3)]
-    assert miss[0] > 3 * miss[1] > 9 * miss[2]
+    assert miss[0] > 2 * miss[1] > 4 * miss[2]
 
 
 def test_all_at_once_gives_every_bolt_its_force():
@@ -92,3 +92,11 @@ def test_messages():
     bare = plates(bolts=(Bolt(name="one", faces=FACES), Bolt(name="two", faces=FACES)))
     with pytest.raises(faying.InputError, match="bolts one, two have no shank"):
         tighten(bare, bare.assembly(), [1e3, 1e3], order=(0, 1))
+
+
+def test_a_joint_far_softer_than_its_parts_converges_to_what_rounding_leaves():
+    """Steel on a bed of 0.1 N/mm3: digits lost in K u keep the imbalance above 1e-10; the force is still that of the bolts."""
+    made = two_bolts(STEEL, k=1e8)
+    found = made.assembly().solve(40.0 * made.loads[:, 0])
+    assert found.imbalance < 1e-8
+    assert made.joints[0].interface.weights @ found.pressures[0] == pytest.approx(40.0, rel=1e-6)
