@@ -96,7 +96,7 @@ def test_a_loss_that_is_too_great_is_told():
 
 def test_held_unknowns_stay_at_rest_and_the_rest_is_as_without_them():
     """hold() leaves the eigenvalues of the free block; free_motions() those rigid motions that leave them at rest."""
-    K, M, loss = jointed([2, 2], (1, 1))
+    K, _, loss = jointed([2, 2], (1, 1))
     held = np.arange(30)
     free = np.setdiff1d(np.arange(K.shape[0]), held)
     block = np.linalg.eigvalsh(hold(K, held).toarray())

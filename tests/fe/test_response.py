@@ -39,7 +39,7 @@ def end_force(mesh, x):
 
 
 def respond(bar, forces, outputs, **changes):
-    mesh, K, M, loss, modes, damped = bar
+    _, K, M, loss, modes, damped = bar
     given = {"frequencies": FREQUENCIES, "rigid": 6, "structural_loss": ETA} | changes
     return frequency_response(modes, damped, K, M, loss, forces=forces, outputs=outputs, **given)
 
