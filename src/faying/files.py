@@ -1,10 +1,11 @@
-"""Files that appear whole or not at all."""
+"""Files that appear whole or not at all, and rows of numbers read from text."""
 
 import os
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
-from faying.errors import InputError
+from faying.errors import InputError, ReadError
 
 
 def whole(path: Path, write: Callable[[Path], object]) -> Path:
@@ -23,3 +24,29 @@ def whole(path: Path, write: Callable[[Path], object]) -> Path:
     finally:
         temporary.unlink(missing_ok=True)
     return path
+
+
+def read_numbers(path: Path, columns: int, form: str) -> Any:
+    """Read rows of `columns` numbers, with commas, semicolons or blanks between; lines of text may stand at the top.
+
+    Returns an array (rows, columns); comments begin with #. Raises ReadError, with `form` as what was expected, where no
+    such row is found or a later line is not one.
+    """
+    import numpy as np
+
+    rows: list[list[float]] = []
+    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), start=1):
+        words = line.split("#")[0].replace(",", " ").replace(";", " ").split()
+        if not words:
+            continue
+        try:
+            row = [float(word) for word in words]
+        except ValueError:
+            row = []
+        if len(row) == columns:
+            rows.append(row)
+        elif rows:
+            raise ReadError(f"{path.name}, line {number}: {line.strip()[:60]!r} is not {columns} numbers; {form}")
+    if not rows:
+        raise ReadError(f"{path.name} holds no line of {columns} numbers; {form}")
+    return np.array(rows)

@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 UNITS = {"pressure": "Pa", "area": "", "k_n": "Pa/m", "k_t": "Pa/m", "loss_n": "", "loss_t": "", "energy_n": "J/m^2",
-         "energy_t": "J/m^2"}  # fmt: skip
+         "energy_t": "J/m^2", "k_load": "Pa/m"}  # fmt: skip
 # what the table shows: heading and factor from SI
 SHOWN = {
     "pressure": ("p [MPa]", 1e-6),

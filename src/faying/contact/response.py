@@ -16,7 +16,8 @@ class Response:
     """What a contact law says at one load or many; all arrays share one shape, all quantities per nominal area.
 
     pressure [Pa]; area, real over nominal [-]; k_n, k_t normal and tangential stiffness [Pa/m]; loss_n, loss_t
-    loss factors [-]; energy_n, energy_t strain energies [J/m2]. A quantity that the model does not define is None.
+    loss factors [-]; energy_n, energy_t strain energies [J/m2]; k_load [Pa/m], the slope of pressure over closing on
+    first loading where it is not k_n, because asperities yield. A quantity that the model does not define is None.
     valid tells where the model stands on its own ground; `reasons` names, per sign of leaving it, where.
     """
 
@@ -28,6 +29,7 @@ class Response:
     loss_t: Array | None = None
     energy_n: Array | None = None
     energy_t: Array | None = None
+    k_load: Array | None = None
     reasons: Mapping[str, Mask] = field(default_factory=dict)
 
     @property

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from faying.contact.law import Array, ContactLaw, Parameter, Response, checked, require
 from faying.errors import InputError, ReadError
 
-QUANTITIES = ("area", "k_n", "k_t", "loss_n", "loss_t", "energy_n", "energy_t")
+QUANTITIES = ("area", "k_n", "k_t", "loss_n", "loss_t", "energy_n", "energy_t", "k_load")
 
 
 @final
@@ -34,6 +34,7 @@ class TabulatedLaw(ContactLaw):
     loss_t: ArrayLike | None = None
     energy_n: ArrayLike | None = None
     energy_t: ArrayLike | None = None
+    k_load: ArrayLike | None = None
     origin: str = "table"
 
     name: ClassVar[str] = "Table"
@@ -48,6 +49,7 @@ class TabulatedLaw(ContactLaw):
         "loss_t": Parameter("", "tangential loss factor", "0 or more"),
         "energy_n": Parameter("J/m^2", "normal energy per area", "0 or more"),
         "energy_t": Parameter("J/m^2", "tangential energy per area", "0 or more"),
+        "k_load": Parameter("Pa/m", "slope of pressure over closing on first loading, where not k_n", "above 0"),
         "origin": Parameter("text", "where the table comes from", "any text"),
     }
 

@@ -64,7 +64,9 @@ def frequency_response(
     frequencies = np.asarray(frequencies, dtype=float)
     if frequencies.ndim != 1 or not len(frequencies) or frequencies[0] <= 0 or np.any(np.diff(frequencies) <= 0):
         raise InputError("the frequencies of a response must be positive and rise, for example from 10 Hz to 5000 Hz")
-    static = modes.factorisation.solve(np.asfortranarray(forces))
+    # without what the known modes answer, which is all but the last digits of it where a body is free
+    rest = forces - (mass @ modes.shapes) @ (modes.shapes.T @ forces)
+    static = modes.factorisation.solve(np.asfortranarray(rest))
     columns = np.concatenate([modes.shapes, damped.shapes.real, damped.shapes.imag, static], axis=1)
     basis = _orthonormal(columns, mass, leading=modes.shapes.shape[1])
     small_k, small_c = basis.T @ (stiffness @ basis), basis.T @ (loss @ basis)

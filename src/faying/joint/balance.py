@@ -20,6 +20,7 @@ from faying.joint.seat import Seat
 
 Array = NDArray[np.float64]
 BEYOND = 0.1  # share of the contact that may lie beyond the end of the law, at the rim of a hole say; it is flagged
+ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall further
 SETTLED = 1e-4  # imbalance below which k_t and the limit of friction are held
 
 
@@ -141,7 +142,7 @@ class Balance(ABC):
     ) -> Preload:
         """Find equilibrium under nodal forces `load` [N] (unknowns,).
 
-        tolerance: of the residual force relative to the load; beyond: share of the contact that may be pressed beyond
+        tolerance: of the residual force relative to the load, or what rounding leaves of it where that is more; beyond: share of the contact that may be pressed beyond
         the end of its law. Raises InputError when more is, or the load cannot balance, and NotConverged when Newton
         stops short.
         """
@@ -155,6 +156,8 @@ class Balance(ABC):
         while True:
             force = self._out_of_balance(u, load, grips)
             size = float(np.linalg.norm(force)) / scale
+            if size < max(tolerance, ROUNDED) and tolerance < (rounding := self._rounding(u) / scale):
+                tolerance = rounding
             if size < tolerance:
                 fresh = self._grips(u)
                 change = max(_grip_change(new, old) for new, old in zip(fresh, grips, strict=True))
@@ -200,6 +203,10 @@ class Balance(ABC):
                     f"than {seat.law.name} covers with this surface ({end / 1e6:.4g} MPa); lower the preload, widen the "
                     "joint, or choose a law that reaches further"
                 )
+
+    def _rounding(self, u: Array) -> float:
+        """What rounding alone may leave of the elastic forces [N]: parts far stiffer than their joints lose digits in K u."""
+        return float(2 * np.finfo(float).eps * np.linalg.norm(abs(self.stiffness) @ np.abs(u)))
 
     def _move(self, trace: Trace, u: Array) -> Array:
         return np.asarray(trace.relative @ u).reshape(-1, 3)

@@ -164,8 +164,10 @@ class FittedBolt:
     @cached_property
     def stiffness(self) -> Any | None:
         """Sparse stiffness [N/m] of shank and washers: a beam with shear between the seats; None without a shank."""
+        from scipy.sparse import csr_array
+
         beam = self._beam()
-        return None if beam is None else (self.motion.T @ beam @ self.motion).tocsr()
+        return None if beam is None else (self.motion.T @ csr_array(beam) @ self.motion).tocsr()
 
     @cached_property
     def mass(self) -> Any | None:

@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from faying.errors import InputError, ReadError
+from faying.errors import InputError
 from faying.fe.interface import Interface
+from faying.files import read_numbers
 
 Array = NDArray[np.float64]
 
@@ -26,6 +27,11 @@ class GapMap:
         good = np.isfinite(self.gaps) & np.isfinite(self.places).all(axis=1)
         if np.count_nonzero(good) < 4:
             raise InputError(f"the gap map has {np.count_nonzero(good)} points with numbers; a map needs four or more")
+        spread = np.linalg.svd(self.places[good] - self.places[good].mean(axis=0), compute_uv=False)
+        if spread[1] < 1e-9 * spread[0]:
+            raise InputError(
+                "the points of the gap map lie on one line; a map covers an area, with x and y both varying"
+            )
         object.__setattr__(self, "places", self.places[good])
         object.__setattr__(self, "gaps", self.gaps[good])
 
@@ -66,17 +72,7 @@ def read_gap_map(
     y_axis: tuple[float, float, float],
 ) -> GapMap:
     """Read three columns x, y, gap (commas or blanks between, lines of text skipped); units: size of one in metres."""
-    rows = []
-    for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
-        try:
-            numbers = [float(word) for word in line.replace(",", " ").replace(";", " ").split()]
-        except ValueError:
-            continue
-        if len(numbers) == 3:
-            rows.append(numbers)
-    if not rows:
-        raise ReadError(f"{path.name} holds no line of three numbers; a gap map has columns x, y, gap")
-    table = np.array(rows)
+    table = read_numbers(path, 3, "a gap map has the columns x, y, gap")
     return GapMap(
         places=table[:, :2] * xy_unit, gaps=table[:, 2] * gap_unit, origin=origin, x_axis=x_axis, y_axis=y_axis
     )

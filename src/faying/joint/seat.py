@@ -55,7 +55,9 @@ class Answer(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Seat:
-    """The law of one joint, with its pressure as a function of closing: w = integral of dp/k_n from 0 to p.
+    """The law of one joint, with its pressure as a function of closing: w = integral of dp/k from 0 to p.
+
+    k is the law's k_load where it has one (asperities that yield close more on loading than they spring back), else k_n.
 
     law; tangential: "law" takes its k_t, "mindlin" takes k_t = k_n 2(1-nu)/(2-nu) with the nu given (for laws that
     define none); scale of stiffness [-], 1 unless a study of sensitivity asks otherwise. Raises InputError where the law
@@ -89,9 +91,15 @@ class Seat:
         return np.log(self._grid), stiffness, self._ask_loss(self._grid)
 
     @cached_property
+    def _loading(self) -> Array:
+        """Slope of pressure over closing on loading [Pa/m] on the grid."""
+        slope = getattr(self.law.at_pressure(self._grid), "k_load", None)
+        return np.exp(self._samples[1][0]) if slope is None else self.scale * slope
+
+    @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
         """ln closing, ln pressure, and d ln p/d ln w, from the least pressure to where the law ends."""
-        p, k = self._grid, np.exp(self._samples[1][0])
+        p, k = self._grid, self._loading
         slope = np.gradient(np.log(k), np.log(p))
         if np.any(k <= 0) or slope[0] >= 1 - 1e-9:
             raise InputError(f"{self.law.name}: stiffness does not grow from zero slower than pressure; the faces would "

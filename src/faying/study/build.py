@@ -17,7 +17,7 @@ from faying.study.connections import BoltSpec, GapSpec
 from faying.study.contact import SurfaceSpec
 from faying.study.geometry import mesh_of
 from faying.study.schema import Study
-from faying.study.surface import Surface, law_of, surface_of
+from faying.study.surface import NO_SURFACE, Surface, law_of, surface_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,6 +40,9 @@ def surfaces_of(study: Study) -> tuple[Surface, ...]:
     out = []
     for joint in study.joints:
         spec = joint.surface or study.surface
+        if spec is None and not (joint.law or study.law).needs_surface:
+            out.append(NO_SURFACE)
+            continue
         if spec is None:
             raise InputError(f"joint {joint.name!r} has no surface; add [surface] to the study or to the joint")
         if spec not in read:
@@ -92,7 +95,7 @@ def build_all(study: Study, *, mesh: Mesh | None = None, surfaces: tuple[Surface
                 interface=interface,
                 seat=Seat(law=law, tangential=joint.tangential, nu=rough.nu),
                 per_node=joint.springs == "per-node",
-                scan_area=surface.scan_area,
+                scan_area=surface.scan_area or None,
                 friction=joint.friction,
             )
         )

@@ -111,7 +111,7 @@ def joint_spec(table: Table, index: int, folder: Path) -> JointSpec:
         friction=table.number("friction", None),
         reach=table.quantity("reach", "m", None),
         surface=None if own_surface is None else surface_spec(own_surface, folder),
-        law=None if own_law is None else law_spec(own_law),
+        law=None if own_law is None else law_spec(own_law, folder),
         gap_map=None if gap is None else _gap_spec(gap, folder),
     )
     table.close()

@@ -7,6 +7,7 @@ from typing import Any, Literal
 from faying.errors import InputError
 from faying.study.reader import Table, existing_path, number
 
+MEASURED = ("gaps", "gaps_unit", "density", "radius", "asperity", "tangent_ratio")
 LAW_NUMBERS = ("gamma", "alpha", "cutoff", "shear_ratio", "psi", "modulus_ratio")
 
 
@@ -25,11 +26,27 @@ class SurfaceSpec:
 
 @dataclass(frozen=True, kw_only=True)
 class LawSpec:
-    """The contact law of the joints and its options."""
+    """The contact law of the joints and its options; heights: measured asperities, for the law that takes them."""
 
     model: str = "jk"
     counterbody: Literal["part", "rigid"] = "part"
     options: dict[str, Any] = field(default_factory=dict)
+    heights: "HeightsSpec | None" = None
+
+    @property
+    def needs_surface(self) -> bool:
+        """Whether the law takes its inputs from [surface]; measured heights bring their own."""
+        return self.heights is None
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeightsSpec:
+    """Measured asperities: a file of gap and probability density, unit of the gap; density [1/m2], radius [m]."""
+
+    file: Path
+    unit: str
+    density: float
+    radius: float
 
 
 def surface_spec(table: Table, folder: Path) -> SurfaceSpec:
@@ -54,8 +71,8 @@ def surface_spec(table: Table, folder: Path) -> SurfaceSpec:
     return spec
 
 
-def law_spec(table: Table) -> LawSpec:
-    """Read one [law] table."""
+def law_spec(table: Table, folder: Path) -> LawSpec:
+    """Read one [law] table; file names are relative to `folder`."""
     options: dict[str, Any] = {key: value for key in LAW_NUMBERS if (value := table.number(key, None)) is not None}
     for key, choices in (("closure", ("consistent", "printed")), ("loss", ("held", "literal"))):
         if (chosen := table.text(key, None, choices)) is not None:
@@ -65,8 +82,24 @@ def law_spec(table: Table) -> LawSpec:
         options["substrate"] = share
     model = table.take("model", _known_law, "jk")
     counterbody = table.text("counterbody", "part", ("part", "rigid"))
+    heights = None
+    if _is_measured(model):
+        heights = HeightsSpec(file=table.take("gaps", existing_path(folder)), unit=table.text("gaps_unit"),
+                              density=table.quantity("density", "1/m^2"), radius=table.quantity("radius", "m"))  # fmt: skip
+        if (asperity := table.text("asperity", None)) is not None:
+            options["asperity"] = asperity
+        if (ratio := table.number("tangent_ratio", None)) is not None:
+            options["tangent_ratio"] = ratio
+    else:
+        for key in [k for k in MEASURED if k in table.data]:
+            table.faults.add(f'{table.where}.{key} goes with model = "gw-measured", not "{model}"')
+            table.data.pop(key)
     table.close()
-    return LawSpec(model=model, counterbody=counterbody, options=options)
+    return LawSpec(model=model, counterbody=counterbody, options=options, heights=heights)
+
+
+def _is_measured(model: str) -> bool:
+    return model.lower().replace("-", "").replace("_", "") in ("gwmeasured", "measuredheights")
 
 
 def _known_law(value: Any, name: str) -> str:

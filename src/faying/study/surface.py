@@ -3,13 +3,16 @@
 from dataclasses import dataclass, field
 from typing import Any
 
+from faying import units
 from faying.contact.compare import laws_of_surface
 from faying.contact.inputs import SurfaceInputs
 from faying.contact.jk import JK
-from faying.contact.law import ContactLaw
+from faying.contact.law import Array, ContactLaw
+from faying.contact.measured_heights import MeasuredHeights
 from faying.errors import InputError
+from faying.files import read_numbers
 from faying.materials import ContactPair
-from faying.study.contact import LawSpec, SurfaceSpec
+from faying.study.contact import HeightsSpec, LawSpec, SurfaceSpec
 from faying.surface.form import prepared
 from faying.surface.fractal import fit_fractal
 from faying.surface.read import read_scan
@@ -27,6 +30,9 @@ class Surface:
     warnings: tuple[str, ...] = ()
     source: str = ""
     scan: Scan | None = field(default=None, repr=False)
+
+
+NO_SURFACE = Surface(D=0.0, G=0.0, scan_area=0.0, facts={"origin": "none: the contact law brings its own heights"})
 
 
 def surface_of(spec: SurfaceSpec) -> Surface:
@@ -68,6 +74,10 @@ def surface_of(spec: SurfaceSpec) -> Surface:
 
 def law_of(spec: LawSpec, surface: Surface, pair: ContactPair) -> ContactLaw:
     """Return the law of a study; any but JK takes its inputs from the scan, so needs one."""
+    if spec.heights is not None:
+        gaps, chance = _heights(spec.heights)
+        return MeasuredHeights(gaps=gaps, chance=chance, density=spec.heights.density, radius=spec.heights.radius,
+                               pair=pair, **spec.options)  # fmt: skip
     if spec.model.lower() == "jk":
         return JK(D=surface.D, G=surface.G, scan_area=surface.scan_area, pair=pair, **spec.options)
     if surface.scan is None:
@@ -80,6 +90,12 @@ def law_of(spec: LawSpec, surface: Surface, pair: ContactPair) -> ContactLaw:
         raise InputError(f'law.model = "{spec.model}": {next(iter(left_out.values()))}')
     law = next(iter(made.values()))
     return law.with_(**spec.options) if spec.options else law
+
+
+def _heights(spec: HeightsSpec) -> tuple[Array, Array]:
+    """Gaps [m] and their probability density from a file of two columns."""
+    table = read_numbers(spec.file, 2, "measured heights have the columns gap and probability density")
+    return table[:, 0] * units.parse(f"1 {spec.unit}", "m", name="law.gaps_unit"), table[:, 1]
 
 
 def law_facts(law: ContactLaw) -> dict[str, Any]:

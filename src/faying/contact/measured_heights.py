@@ -1,0 +1,187 @@
+"""Greenwood and Williamson's sum over measured asperities: any distribution of gaps, elastic-plastic loading."""
+
+from dataclasses import dataclass
+from functools import cached_property, partial
+from math import inf
+from typing import Any, ClassVar, final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from faying.contact.asperity.base import Array, AsperityModel, models
+from faying.contact.law import ContactLaw, Parameter, Response, checked, require
+from faying.errors import InputError
+from faying.materials import ContactPair
+
+FIRST, REACH = 1e-3, 2.0  # closures covered, in spans of the gaps from the first touch
+KNOTS, HINGES = 2000, 3000  # closures at which the sum is taken; pieces of the asperity's curve
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MeasuredHeights(ContactLaw):
+    """p = eta int f(w - g) phi(g) dg over asperities of gap g, as measured. doi:10.1016/j.ymssp.2023.110210.
+
+    gaps [m] (n,), rising: how far an asperity stands off when the highest touches; chance (n,), their probability
+    density on any scale, linear between the points; density eta [1/m2]; radius R [m]; pair; asperity: name of a model
+    of `faying.contact.asperity`; tangent_ratio: E_t/E for Ghaednia's.
+
+    Closure variable: the closing w [m] from first touch. f is loading, elastic-plastic: `k_load` is dp/dw. What follows
+    is small motion about that load, along the elastic unloading of Brake 2015 (doi:10.1016/j.ijsolstr.2015.02.018):
+    its slope at the top is 2 E* sqrt(R delta) whatever the force there, its contact radius sqrt(R delta), so that
+    k_n = 2 E* eta int sqrt(R delta) phi and k_t = 8 G* eta int sqrt(R delta) phi (Mindlin, no slip). No loss without
+    slip. Raises InputError for tables that do not rise, weigh nothing or are negative, and values out of range.
+    """
+
+    gaps: ArrayLike
+    chance: ArrayLike
+    density: float
+    radius: float
+    pair: ContactPair
+    asperity: str = "Ghaednia"
+    tangent_ratio: float | None = None
+
+    name: ClassVar[str] = "GW-measured"
+    source: ClassVar[str] = "doi:10.1016/j.ymssp.2023.110210"
+    ground: ClassVar[str] = "real area up to 0.3; closing within the measured gaps; no interaction between asperities"
+    parameters: ClassVar = {
+        "gaps": Parameter("m", "distances of the asperities at first touch", "0 or more, rising"),
+        "chance": Parameter("", "their probability density, any scale", "0 or more"),
+        "density": Parameter("1/m^2", "asperities per area", "above 0"),
+        "radius": Parameter("m", "radius of the asperities, both faces together", "above 0"),
+        "asperity": Parameter("text", "law of one asperity", "a name of faying.contact.asperity"),
+        "tangent_ratio": Parameter("", "E_t/E of bilinear hardening, Ghaednia's only", "0 up to below 1"),
+    }
+
+    def __post_init__(self) -> None:
+        need = partial(require, self.name)
+        g = checked(self.gaps, name="gaps", unit="m", zero=True)
+        c = checked(self.chance, name="chance of the gaps", unit="1/m", zero=True)
+        need(g.ndim == 1 and g.size >= 2 and g.shape == c.shape,
+             f"gaps of shape {g.shape} and chance of shape {c.shape}; give two rows of one length, 2 or more")  # fmt: skip
+        need(bool(np.all(np.diff(g) > 0)), "gaps do not rise; sort the table and drop repetitions")
+        need(bool(np.trapezoid(c, g) > 0), "the chance of every gap is 0")
+        for name in ("density", "radius"):
+            need(0 < getattr(self, name) < inf, f"{name} = {getattr(self, name)}; it must be positive")
+        for name, value in (("gaps", g.copy()), ("chance", c / np.trapezoid(c, g))):
+            value.setflags(write=False)
+            object.__setattr__(self, name, value)
+        self._asperity  # noqa: B018  # names its own faults
+
+    @cached_property
+    def _asperity(self) -> AsperityModel:
+        known = {name: cls for name, cls in models().items() if name != "ZX"}
+        plain = {name.lower(): cls for name, cls in known.items()}
+        cls = plain.get(self.asperity.lower().replace("-", "").replace("_", ""))
+        if cls is None:
+            raise InputError(f"{self.name}: asperity = {self.asperity!r}; use one of {', '.join(known)}")
+        if self.tangent_ratio is None:
+            return cls(R=self.radius, pair=self.pair)
+        require(self.name, cls.__name__ == "Ghaednia",
+                f"tangent_ratio belongs to asperity = 'Ghaednia', not {self.asperity!r}; leave it out")  # fmt: skip
+        return cls(R=self.radius, pair=self.pair, tangent_ratio=self.tangent_ratio)  # type: ignore[call-arg]
+
+    @cached_property
+    def _touch(self) -> float:
+        """The least gap that an asperity has [m]."""
+        g, c = np.asarray(self.gaps), np.asarray(self.chance)
+        return float(g[max(int(np.argmax(c > 0)) - 1, 0)])
+
+    @cached_property
+    def _span(self) -> float:
+        return float(np.asarray(self.gaps)[-1]) - self._touch
+
+    @property
+    def closure_range(self) -> tuple[float, float]:
+        """Closings from the first touch at the least and at the greatest load [m]."""
+        return FIRST * self._span, REACH * self._span
+
+    def _summed(self, closing: Array) -> Array:
+        """Pressure, area, dp/dw and eta int sqrt(R delta) phi at closings (m,), as (m, 4).
+
+        Each curve f(t) of an asperity is laid on hinges: slopes that change at points t_k, close enough that the sum of
+        c_k max(t - t_k, 0) is f to 1e-5. Then int f(w - g) phi dg is the sum of c_k Phi(w - t_k) exactly, with Phi the
+        second integral of phi, and steps of phi or of f cost nothing.
+        """
+        model, end = self._asperity, REACH * self._span
+        borders = np.array([x * model.critical for x in model.borders if x * model.critical < end])
+        graded = np.geomspace(FIRST * self._span / 10, end, HINGES)
+        t = np.unique(np.concatenate([[0.0], graded, borders]))
+        below, above = model.at(borders * (1 - 1e-12)), model.at(borders * (1 + 1e-12))
+        at = model.at(np.where(np.isin(t, borders), t * (1 - 1e-12), t))
+        steps = {"force": above.force - below.force, "area": above.area - below.area}
+        passed = t[:, None] > borders
+        curves = np.stack(
+            [at.force - passed @ steps["force"], at.area - passed @ steps["area"], np.sqrt(self.radius * t)]
+        )
+        slope = np.diff(curves, axis=1) / np.diff(t)
+        hinges = np.diff(slope, axis=1, prepend=0.0)
+        out = np.empty((len(closing), 4))
+        for begin in range(0, len(closing), 100):  # as much as fits the cache
+            w = closing[begin : begin + 100, None]
+            second, first = self._integrals(w - t[:-1])
+            p, area, radii = hinges @ second.T
+            out[begin : begin + 100] = np.stack([p, area, first @ hinges[0], radii], axis=1)
+        late = closing[:, None] - borders
+        shares = self._integrals(late)[1]
+        g, c = np.asarray(self.gaps) - self._touch, np.asarray(self.chance)
+        out[:, 0] += shares @ steps["force"]
+        out[:, 1] += shares @ steps["area"]
+        out[:, 2] += np.interp(late, g, c, left=0.0, right=0.0) @ steps["force"]
+        return self.density * out
+
+    def _integrals(self, place: Array) -> tuple[Array, Array]:
+        """Second [m] and first [-] integral of the probability density up to a place [m], any shape."""
+        g, c = np.asarray(self.gaps) - self._touch, np.asarray(self.chance)
+        h = np.diff(g)
+        first = np.concatenate([[0.0], np.cumsum(h * (c[1:] + c[:-1]) / 2)])
+        second = np.concatenate([[0.0], np.cumsum(h * (first[:-1] + h * (2 * c[:-1] + c[1:]) / 6))])
+        inside = np.clip(place, g[0], g[-1])
+        cell = np.clip(np.searchsorted(g, inside, side="right") - 1, 0, len(h) - 1)
+        x, bend = inside - g[cell], np.diff(c)[cell] / h[cell]
+        one = first[cell] + x * (c[cell] + x * bend / 2)
+        two = second[cell] + x * (first[cell] + x * (c[cell] / 2 + x * bend / 6))
+        return two + np.maximum(place - g[-1], 0.0), one
+
+    @cached_property
+    def _curves(self) -> tuple[Any, ...]:
+        """Splines of the logarithms of pressure, area and the sum of contact radii over ln w."""
+        from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+
+        first, last = self.closure_range
+        w = np.geomspace(first, last, KNOTS)
+        w[[0, -1]] = first, last
+        p, area, slope, radii = self._summed(w).T
+        x = np.log(w)
+        return (
+            CubicHermiteSpline(x, np.log(p), slope * w / p),
+            PchipInterpolator(x, np.log(area)),
+            PchipInterpolator(x, np.log(radii)),
+        )
+
+    def _inside(self, closing: ArrayLike) -> Array:
+        w = checked(closing, name="closing", unit="m", zero=False)
+        first, last = self.closure_range
+        if not np.all((w >= first * (1 - 1e-9)) & (w <= last * (1 + 1e-9))):
+            raise InputError(f"{self.name}: closings from {first:.4g} to {last:.4g} m are covered")
+        return np.log(np.clip(w, first, last))
+
+    def _pressure_at(self, closure: Array) -> Array:
+        return np.asarray(np.exp(self._curves[0](self._inside(closure))))
+
+    def at_closure(self, closing: ArrayLike) -> Response:
+        """Return the response at closings from first touch [m], any shape; InputError outside `closure_range`."""
+        x = self._inside(closing)
+        curve, areas, sums = self._curves
+        p, area, radii = np.exp(curve(x)), np.exp(areas(x)), np.exp(sums(x))
+        return Response(
+            pressure=np.asarray(p),
+            area=np.asarray(area),
+            k_n=np.asarray(2 * self.pair.E_star * radii),
+            k_t=np.asarray(8 * self.pair.G_star * radii),
+            k_load=np.asarray(p * curve(x, 1) / np.exp(x)),
+            reasons={
+                "real area above 0.3 of the nominal area": np.asarray(area > 0.3),
+                "closing beyond the largest measured gap": np.asarray(np.exp(x) > self._span * (1 + 1e-9)),
+            },
+        )

@@ -1,0 +1,130 @@
+"""Friction under the preload: the limit, stick, what is left after slip, the tangent of the shear."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from plates import plates, stacked
+
+import faying
+from faying.fe.faces import face_load
+from faying.joint.attachments import Support
+from faying.joint.balance import Grip
+
+MU = 0.3
+
+
+def pushed(structure, normal, side):
+    """Load [N] (unknowns,): the plates pressed together by `normal`, the upper one pushed along x by `side`."""
+    mesh = structure.mesh
+    load = normal * structure.bolt_load("high.top", "low.bottom")
+    push = np.zeros_like(mesh.points)
+    nodes = mesh.face_nodes("high.top")
+    face = face_load(mesh.points, mesh.face("high.top"), np.array([0.04, 0.02, 0.02]), np.array([0.0, 0.0, 1.0]))
+    push[nodes, 0] = face.reshape(-1, 3)[nodes, 2]  # the shares of an even traction, turned to x
+    load = load + side * push.ravel()
+    load[structure.held] = 0.0
+    return load
+
+
+def held(friction, thickness=0.002):
+    """A thin upper plate, so that the push hardly tilts it, on a plate held from below."""
+    return plates(
+        stacked(counts=(4, 2, 1), size=(0.08, 0.04, thickness)),
+        friction=friction,
+        supports=(Support(face="low.bottom"),),
+    )
+
+
+def shear(structure, found, friction):
+    """Total shear force [N] along x at the state found, by the equilibrium of the lower plate's held face."""
+    force = structure.matrices[0] @ found.displacement
+    bottom = structure.mesh.face_nodes("low.bottom")
+    return -force.reshape(-1, 3)[bottom, 0].sum()
+
+
+def test_below_the_limit_it_is_the_same_as_without_friction():
+    sticks, grips = held(None), held(MU)
+    a = sticks.assembly().solve(pushed(sticks, 2e3, 100.0))
+    b = grips.assembly().solve(pushed(grips, 2e3, 100.0))
+    assert b.slipping == (0.0,)
+    assert b.displacement == pytest.approx(a.displacement, rel=1e-6, abs=1e-16)
+
+
+def test_the_joint_carries_what_is_pushed():
+    made = held(MU)
+    found = made.assembly().solve(pushed(made, 2e3, 300.0))
+    assert shear(made, found, MU) == pytest.approx(300.0, rel=1e-6)
+    assert made.joints[0].interface.weights @ found.pressures[0] == pytest.approx(2e3, rel=1e-6)
+
+
+def test_more_than_friction_holds_never_balances():
+    """mu N = 600 N: at 560 N much of the joint slips, at 640 N there is no equilibrium."""
+    made = held(MU)
+    found = made.assembly().solve(pushed(made, 2e3, 560.0))
+    assert 0.2 < found.slipping[0] <= 1
+    assert shear(made, found, MU) == pytest.approx(560.0, rel=1e-6)
+    with pytest.raises(faying.NotConverged):
+        held(MU).assembly().solve(pushed(made, 2e3, 640.0))
+
+
+def test_slip_grows_with_the_push():
+    made = held(MU)
+    assembly = made.assembly()
+    shares = [assembly.solve(pushed(made, 2e3, side)).slipping[0] for side in (100.0, 450.0, 560.0)]
+    assert shares[0] <= shares[1] < shares[2]
+
+
+def test_what_slipped_does_not_come_back_by_itself():
+    """Pushed until it slips, then let go: a part of the slip is left, held by shear of the other sign; without friction none."""
+    left = {}
+    for friction in (None, MU):
+        made = held(friction)
+        assembly = made.assembly()
+        assembly.solve(pushed(made, 2e3, 560.0))
+        found = assembly.solve(pushed(made, 2e3, 0.0))
+        left[friction] = made.joints[0].interface.slip(found.displacement)
+        fresh = made.assembly().solve(pushed(made, 2e3, 0.0))
+        left[friction] = np.linalg.norm(left[friction] - made.joints[0].interface.slip(fresh.displacement))
+        assert shear(made, found, friction) == pytest.approx(0.0, abs=1e-5)
+    assert left[MU] > 100 * left[None]
+
+
+@given(st.floats(-1, 1), st.floats(-1, 1), st.floats(0.0, 2.0))
+def test_the_tangent_is_the_derivative_of_the_shear(x: float, y: float, limit: float):
+    slip, anchor = 1e-6 * np.array([[x, y]]), np.array([[2e-7, -1e-7]])
+    grip = Grip(k_t=np.array([1e12]), limit=1e6 * np.array([limit]), anchor=anchor)
+    size = 1e12 * np.linalg.norm(slip - anchor)
+    if abs(size - 1e6 * limit) < 1e3 or limit == 0:
+        return  # at the edge of slip there is no derivative; without pressure there is no shear
+    step = 1e-11
+    columns = [(grip.shear(slip + step * axis) - grip.shear(slip - step * axis))[0] / (2 * step) for axis in np.eye(2)]
+    assert grip.tangent(slip)[0] == pytest.approx(np.stack(columns, axis=1), rel=1e-4, abs=1e12 * 1e-4)
+    assert np.linalg.norm(grip.shear(slip)) <= 1e6 * limit * (1 + 1e-12)
+
+
+def test_the_tangent_of_a_joint_against_differences():
+    """The out-of-balance force of the whole, k_t and limit held, moved by a small step: K x with the tangents of the joint."""
+    made = held(MU)
+    assembly = made.assembly()
+    load = pushed(made, 2e3, 560.0)
+    found = assembly.solve(load)
+    u = found.displacement
+    assembly = made.assembly()  # without the memory of what has slipped, which lies at the very edge of slip
+    grips = assembly._grips(u)
+    rng = np.random.default_rng(2)
+    step = rng.standard_normal(len(u)) * 1e-12
+    step[made.held] = 0.0
+    moved = (assembly._out_of_balance(u - step, load, grips) - assembly._out_of_balance(u + step, load, grips)) / 2
+    expected = assembly.stiffness @ step
+    for trace, k_n, k_t in assembly._tangents(u, grips):
+        move = assembly._move(trace, step)
+        local = np.concatenate([k_n[:, None] * move[:, :1], np.einsum("qij,qj->qi", k_t, move[:, 1:])], axis=1)
+        expected = expected + trace.relative.T @ local.ravel()
+    expected[made.held] = 0.0
+    assert np.linalg.norm(moved - expected) < 1e-4 * np.linalg.norm(expected)
+
+
+def test_a_friction_that_is_none():
+    with pytest.raises(faying.InputError, match="friction -0.1 is no coefficient of friction"):
+        plates(friction=-0.1)

@@ -1,0 +1,234 @@
+"""What a study may say of bolts, supports, masses, gaps, friction, tightening, response and damping."""
+
+import tomllib
+
+import pytest
+
+import faying
+from faying.joint.bolt import torque_to_preload
+from faying.study import Study
+from faying.study.template import TEXT
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "b.step").write_text("ISO-10303-21;")
+    (tmp_path / "gap.csv").write_text("0,0,1\n1,0,1\n0,1,1\n1,1,1\n")
+    (tmp_path / "heights.csv").write_text("0,0\n10,1\n20,0\n")
+    return tmp_path
+
+
+def study(folder, text="", **changes):
+    """The template with more tables at its end; changes are top-level keys, None leaves one out."""
+    data = tomllib.loads(TEXT.format(name="s.toml", step="b.step") + text)
+    for key, value in changes.items():
+        if value is None:
+            del data[key]
+        else:
+            data[key] = value
+    return Study.from_dict(data, folder=folder)
+
+
+BOLT = {"name": "b1", "faces": ["upper.seat", "lower.seat"]}
+SHANK = {"diameter": "8 mm", "material": "45 steel"}
+WASHER = {"outer": "16 mm", "inner": "8.4 mm", "thickness": "1.6 mm", "material": "45 steel"}
+
+
+def test_a_bolt_with_everything(folder):
+    given = BOLT | SHANK | {"torque": ["10 N m", "20 N m"], "nut_factor": 0.2, "at": ["0 mm", "1 mm", "2 mm"],
+                            "seat": ["8.4 mm", "16 mm"], "washer": [WASHER, WASHER], "head_mass": "5 g", "nut_mass": "4 g"}  # fmt: skip
+    bolt = study(folder, bolt=[given]).bolts[0]
+    assert bolt.preload == pytest.approx((10 / (0.2 * 8e-3), 20 / (0.2 * 8e-3)))
+    assert bolt.at == pytest.approx((0.0, 1e-3, 2e-3))
+    assert bolt.seat == pytest.approx((8.4e-3, 16e-3))
+    assert len(bolt.washers) == 2
+    assert bolt.washers[0].thickness == pytest.approx(1.6e-3)
+    assert (bolt.head_mass, bolt.nut_mass) == pytest.approx((5e-3, 4e-3))
+
+
+def test_torque_with_friction(folder):
+    given = BOLT | SHANK | {"torque": "20 N m", "pitch": "1.25 mm", "thread_friction": 0.12, "head_friction": 0.14}
+    exact = torque_to_preload(20.0, 8e-3, pitch=1.25e-3, thread_friction=0.12, head_friction=0.14)
+    assert study(folder, bolt=[given]).bolts[0].preload == pytest.approx((exact,))
+
+
+@pytest.mark.parametrize(
+    ("bolt", "text"),
+    [
+        ({}, r'preload is missing; give a force such as "12 kN", or torque = "20 N m"'),
+        ({"preload": "1 kN", "torque": "1 N m"} | SHANK, "both preload and torque"),
+        ({"torque": "1 N m", "nut_factor": 0.2}, "only with the thread's diameter; add diameter"),
+        ({"torque": "1 N m"} | SHANK, "add nut_factor"),
+        ({"torque": "1 N m", "nut_factor": 7} | SHANK, "nut_factor = 7: it lies between"),
+        ({"preload": "1 kN", "material": "45 steel"}, "has a material but no diameter"),
+        ({"preload": "1 kN", "diameter": "8 mm", "material": "cheese"}, 'material "cheese" is unknown'),
+        ({"preload": "1 kN", "washer": [WASHER | {"material": "cheese"}]} | SHANK, 'material "cheese" is unknown'),
+        ({"preload": "1 kN", "washer": [{"outer": "3 mm"}]}, r"washer\[1\].inner is missing"),
+        ({"preload": "1 kN", "seat": ["3 mm"]}, "should be inner and outer diameter"),
+        ({"preload": "1 kN", "at": ["3 mm"]}, "should be three lengths"),
+        ({"preload": "1 kN", "head_mass": "3 mm"}, "is not in a unit like kg"),
+        ({"preload": "1 kN", "hed_mass": "3 g"}, "did you mean head_mass"),
+    ],
+)
+def test_bolt_faults(folder, bolt, text):
+    with pytest.raises(faying.InputError, match=text):
+        study(folder, bolt=[BOLT | bolt])
+
+
+def test_supports_and_masses(folder):
+    text = """
+[[support]]
+face = "lower.end"
+[[support]]
+face = "upper.end"
+directions = ["z"]
+stiffness = "2 MPa/um"
+[[mass]]
+mass = "20 g"
+face = "upper.end"
+offset = ["0 mm", "0 mm", "5 mm"]
+[[mass]]
+mass = "1 kg"
+point = ["1 mm", "2 mm", "3 mm"]
+"""
+    found = study(folder, text)
+    assert found.supports[0].directions == ("x", "y", "z")
+    assert found.supports[0].stiffness is None
+    assert found.supports[1].stiffness == pytest.approx(2e12)
+    assert found.masses[0].offset == pytest.approx((0, 0, 5e-3))
+    assert found.masses[1].point == pytest.approx((1e-3, 2e-3, 3e-3))
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ('[[support]]\nface = "a"\ndirections = ["w"]', 'should be some of "x", "y", "z"'),
+        ('[[support]]\nface = "a"\nstiffness = "-1 Pa/m"', "must be positive"),
+        ("[[support]]", r"support\[1\].face is missing"),
+        ('[[mass]]\nmass = "1 kg"', "on a face or at a point; give one of the two"),
+        ('[[mass]]\nface = "a"', r"mass\[1\].mass is missing"),
+        ('[tightening]\norder = ["bolt", "nut"]', "should name every bolt: 'bolt'"),
+        ('[tightening]\norder = ["bolt"]\npasses = 0', "whole number of 1 or more"),
+        ("[tightening]\npasses = 2", "tightening.order is missing"),
+    ],
+)
+def test_other_faults(folder, text, fault):
+    with pytest.raises(faying.InputError, match=fault):
+        study(folder, text)
+
+
+def test_order_and_passes(folder):
+    two = [BOLT | {"preload": "1 kN"}, BOLT | {"name": "b2", "preload": "1 kN"}]
+    assert study(folder, '[tightening]\norder = ["b2", "b1"]\npasses = 2', bolt=two).order == (1, 0, 1, 0)
+    assert study(folder).order is None
+
+
+def joint(**more):
+    return [{"name": "j", "faces": ["upper.joint", "lower.joint"]} | more]
+
+
+def test_a_joint_of_its_own(folder):
+    gap = {"file": "gap.csv", "xy_unit": "mm", "gap_unit": "um", "origin": ["1 mm", "0 mm", "0 mm"], "x_axis": [0, 1, 0],
+           "y_axis": [-1, 0, 0]}  # fmt: skip
+    surface = {"D": 2.5, "G": "1e-10 m", "scan_area": "4 mm^2"}
+    given = joint(friction=0.2, reach="2 mm", gap=gap, surface=surface, law={"model": "gw"})
+    found = study(folder, joint=given).joints[0]
+    assert (found.friction, found.reach) == (0.2, pytest.approx(2e-3))
+    assert found.gap_map.origin == pytest.approx((1e-3, 0, 0))
+    assert found.gap_map.x_axis == (0.0, 1.0, 0.0)
+    assert found.gap_map.file == folder / "gap.csv"
+    assert found.surface.D == 2.5
+    assert found.law.model == "gw"
+
+
+def test_measured_heights_need_no_surface(folder):
+    law = {"model": "gw-measured", "gaps": "heights.csv", "gaps_unit": "um", "density": "1e6 1/m^2", "radius": "1 mm",
+           "tangent_ratio": 0.01, "asperity": "Ghaednia"}  # fmt: skip
+    found = study(folder, law=law, surface=None)
+    assert found.surface is None
+    assert found.law.heights.density == pytest.approx(1e6)
+    assert found.law.heights.radius == pytest.approx(1e-3)
+    assert found.law.options == {"tangent_ratio": 0.01, "asperity": "Ghaednia"}
+    with pytest.raises(faying.InputError, match=r"\[surface\] is missing"):
+        study(folder, surface=None)
+    with pytest.raises(faying.InputError, match="law.gaps_unit is missing"):
+        study(folder, law={key: value for key, value in law.items() if key != "gaps_unit"})
+    with pytest.raises(faying.InputError, match='law.gaps goes with model = "gw-measured", not "jk"'):
+        study(folder, law={"model": "jk", "gaps": "heights.csv"})
+    with pytest.raises(faying.InputError, match="law.gaps: no file"):
+        study(folder, law=law | {"gaps": "none.csv"})
+
+
+def test_heights_become_a_law(folder):
+    from faying.study.contact import HeightsSpec, LawSpec
+    from faying.study.surface import NO_SURFACE, law_of
+
+    steel = faying.CATALOGUE["45 steel"]
+    heights = HeightsSpec(file=folder / "heights.csv", unit="um", density=1e6, radius=1e-3)
+    law = law_of(LawSpec(model="gw-measured", heights=heights), NO_SURFACE, faying.ContactPair(steel, steel))
+    assert law.gaps == pytest.approx([0, 10e-6, 20e-6])
+    (folder / "heights.csv").write_text("no numbers")
+    with pytest.raises(faying.ReadError, match="measured heights have the columns gap and probability density"):
+        law_of(LawSpec(model="gw-measured", heights=heights), NO_SURFACE, faying.ContactPair(steel, steel))
+
+
+@pytest.mark.parametrize(
+    ("more", "text"),
+    [
+        ({"gap": {"file": "none.csv", "xy_unit": "mm", "gap_unit": "um"}}, "gap.file: no file"),
+        ({"gap": {"file": "gap.csv", "gap_unit": "um"}}, "gap.xy_unit is missing"),
+        ({"gap": {"file": "gap.csv", "xy_unit": "mm", "gap_unit": "um", "x_axis": [0, 0, 0]}}, "has no length"),
+        ({"gap": {"file": "gap.csv", "xy_unit": "mm", "gap_unit": "um", "y_axis": [1, 0]}}, "should be three numbers"),
+        ({"friction": "much"}, "should be a plain finite number"),
+        ({"surface": {"D": 2.5}}, r"give scan, or D, G and scan_area \(G, scan_area missing\)"),
+        ({"law": {"model": "cube"}}, "known are"),
+    ],
+)
+def test_joint_faults(folder, more, text):
+    with pytest.raises(faying.InputError, match=text):
+        study(folder, joint=joint(**more))
+
+
+RESPONSE = """
+[response]
+from = "100 Hz"
+to = "2 kHz"
+points = 50
+structural_loss = 0.002
+[[response.input]]
+point = ["0 mm", "0 mm", "15 mm"]
+direction = [0, 0, 1]
+[[response.output]]
+point = ["40 mm", "0 mm", "15 mm"]
+direction = [0, 0, 1]
+"""
+
+
+def test_response_and_damping(folder):
+    spec = study(folder, RESPONSE).response
+    assert (spec.first, spec.last, spec.points, spec.structural_loss) == (100.0, 2000.0, 50, 0.002)
+    assert spec.inputs == (((0.0, 0.0, pytest.approx(15e-3)), (0.0, 0.0, 1.0)),)
+    assert spec.outputs[0][0][0] == pytest.approx(40e-3)
+    assert study(folder).response is None
+    assert study(folder, modes={"damping": "viscous"}).damping == "viscous"
+    assert study(folder).damping == "hysteretic"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "text"),
+    [
+        ('to = "2 kHz"', 'to = "50 Hz"', "from = 100 Hz must lie below to = 50 Hz"),
+        ("[[response.output]]", "[[response.autput]]", r"\[\[response.output\]\] is missing"),
+        ('from = "100 Hz"', "", "response.from is missing"),
+        ("direction = [0, 0, 1]", "direction = [0, 0, 0]", "has no length"),
+        ('from = "100 Hz"', 'from = "-100 Hz"', "must be positive"),
+    ],
+)
+def test_response_faults(folder, old, new, text):
+    with pytest.raises(faying.InputError, match=text):
+        study(folder, RESPONSE.replace(old, new))
+
+
+def test_a_damping_that_is_none(folder):
+    with pytest.raises(faying.InputError, match="should be one of hysteretic, viscous"):
+        study(folder, modes={"damping": "oil"})

@@ -1,0 +1,150 @@
+"""A study with shank, support, mass, friction, order, response: what comes out, and its way through NetCDF."""
+
+import tomllib
+
+import numpy as np
+import pytest
+
+import faying
+from faying.study import Study, build, run
+from faying.study.template import write
+
+MORE = """
+[tightening]
+order = ["bolt"]
+
+[[support]]
+face = "lower.seat"
+stiffness = "50 MPa/um"
+
+[[mass]]
+mass = "50 g"
+point = ["40 mm", "0 mm", "15 mm"]
+
+[response]
+from = "200 Hz"
+to = "6 kHz"
+points = 30
+structural_loss = 0.01
+[[response.input]]
+point = ["40 mm", "15 mm", "15 mm"]
+direction = [0, 0, 2]
+[[response.output]]
+point = ["40 mm", "15 mm", "15 mm"]
+direction = [0, 0, 1]
+[[response.output]]
+point = ["-40 mm", "15 mm", "15 mm"]
+direction = [0, 0, 1]
+"""
+
+
+def data(folder, more=MORE):
+    path = folder / "study.toml"
+    write(path, force=True)
+    given = tomllib.loads(path.read_text() + more)
+    given["bolt"][0] |= {"diameter": "8 mm", "material": "45 steel"}
+    given["joint"][0]["friction"] = 0.2
+    return given
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("structures")
+
+
+@pytest.fixture(scope="module")
+def result(folder):
+    return run(Study.from_dict(data(folder), folder=folder))
+
+
+def test_shapes_and_bounds(result):
+    assert result.bolt_forces == pytest.approx(np.array([[2000.0], [6000.0]]))
+    assert result.slipping.shape == (2, 1)
+    assert np.all((result.slipping >= 0) & (result.slipping <= 1))
+    assert result.rigid.size == 0  # springs hold the whole
+    assert result.mac.shape == (2, 6, 6)
+    assert np.diagonal(result.mac[0]) == pytest.approx(np.ones(6))
+    assert np.all((result.mac >= 0) & (result.mac <= 1 + 1e-12))
+
+
+def test_mac_follows_the_modes_to_the_next_load(result):
+    """Between 2 and 6 kN a mode keeps its shape: its row's largest entry is near 1."""
+    assert result.mac[1].max(axis=1).min() > 0.6
+
+
+def test_the_response_peaks_at_the_modes(result):
+    one = result.response[0]
+    assert one.values.shape == (30, 2, 1)
+    assert one.error < 0.05
+    assert np.all(one.values[:, 0, 0].imag < 0)  # at the driving point a passive structure only takes energy
+    assert one.inputs[0][1] == (0.0, 0.0, 2.0)
+
+
+def test_netcdf(result, tmp_path):
+    from scipy.io import netcdf_file
+
+    with netcdf_file(result.to_netcdf(tmp_path / "r.nc"), mmap=False) as nc:
+        for name in ("bolt_forces", "slipping", "mac"):
+            assert nc.variables[name].data == pytest.approx(getattr(result, name))
+        assert nc.variables["bolt_forces"].units == b"N"
+        assert nc.variables["bolt_forces"].dimensions == ("load", "bolt")
+        values = nc.variables["receptance_real"].data + 1j * nc.variables["receptance_imaginary"].data
+        assert values == pytest.approx(np.stack([one.values for one in result.response]))
+        assert nc.variables["receptance_real"].dimensions == ("load", "response_frequency", "output", "input")
+        assert nc.variables["response_frequencies"].data == pytest.approx(np.linspace(200, 6000, 30))
+        assert nc.variables["output_points"].data == pytest.approx(
+            np.array([[0.04, 0.015, 0.015], [-0.04, 0.015, 0.015]])
+        )
+        assert nc.variables["response_error"].data == pytest.approx([one.error for one in result.response])
+
+
+def test_json_names_bolts_and_slip(result):
+    found = result.to_dict()
+    assert found["bolt_forces"] == {"unit": "N", "bolts": ["bolt"], "values": [[2000.0], [6000.0]]}
+    assert found["slipping_share"]["values"] == result.slipping.tolist()
+
+
+def test_the_same_without_response_has_the_same_modes_and_a_heavier_one_lower(folder, result):
+    given = data(folder)
+    del given["response"]
+    given["mass"][0]["mass"] = "80 g"
+    heavier = run(Study.from_dict(given, folder=folder))
+    assert heavier.response == ()
+    assert np.all(heavier.frequencies <= result.frequencies * (1 + 1e-9))
+
+
+def test_viscous_dampers_say_that_they_depend_on_the_mesh(folder):
+    given = data(folder, "")
+    given["modes"]["damping"] = "viscous"
+    given["modes"]["count"] = 3
+    found = run(Study.from_dict(given, folder=folder))
+    assert any("loss factors depend on the mesh" in note for note in found.warnings)
+    assert np.all(found.loss_factors > 0)
+
+
+def test_a_joint_with_its_own_law_and_gap_differs(folder):
+    given = data(folder, "")
+    grid = [f"{x},{y},{0.02 * abs(x)}" for x in range(-40, 41, 8) for y in range(-15, 16, 5)]
+    (folder / "gap.csv").write_text("\n".join(grid))
+    given["joint"][0]["gap"] = {"file": "gap.csv", "xy_unit": "mm", "gap_unit": "um"}
+    structure = build(Study.from_dict(given, folder=folder))
+    interface = structure.joints[0].interface
+    assert interface.gap == pytest.approx(0.02e-6 * np.abs(interface.positions[:, 0] * 1e3), abs=8e-9)
+    assert structure.joints[0].friction == 0.2
+
+
+def test_names_that_do_not_exist(folder):
+    given = data(folder)
+    given["support"][0]["face"] = "nowhere"
+    given["mass"][0] = {"mass": "1 g", "face": "nobody"}
+    with pytest.raises(faying.InputError) as caught:
+        build(Study.from_dict(given, folder=folder))
+    assert "support 'nowhere' names the face 'nowhere'" in str(caught.value)
+    assert "mass 'nobody' names the face 'nobody'" in str(caught.value)
+
+
+def test_a_point_far_from_the_structure(folder):
+    given = data(folder)
+    given["response"]["input"][0]["point"] = ["4 m", "0 mm", "0 mm"]
+    with pytest.raises(faying.InputError, match="point of the response: the nearest node to"):
+        run(Study.from_dict(given, folder=folder))
