@@ -36,7 +36,9 @@ def done(plan, tmp_path_factory):
 @pytest.mark.parametrize("place", [(0, 0), (1, 1), (3, 2), (2, 0)])
 def test_points_are_those_of_full_runs(plan, done, place):
     D, force = (axis.values[i] for axis, i in zip(done.axes, place, strict=True))
-    full = run(replace(plan, surface=replace(plan.surface, D=D), bolts=tuple(replace(b, preload=(force,)) for b in plan.bolts)))
+    full = run(
+        replace(plan, surface=replace(plan.surface, D=D), bolts=tuple(replace(b, preload=(force,)) for b in plan.bolts))
+    )
     assert done.frequencies[place] == pytest.approx(full.frequencies[0], rel=1e-5)
     assert done.loss_factors[place] == pytest.approx(full.loss_factors[0], rel=1e-2)
     assert done.greatest_pressure[place] == pytest.approx(full.pressure.max(), rel=0.02)
@@ -76,7 +78,7 @@ def test_an_interrupted_sweep_goes_on_where_it_stopped(plan, done, tmp_path, mon
     monkeypatch.setattr(module.Reduction, "of", None)  # the bases are not made again
     again = sweep(plan, axes(), out)
     assert again.frequencies == pytest.approx(done.frequencies, rel=1e-6)
-    assert sorted(sum(calls[2:], [])) == sorted(set(range(12)) - set(calls[0]))
+    assert sorted(i for some in calls[2:] for i in some) == sorted(set(range(12)) - set(calls[0]))
 
 
 def test_leftovers_of_another_sweep_are_refused(plan, tmp_path):
@@ -94,7 +96,9 @@ def test_processes_give_the_same(plan, done, tmp_path, monkeypatch):
 def test_a_cluster_gives_the_same(plan, done, tmp_path, monkeypatch):
     distributed = pytest.importorskip("distributed", reason="the extra dask is not installed")
     monkeypatch.setattr(module, "CHUNK", 6)
-    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None) as cluster:
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster:
         there = sweep(plan, axes(), tmp_path / "out.nc", dask=cluster.scheduler_address)
     assert there.frequencies == pytest.approx(done.frequencies, rel=1e-6)
 
@@ -152,7 +156,10 @@ def test_the_path_through_the_grid_meets_every_point_once_and_steps_to_neighbour
 
 
 def test_what_a_sweep_cannot_do(plan, tmp_path):
-    for changes, message in (({"damping": "viscous"}, "hysteretic loss"), ({"order": (0, 1)}, "pulls all bolts at once")):
+    for changes, message in (
+        ({"damping": "viscous"}, "hysteretic loss"),
+        ({"order": (0, 1)}, "pulls all bolts at once"),
+    ):
         with pytest.raises(faying.InputError, match=message):
             sweep(replace(plan, **changes), axes(), tmp_path / "out.nc")
     with pytest.raises(faying.InputError, match="should end in .nc"):

@@ -71,7 +71,7 @@ def _container() -> float | None:
         ("memory/memory.limit_in_bytes", "memory/memory.usage_in_bytes", "memory/memory.stat", "total_inactive_file"),
     ):
         try:
-            most = float((CGROUP / limit).read_text(encoding="ascii"))  # "max" where there is no limit
+            most = float((CGROUP / limit).read_text(encoding="ascii").replace("max", "inf"))
             taken = float((CGROUP / used).read_text(encoding="ascii"))
             pages = dict(line.split() for line in (CGROUP / stat).read_text(encoding="ascii").splitlines())
             return max(most - taken + float(pages.get(word, 0)), 0.0)

@@ -44,7 +44,8 @@ def lowest_modes(
     masses, or memory is short, and NotConverged where the iteration stops short.
     """
     shift = (2 * np.pi * shift_frequency) ** 2
-    if not 0 < count <= (most := int(np.count_nonzero(mass.diagonal() > 0))):
+    most = int(np.count_nonzero(mass.diagonal() > 0))
+    if not 0 < count <= most:
         raise InputError(f"{count} modes of a structure with {most} unknowns that have mass; ask for 1 to {most}")
     factor = factorise((stiffness + shift * mass).tocsr(), solver)
     shapes = _krylov(factor, mass, count, min(WIDTH, stiffness.shape[0]))
@@ -54,9 +55,10 @@ def lowest_modes(
     from scipy.linalg import eigh
 
     values, turn = eigh((small + small.T) / 2, (gram + gram.T) / 2)
+    order = np.argsort(np.abs(values))
     return Modes(
-        frequencies=np.sqrt(np.abs(values)) / (2 * np.pi),
-        shapes=shapes @ turn,
+        frequencies=np.sqrt(np.abs(values[order])) / (2 * np.pi),
+        shapes=shapes @ turn[:, order],
         factorisation=factor,
         shift=shift,
     )
