@@ -58,6 +58,42 @@ def read_matrices(
     return (K * scales[0]).tocsr(), (M * scales[1]).tocsr(), table
 
 
+def read_pair(
+    stiffness: str | Path, mass: str | Path | None = None, *, stiffness_unit: str, mass_unit: str
+) -> Matrices:
+    """Read K [N/m], M [kg] and dofs as `read_matrices` does, with no list of unknowns for Matrix Market and SciPy's .npz.
+
+    Without a list, each unknown counts as direction 1 of a node of its own. Raises what `read_matrices` raises.
+    """
+    file = Path(stiffness)
+    kinds = {".mtx": _market, ".npz": _npz}
+    if file.suffix.lower() not in kinds:
+        if mass is not None:
+            raise InputError(f"{file.name} brings its mass with it; leave out {mass}")
+        return read_matrices(file, stiffness_unit=stiffness_unit, mass_unit=mass_unit)
+    if mass is None:
+        raise InputError(f"{file.name} holds the stiffness alone; name the mass too, .mtx or .npz")
+    other = Path(mass)
+    if other.suffix.lower() not in kinds:
+        raise ReadError(f"{other}: the mass should be .mtx or .npz")
+    K = kinds[file.suffix.lower()](file) * units.scale(stiffness_unit, "N/m", name="stiffness unit")
+    M = kinds[other.suffix.lower()](other) * units.scale(mass_unit, "kg", name="mass unit")
+    table = np.column_stack([np.arange(1, K.shape[0] + 1), np.ones(K.shape[0], dtype=np.int64)])
+    _check(file.name, K, M, table)
+    return K.tocsr(), M.tocsr(), table
+
+
+def _npz(path: Path) -> Any:
+    from scipy.sparse import csr_array, load_npz
+
+    if not path.is_file():
+        raise ReadError(f"no file {path}")
+    try:
+        return csr_array(load_npz(path))
+    except Exception as fault:  # zip, pickle and key errors
+        raise ReadError(f"{path} cannot be read as a sparse matrix of SciPy ({fault})") from None
+
+
 def arranged(matrices: Matrices, mesh: Mesh) -> tuple[Any, Any]:
     """K and M in the order of a mesh's unknowns, node by node x, y, z, through the numbers of its nodes.
 

@@ -5,11 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from faying.errors import NotConverged
+from faying.errors import InputError, NotConverged
 from faying.fe.mesh import Array
 from faying.fe.solve import Factorisation, factorise
 
 SEED = 20240611
+WIDTH = 12  # of a block of vectors: a factor is read once for all of them
+MOST_STEPS = 1200  # vectors of the basis
+SAME = 1e-6  # relative difference of eigenvalues of A^-1 M below which they may be one
+TOLERANCE = 1e-9  # residual of A^-1 M x = theta x over theta; the error of theta is of its square over the gap
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,33 +37,74 @@ def lowest_modes(
     shift_frequency: float,
     solver: str | None = None,
 ) -> Modes:
-    """Find the `count` lowest modes by Lanczos iteration with a negative shift.
+    """Find the `count` lowest modes by block Lanczos iteration with a negative shift.
 
     stiffness [N/m], mass [kg]: sparse and symmetric; shift_frequency [Hz] sets the shift -(2 pi f)^2, at which
-    K + |shift| M is positive definite even for free bodies. Raises NotConverged where ARPACK stops short.
+    K + |shift| M is positive definite even for free bodies. Raises InputError where more modes are asked for than there are
+    masses, or memory is short, and NotConverged where the iteration stops short.
     """
-    from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
-
     shift = (2 * np.pi * shift_frequency) ** 2
+    most = int(np.count_nonzero(mass.diagonal() > 0))
+    if not 0 < count <= most:
+        raise InputError(f"{count} modes of a structure with {most} unknowns that have mass; ask for 1 to {most}")
     factor = factorise((stiffness + shift * mass).tocsr(), solver)
-    n = stiffness.shape[0]
-    inverse = LinearOperator((n, n), matvec=factor.solve, dtype=float)
-    first = np.random.default_rng(SEED).standard_normal(n)
-    try:
-        _, shapes = eigsh(stiffness, k=count, M=mass, sigma=-shift, OPinv=inverse, v0=first,
-                               ncv=min(n, max(2 * count + 1, 20)), tol=1e-11)  # fmt: skip
-    except ArpackNoConvergence as fault:
-        raise NotConverged(
-            f"{len(fault.eigenvalues)} of {count} modes converged; ask for fewer or refine the mesh"
-        ) from None
-    # Rayleigh quotients remove what the shifted inverse lost on the lowest eigenvalues
-    sizes = np.einsum("im,im->m", shapes, mass @ shapes)
-    values = np.einsum("im,im->m", shapes, stiffness @ shapes) / sizes
-    shapes = shapes / np.sqrt(sizes)
-    order = np.argsort(values)
+    shapes = _krylov(factor, mass, count, min(WIDTH, stiffness.shape[0]))
+    # a last Rayleigh-Ritz step restores what the shifted inverse has lost on the lowest eigenvalues
+    image, momentum = stiffness @ shapes, mass @ shapes
+    small, gram = shapes.T @ image, shapes.T @ momentum
+    from scipy.linalg import eigh
+
+    values, turn = eigh((small + small.T) / 2, (gram + gram.T) / 2)
+    order = np.argsort(np.abs(values))
     return Modes(
         frequencies=np.sqrt(np.abs(values[order])) / (2 * np.pi),
-        shapes=shapes[:, order],
+        shapes=shapes @ turn[:, order],
         factorisation=factor,
         shift=shift,
     )
+
+
+def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> Array:
+    """Eigenvectors (n, count) of A^-1 M with the greatest eigenvalues, orthonormal with the mass.
+
+    Block Lanczos with full reorthogonalisation (Grimes, Lewis, Simon 1994, doi:10.1137/S0895479888151111), without
+    restarts: a factor takes far more memory than the basis. An eigenvalue that comes as often as the blocks are wide may
+    come more often than that, so that wider ones are tried.
+    """
+    n = mass.shape[0]
+    generator = np.random.default_rng(SEED)
+    last = factor.solve(mass @ generator.standard_normal((n, width)))
+    last, _ = _orthonormal(last, mass)
+    basis, projected = last, np.zeros((0, 0))
+    for _ in range(MOST_STEPS // width):
+        image = factor.solve(mass @ last)
+        side = basis.T @ (mass @ image)
+        old = len(projected)
+        corner = (side[old:] + side[old:].T) / 2
+        projected = np.block([[projected, side[:old]], [side[:old].T, corner]])
+        image -= basis @ side
+        image -= basis @ (basis.T @ (mass @ image))
+        last, rows = _orthonormal(image, mass)
+        values, vectors = np.linalg.eigh(projected)
+        values, vectors = values[::-1][:count], vectors[:, ::-1][:, :count]
+        converged = np.linalg.norm(rows @ vectors[old:], axis=0) <= TOLERANCE * values
+        if len(values) == count and (np.all(converged) or not last.shape[1]):
+            often = max(int(np.count_nonzero(np.abs(values / value - 1) < SAME)) for value in values)
+            if width <= often < count and width < n:
+                return _krylov(factor, mass, count, 2 * width)
+            return np.asarray(basis @ vectors)
+        basis = np.concatenate([basis, last], axis=1)
+    raise NotConverged(f"{np.count_nonzero(converged)} of {count} modes have converged after {basis.shape[1]} steps; ask for "
+                       "fewer, or raise modes.shift_frequency towards the first mode")  # fmt: skip
+
+
+def _orthonormal(new: Array, mass: Any) -> tuple[Array, Array]:
+    """Vectors (n, r) orthonormal with the mass that span `new` (n, k), and (r, k) with new = vectors @ that."""
+    rows, least = np.eye(new.shape[1]), 1e-14
+    for _ in range(2):  # the Gram matrix squares what is small: what the first pass leaves, the second mends
+        gram = new.T @ (mass @ new)
+        values, turn = np.linalg.eigh((gram + gram.T) / 2)
+        keep = values > least * values[-1]
+        root = np.sqrt(values[keep])
+        new, rows = new @ (turn[:, keep] / root), (turn[:, keep] * root).T @ rows
+    return new, rows

@@ -1,7 +1,6 @@
 """Factorisations behind one interface; the best one found at run time is taken and reported."""
 
 import os
-import sys
 from collections.abc import Callable
 from functools import cache
 from typing import Any, Protocol
@@ -10,67 +9,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faying.errors import InputError, NotConverged
+from faying.fe.memory import FILL_MINIMUM_DEGREE, check, guessed
+from faying.fe.pardiso import Pardiso
 
 Array = NDArray[np.float64]
 
 
 class Factorisation(Protocol):
-    """A factorised symmetric positive definite matrix."""
+    """A factorised symmetric positive definite matrix; memory [B]: what it was estimated to take before it was made."""
 
     name: str
+    memory: float
 
     def solve(self, right: Array) -> Array:
         """Solve for one right-hand side (n,) or several (n, m)."""
 
     def again(self, matrix: Any) -> "Factorisation":
         """Factorise another matrix with the same pattern, both CSR with sorted indices; the analysis is kept if it can."""
-
-
-class _Pardiso:
-    """Intel MKL's PARDISO through pypardiso, as Cholesky of the upper triangle."""
-
-    name = "PARDISO"
-
-    def __init__(self, matrix: Any) -> None:
-        from pypardiso import PyPardisoSolver
-        from scipy.sparse import csr_matrix, triu
-
-        self._upper = csr_matrix(triu(matrix, format="csr"))
-        self._upper.sort_indices()
-        self._kept: Any = None
-        self._solver = PyPardisoSolver(mtype=2)
-        self._solver._check_A(self._upper)
-        self._solver.set_phase(12)
-        try:
-            self._solver._call_pardiso(self._upper, np.zeros((matrix.shape[0], 1)))
-        except Exception as fault:
-            raise NotConverged(
-                f"PARDISO could not factorise the matrix ({fault}); is a part held by nothing?"
-            ) from None
-        # pypardiso's solve() compares the whole matrix with the factorised one at every call, which costs more than
-        # solving; the phase is set here instead
-        self._solver.set_phase(33)
-
-    def solve(self, right: Array) -> Array:
-        x: Array = self._solver._call_pardiso(self._upper, np.asfortranarray(right))
-        return x.reshape(right.shape)
-
-    def again(self, matrix: Any) -> "_Pardiso":
-        if self._kept is None:
-            self._kept = matrix.indices >= np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
-        self._upper.data[:] = matrix.data[self._kept]
-        self._solver.set_phase(22)
-        try:
-            self._solver._call_pardiso(self._upper, np.zeros((matrix.shape[0], 1)))
-        except Exception as fault:
-            raise NotConverged(f"PARDISO could not factorise the matrix ({fault})") from None
-        self._solver.set_phase(33)
-        return self
-
-    def __del__(self) -> None:
-        solver = getattr(self, "_solver", None)
-        if solver is not None and not sys.is_finalizing():
-            solver.free_memory(everything=True)
 
 
 class _Mumps:
@@ -83,15 +38,23 @@ class _Mumps:
 
         self._context = mumps.Context()
         self._context.set_matrix(matrix.tocoo(), symmetric=True)
-        self._context.factor()
+        self._context.analyze()
+        self.memory = 1e6 * float(self._context.analysis_stats.est_mem_incore)
+        check(self.memory, matrix.shape[0], self.name)
+        try:
+            self._context.factor(reuse_analysis=True)
+        except mumps.MUMPSError as fault:
+            raise NotConverged(f"MUMPS could not factorise the matrix ({fault}); is a part held by nothing?") from None
+        negative = self._context.mumps_instance.infog[12]
+        if negative > 0:
+            raise NotConverged(f"MUMPS finds {negative} negative pivots, so the matrix is not positive definite; is a part held by "
+                               "nothing?")  # fmt: skip
 
     def again(self, matrix: Any) -> "_Mumps":
         return _Mumps(matrix)
 
     def solve(self, right: Array) -> Array:
-        if right.ndim == 2:
-            return np.column_stack([self._context.solve(column.copy()) for column in right.T])
-        return np.asarray(self._context.solve(right.copy()))
+        return np.asarray(self._context.solve(np.array(right, dtype=float, order="F")))
 
 
 class _Cholmod:
@@ -101,9 +64,16 @@ class _Cholmod:
 
     def __init__(self, matrix: Any) -> None:
         from scipy.sparse import csc_matrix
-        from sksparse.cholmod import cholesky
+        from sksparse.cholmod import CholmodNotPositiveDefiniteError, cholesky
 
-        self._factor = cholesky(csc_matrix(matrix))
+        self.memory = guessed(matrix.shape[0])
+        check(self.memory, matrix.shape[0], self.name)
+        try:
+            self._factor = cholesky(csc_matrix(matrix))
+        except CholmodNotPositiveDefiniteError as fault:
+            raise NotConverged(
+                f"CHOLMOD could not factorise the matrix ({fault}); is a part held by nothing?"
+            ) from None
 
     def again(self, matrix: Any) -> "_Cholmod":
         return _Cholmod(matrix)
@@ -120,6 +90,9 @@ class _SuperLU:
     def __init__(self, matrix: Any) -> None:
         from scipy.sparse.linalg import splu
 
+        # both triangles
+        self.memory = guessed(matrix.shape[0], fill=FILL_MINIMUM_DEGREE, per_entry=2 * 10)
+        check(self.memory, matrix.shape[0], self.name)
         try:
             self._factor = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
                                 options={"SymmetricMode": True})  # fmt: skip
@@ -137,7 +110,7 @@ class _SuperLU:
 
 _MODULE = {"pardiso": "pypardiso", "mumps": "mumps", "cholmod": "sksparse.cholmod", "superlu": "scipy"}
 _BACKENDS: dict[str, Callable[[Any], Factorisation]] = {
-    "pardiso": _Pardiso,
+    "pardiso": Pardiso,
     "mumps": _Mumps,
     "cholmod": _Cholmod,
     "superlu": _SuperLU,

@@ -1,0 +1,182 @@
+"""From a mesh to 15 elastic modes: Faying beside CalculiX and beside bare PARDISO, on the same meshes and springs.
+
+    python benchmarks/structures.py [--sizes 55 150] [--large] [--no-ccx] [--repeats 3]
+
+The T-specimen of the examples, meshed finer and finer (its holes need 55,000 unknowns at least), with springs between the facing nodes of its joint. Every
+contender runs in a process of its own on one thread; CPU seconds from the mesh in memory (for ccx: from its input file)
+to the frequencies, and the peak of resident memory. "bare" gets the matrices for nothing: pypardiso as it comes, and
+SciPy's eigsh. Sizes in thousands of unknowns; --large adds 500 and 1000 (ccx only up to 500).
+"""
+
+import argparse
+import json
+import os
+import pickle
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+
+for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ[name] = "1"
+ROOT = Path(__file__).parent.parent
+# largest edge in the body and on the joint [mm] for thousands of unknowns
+EDGES = {55: (60.0, 30.0), 70: (18.0, 8.0), 150: (10.0, 4.8), 500: (5.8, 3.0), 1000: (4.75, 2.5)}
+MODES, K_N, K_T, SHIFT = 21, 4e13, 2e13, 100.0
+
+
+def meshed(size):
+    from faying.study import Study
+    from faying.study.build import checked_mesh
+
+    plan = Study.read(ROOT / "examples/t-specimen/study.toml")
+    edge, at_joint = EDGES[size]
+    spec = replace(plan.geometry, size=edge * 1e-3, face_size={"upper.joint": at_joint * 1e-3})
+    return checked_mesh(replace(plan, geometry=spec))
+
+
+def joined(mesh):
+    """Matrices of the parts with the springs, by Faying."""
+    import numpy as np
+
+    import faying
+    from faying.fe.elasticity import assemble
+    from faying.fe.interface import join
+
+    K, M = assemble(mesh, dict.fromkeys(mesh.parts, faying.CATALOGUE["45 steel"]), mass="stiffness")
+    nodes = join(mesh, "upper.joint", "lower.joint").at_nodes()
+    ones = np.ones(len(nodes.weights))
+    return K + nodes.springs(K_N * ones, K_T * ones), M, nodes
+
+
+def ours(mesh):
+    from faying.fe.modes import lowest_modes
+
+    begin = time.process_time()
+    K, M, _ = joined(mesh)
+    middle = time.process_time()
+    found = lowest_modes(K, M, MODES, shift_frequency=SHIFT)
+    end = time.process_time()
+    return {"cpu": end - begin, "modes": end - middle, "factor_gb": found.factorisation.memory / 1e9,
+            "frequencies": found.frequencies.tolist()}  # fmt: skip
+
+
+def bare(mesh):
+    import numpy as np
+    from pypardiso import PyPardisoSolver
+    from scipy.sparse import csr_matrix, triu
+    from scipy.sparse.linalg import LinearOperator, eigsh
+
+    K, M, _ = joined(mesh)
+    begin = time.process_time()
+    shift = (2 * np.pi * SHIFT) ** 2
+    upper = csr_matrix(triu(K + shift * M, format="csr"))
+    solver = PyPardisoSolver(mtype=2)
+    solver._check_A(upper)
+    solver.set_phase(12)
+    solver._call_pardiso(upper, np.zeros((K.shape[0], 1)))
+    solver.set_phase(33)
+    inverse = LinearOperator(K.shape, matvec=lambda x: solver._call_pardiso(upper, x), dtype=float)
+    values, _ = eigsh(K, k=MODES, M=M, sigma=-shift, OPinv=inverse)
+    end = time.process_time()
+    return {
+        "cpu": end - begin,
+        "modes": end - begin,
+        "frequencies": (np.sqrt(np.abs(np.sort(values))) / 2 / np.pi).tolist(),
+    }
+
+
+def calculix(mesh, folder):
+    sys.path[:0] = [str(ROOT / "tests/witness")]
+    import ccx
+
+    import faying
+    from faying.fe.interface import join
+
+    nodes = join(mesh, "upper.joint", "lower.joint").at_nodes()
+    axis = abs(nodes.normals[0]).argmax()
+    springs = [
+        (int(a), int(b), [(K_N if k == axis else K_T) * w for k in range(3)])
+        for a, b, w in zip(nodes.first_nodes[:, 0], nodes.second_nodes[:, 0], nodes.weights, strict=True)
+    ]
+    step = ["*STEP", "*FREQUENCY,SOLVER=ARPACK", f"{MODES}", "*END STEP"]
+    text = ccx.deck(mesh, dict.fromkeys(mesh.parts, faying.CATALOGUE["45 steel"]), springs, step=step)
+    ccx.run(folder, text)
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return {"cpu": used.ru_utime + used.ru_stime, "peak_gb": used.ru_maxrss * 1024 / 1e9,
+            "frequencies": ccx.frequencies(folder)[:MODES].tolist()}  # fmt: skip
+
+
+def measured(who, path):
+    """Run one contender in a process of its own."""
+    done = subprocess.run(
+        [sys.executable, __file__, "--one", who, str(path)], capture_output=True, text=True, check=False
+    )
+    if done.returncode:
+        return {"cpu": float("nan"), "fault": (done.stderr.strip().splitlines() or ["?"])[-1]}
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def one(who, path):
+    mesh = pickle.loads(Path(path).read_bytes())
+    import scipy.sparse.linalg  # noqa: F401  imports are not what is measured
+
+    with tempfile.TemporaryDirectory() as folder:
+        out = {"ours": ours, "bare": bare}[who](mesh) if who != "ccx" else calculix(mesh, Path(folder))
+    out.setdefault("peak_gb", resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e9)
+    print(json.dumps(out))
+
+
+def compare(size, repeats, with_ccx):
+    import numpy as np
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "mesh"
+        mesh = meshed(size)
+        path.write_bytes(pickle.dumps(mesh))
+        print(f"{mesh.unknowns:,} unknowns", flush=True)
+        who = ["ours", "bare", *(["ccx"] if with_ccx else [])]
+        rows = {}
+        for name in who:
+            runs = [measured(name, path) for _ in range(repeats if name != "ccx" else 1)]
+            rows[name] = runs[-1] | {
+                key: statistics.median(run[key] for run in runs) for key in ("cpu", "modes") if key in runs[-1]
+            }
+            row = rows[name]
+            if "fault" in row:
+                print(f"  {name}: {row['fault']}", flush=True)
+                continue
+            if name == "ours":
+                print(f"  ours  {row['cpu']:7.1f} CPU s, of them modes {row['modes']:7.1f}; peak {row['peak_gb']:.2f} GB, factor "
+                      f"estimated {row['factor_gb']:.2f} GB", flush=True)  # fmt: skip
+                continue
+            mine = rows["ours"]["modes" if name == "bare" else "cpu"]
+            elastic = slice(6, None)
+            differ = np.abs(
+                np.array(row["frequencies"])[elastic] / np.array(rows["ours"]["frequencies"])[elastic] - 1
+            ).max()
+            print(f"  {name:5s} {row['cpu']:7.1f} CPU s; ours takes {mine / row['cpu']:.3f} of it; peak {row['peak_gb']:.2f} GB; "
+                  f"frequencies differ by {differ:.1e}", flush=True)  # fmt: skip
+
+
+def main():
+    ask = argparse.ArgumentParser()
+    ask.add_argument("--sizes", type=int, nargs="*", default=[55, 150], choices=sorted(EDGES))
+    ask.add_argument("--large", action="store_true")
+    ask.add_argument("--no-ccx", action="store_true")
+    ask.add_argument("--repeats", type=int, default=3)
+    ask.add_argument("--one", nargs=2, help=argparse.SUPPRESS)
+    given = ask.parse_args()
+    if given.one:
+        one(*given.one)
+        return
+    for size in [*given.sizes, *((500, 1000) if given.large else ())]:
+        compare(size, 1 if size > 200 else given.repeats, not given.no_ccx and size <= 500)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,78 @@
+"""The assembled matrices of a study at its first preload, or of files, for modes alone and for other solvers."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.fe.matrices import read_pair
+from faying.fe.sides import Index
+from faying.files import whole
+from faying.joint.tighten import tighten
+from faying.study.build import build_all, checked_mesh
+from faying.study.schema import Study
+
+
+@dataclass(frozen=True, kw_only=True)
+class Assembled:
+    """Stiffness [N/m] and mass [kg] (n, n), sparse CSR; dofs (n, 2): node and direction; a frequency to shift by [Hz].
+
+    still: rigid motions that nothing resists, None where nobody has counted them.
+    """
+
+    stiffness: Any
+    mass: Any
+    dofs: Index
+    shift_frequency: float
+    source: str
+    still: int | None = None
+
+    @classmethod
+    def of_study(cls, study: Study) -> "Assembled":
+        """Assemble a study with the springs of its joints at its first preload."""
+        structure = build_all(study, mesh=checked_mesh(study)).structure
+        assembly = structure.assembly(solver=study.solver)
+        found = tighten(structure, assembly, [bolt.preload[0] for bolt in study.bolts], order=study.order)
+        stiffness, _ = structure.joined(structure.springs(found.pressures))
+        numbers = structure.mesh.numbers
+        dofs = np.column_stack([np.repeat(numbers, 3), np.tile([1, 2, 3], len(numbers))])
+        return cls(stiffness=stiffness, mass=structure.vibrating[1], dofs=dofs, still=structure.rigid.shape[1],
+                   shift_frequency=study.shift_frequency or structure.shift_frequency, source=study.title)  # fmt: skip
+
+    @classmethod
+    def of_files(cls, stiffness: Path, mass: Path | None, *, stiffness_unit: str, mass_unit: str) -> "Assembled":
+        """Read matrices of any program; see `faying.fe.matrices.read_pair`."""
+        K, M, dofs = read_pair(stiffness, mass, stiffness_unit=stiffness_unit, mass_unit=mass_unit)
+        return cls(stiffness=K, mass=M, dofs=dofs, shift_frequency=typical_frequency(K, M), source=stiffness.name)
+
+    def write(self, folder: Path) -> list[Path]:
+        """Write stiffness.npz, mass.npz (SciPy) and dofs.txt, each whole or not at all."""
+        from scipy.sparse import csr_matrix, save_npz
+
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as fault:
+            raise InputError(f"cannot make the folder {folder}: {fault.strerror}; give another with --export") from None
+        out = []
+        for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
+
+            def fill(temporary: Path, matrix: Any = matrix) -> None:
+                with temporary.open("wb") as file:  # a file, since save_npz adds .npz to names
+                    save_npz(file, csr_matrix(matrix), compressed=False)
+
+            out.append(whole(folder / f"{name}.npz", fill))
+        text = "\n".join(f"{node}.{axis}" for node, axis in self.dofs) + "\n"
+        out.append(whole(folder / "dofs.txt", lambda temporary: temporary.write_text(text, encoding="ascii")))
+        return out
+
+
+def typical_frequency(stiffness: Any, mass: Any) -> float:
+    """A frequency [Hz] of the order of the first mode of a compact body: a wave of some ten bodies' length.
+
+    The mean of the diagonals gives the frequency of one element; a body of n unknowns is n^(1/3) elements across.
+    """
+    n = stiffness.shape[0]
+    element = np.sqrt(stiffness.diagonal().sum() / mass.diagonal().sum()) / (2 * np.pi)
+    return float(0.1 * element / np.cbrt(n))
