@@ -89,10 +89,11 @@ def _labels(response: Receptance | None) -> dict[tuple[float, ...], int]:
 
 
 def _frf(response: Receptance, labels: dict[tuple[float, ...], int]) -> FRF:
-    rows, columns = (
-        {Dof(labels[tuple(point)], _name(axis) or ""): k for k, (point, axis) in reversed(list(enumerate(side)))}
-        for side in (response.outputs, response.inputs)
-    )
+    rows: dict[Dof, int] = {}
+    columns: dict[Dof, int] = {}
+    for side, known in ((response.outputs, rows), (response.inputs, columns)):
+        for k, (point, axis) in enumerate(side):
+            known.setdefault(Dof(labels[tuple(point)], _name(axis) or ""), k)
     values = response.values[:, list(rows.values())][:, :, list(columns.values())].transpose(1, 2, 0)
     receptance = FRF(frequency=response.frequencies, values=values, outputs=tuple(rows), inputs=tuple(columns), quantity="receptance",
                      positions={k: p for p, k in labels.items()})  # type: ignore[misc]  # fmt: skip
