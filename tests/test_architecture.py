@@ -18,8 +18,9 @@ ORDER = [
     {"result"},
     {"study"},
     {"plot", "table"},
-    {"report"},
+    {"page"},
     {"report_measured"},
+    {"report"},
     {"cli", "web"},
     {"__main__"},
 ]

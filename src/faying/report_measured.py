@@ -7,11 +7,11 @@ from typing import Any
 from faying import __version__
 from faying.files import whole
 from faying.measured.compare import ModalComparison
-from faying.report import STYLE, _picture, _table
+from faying.page import BITMAPS, STYLE, picture, save, table
 
 CAPTIONS = {
     "mac": "MAC of the modes of the test against those of the model, at the points and directions of the test. Pairs are framed.",
-    "frf": "FRFs of the test and of the model. The model's are its elastic modes superposed.",
+    "frf": "FRFs of the test and of the model, its full response or its elastic modes superposed, as the legend says.",
     "shapes": "Paired mode shapes: motion measured at the points of the test (left), the model's (right).",
 }
 MOST_FRFS = 4
@@ -46,22 +46,26 @@ def section(comparison: ModalComparison, drawn: dict[str, Any] | None = None) ->
              f"{worst * 1e3:.3g} mm away.</p>"]  # fmt: skip
     parts += [f'<p class="flag">{escape(note)}</p>' for note in comparison.notes]
     parts += [
-        _table(comparison.rows()),
+        table(comparison.rows()),
         "<p>Difference: model over test. Intervals of the test's loss factors: 95 %.</p>",
     ]
     for name, figure in (drawn or figures(comparison)).items():
-        picture = _picture("modes" if name == "shapes" else name, figure)
-        parts.append(f"<figure>{picture}<figcaption>{CAPTIONS[name]}</figcaption></figure>")
+        parts.append(f"<figure>{picture(name, figure)}<figcaption>{CAPTIONS[name]}</figcaption></figure>")
     return "".join(parts)
+
+
+def write_parts(comparison: ModalComparison, drawn: dict[str, Any], folder: Path, prefix: str = "") -> list[Path]:
+    """Write comparison.csv and the figures as SVG (shapes as PNG), their names after `prefix`."""
+    made = [whole(folder / "comparison.csv", lambda path: path.write_text(comparison.csv_text(), encoding="utf-8"))]
+    for name, figure in drawn.items():
+        made.append(save(figure, folder / f"{prefix}{name}.{'png' if name in BITMAPS else 'svg'}"))
+    return made
 
 
 def write(comparison: ModalComparison, folder: Path) -> list[Path]:
     """Write comparison.csv, the figures as SVG (shapes as PNG) and comparison.html into a folder that exists."""
-    made = [whole(folder / "comparison.csv", lambda path: path.write_text(comparison.csv_text(), encoding="utf-8"))]
     drawn = figures(comparison)
-    for name, figure in drawn.items():
-        kind = "png" if name == "shapes" else "svg"
-        made.append(whole(folder / f"{name}.{kind}", lambda path, f=figure, k=kind: f.savefig(path, format=k, dpi=150)))  # type: ignore[misc]
+    made = write_parts(comparison, drawn, folder)
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Hammer test</title><style>{STYLE}</style>'
     page = (f"<!doctype html><html lang='en'><head>{head}</head><body><h1>{escape(comparison.model.title)}</h1>"
             f"{section(comparison, drawn)}<p>Faying {__version__}.</p></body></html>\n")  # fmt: skip

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.files import whole
+from faying.measured.compare import ModalComparison
 
 Array = NDArray[np.float64]
 
@@ -77,7 +78,9 @@ class Result:
     weights [m2] (q,) of joint_of_point (q,); unknowns; outline [m] (n, 3), triangles (t, 3) and shapes
     (l, m, n, 3) of the mass-normalised real modes; bolt_forces [N] (l, b), what is left when all bolts are tight; slipping
     [-] (l, joints), share of a joint's area at the limit of friction; mac [-] (l, m, m), modal assurance criterion of
-    the modes at the first load (rows) with those at each; response: frequency response per load, if asked for; sources, warnings: sentences for the reader.
+    the modes at the first load (rows) with those at each; response: frequency response per load, if asked for;
+    comparison: with listed frequencies; hammer: with a test's modes and FRFs; damping: hysteretic or viscous; tightening: names of
+    the bolts in the order in which they were pulled, empty where all at once; sources, warnings: sentences for the reader.
     """
 
     title: str
@@ -111,6 +114,9 @@ class Result:
     comparison: Comparison | None = None
     sources: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    hammer: ModalComparison | None = None
+    damping: str = "hysteretic"
+    tightening: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in UNITS:
@@ -129,6 +135,7 @@ class Result:
         out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
         out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
         out["bolt_forces"] = {"unit": "N", "bolts": list(self.bolts), "values": self.bolt_forces.tolist()}
+        out |= {"damping": self.damping, "tightening": list(self.tightening)}
         out["slipping_share"] = {"unit": "1", "values": self.slipping.tolist()}
         out |= {"surface": self.surface, "law": self.law, "convergence": list(self.convergence)}
         if self.comparison is not None:
@@ -143,6 +150,8 @@ class Result:
             }
             if c.published is not None:
                 out["comparison"][c.published_name] = c.published.tolist()
+        if self.hammer is not None:
+            out["hammer_test"] = self.hammer.to_dict()
         return out | {"sources": list(self.sources), "warnings": list(self.warnings)}
 
     def open_share(self) -> Array:
@@ -169,6 +178,7 @@ class Result:
                 nc.warnings = "\n".join(self.warnings) or " "
                 nc.solver, nc.unknowns = self.solver, self.unknowns
                 nc.joints = "\n".join(self.joints)
+                nc.damping = self.damping
                 for group in (self.surface, self.law):
                     for key, value in group.items():
                         setattr(

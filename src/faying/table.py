@@ -41,18 +41,37 @@ def comparison(result: Result) -> Rows:
 
 
 def joints(result: Result) -> Rows:
-    """One row per preload: greatest and mean pressure, open share, total stiffness, balance of forces."""
-    rows: Rows = [
-        ["preload", "greatest p [MPa]", "mean p [MPa]", "open [%]", "total k_n [N/m]", "total k_t [N/m]", "imbalance"]
-    ]
+    """One row per preload: greatest and mean pressure, open and slipping share, total stiffness, balance of forces.
+
+    The slipping share, over all joints, has a column only where something slips.
+    """
+    slips = bool(np.any(result.slipping > 0))
+    rows: Rows = [["preload", "greatest p [MPa]", "mean p [MPa]", "open [%]", *["slipping [%]"] * slips, "total k_n [N/m]",
+                   "total k_t [N/m]", "imbalance"]]  # fmt: skip
     area = float(result.weights.sum())
+    shares = np.bincount(result.joint_of_point, result.weights, len(result.joints)) / area
     for i, load in enumerate(result.loads):
         mean = float(result.weights @ result.pressure[i]) / area
         facts = result.convergence[i]
         rows.append([f"{load / 1e3:g} kN", f"{result.pressure[i].max() * 1e-6:.3g}", f"{mean * 1e-6:.3g}",
-                     f"{100 * result.open_share()[i]:.1f}", f"{facts['total_k_n [N/m]']:.4g}",
+                     f"{100 * result.open_share()[i]:.1f}", *[f"{100 * float(result.slipping[i] @ shares):.1f}"] * slips, f"{facts['total_k_n [N/m]']:.4g}",
                      f"{facts['total_k_t [N/m]']:.4g}", f"{facts['imbalance']:.0e}"])  # fmt: skip
     return rows
+
+
+def bolts(result: Result) -> Rows:
+    """One row per preload: what is left in each bolt when all are tight; empty where all were pulled at once."""
+    if not result.tightening:
+        return []
+    rows: Rows = [["preload", *(f"{name} [kN]" for name in result.bolts)]]
+    for load, forces in zip(result.loads, result.bolt_forces, strict=True):
+        rows.append([f"{load / 1e3:g} kN", *(f"{force / 1e3:.3f}" for force in forces)])
+    return rows
+
+
+def hammer(result: Result) -> Rows:
+    """The hammer test beside the model, one row per mode of the test; empty where there is none."""
+    return [] if result.hammer is None else result.hammer.rows()
 
 
 def text(rows: Rows) -> str:

@@ -62,7 +62,8 @@ def test_init_and_run(tmp_path, capsys):
     data = json.loads(captured.out)
     assert data["title"] == "Two blocks and a bolt"
     made = {p.name for p in (tmp_path / "results").iterdir()}
-    assert made == {"result.nc", "modes.csv", "report.html", "frequencies.svg", "pressure.svg", "law.svg", "modes.png"}
+    assert made == {"result.nc", "modes.csv", "report.html", "frequencies.svg", "pressure.svg", "law.svg", "modes.png",
+                    "mac.svg"}  # fmt: skip
     report = (tmp_path / "results" / "report.html").read_text()
     assert "outside its ground" in report  # the flag travels with the numbers
     assert not re.search(r'(src|href)="(?!data:|#)', report)  # nothing is fetched: one self-contained file

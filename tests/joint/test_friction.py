@@ -90,13 +90,13 @@ def test_what_slipped_does_not_come_back_by_itself():
     assert left[MU] > 100 * left[None]
 
 
-@given(st.floats(-1, 1), st.floats(-1, 1), st.floats(0.0, 2.0))
+@given(st.floats(-1, 1), st.floats(-1, 1), st.floats(1e-6, 2.0))
 def test_the_tangent_is_the_derivative_of_the_shear(x: float, y: float, limit: float):
     slip, anchor = 1e-6 * np.array([[x, y]]), np.array([[2e-7, -1e-7]])
     grip = Grip(k_t=np.array([1e12]), limit=1e6 * np.array([limit]), anchor=anchor)
     size = 1e12 * np.linalg.norm(slip - anchor)
-    if abs(size - 1e6 * limit) < 1e3 or limit == 0:
-        return  # at the edge of slip there is no derivative; without pressure there is no shear
+    if abs(size - 1e6 * limit) < 1e3:
+        return  # at the edge of slip there is no derivative
     step = 1e-11
     columns = [(grip.shear(slip + step * axis) - grip.shear(slip - step * axis))[0] / (2 * step) for axis in np.eye(2)]
     assert grip.tangent(slip)[0] == pytest.approx(np.stack(columns, axis=1), rel=1e-4, abs=1e12 * 1e-4)

@@ -113,6 +113,44 @@ def test_a_test_needs_a_row_for_each_preload(folder):
         study(folder, test=test | {"frequencies": [["400 Hz"], ["401 Hz"]], "direction": [0, 0, 0]})
 
 
+@pytest.fixture
+def uff(folder):
+    for name in ("t.uff", "frame.csv"):
+        (folder / name).write_text("")
+    return {"file": "t.uff"}
+
+
+def test_a_test_in_a_file(folder, uff):
+    s = study(
+        folder,
+        test=uff | {"frame": "frame.csv", "load": "2 kN", "tolerance": "3 mm", "direction": "z", "least_mac": 0.7},
+    )
+    assert s.test is None
+    assert (s.hammer.load, s.hammer.tolerance, s.hammer.least_mac) == (0, pytest.approx(3e-3), 0.7)
+    assert s.hammer.frame == folder / "frame.csv"
+    assert study(folder, test=uff).hammer.load == 1  # the last
+
+
+@pytest.mark.parametrize(
+    ("keys", "text"),
+    [
+        ({"file": "none.uff"}, "test.file: no file"),
+        ({"frequencies": [["400 Hz"]]}, "both file and frequencies; give one"),
+        ({"load": "5 kN"}, "test.load = 5 kN is no preload of the study; its first bolt has 2 kN, 6 kN"),
+        ({"load": "5 mm"}, "not in a unit like N"),
+        ({"least_mac": 1.2}, "above 0 and at most 1"),
+        ({"greatest_shift": 0}, "plain number above 0"),
+        ({"direction": "up"}, "one of x, y, z"),
+        ({"quantity": "inertance"}, "one of receptance, mobility, accelerance"),
+        ({"tolerance": 5}, "has no unit"),
+        ({"frames": "frame.csv"}, "did you mean frame?"),
+    ],
+)
+def test_faults_of_a_test_in_a_file(folder, uff, keys, text):
+    with pytest.raises(faying.InputError, match=text):
+        study(folder, test=uff | keys)
+
+
 def test_files(tmp_path):
     with pytest.raises(faying.ReadError, match=r"no file .*none.toml; write one with: faying init"):
         Study.read(tmp_path / "none.toml")

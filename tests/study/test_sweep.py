@@ -119,6 +119,8 @@ def test_values_of_an_axis():
     assert axis_of("surface.G=1e-12 m:1e-10 m:3:log").values == pytest.approx((1e-12, 1e-11, 1e-10))
     assert axis_of("bolt.left.preload=1 kN, 5 kN").values == (1000.0, 5000.0)
     assert axis_of("law.model=jk,gw").values == ("jk", "gw")
+    assert axis_of("law.alpha=0.1:0.3:4").read() == "law.alpha = 0.1 to 0.3, 4 values"
+    assert axis_of("bolt.preload=1 kN:20 kN:30").read() == "bolt.preload = 1 kN to 20 kN, 30 values"
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,6 @@
 
 import json
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -48,13 +47,15 @@ def command(result: Path, test: Path, load: str | None, points: Path | None, fra
     from faying.errors import InputError
     from faying.measured.compare import compare_modes
     from faying.measured.model import read_model_modes
+    from faying.measured.tested import read_test
 
     model = read_model_modes(result, load=units.parse(load, "N", name="--load") if load else None)
     reach = units.parse(tolerance, "m", name="--tolerance") if tolerance else None
-    modes, frf, notes = read_test(test, points, length_unit, direction, quantity)
-    transform = _transform(frame, modes) if frame else None
-    comparison = compare_modes(modes, model, transform=transform, tolerance=reach, frf=frf, least_mac=least_mac,
-                               greatest_shift=greatest_shift)  # fmt: skip
+    tested = read_test(test, points=points, length_unit=length_unit, direction=direction, quantity=quantity)
+    if tested.identified:
+        click.echo(f"{test}: no mode shapes; modes are identified from its FRFs", err=True)
+    comparison = compare_modes(tested.modes, model, transform=tested.transform(frame) if frame else None, tolerance=reach,
+                               frf=tested.frf, least_mac=least_mac, greatest_shift=greatest_shift)  # fmt: skip
     files: list[Path] = []
     if out:
         click.echo("figures and report", err=True)
@@ -63,7 +64,7 @@ def command(result: Path, test: Path, load: str | None, points: Path | None, fra
         except OSError as fault:
             raise InputError(f"cannot make the folder {out}: {fault.strerror}; give another with --out") from None
         files = report_measured.write(comparison, out)
-    for line in notes:
+    for line in tested.notes:
         click.echo(f"note: {line}", err=True)
     if as_json:
         click.echo(json.dumps(comparison.to_dict() | {"files": [str(f) for f in files]}, indent=2, allow_nan=False))
@@ -76,39 +77,3 @@ def command(result: Path, test: Path, load: str | None, points: Path | None, fra
         click.echo(f"note: {line}")
     if files:
         click.echo(f"\nwritten to {out}: {', '.join(f.name for f in files)}")
-
-
-def read_test(
-    path: Path, points: Path | None, length_unit: str | None, direction: str | None, quantity: str | None
-) -> tuple[Any, Any, list[str]]:
-    """Modes and FRFs (or None) of a universal file, and what to tell the reader."""
-    from dataclasses import replace
-
-    from faying.measured.identify import identify_modes
-    from faying.measured.mapping import read_points
-    from faying.measured.uff import read_uff
-
-    file = read_uff(path, length_unit=length_unit)
-    frf = file.frf(quantity=quantity) if any(f.kind == "FRF" for f in file.functions) or not file.shapes else None
-    if file.shapes:
-        modes = file.modes()
-    else:
-        click.echo(f"{path}: no mode shapes; modes are identified from its FRFs", err=True)
-        modes = identify_modes(frf).modes  # type: ignore[arg-type]
-    if points:
-        modes = replace(modes, positions=read_points(points))
-    if direction:
-        modes, frf = modes.directed(direction), frf and frf.directed(direction)
-    return modes, frf, list(frf.warnings if frf else file.warnings)
-
-
-def _transform(frame: Path, modes: Any) -> Any:
-    from faying.errors import InputError
-    from faying.measured.mapping import fit_transform, read_points
-
-    there = read_points(frame)
-    unknown = [str(p) for p in there if p not in modes.positions]
-    if unknown:
-        raise InputError(f"{frame}: the test has no position of point {', '.join(unknown)}; it has those of "
-                         f"{', '.join(map(str, modes.positions)) or 'none'}")  # fmt: skip
-    return fit_transform([modes.positions[p] for p in there], list(there.values()))

@@ -18,6 +18,7 @@ import click
 @click.option("--tolerance", type=float, default=1e-6, show_default=True, help="Relative error of a frequency.")
 @click.option("--jobs", type=click.IntRange(1), default=1, show_default=True, help="Processes on this machine.")
 @click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
+@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw one axis or two (svg, png, pdf).")
 @click.option("--json", "as_json", is_flag=True, help="Print a summary as JSON.")
 def command(
     study: Path,
@@ -26,6 +27,7 @@ def command(
     tolerance: float,
     jobs: int,
     dask: str | None,
+    plot: Path | None,
     as_json: bool,
 ) -> None:
     """Evaluate STUDY for many laws, surfaces and preloads: the parts are solved once, only the joint changes.
@@ -33,11 +35,14 @@ def command(
     What is done is kept beside the output; the same command goes on after an interruption.
     """
     from faying.errors import InputError
+    from faying.plot import sweep as drawing
     from faying.study import Study
     from faying.study.axes import axis_of
     from faying.study.sweep import sweep
 
     axes = [axis_of(text) for text in settings]
+    if plot:
+        drawing.check(plot, len(axes))
     plan = Study.read(study)
     if out is None:
         folder = plan.folder / "results"
@@ -54,6 +59,8 @@ def command(
             plan, axes, out, tolerance=tolerance, jobs=jobs, dask=dask, report=lambda text, n: bar.update(n, text)
         )
     summary = done.to_dict()
+    if plot:
+        summary["plot"] = str(drawing.save(done, plot))
     if as_json:
         click.echo(json.dumps(summary, indent=2))
         return
@@ -66,5 +73,5 @@ def command(
     for mode, (low, high) in enumerate(zip(span["lowest"], span["highest"], strict=True), start=1):
         click.echo(f"{mode:4d} {low:9.2f} Hz {high:9.2f} Hz")
     for text, count in done.reasons.items():
-        click.echo(f"note: {count} points have no answer: {text}")
-    click.echo(f"\nwritten to {done.path}")
+        click.echo(f"note: {count} point{'s have' if count > 1 else ' has'} no answer: {text}")
+    click.echo(f"\nwritten to {done.path}" + (f" and {plot}" if plot else ""))

@@ -25,7 +25,8 @@ class ModalComparison:
 
     test, model: the modes; dofs (d,): degrees of freedom of the test that found a node; nodes (d,), axes (d, 3): where and
     along what in the model; mac (t, m); pairs (k, 2): indices (test, model); point_map: nodes, distances, points without
-    partner; frf: the measured FRFs between such degrees of freedom, predicted (o, i, f) the model's, frac (o, i), or None;
+    partner; frf: the measured FRFs between such degrees of freedom, predicted (o, i, f) the model's, NaN at lines that it
+    does not reach, full (o, i): whether that is its full response or its elastic modes superposed, frac (o, i), or None;
     notes: sentences for the reader.
     """
 
@@ -40,6 +41,7 @@ class ModalComparison:
     frf: FRF | None = None
     predicted: NDArray[np.complex128] | None = None
     frac: Array | None = None
+    full: NDArray[np.bool_] | None = None
     notes: tuple[str, ...] = ()
 
     @property
@@ -129,7 +131,8 @@ class ModalComparison:
                        "without_partner": {str(k): v for k, v in self.point_map.missing.items()},
                        "tolerance": self.point_map.tolerance},
             "frac": None if self.frac is None or self.frf is None else [
-                {"output": str(self.frf.outputs[o]), "input": str(self.frf.inputs[i]), "frac": float(self.frac[o, i])}
+                {"output": str(self.frf.outputs[o]), "input": str(self.frf.inputs[i]), "frac": float(self.frac[o, i]),
+                 "model": "full response" if self.full is not None and self.full[o, i] else "elastic modes"}
                 for o, i in self.frf.measured],
             "units": "SI: Hz, m, N; loss factors, MAC and FRAC without unit; modes count from 0",
             "notes": list(self.notes),
@@ -146,9 +149,9 @@ def compare_modes(
     least_mac: float = 0.5,
     greatest_shift: float = 0.3,
 ) -> ModalComparison:
-    """Set a test beside a model: map its points, compute MAC at what both know, pair the modes, superpose the FRFs.
+    """Set a test beside a model: map its points, compute MAC at what both know, pair the modes, predict the FRFs.
 
-    transform: test frame to model frame (default: the same frame); tolerance [m] between point and node; least_mac and
+    An FRF is predicted by the full response of the model where that is known, else by its elastic modes. transform: test frame to model frame (default: the same frame); tolerance [m] between point and node; least_mac and
     greatest_shift: what a pair must have (`pair_modes`). Raises InputError where no point finds a node or a direction is
     no translation.
     """
@@ -169,9 +172,9 @@ def compare_modes(
     table = mac(test.at(used), theirs)
     pairs = pair_modes(table, test.frequencies, model.frequencies, least_mac=least_mac, greatest_shift=greatest_shift)
     notes += _alike(theirs, pairs, len(used))
-    shared, predicted, score = (None, None, None) if frf is None else _overlay(frf, model, points, notes)
+    shared, predicted, full, score = (None, None, None, None) if frf is None else _overlay(frf, model, points, notes)
     return ModalComparison(test=test, model=model, dofs=used, nodes=nodes, axes=axes, mac=table, pairs=pairs, point_map=points,
-                           frf=shared, predicted=predicted, frac=score, notes=tuple(notes))  # fmt: skip
+                           frf=shared, predicted=predicted, full=full, frac=score, notes=tuple(notes))  # fmt: skip
 
 
 def _alike(shapes: Array, pairs: NDArray[np.int64], count: int) -> list[str]:
@@ -189,21 +192,46 @@ def _alike(shapes: Array, pairs: NDArray[np.int64], count: int) -> list[str]:
 
 def _overlay(
     frf: FRF, model: ModelModes, points: PointMap, notes: list[str]
-) -> tuple[FRF | None, NDArray[np.complex128] | None, Array | None]:
-    """The FRFs between mapped degrees of freedom, the model's by superposition, and their FRAC."""
+) -> tuple[FRF | None, NDArray[np.complex128] | None, NDArray[np.bool_] | None, Array | None]:
+    """The FRFs between mapped degrees of freedom, the model's, which of these are its full response, and their FRAC."""
     o = [k for k, d in enumerate(frf.outputs) if d.point in points.nodes]
     i = [k for k, d in enumerate(frf.inputs) if d.point in points.nodes]
     if not o or not i or not np.isfinite(frf.values[np.ix_(o, i)]).any():
         notes.append("no FRF lies between points that found a node; FRFs are not compared")
-        return None, None, None
+        return None, None, None, None
     outputs, inputs = tuple(frf.outputs[k] for k in o), tuple(frf.inputs[k] for k in i)
     shared = FRF(frequency=frf.frequency, values=frf.values[np.ix_(o, i)], outputs=outputs, inputs=inputs, quantity=frf.quantity,
                  positions=frf.positions, source=frf.source)  # fmt: skip
     places = [(np.array([points.nodes[d.point] for d in side]), points.transform.directions([d.axis() for d in side]))
               for side in (outputs, inputs)]  # fmt: skip
     predicted = model.frf(shared.frequency, places[0], places[1], shared.quantity)
+    known = model.full_frf(shared.frequency, places[0], places[1], shared.quantity)
+    full = np.isfinite(known).sum(axis=2) >= 2
+    predicted[full] = known[full]
     score = np.full(predicted.shape[:2], np.nan)
     for pair in shared.measured:
-        score[pair] = frac(shared.values[pair], predicted[pair])
-    notes.append("the model's FRFs are its elastic modes superposed: rigid motion and higher modes are not in them")
-    return shared, predicted, score
+        there = np.isfinite(predicted[pair])
+        score[pair] = frac(shared.values[pair][there], predicted[pair][there])
+    notes += _kind_of_response(shared, predicted, full, model)
+    return shared, predicted, full, score
+
+
+def _kind_of_response(
+    frf: FRF, predicted: NDArray[np.complex128], full: NDArray[np.bool_], model: ModelModes
+) -> list[str]:
+    """Say which of the model's FRFs are its full response, and where that ends."""
+    measured = frf.measured
+    count = sum(bool(full[pair]) for pair in measured)
+    superposed = "its elastic modes superposed: rigid motion and higher modes are not in them"
+    if not count:
+        return [f"the model's FRFs are {superposed}"]
+    out = ["the model's FRFs are its full response, with rigid motion and the modes beyond the last"]
+    if count < len(measured):
+        out = [f"the model's FRFs: {count} of {len(measured)} are its full response; the others are {superposed}"]
+    pair = next(p for p in measured if full[p])
+    lines = frf.frequency[np.isfinite(predicted[pair])]
+    if lines[0] > frf.frequency[frf.frequency > 0][0] or lines[-1] < frf.frequency[-1]:
+        out.append(
+            f"the full response reaches from {lines[0]:g} to {lines[-1]:g} Hz; the lines beyond do not count in FRAC"
+        )
+    return out

@@ -13,11 +13,35 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
+SAME_DIRECTION = 0.9998  # cosine of a degree
+
+
+@dataclass(frozen=True, kw_only=True)
+class FullResponse:
+    """Receptance (o, i, f) [m/N] that answers the model's full equations, at frequency [Hz] (f,).
+
+    outputs, inputs: positions [m] (k, 3) and directions (k, 3).
+    """
+
+    frequency: Array
+    receptance: Complex
+    outputs: tuple[Array, Array]
+    inputs: tuple[Array, Array]
+
+    def __post_init__(self) -> None:
+        shape = (len(self.outputs[0]), len(self.inputs[0]), len(self.frequency))
+        if self.receptance.shape != shape:
+            raise InputError(
+                f"a full response of the shape {self.receptance.shape}; its outputs, inputs and frequencies need {shape}"
+            )
+
+
 @dataclass(frozen=True, kw_only=True)
 class ModelModes:
     """Elastic modes of a model: frequencies [Hz] and loss_factors [-] (m,), shapes (m, n, 3) [kg^-1/2] at points [m] (n, 3)
 
-    of its outline with triangles (t, 3) to draw; load [N]: the preload they belong to.
+    of its outline with triangles (t, 3) to draw; load [N]: the preload they belong to; full: its full response at some
+    points, where that is known.
     """
 
     frequencies: Array
@@ -28,6 +52,7 @@ class ModelModes:
     load: float = 0.0
     title: str = ""
     source: str = ""
+    full: FullResponse | None = None
 
     def __post_init__(self) -> None:
         m, n = len(self.frequencies), len(self.points)
@@ -56,9 +81,59 @@ class ModelModes:
             self.receptance(frequency, outputs, inputs) * (2j * np.pi * np.asarray(frequency)) ** QUANTITIES[quantity]
         )
 
+    def full_frf(
+        self, frequency: Array, outputs: tuple[Array, Array], inputs: tuple[Array, Array], quantity: str
+    ) -> Complex:
+        """FRFs (o, i, f) of the full response where it is known, NaN elsewhere; nodes and directions as in `receptance`.
+
+        Known is a pair whose two nodes are the nearest to the positions of the full response, in directions less than a
+        degree apart, either way round (reciprocity), at lines within its frequencies. Between its frequencies, what it
+        has beyond the elastic modes is interpolated, as accelerance, in which rigid motion is constant.
+        """
+        frequency = np.asarray(frequency, float)
+        out = np.full((len(outputs[0]), len(inputs[0]), len(frequency)), np.nan, dtype=complex)
+        if self.full is None:
+            return out
+        full, ends = self.full, (self.full.outputs, self.full.inputs)
+        there, here = ((self._nodes(points), axes) for points, axes in ends)
+        found = [[_match(side, place) for place in (there, here)] for side in (outputs, inputs)]
+        rest = (full.receptance - self.receptance(full.frequency, there, here)) * (2j * np.pi * full.frequency) ** 2
+        inside = (frequency >= full.frequency[0]) & (frequency <= full.frequency[-1]) & (frequency > 0)
+        lines = frequency[inside]
+        modal = self.receptance(lines, outputs, inputs)
+        for o, i in np.ndindex(*out.shape[:2]):
+            ways = ((found[0][0][o], found[1][1][i]), (found[1][0][i], found[0][1][o]))  # straight, and by reciprocity
+            way = next((both for both in ways if None not in both), None)
+            if way is None:
+                continue
+            (row, turned), (column, over) = way  # type: ignore[misc]
+            known = rest[row, column] * turned * over
+            more = np.interp(lines, full.frequency, known.real) + 1j * np.interp(lines, full.frequency, known.imag)
+            omega = 2j * np.pi * lines
+            out[o, i, inside] = (modal[o, i] + more / omega**2) * omega ** QUANTITIES[quantity]
+        return out
+
+    def _nodes(self, points: Array) -> Array:
+        from scipy.spatial import KDTree
+
+        return np.asarray(KDTree(self.points).query(points)[1])
+
+
+def _match(wanted: tuple[Array, Array], known: tuple[Array, Array]) -> list[tuple[int, float] | None]:
+    """For each node and direction, the known one that is the same, and 1 or -1 for its sense; None where there is none."""
+    out: list[tuple[int, float] | None] = []
+    length = np.linalg.norm(known[1], axis=1)
+    for node, axis in zip(*wanted, strict=True):
+        along = known[1] @ axis / (length * np.linalg.norm(axis))
+        same = np.flatnonzero((known[0] == node) & (np.abs(along) > SAME_DIRECTION))
+        out.append((int(same[0]), float(np.sign(along[same[0]]))) if len(same) else None)
+    return out
+
 
 def read_model_modes(path: str | Path, *, load: float | None = None) -> ModelModes:
     """Read the modes of a result file (result.nc of `faying run`) at a preload [N], by default the greatest.
+
+    The frequency response that the file may hold comes with them as `full`.
 
     Raises ReadError where the file is no such result, InputError where it has no such load.
     """
@@ -71,6 +146,7 @@ def read_model_modes(path: str | Path, *, load: float | None = None) -> ModelMod
         with netcdf_file(file, "r", mmap=False) as nc:
             data = {name: np.array(nc.variables[name][:], float)
                     for name in ("loads", "frequencies", "loss_factors", "outline", "shapes", "triangles")}  # fmt: skip
+            response = {name: np.array(nc.variables[name][:], float) for name in RESPONSE if name in nc.variables}
             title = nc.title.decode("utf-8", errors="replace") if isinstance(nc.title, bytes) else str(nc.title)
     except (TypeError, ValueError, KeyError, AttributeError, OSError, IndexError) as fault:
         raise ReadError(f"{file}: no result of Faying, or damaged ({type(fault).__name__}: {fault}); write one with: faying run "
@@ -90,4 +166,19 @@ def read_model_modes(path: str | Path, *, load: float | None = None) -> ModelMod
         load=float(loads[index]),
         title=title,
         source=str(file),
+        full=_full(response, index) if len(response) == len(RESPONSE) else None,
+    )
+
+
+RESPONSE = ("response_frequencies", "receptance_real", "receptance_imaginary", "output_points", "output_directions",
+            "input_points", "input_directions")  # fmt: skip
+
+
+def _full(data: dict[str, Array], load: int) -> FullResponse:
+    values = data["receptance_real"][load] + 1j * data["receptance_imaginary"][load]
+    return FullResponse(
+        frequency=data["response_frequencies"],
+        receptance=values.transpose(1, 2, 0),
+        outputs=(data["output_points"], data["output_directions"]),
+        inputs=(data["input_points"], data["input_directions"]),
     )

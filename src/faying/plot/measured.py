@@ -75,13 +75,18 @@ def frf_overlay(ax: Any, comparison: ModalComparison, output: int = 0, input: in
     if frf is None or predicted is None or comparison.frac is None:
         ax.text(0.5, 0.5, "no FRF between points of the model", ha="center", va="center")
         return ax
+    label = (
+        "model, full response"
+        if comparison.full is not None and comparison.full[output, input]
+        else "model, elastic modes"
+    )
     ax.semilogy(frf.frequency, np.abs(frf.values[output, input]), color="0.45", lw=1.2, label="test")
-    ax.semilogy(frf.frequency, np.abs(predicted[output, input]), color="C0", lw=1.0, label="model, elastic modes")
+    ax.semilogy(frf.frequency, np.abs(predicted[output, input]), color="C0", lw=1.0, label=label)
     _frf_axes(ax, frf, output, input)
     size = np.abs(frf.values[output, input])
     ax.set_ylim(
         0.3 * max(np.quantile(size, 0.02), 1e-9 * size.max()),
-        3 * max(size.max(), np.abs(predicted[output, input]).max()),
+        3 * max(size.max(), np.nanmax(np.abs(predicted[output, input]))),
     )
     ax.set_title(f"{ax.get_title()}, FRAC {comparison.frac[output, input]:.2f}", fontsize=9)
     return ax

@@ -38,9 +38,8 @@ class Axis:
         first, last = self.values[0], self.values[-1]
         if isinstance(first, str) or isinstance(last, str):
             return f"{self.key} = {', '.join(map(str, self.values))}"
-        return (
-            f"{self.key} = {units.show(first, self.unit)} to {units.show(last, self.unit)}, {len(self.values)} values"
-        )
+        ends = (f"{v:g}" if not self.unit else units.show(v, self.unit) for v in (first, last))
+        return f"{self.key} = {' to '.join(ends)}, {len(self.values)} values"
 
 
 def axis_of(text: str) -> Axis:

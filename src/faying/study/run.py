@@ -1,8 +1,8 @@
 """From a study to its result: surface, law, mesh, preload, modes, response."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,14 +11,15 @@ from faying.contact.law import ContactLaw
 from faying.fe.constraint import hold
 from faying.fe.damped import DampedModes, damped_modes
 from faying.fe.modes import Modes, lowest_modes
-from faying.fe.response import frequency_response
 from faying.fe.solve import chosen
-from faying.joint.attachments import nearest_node
 from faying.joint.balance import Preload
 from faying.joint.structure import Springs, Structure
 from faying.joint.tighten import tighten
+from faying.measured.model import FullResponse
 from faying.result import Comparison, Receptance, Result
 from faying.study.build import build_all, checked_mesh, surfaces_of
+from faying.study.hammer import Hammer
+from faying.study.response import Solved
 from faying.study.schema import Study
 from faying.study.surface import Surface, law_facts
 
@@ -36,11 +37,16 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     """
     study = study if isinstance(study, Study) else Study.read(study)
     tell = report or (lambda _: None)
+    hammer = None
+    if study.hammer is not None:
+        tell("hammer test")
+        hammer = Hammer.read(study.hammer)
     tell("surface")
     surfaces = surfaces_of(study)
     tell("mesh")
     built = build_all(study, mesh=checked_mesh(study), surfaces=surfaces)
     structure = built.structure
+    where = None if hammer is None else hammer.points(structure)
     notes: list[str] = list(dict.fromkeys(text for surface in surfaces for text in surface.warnings))
     loads = np.array(study.bolts[0].preload)
     K, M = structure.vibrating
@@ -53,6 +59,7 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     modes: list[Modes] = []
     damped: list[DampedModes] = []
     responses: list[Receptance] = []
+    full: FullResponse | None = None
     for number, load in enumerate(loads):
         tell(f"preload {load / 1e3:g} kN")
         preload = tighten(structure, assembly, [bolt.preload[number] for bolt in study.bolts], order=study.order)
@@ -61,9 +68,17 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         stiffness, loss = structure.joined(springs, viscous=study.damping == "viscous")
         found = lowest_modes(stiffness, M, count, shift_frequency=shift, solver=study.solver)
         complex_modes = damped_modes(found, stiffness, M, loss, rigid=still, count=study.mode_count, kind=study.damping)
+        solved = Solved(study=study, structure=structure, modes=found, damped=complex_modes, stiffness=stiffness, mass=M,
+                        loss=loss)  # fmt: skip
         if study.response is not None:
             tell(f"frequency response at {load / 1e3:g} kN")
-            responses.append(_response(study, structure, found, complex_modes, stiffness, M, loss))
+            answer, said = solved.response()
+            responses.append(answer)
+            notes += said
+        if hammer is not None and where is not None and number == hammer.spec.load and hammer.tested.frf is not None:
+            tell("frequency response at the points of the test")
+            full, said = hammer.response(solved, where)
+            notes += said
         preloads.append(preload)
         per_load.append(springs)
         modes.append(found)
@@ -85,7 +100,8 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     if study.damping == "viscous":
         notes.append("the dampers are those of the JK paper, c = eta sqrt(M k) point by point: their sum grows with the square "
                      "root of the number of points, so loss factors depend on the mesh")  # fmt: skip
-    return Result(
+    k_n, k_t = _maps(structure, preloads)
+    result = Result(
         title=study.title,
         loads=loads,
         frequencies=np.stack([d.frequencies for d in damped]),
@@ -95,7 +111,8 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         free=np.where(free.frequencies < STILL * shift, 0.0, free.frequencies)[elastic],
         rigid=rigid,
         pressure=np.stack([np.concatenate(p.pressures) for p in preloads]),
-        **_maps(structure, preloads),
+        k_n=k_n,
+        k_t=k_t,
         points=np.concatenate([j.interface.positions for j in structure.joints]),
         weights=np.concatenate([j.interface.weights for j in structure.joints]),
         joint_of_point=np.concatenate([np.full(len(j.interface.weights), i) for i, j in enumerate(structure.joints)]),
@@ -116,29 +133,12 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         comparison=comparison,
         sources=_sources(study, surfaces, built.laws),
         warnings=tuple(dict.fromkeys(notes)),
+        damping=study.damping,
+        tightening=() if study.order is None else tuple(study.bolts[i].name for i in study.order),
     )
-
-
-def _response(
-    study: Study, structure: Structure, modes: Modes, damped: DampedModes, stiffness: Any, mass: Any, loss: Any
-) -> Receptance:
-    spec = study.response
-    assert spec is not None
-    columns = []
-    for place, axis in (*spec.inputs, *spec.outputs):
-        column = np.zeros(structure.mesh.unknowns)
-        node = nearest_node(structure.mesh, place, "point of the response")
-        column[3 * node : 3 * node + 3] = np.array(axis) / np.linalg.norm(axis)
-        column[structure.held] = 0.0
-        columns.append(column)
-    ends = len(spec.inputs)
-    found = frequency_response(
-        modes, damped, stiffness, mass, loss, forces=np.stack(columns[:ends], axis=1),
-        outputs=np.stack(columns[ends:], axis=1), frequencies=np.linspace(spec.first, spec.last, spec.points),
-        rigid=structure.rigid.shape[1], kind=study.damping, structural_loss=spec.structural_loss,
-    )  # fmt: skip
-    return Receptance(frequencies=found.frequencies, values=found.receptance, inputs=spec.inputs, outputs=spec.outputs,
-                      error=float(found.error.max()))  # fmt: skip
+    if hammer is None:
+        return result
+    return replace(result, hammer=hammer.beside(result, full))
 
 
 def _mac(first: Modes, other: Modes, elastic: slice) -> Array:
@@ -184,16 +184,14 @@ def _flags(structure: Structure, preload: Preload, load: float) -> list[str]:
     return out
 
 
-def _maps(structure: Structure, preloads: list[Preload]) -> dict[str, Array]:
+def _maps(structure: Structure, preloads: list[Preload]) -> tuple[Array, Array]:
     """k_n and k_t per area at the points of all joints (load, point)."""
     pairs = [
         [joint.seat.stiffness(p) for joint, p in zip(structure.joints, preload.pressures, strict=True)]
         for preload in preloads
     ]
-    return {
-        "k_n": np.stack([np.concatenate([k for k, _ in row]) for row in pairs]),
-        "k_t": np.stack([np.concatenate([k for _, k in row]) for row in pairs]),
-    }
+    k_n, k_t = (np.stack([np.concatenate([pair[k] for pair in row]) for row in pairs]) for k in (0, 1))
+    return k_n, k_t
 
 
 def _convergence(preload: Preload, springs: tuple[Springs, ...]) -> dict[str, float]:
@@ -249,4 +247,6 @@ def _sources(study: Study, surfaces: tuple[Surface, ...], laws: tuple[ContactLaw
     lines += [surface.source for surface in surfaces if surface.source]
     if study.test is not None:
         lines.append(f"test: {study.test.source}")
+    if study.hammer is not None:
+        lines.append(f"test: {study.hammer.source or study.hammer.file.name}")
     return tuple(dict.fromkeys(lines))

@@ -20,26 +20,10 @@ from faying.study.connections import (
 )
 from faying.study.contact import LawSpec, SurfaceSpec, law_spec, surface_spec
 from faying.study.geometry import GeometrySpec, read_geometry
-from faying.study.reader import Faults, Table, point, quantity
+from faying.study.reader import Faults, Table, point
+from faying.study.test import HammerSpec, TestSpec, read_test
 
 Point = tuple[float, float, float]
-
-
-@dataclass(frozen=True, kw_only=True)
-class TestSpec:
-    """Measured frequencies [Hz] per load, the published model's where there is one, and what the test can see.
-
-    A mode is seen where its motion along `direction` at one of `points` [m] is at least `threshold` of the largest
-    among the modes.
-    """
-
-    source: str
-    frequencies: tuple[tuple[float, ...], ...]
-    published: tuple[tuple[float, ...], ...] | None
-    published_name: str
-    direction: tuple[float, float, float]
-    points: tuple[tuple[float, float, float], ...]
-    threshold: float = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,6 +60,7 @@ class Study:
     solver: str | None = None
     shift_frequency: float | None = None
     test: TestSpec | None = None
+    hammer: HammerSpec | None = None
 
     @property
     def load_count(self) -> int:
@@ -125,12 +110,12 @@ class Study:
         modes.close()
         order = _order(top, bolts)
         response = _response(top)
-        test = _test(top, max(counts, default=0))
+        test, hammer = read_test(top, folder, max((b.preload for b in bolts if b.preload), key=len, default=()))
         top.close()
         faults.raise_if_any(where)
         return cls(title=title, folder=folder, materials=materials, geometry=geometry, parts=parts, surface=surface,
                    law=law, joints=joints, bolts=bolts, supports=supports, masses=masses, mode_count=mode_count, damping=damping, order=order, response=response, solver=solver, shift_frequency=shift,
-                   test=test)  # fmt: skip
+                   test=test, hammer=hammer)  # fmt: skip
 
 
 def _materials(top: Table) -> dict[str, Material]:
@@ -221,35 +206,5 @@ def _response(top: Table) -> ResponseSpec | None:
         sides.append(tuple(pairs))
     spec = ResponseSpec(inputs=sides[0], outputs=sides[1], first=first, last=last, points=table.count("points", 1000),
                         structural_loss=table.number("structural_loss", 0.0))  # fmt: skip
-    table.close()
-    return spec
-
-
-def _test(top: Table, loads: int) -> TestSpec | None:
-    table = top.table("test")
-    if table is None:
-        return None
-
-    def rows(value: Any, name: str) -> tuple[tuple[float, ...], ...]:
-        if not isinstance(value, list) or not all(isinstance(row, list) for row in value):
-            raise InputError(f"{name} should be one list of frequencies for each preload")
-        if len(value) != loads:
-            raise InputError(f"{name} has {len(value)} rows for {loads} preloads; give one list for each")
-        return tuple(tuple(quantity(v, "Hz", name) for v in row) for row in value)
-
-    def points(value: Any, name: str) -> tuple[tuple[float, float, float], ...]:
-        if not isinstance(value, list) or not value:
-            raise InputError(f"{name} should be a list of points, each three lengths")
-        return tuple(point(v, name) for v in value)
-
-    spec = TestSpec(
-        source=table.text("source", ""),
-        frequencies=table.take("frequencies", rows) or (),
-        published=table.take("published", rows, None),
-        published_name=table.text("published_name", "published"),
-        direction=table.take("direction", direction) or (1.0, 0.0, 0.0),
-        points=table.take("points", points) or (),
-        threshold=table.number("threshold", 0.1),
-    )
     table.close()
     return spec

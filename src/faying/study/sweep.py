@@ -82,7 +82,7 @@ def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dic
             row |= {"estimate": found.estimate.max(), "greatest_pressure": p.max(), "beyond_share": beyond,
                     "open_share": 1 - touching / weights.sum()}  # fmt: skip
             if beyond > BEYOND:
-                reason = f"{beyond:.0%} of the contact is pressed beyond the end of the law"
+                reason = f"more than {BEYOND:.0%} of the contact is pressed beyond the end of the law"
             else:
                 row |= {"frequencies": found.frequencies, "loss_factors": found.loss_factors}
         except FayingError as fault:

@@ -77,6 +77,25 @@ count = 6                      # elastic modes
 # frequencies = [["406 Hz", "1126 Hz"], ["410 Hz", "1135 Hz"]]
 # direction = [1, 0, 0]        # of the hammer
 # points = [["50 mm", "0 mm", "30 mm"]]   # where it hits or the sensor sits
+# Or a universal file of modes or FRFs in place of the frequencies.
+# file = "test.uff"
+# frame = "frame.csv"          # where some of its points lie in the model, if it has a frame of its own
+# load = "6 kN"                # the preload to compare at; the last where left out
+# tolerance = "2 mm"           # between a point and its node
+# Keys for what the file does not say: points, length_unit, direction, quantity. What a pair needs: least_mac, greatest_shift.
+
+# Frequency response between points, along directions, at every preload.
+# [response]
+# from = "5 kHz"
+# to = "20 kHz"
+# points = 400                 # frequencies
+# structural_loss = 0.001      # loss factor of the parts themselves
+# [[response.input]]
+# point = ["40 mm", "15 mm", "15 mm"]
+# direction = [0, 0, 1]
+# [[response.output]]
+# point = ["-40 mm", "-15 mm", "-15 mm"]
+# direction = [0, 0, 1]
 """
 
 

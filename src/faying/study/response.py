@@ -1,0 +1,91 @@
+"""Frequency response of a study's structure at one preload, at points of the study or of its hammer test."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.fe.damped import DampedModes
+from faying.fe.modes import Modes
+from faying.fe.response import Response, frequency_response
+from faying.joint.attachments import nearest_node
+from faying.joint.structure import Structure
+from faying.measured.model import FullResponse
+from faying.result import Receptance
+from faying.study.schema import Study
+
+Array = NDArray[np.float64]
+POOR = 0.02  # residual beyond which a note is due
+
+
+@dataclass(frozen=True, kw_only=True)
+class Solved:
+    """A structure at one preload: its modes, and the matrices that they belong to."""
+
+    study: Study
+    structure: Structure
+    modes: Modes
+    damped: DampedModes
+    stiffness: Any
+    mass: Any
+    loss: Any
+
+    def response(self) -> tuple[Receptance, list[str]]:
+        """The response that [response] of the study asks for, and a note where its residual is large."""
+        spec = self.study.response
+        assert spec is not None
+        mesh = self.structure.mesh
+        inputs, outputs = (
+            (
+                np.array([nearest_node(mesh, place, "point of the response") for place, _ in side]),
+                np.array([np.array(axis) / np.linalg.norm(axis) for _, axis in side]),
+            )
+            for side in (spec.inputs, spec.outputs)
+        )
+        found = self._at(np.linspace(spec.first, spec.last, spec.points), outputs, inputs)
+        return Receptance(frequencies=found.frequencies, values=found.receptance, inputs=spec.inputs, outputs=spec.outputs,
+                          error=float(found.error.max())), poor(found.checked, found.error, "of the study")  # fmt: skip
+
+    def at_test(
+        self, frequencies: Array, outputs: tuple[Array, Array], inputs: tuple[Array, Array]
+    ) -> tuple[FullResponse, list[str]]:
+        """The full response between nodes of the mesh and directions, and a note where its residual is large.
+
+        The matrices are symmetric: the fewer of inputs and outputs are solved for.
+        """
+        turned = len(inputs[0]) > len(outputs[0])
+        found = self._at(frequencies, *((inputs, outputs) if turned else (outputs, inputs)))
+        points = self.structure.mesh.points
+        full = FullResponse(
+            frequency=found.frequencies,
+            receptance=found.receptance.transpose((2, 1, 0) if turned else (1, 2, 0)),
+            outputs=(points[outputs[0]], outputs[1]),
+            inputs=(points[inputs[0]], inputs[1]),
+        )
+        return full, poor(found.checked, found.error, "at the points of the test")
+
+    def _at(self, frequencies: Array, outputs: tuple[Array, Array], inputs: tuple[Array, Array]) -> Response:
+        spec = self.study.response
+        return frequency_response(
+            self.modes, self.damped, self.stiffness, self.mass, self.loss, forces=self._columns(*inputs),
+            outputs=self._columns(*outputs), frequencies=frequencies, rigid=self.structure.rigid.shape[1], kind=self.study.damping,
+            structural_loss=0.0 if spec is None else spec.structural_loss,
+        )  # fmt: skip
+
+    def _columns(self, nodes: Array, axes: Array) -> Array:
+        """Unit forces (unknowns, k) at nodes along axes; nothing where a support holds."""
+        columns = np.zeros((self.structure.mesh.unknowns, len(nodes)))
+        for k, (node, axis) in enumerate(zip(nodes, axes, strict=True)):
+            columns[3 * node : 3 * node + 3, k] = axis
+        columns[self.structure.held] = 0.0
+        return columns
+
+
+def poor(frequencies: Array, error: Array, which: str) -> list[str]:
+    """Say where a response leaves more than POOR of the full equations unanswered."""
+    worst = int(np.argmax(error))
+    if error[worst] <= POOR:
+        return []
+    return [f"the frequency response {which} leaves a residual of {error[worst]:.1%} at {frequencies[worst]:g} Hz, where modes beyond "
+            "those computed count; raise modes.count, or end at a lower frequency"]  # fmt: skip

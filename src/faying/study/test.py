@@ -1,0 +1,118 @@
+"""The hammer test of a study: a list of frequencies, or a file of modes or FRFs."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from faying.errors import InputError
+from faying.study.connections import direction
+from faying.study.reader import Table, existing_path, point, quantity
+
+QUANTITIES = ("receptance", "mobility", "accelerance")
+
+
+@dataclass(frozen=True, kw_only=True)
+class TestSpec:
+    """Measured frequencies [Hz] per load, the published model's where there is one, and what the test can see.
+
+    A mode is seen where its motion along `direction` at one of `points` [m] is at least `threshold` of the largest
+    among the modes.
+    """
+
+    source: str
+    frequencies: tuple[tuple[float, ...], ...]
+    published: tuple[tuple[float, ...], ...] | None
+    published_name: str
+    direction: tuple[float, float, float]
+    points: tuple[tuple[float, float, float], ...]
+    threshold: float = 0.1
+
+
+@dataclass(frozen=True, kw_only=True)
+class HammerSpec:
+    """A universal file of modes or FRFs, and what `faying compare` takes with it.
+
+    points, frame: tables of positions; length_unit, direction (x, y or z), quantity: what the file does not say;
+    tolerance [m] between point and node, None for its default; least_mac, greatest_shift [-]: what a pair must have;
+    load: index of the preload to compare at.
+    """
+
+    file: Path
+    load: int
+    source: str = ""
+    points: Path | None = None
+    frame: Path | None = None
+    length_unit: str | None = None
+    direction: str | None = None
+    quantity: str | None = None
+    tolerance: float | None = None
+    least_mac: float = 0.5
+    greatest_shift: float = 0.3
+
+
+def read_test(top: Table, folder: Path, loads: tuple[float, ...]) -> tuple[TestSpec | None, HammerSpec | None]:
+    """Read [test]: frequencies for each of `loads` [N], or a file; whichever it is, the other is None."""
+    table = top.table("test")
+    if table is None:
+        return None, None
+    if "file" in table.data and "frequencies" in table.data:
+        top.faults.add("test has both file and frequencies; give one of them")
+    listed, hammer = (None, _file(table, folder, loads)) if "file" in table.data else (_listed(table, len(loads)), None)
+    table.close()
+    return listed, hammer
+
+
+def _listed(table: Table, loads: int) -> TestSpec:
+    def rows(value: Any, name: str) -> tuple[tuple[float, ...], ...]:
+        if not isinstance(value, list) or not all(isinstance(row, list) for row in value):
+            raise InputError(f"{name} should be one list of frequencies for each preload")
+        if len(value) != loads:
+            raise InputError(f"{name} has {len(value)} rows for {loads} preloads; give one list for each")
+        return tuple(tuple(quantity(v, "Hz", name) for v in row) for row in value)
+
+    def points(value: Any, name: str) -> tuple[tuple[float, float, float], ...]:
+        if not isinstance(value, list) or not value:
+            raise InputError(f"{name} should be a list of points, each three lengths")
+        return tuple(point(v, name) for v in value)
+
+    return TestSpec(
+        source=table.text("source", ""),
+        frequencies=table.take("frequencies", rows) or (),
+        published=table.take("published", rows, None),
+        published_name=table.text("published_name", "published"),
+        direction=table.take("direction", direction) or (1.0, 0.0, 0.0),
+        points=table.take("points", points) or (),
+        threshold=table.number("threshold", 0.1),
+    )
+
+
+def _file(table: Table, folder: Path, loads: tuple[float, ...]) -> HammerSpec:
+    def load(value: Any, name: str) -> int:
+        wanted = quantity(value, "N", name)
+        near = [i for i, known in enumerate(loads) if abs(known - wanted) <= 1e-3 * known]
+        if not near:
+            known = ", ".join(f"{v / 1e3:g} kN" for v in loads)
+            raise InputError(f"{name} = {wanted / 1e3:g} kN is no preload of the study; its first bolt has {known}")
+        return near[0]
+
+    def share(value: Any, name: str, most: float) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= most:
+            end = f" and at most {most:g}" if most < float("inf") else ""
+            raise InputError(f"{name} = {value!r} should be a plain number above 0{end}, for example 0.3")
+        return float(value)
+
+    path = existing_path(folder)
+    table.take("frequencies", lambda _value, _name: None, None)
+    return HammerSpec(
+        file=table.take("file", path) or folder,
+        load=table.take("load", load, len(loads) - 1),
+        source=table.text("source", ""),
+        points=table.take("points", path, None),
+        frame=table.take("frame", path, None),
+        length_unit=table.text("length_unit", None),
+        direction=table.text("direction", None, ("x", "y", "z")),
+        quantity=table.text("quantity", None, QUANTITIES),
+        tolerance=table.quantity("tolerance", "m", None),
+        least_mac=table.take("least_mac", lambda value, name: share(value, name, 1.0), 0.5),
+        greatest_shift=table.take("greatest_shift", lambda value, name: share(value, name, float("inf")), 0.3),
+    )

@@ -1,0 +1,123 @@
+"""The modes and FRFs of a result as universal files, for the programs that test engineers use."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.errors import InputError
+from faying.measured.frf import FRF, Dof
+from faying.measured.modes import ModeSet
+from faying.measured.uff_write import write_uff
+from faying.result import Receptance, Result
+from faying.study.schema import ResponseSpec
+
+Array = NDArray[np.float64]
+MOST_POINTS = 400
+TEST_FILES = ("test_modes.uff", "test_frf.uff")
+
+
+def check(spec: ResponseSpec | None) -> None:
+    """Raise InputError for a response along a direction that no universal file can state."""
+    for point, axis in (*spec.inputs, *spec.outputs) if spec else ():
+        if _name(axis) is None:
+            raise InputError(
+                f"response: the direction {list(axis)} at {[f'{1e3 * v:g} mm' for v in point]} lies along none of x, y, z, the only "
+                "ones of data set 58; turn it, or leave out --uff"
+            )
+
+
+def write(result: Result, folder: Path) -> list[Path]:
+    """Write modes.uff (55) and, where there is a response, frf.uff (58); the same again at the points of the test.
+
+    modes.uff: the last preload, at the points of [response], numbered from 1, and at up to 400 others spread over the
+    outline. frf.uff: accelerance at the last preload, points numbered alike. Both lie in the frame of the model.
+    test_modes.uff and test_frf.uff: the model at the preload of the test, in the test's numbers and frame.
+    """
+    response = result.response[-1] if result.response else None
+    labels = _labels(response)
+    nodes = _spread(result.outline, [_nearest(result.outline, p) for p in labels])
+    positions = {k + 1: tuple(float(v) for v in result.outline[node]) for k, node in enumerate(nodes)}
+    positions |= {k: p for p, k in labels.items()}
+    title = f"{result.title}, {result.loads[-1] / 1e3:g} kN"
+    modes = _modes(result.frequencies[-1], result.loss_factors[-1], result.shapes[-1][:, nodes], positions)
+    made = [write_uff(folder / "modes.uff", modes, title=title)]
+    if response is not None:
+        made.append(write_uff(folder / "frf.uff", _frf(response, labels), title=title))
+    return made + _at_test(result, folder)
+
+
+def _at_test(result: Result, folder: Path) -> list[Path]:
+    beside = result.hammer
+    if beside is None:
+        return []
+    model, points = beside.model, beside.point_map
+    title = f"{model.title}, {model.load / 1e3:g} kN, at the points of the test"
+    labels = list(points.nodes)
+    # shapes in the axes of the test: x_test = rotation^T x_model
+    shapes = model.shapes[:, [points.nodes[k] for k in labels]] @ points.transform.rotation
+    positions = {k: beside.test.positions[k] for k in labels}
+    made = [
+        write_uff(folder / TEST_FILES[0], _modes(model.frequencies, model.loss_factors, shapes, positions), title=title)
+    ]
+    if beside.frf is not None and beside.predicted is not None:
+        frf = beside.frf
+        pairs = np.zeros(beside.predicted.shape[:2], dtype=bool)
+        for pair in frf.measured:
+            pairs[pair] = True
+        lines = np.isfinite(beside.predicted[pairs]).all(axis=0)
+        if lines.sum() >= 2:
+            values = np.where(pairs[:, :, None], beside.predicted, np.nan)[:, :, lines]
+            of_model = FRF(frequency=frf.frequency[lines], values=values, outputs=frf.outputs, inputs=frf.inputs,
+                           quantity=frf.quantity, positions=positions)  # fmt: skip
+            made.append(write_uff(folder / TEST_FILES[1], of_model, title=title))
+    return made
+
+
+def _modes(frequencies: Array, losses: Array, shapes: Array, positions: Mapping[int, tuple[float, ...]]) -> ModeSet:
+    """Shapes (m, p, 3) at the points of `positions`, in their order."""
+    dofs = tuple(Dof(label, axis) for label in positions for axis in "xyz")
+    return ModeSet(frequencies=frequencies, loss_factors=losses, shapes=shapes.reshape(len(shapes), -1).astype(complex), dofs=dofs,
+                   positions=positions)  # type: ignore[arg-type]  # fmt: skip
+
+
+def _labels(response: Receptance | None) -> dict[tuple[float, ...], int]:
+    """Number the points of a response from 1."""
+    ends = () if response is None else (*response.inputs, *response.outputs)
+    return {point: k + 1 for k, point in enumerate(dict.fromkeys(tuple(p) for p, _ in ends))}
+
+
+def _frf(response: Receptance, labels: dict[tuple[float, ...], int]) -> FRF:
+    rows: dict[Dof, int] = {}
+    columns: dict[Dof, int] = {}
+    for side, known in ((response.outputs, rows), (response.inputs, columns)):
+        for k, (point, axis) in enumerate(side):
+            known.setdefault(Dof(labels[tuple(point)], _name(axis) or ""), k)
+    values = response.values[:, list(rows.values())][:, :, list(columns.values())].transpose(1, 2, 0)
+    receptance = FRF(frequency=response.frequencies, values=values, outputs=tuple(rows), inputs=tuple(columns), quantity="receptance",
+                     positions={k: p for p, k in labels.items()})  # type: ignore[misc]  # fmt: skip
+    return receptance.to("accelerance")
+
+
+def _name(axis: tuple[float, ...]) -> str | None:
+    """x, -x, y ... of a direction along an axis, to a degree; None for others."""
+    unit = np.array(axis) / np.linalg.norm(axis)
+    k = int(np.abs(unit).argmax())
+    if abs(unit[k]) < 0.9998:
+        return None
+    return ("-" if unit[k] < 0 else "") + "xyz"[k]
+
+
+def _nearest(points: Array, place: tuple[float, ...]) -> int:
+    return int(np.argmin(np.linalg.norm(points - np.array(place), axis=1)))
+
+
+def _spread(points: Array, first: list[int]) -> list[int]:
+    """`first`, then points each as far as can be from all before it, up to MOST_POINTS in all."""
+    chosen = list(first) or [int(np.argmin(points @ [1.0, 1.1, 1.2]))]
+    distance = np.min([np.linalg.norm(points - points[k], axis=1) for k in chosen], axis=0)
+    while len(chosen) < min(MOST_POINTS, len(points)) and distance.max() > 0:
+        chosen.append(int(distance.argmax()))
+        distance = np.minimum(distance, np.linalg.norm(points - points[chosen[-1]], axis=1))
+    return chosen
