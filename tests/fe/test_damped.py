@@ -7,7 +7,7 @@ from scipy.linalg import eig
 
 import faying
 from faying.fe.constraint import free_motions, hold
-from faying.fe.damped import damped_modes
+from faying.fe.damped import damped_modes, followers
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
@@ -155,3 +155,8 @@ def test_thirty_thousand_unknowns(kind):
         frequency, damping = np.abs(exact), -2 * exact.real / np.abs(exact)
     assert omega == pytest.approx(frequency, rel=1e-5)
     assert found.loss_factors == pytest.approx(damping, rel=0.01, abs=1e-7)
+
+
+def test_too_few_modes_that_oscillate_are_told():
+    with pytest.raises(faying.NotConverged, match="only 1 of 2 modes oscillate"):
+        followers(np.ones((2, 1), dtype=complex))

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from faying.errors import NotConverged
 from faying.fe.mesh import Array
 from faying.fe.modes import Modes
+from faying.fe.sides import Index
 
 Complex = NDArray[np.complex128]
 ROUNDS = 12  # enrichments after which the loss must be so great that nothing here applies
@@ -101,6 +102,20 @@ def _loss_factor(squared: Complex, root: Complex, kind: str) -> Array:
     return squared.imag / squared.real if kind == "hysteretic" else -2 * root.real / np.abs(root)
 
 
+def followers(overlap: Complex) -> Index:
+    """Index of the complex mode (m,) that follows each real one, from their overlap (m, complex modes).
+
+    Each real mode, in turn, takes the one left that overlaps it most. Raises NotConverged where there are too few.
+    """
+    if overlap.shape[1] < len(overlap):
+        raise NotConverged(f"complex modes: only {overlap.shape[1]} of {len(overlap)} modes oscillate; the dampers are so "
+                           "strong that the others only creep back")  # fmt: skip
+    picked: list[int] = []
+    for row in np.abs(overlap):
+        picked.append(next(int(i) for i in np.argsort(-row) if int(i) not in picked))
+    return np.array(picked, dtype=np.int64)
+
+
 class _Span:
     """A growing basis, orthonormal with the mass, and the matrices projected on it."""
 
@@ -149,8 +164,6 @@ class _Span:
             root, vectors = root[above], both[:n, above]
             vectors = vectors / np.linalg.norm(vectors, axis=0)
             squared = -(root**2)
-        picked: list[int] = []
-        for row in np.abs(vectors[:count]):  # each real mode, in turn, takes the complex one that overlaps it most
-            picked.append(next(int(i) for i in np.argsort(-row) if int(i) not in picked))
-        order = np.array(picked)[np.argsort(np.abs(squared[picked].real))]
+        order = followers(vectors[:count])
+        order = order[np.argsort(np.abs(squared[order].real))]
         return squared[order], root[order], vectors[:, order]

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faying.errors import InputError, NotConverged
+from faying.fe.damped import followers
 from faying.joint.balance import Array, Balance, Grip, Preload
 from faying.joint.seat import Seat
 
@@ -147,10 +148,8 @@ class ReducedModel:
         rough = eigh(K[cut, cut], M[cut, cut], eigvals_only=True, subset_by_index=[0, self.count - 1])
         estimate = np.abs(rough / real[: self.count] - 1) / 2
         values, inner = eig(np.diag(real) + 1j * (shapes.T @ loss @ shapes))
-        picked: list[int] = []
-        for row in np.abs(inner[: self.count]):  # each real mode, in turn, takes the complex one that overlaps it most
-            picked.append(next(int(i) for i in np.argsort(-row) if int(i) not in picked))
-        order = np.array(picked)[np.argsort(values[picked].real)]
+        order = followers(inner[: self.count])
+        order = order[np.argsort(values[order].real)]
         return values[order], shapes @ inner[:, order], estimate
 
     def _joints(self, springs: Sequence[Densities]) -> tuple[Array, Array]:
