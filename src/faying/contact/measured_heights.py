@@ -100,7 +100,7 @@ class MeasuredHeights(ContactLaw):
         """Pressure, area, dp/dw and eta int sqrt(R delta) phi at closings (m,), as (m, 4).
 
         Each curve f(t) of an asperity is laid on hinges: slopes that change at points t_k, close enough that the sum of
-        c_k max(t - t_k, 0) is f to 1e-5. Then int f(w - g) phi dg is the sum of c_k Phi(w - t_k) exactly, with Phi the
+        c_k max(t - t_k, 0) is f to 3e-5. Then int f(w - g) phi dg is the sum of c_k Phi(w - t_k) exactly, with Phi the
         second integral of phi, and steps of phi or of f cost nothing.
         """
         model, end = self._asperity, REACH * self._span
