@@ -14,7 +14,7 @@ from faying.errors import InputError
 from faying.materials import ContactPair
 
 FIRST, REACH = 1e-3, 2.0  # closures covered, in spans of the gaps from the first touch
-KNOTS, HINGES = 2000, 3000  # closures at which the sum is taken; pieces of the asperity's curve
+KNOTS, HINGES = 2000, 5000  # closures at which the sum is taken; pieces of the asperity's curve
 
 
 @final
@@ -100,12 +100,12 @@ class MeasuredHeights(ContactLaw):
         """Pressure, area, dp/dw and eta int sqrt(R delta) phi at closings (m,), as (m, 4).
 
         Each curve f(t) of an asperity is laid on hinges: slopes that change at points t_k, close enough that the sum of
-        c_k max(t - t_k, 0) is f to 3e-5. Then int f(w - g) phi dg is the sum of c_k Phi(w - t_k) exactly, with Phi the
+        c_k max(t - t_k, 0) is f to 1e-5. Then int f(w - g) phi dg is the sum of c_k Phi(w - t_k) exactly, with Phi the
         second integral of phi, and steps of phi or of f cost nothing.
         """
         model, end = self._asperity, REACH * self._span
         borders = np.array([x * model.critical for x in model.borders if x * model.critical < end])
-        graded = np.geomspace(FIRST * self._span / 10, end, HINGES)
+        graded = np.geomspace(1e-4 * FIRST * self._span, end, HINGES)
         t = np.unique(np.concatenate([[0.0], graded, borders]))
         below, above = model.at(borders * (1 - 1e-12)), model.at(borders * (1 + 1e-12))
         at = model.at(np.where(np.isin(t, borders), t * (1 - 1e-12), t))
