@@ -113,6 +113,7 @@ class Balance(ABC):
         self.friction = list(friction) if friction is not None else [None] * len(self.joints)
         self.anchors = [np.zeros((len(trace.weights), 2)) for trace, _ in self.joints]
         self.last: Array | None = None
+        self.stopped: Array | None = None  # where the search of `solve` found no way on
         self.factorisations = 0
 
     @abstractmethod
@@ -167,6 +168,7 @@ class Balance(ABC):
                     break
                 continue
             if newton >= steps:
+                self.stopped = u
                 raise NotConverged(f"preload: after {newton} Newton steps {size:.1e} of the load is out of balance "
                                    f"(tolerance {tolerance:.0e}); refine the mesh of the joint, or load it in steps")  # fmt: skip
             step, count = self._direction(u, force, grips, accuracy=min(1e-2, 0.1 * size))
@@ -186,11 +188,15 @@ class Balance(ABC):
             if np.any(slides):  # the shear that is left holds until the next load moves on
                 rest = grip.shear(move[:, 1:]) / np.where(grip.k_t > 0, grip.k_t, 1.0)[:, None]
                 self.anchors[index] = np.where(slides[:, None], move[:, 1:] - rest, self.anchors[index])
-        openings = tuple(move[:, 0] + trace.gap for move, (trace, _) in zip(moves, self.joints, strict=True))
-        pressures = tuple(seat.pressure(-gap)[0] for gap, (_, seat) in zip(openings, self.joints, strict=True))
+        openings, pressures = self.contact(u)
         self._check_ends(pressures, beyond)
         return Preload(pressures=pressures, openings=openings, slipping=tuple(slipping), displacement=u, imbalance=size,
                        newton_steps=newton, inner_steps=inner, factorisations=self.factorisations)  # fmt: skip
+
+    def contact(self, u: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+        """Openings [m] and pressures [Pa] at the points of every joint under displacements [m] (unknowns,)."""
+        openings = tuple(self._move(trace, u)[:, 0] + trace.gap for trace, _ in self.joints)
+        return openings, tuple(seat.pressure(-gap)[0] for gap, (_, seat) in zip(openings, self.joints, strict=True))
 
     def _check_ends(self, pressures: tuple[Array, ...], allowed: float) -> None:
         for p, (trace, seat) in zip(pressures, self.joints, strict=True):
@@ -257,6 +263,7 @@ class Balance(ABC):
 
         start = slope(0.0)
         if start >= 0:
+            self.stopped = u
             raise NotConverged("preload: the search direction does not lower the energy; the joint may be wholly open")
         end = slope(1.0)
         if abs(end) <= 0.5 * abs(start):
