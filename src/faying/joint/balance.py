@@ -113,7 +113,7 @@ class Balance(ABC):
         self.friction = list(friction) if friction is not None else [None] * len(self.joints)
         self.anchors = [np.zeros((len(trace.weights), 2)) for trace, _ in self.joints]
         self.last: Array | None = None
-        self.stopped: Array | None = None  # where the search of `solve` found no way on
+        self.nearest: Array | None = None  # displacement nearest to balance in the last `solve`
         self.factorisations = 0
 
     @abstractmethod
@@ -153,10 +153,13 @@ class Balance(ABC):
         scale = float(np.linalg.norm(load))
         u = self._start(load) if self.last is None else self.last
         newton = inner = 0
+        least = np.inf
         grips = self._grips(u)
         while True:
             force = self._out_of_balance(u, load, grips)
             size = float(np.linalg.norm(force)) / scale
+            if size < least:
+                least, self.nearest = size, u
             if size < max(tolerance, ROUNDED) and tolerance < (rounding := self._rounding(u) / scale):
                 tolerance = rounding
             if size < tolerance:
@@ -168,7 +171,6 @@ class Balance(ABC):
                     break
                 continue
             if newton >= steps:
-                self.stopped = u
                 raise NotConverged(f"preload: after {newton} Newton steps {size:.1e} of the load is out of balance "
                                    f"(tolerance {tolerance:.0e}); refine the mesh of the joint, or load it in steps")  # fmt: skip
             step, count = self._direction(u, force, grips, accuracy=min(1e-2, 0.1 * size))
@@ -263,7 +265,6 @@ class Balance(ABC):
 
         start = slope(0.0)
         if start >= 0:
-            self.stopped = u
             raise NotConverged("preload: the search direction does not lower the energy; the joint may be wholly open")
         end = slope(1.0)
         if abs(end) <= 0.5 * abs(start):

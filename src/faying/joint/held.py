@@ -13,6 +13,7 @@ from faying.joint.structure import Structure
 from faying.joint.tighten import tighten
 
 STILL = 0.01  # of the shift: a frequency below it is that of a motion that nothing resists
+NOTHING = 1e-6  # of the greatest pressure
 
 
 def held_preload(
@@ -25,8 +26,8 @@ def held_preload(
     try:
         found = tighten(structure, assembly, forces, order=order)
     except NotConverged:
-        if assembly.stopped is not None:
-            openings, pressures = assembly.contact(assembly.stopped)
+        if assembly.nearest is not None:
+            openings, pressures = assembly.contact(assembly.nearest)
             check_contact(structure, pressures, openings)
         raise
     check_contact(structure, found.pressures, found.openings)
@@ -34,8 +35,9 @@ def held_preload(
 
 
 def open_joints(structure: Structure, pressures: Sequence[Array]) -> list[str]:
-    """Names of the joints that carry nothing at all."""
-    return [joint.name for joint, p in zip(structure.joints, pressures, strict=True) if not np.any(p > 0)]
+    """Names of the joints that carry nothing, or next to nothing beside the others."""
+    least = NOTHING * max(float(p.max()) for p in pressures)
+    return [joint.name for joint, p in zip(structure.joints, pressures, strict=True) if p.max() <= least]
 
 
 def check_contact(structure: Structure, pressures: Sequence[Array], openings: Sequence[Array]) -> None:
