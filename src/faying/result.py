@@ -80,7 +80,8 @@ class Result:
     [-] (l, joints), share of a joint's area at the limit of friction; mac [-] (l, m, m), modal assurance criterion of
     the modes at the first load (rows) with those at each; response: frequency response per load, if asked for;
     comparison: with listed frequencies; hammer: with a test's modes and FRFs; damping: hysteretic or viscous; tightening: names of
-    the bolts in the order in which they were pulled, empty where all at once; sources, warnings: sentences for the reader.
+    the bolts in the order in which they were pulled, empty where all at once; factor_memory [B]: what a factorisation took by its
+    own estimate; sources, warnings: sentences for the reader.
     """
 
     title: str
@@ -112,6 +113,7 @@ class Result:
     law: dict[str, Any] = field(default_factory=dict)
     convergence: tuple[dict[str, float], ...] = ()
     comparison: Comparison | None = None
+    factor_memory: float = 0.0
     sources: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     hammer: ModalComparison | None = None
@@ -130,7 +132,8 @@ class Result:
     def to_dict(self) -> dict[str, Any]:
         """Return the numbers a reader wants, ready for JSON; maps and shapes are left to NetCDF."""
         names = ("loads", "frequencies", "loss_factors", "tied", "free", "rigid")
-        out: dict[str, Any] = {"title": self.title, "unknowns": self.unknowns, "solver": self.solver}
+        out: dict[str, Any] = {"title": self.title, "unknowns": self.unknowns, "solver": self.solver,
+                               "factor_memory": {"unit": "B", "value": self.factor_memory}}  # fmt: skip
         out |= {name: {"unit": UNITS[name], "values": getattr(self, name).tolist()} for name in names}
         out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
         out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
@@ -176,7 +179,7 @@ class Result:
                 nc.title = self.title
                 nc.sources = "\n".join(self.sources) or " "
                 nc.warnings = "\n".join(self.warnings) or " "
-                nc.solver, nc.unknowns = self.solver, self.unknowns
+                nc.solver, nc.unknowns, nc.factor_memory = self.solver, self.unknowns, self.factor_memory
                 nc.joints = "\n".join(self.joints)
                 nc.damping = self.damping
                 for group in (self.surface, self.law):

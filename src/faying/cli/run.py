@@ -47,7 +47,8 @@ def command(study: Path, out: Path | None, as_json: bool, no_files: bool, uff: b
     if as_json:
         click.echo(json.dumps(result.to_dict() | {"files": [str(f) for f in files]}, indent=2))
         return
-    click.echo(f"{result.title}: {result.unknowns:,} unknowns, {result.solver}, {result.damping} loss in the joints\n")
+    click.echo(f"{result.title}: {result.unknowns:,} unknowns, {result.solver} ({result.factor_memory / 1e9:.2g} GB), "
+               f"{result.damping} loss in the joints\n")  # fmt: skip
     at = "" if result.hammer is None else f" at {result.hammer.model.load / 1e3:g} kN"
     for name, rows in (("modes", table.modes(result)), ("joints", table.joints(result)),
                        (f"bolts, tightened in the order {', '.join(result.tightening)}", table.bolts(result)),

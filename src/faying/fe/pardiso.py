@@ -54,7 +54,7 @@ class Pardiso:
         self._state, self._iparm = np.zeros(64, dtype=np.int64), np.zeros(64, dtype=np.int32)
         iparm = self._iparm
         iparm[0] = 1  # the values below, not the library's
-        iparm[1] = 2  # nested dissection
+        iparm[1] = 3  # nested dissection (METIS)
         iparm[17] = -1  # report the entries of the factor
         iparm[34] = 1  # indices from 0
         self._call(ANALYSE)

@@ -113,6 +113,7 @@ class Balance(ABC):
         self.friction = list(friction) if friction is not None else [None] * len(self.joints)
         self.anchors = [np.zeros((len(trace.weights), 2)) for trace, _ in self.joints]
         self.last: Array | None = None
+        self.nearest: Array | None = None  # displacement nearest to balance in the last `solve`
         self.factorisations = 0
 
     @abstractmethod
@@ -152,10 +153,13 @@ class Balance(ABC):
         scale = float(np.linalg.norm(load))
         u = self._start(load) if self.last is None else self.last
         newton = inner = 0
+        least = np.inf
         grips = self._grips(u)
         while True:
             force = self._out_of_balance(u, load, grips)
             size = float(np.linalg.norm(force)) / scale
+            if size < least:
+                least, self.nearest = size, u
             if size < max(tolerance, ROUNDED) and tolerance < (rounding := self._rounding(u) / scale):
                 tolerance = rounding
             if size < tolerance:
@@ -186,11 +190,15 @@ class Balance(ABC):
             if np.any(slides):  # the shear that is left holds until the next load moves on
                 rest = grip.shear(move[:, 1:]) / np.where(grip.k_t > 0, grip.k_t, 1.0)[:, None]
                 self.anchors[index] = np.where(slides[:, None], move[:, 1:] - rest, self.anchors[index])
-        openings = tuple(move[:, 0] + trace.gap for move, (trace, _) in zip(moves, self.joints, strict=True))
-        pressures = tuple(seat.pressure(-gap)[0] for gap, (_, seat) in zip(openings, self.joints, strict=True))
+        openings, pressures = self.contact(u)
         self._check_ends(pressures, beyond)
         return Preload(pressures=pressures, openings=openings, slipping=tuple(slipping), displacement=u, imbalance=size,
                        newton_steps=newton, inner_steps=inner, factorisations=self.factorisations)  # fmt: skip
+
+    def contact(self, u: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+        """Openings [m] and pressures [Pa] at the points of every joint under displacements [m] (unknowns,)."""
+        openings = tuple(self._move(trace, u)[:, 0] + trace.gap for trace, _ in self.joints)
+        return openings, tuple(seat.pressure(-gap)[0] for gap, (_, seat) in zip(openings, self.joints, strict=True))
 
     def _check_ends(self, pressures: tuple[Array, ...], allowed: float) -> None:
         for p, (trace, seat) in zip(pressures, self.joints, strict=True):

@@ -17,7 +17,9 @@ from faying.fe.solve import Factorisation, factorise
 from faying.joint.balance import Array, Balance, Grip
 from faying.joint.seat import Seat
 
-AGED = 15  # conjugate-gradient steps after which a new factorisation is cheaper
+AGED = 40  # conjugate-gradient steps after which a new factorisation is cheaper: one step costs a fiftieth of it
+
+FLAT = 1e-9  # curvature over that of the factor below which a direction costs no energy
 
 
 class Assembly(Balance):
@@ -121,7 +123,10 @@ class Assembly(Balance):
         target = accuracy * float(np.linalg.norm(right))
         for count in range(1, limit + 1):
             q = product(d)
-            alpha = rho / float(d @ q)
+            bend = float(d @ q)
+            if bend <= FLAT * rho:  # a part has lost contact on the way: go by the factor's springs, which draw it back
+                return (x if count > 1 else z), count
+            alpha = rho / bend
             x += alpha * d
             r -= alpha * q
             if np.linalg.norm(r) <= target:

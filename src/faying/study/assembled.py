@@ -10,7 +10,7 @@ from faying.errors import InputError
 from faying.fe.matrices import read_pair
 from faying.fe.sides import Index
 from faying.files import whole
-from faying.joint.tighten import tighten
+from faying.joint.held import held_preload
 from faying.study.build import build_all, checked_mesh
 from faying.study.schema import Study
 
@@ -34,7 +34,7 @@ class Assembled:
         """Assemble a study with the springs of its joints at its first preload."""
         structure = build_all(study, mesh=checked_mesh(study)).structure
         assembly = structure.assembly(solver=study.solver)
-        found = tighten(structure, assembly, [bolt.preload[0] for bolt in study.bolts], order=study.order)
+        found = held_preload(structure, assembly, [bolt.preload[0] for bolt in study.bolts], order=study.order)
         stiffness, _ = structure.joined(structure.springs(found.pressures))
         numbers = structure.mesh.numbers
         dofs = np.column_stack([np.repeat(numbers, 3), np.tile([1, 2, 3], len(numbers))])

@@ -13,8 +13,8 @@ from faying.fe.damped import DampedModes, damped_modes
 from faying.fe.modes import Modes, lowest_modes
 from faying.fe.solve import chosen
 from faying.joint.balance import Preload
+from faying.joint.held import STILL, check_motions, held_preload, open_joints
 from faying.joint.structure import Springs, Structure
-from faying.joint.tighten import tighten
 from faying.measured.model import FullResponse
 from faying.result import Comparison, Receptance, Result
 from faying.study.build import build_all, checked_mesh, surfaces_of
@@ -26,7 +26,7 @@ from faying.study.surface import Surface, law_facts
 Array = NDArray[np.float64]
 Report = Callable[[str], None]
 SPARE_MODES = 6  # beyond those asked for, so that the basis of the complex modes does not end at the last of them
-STILL = 0.01  # of the shift: a frequency below it is that of a motion that nothing resists
+SIZES = 3e-3, 30.0  # m: a structure smaller or larger than these is told, for its unit may be wrong
 
 
 def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
@@ -48,6 +48,11 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     structure = built.structure
     where = None if hammer is None else hammer.points(structure)
     notes: list[str] = list(dict.fromkeys(text for surface in surfaces for text in surface.warnings))
+    size = structure.mesh.size
+    if not SIZES[0] <= size <= SIZES[1]:
+        notes.append(
+            f"the structure measures {size:.4g} m from corner to corner; if it should not, the unit of its geometry is wrong"
+        )
     loads = np.array(study.bolts[0].preload)
     K, M = structure.vibrating
     assembly = structure.assembly(solver=study.solver)
@@ -62,11 +67,12 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     full: FullResponse | None = None
     for number, load in enumerate(loads):
         tell(f"preload {load / 1e3:g} kN")
-        preload = tighten(structure, assembly, [bolt.preload[number] for bolt in study.bolts], order=study.order)
+        preload = held_preload(structure, assembly, [bolt.preload[number] for bolt in study.bolts], order=study.order)
         springs = structure.springs(preload.pressures)
         tell(f"modes at {load / 1e3:g} kN")
         stiffness, loss = structure.joined(springs, viscous=study.damping == "viscous")
         found = lowest_modes(stiffness, M, count, shift_frequency=shift, solver=study.solver)
+        check_motions(structure, found)
         complex_modes = damped_modes(found, stiffness, M, loss, rigid=still, count=study.mode_count, kind=study.damping)
         solved = Solved(study=study, structure=structure, modes=found, damped=complex_modes, stiffness=stiffness, mass=M,
                         loss=loss)  # fmt: skip
@@ -119,6 +125,7 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         joints=tuple(j.name for j in structure.joints),
         unknowns=structure.mesh.unknowns,
         solver=chosen(study.solver),
+        factor_memory=max(m.factorisation.memory for m in modes),
         outline=structure.mesh.points[nodes],
         triangles=triangles,
         shapes=shapes,
@@ -166,7 +173,10 @@ def _tied(structure: Structure, count: int, shift: float, solver: str | None, no
 
 def _flags(structure: Structure, preload: Preload, load: float) -> list[str]:
     """Say where the law has left its ground, with the share of the joint's area."""
-    out = []
+    out = [
+        f"{name}, {load / 1e3:g} kN: no contact is left; the joint carries nothing"
+        for name in open_joints(structure, preload.pressures)
+    ]
     for joint, pressure in zip(structure.joints, preload.pressures, strict=True):
         end = joint.seat.law.greatest_pressure
         if np.any(pressure > end):
