@@ -114,10 +114,20 @@ def _nearest(points: Array, place: tuple[float, ...]) -> int:
 
 
 def _spread(points: Array, first: list[int]) -> list[int]:
-    """`first`, then points each as far as can be from all before it, up to MOST_POINTS in all."""
-    chosen = list(first) or [int(np.argmin(points @ [1.0, 1.1, 1.2]))]
+    """`first`, then points each as far as can be from all before it, up to MOST_POINTS in all.
+
+    Points that coincide with another, as nodes of two faces in a joint do, are left out: a position would not tell which
+    of the two is meant.
+    """
+    from scipy.spatial import KDTree
+
+    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    single = np.ones(len(points), dtype=bool)
+    single[KDTree(points).query_pairs(1e-6 * size, output_type="ndarray").ravel()] = False
+    chosen = list(first) or [int(np.argmin(np.where(single, points @ [1.0, 1.1, 1.2], np.inf)))]
     distance = np.min([np.linalg.norm(points - points[k], axis=1) for k in chosen], axis=0)
-    while len(chosen) < min(MOST_POINTS, len(points)) and distance.max() > 0:
+    distance[~single] = 0.0
+    while len(chosen) < MOST_POINTS and distance.max() > 0:
         chosen.append(int(distance.argmax()))
         distance = np.minimum(distance, np.linalg.norm(points - points[chosen[-1]], axis=1))
     return chosen
