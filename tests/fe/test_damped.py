@@ -157,6 +157,36 @@ def test_thirty_thousand_unknowns(kind):
     assert found.loss_factors == pytest.approx(damping, rel=0.01, abs=1e-7)
 
 
+@pytest.mark.slow
+def test_a_hundred_and_fifty_thousand_unknowns():
+    """First 15 elastic modes under viscous damping against the full quadratic problem: its companion of twice the size
+    at a real shift, so that one real factorisation of K + s C + s^2 M serves: frequency to 1e-5, damping to 1 %."""
+    from scipy.sparse.linalg import LinearOperator, eigs
+
+    from faying.fe.solve import factorise
+
+    K, M, C = jointed([32, 40], (10, 8), c=5e7)
+    assert 140e3 < K.shape[0] < 180e3
+    found = damped_modes(lowest_modes(K, M, 27, shift_frequency=50.0), K, M, C, rigid=6, count=15, kind="viscous")
+    n, s = K.shape[0], 2 * np.pi * 400.0
+    inverse = factorise((K + s * C + s**2 * M).tocsr())
+
+    def solve(right):
+        f, g = right[:n], right[n:]
+        x = -inverse.solve(M @ g + C @ f + s * (M @ f))
+        return np.concatenate([x, f + s * x])
+
+    start = np.random.default_rng(3).standard_normal(2 * n)
+    theta = eigs(LinearOperator((2 * n, 2 * n), matvec=solve, dtype=float), k=60, ncv=140, v0=start, tol=1e-12,
+                 return_eigenvectors=False)  # fmt: skip
+    roots = s + 1 / theta
+    for frequency, loss in zip(found.frequencies, found.loss_factors, strict=True):
+        omega = 2 * np.pi * frequency
+        root = roots[np.argmin(np.abs(roots - omega * (-loss / 2 + 1j)))]
+        assert omega == pytest.approx(np.abs(root), rel=1e-5)
+        assert loss == pytest.approx(-2 * root.real / np.abs(root), rel=0.01, abs=1e-8)
+
+
 def test_too_few_modes_that_oscillate_are_told():
     with pytest.raises(faying.NotConverged, match="only 1 of 2 modes oscillate"):
         followers(np.ones((2, 1), dtype=complex))
