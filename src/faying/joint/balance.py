@@ -113,6 +113,7 @@ class Balance(ABC):
         self.friction = list(friction) if friction is not None else [None] * len(self.joints)
         self.anchors = [np.zeros((len(trace.weights), 2)) for trace, _ in self.joints]
         self.last: Array | None = None
+        self._known: tuple[Array, list[tuple[Array, Array, Array]]] | None = None
         self.nearest: Array | None = None  # displacement nearest to balance in the last `solve`
         self.factorisations = 0
 
@@ -182,7 +183,7 @@ class Balance(ABC):
             if report:
                 report(f"Newton {newton}: imbalance {size:.1e}, {count} inner steps, step {length:.3g}")
         self.last = u
-        moves = [self._move(trace, u) for trace, _ in self.joints]
+        moves = [move for move, _, _ in self._state(u)]
         slipping = []
         for index, (move, grip, (trace, _)) in enumerate(zip(moves, grips, self.joints, strict=True)):
             slides = grip.sliding(move[:, 1:])
@@ -219,10 +220,22 @@ class Balance(ABC):
     def _move(self, trace: Trace, u: Array) -> Array:
         return np.asarray(trace.relative @ u).reshape(-1, 3)
 
+    def _state(self, u: Array) -> list[tuple[Array, Array, Array]]:
+        """Relative motion (q, 3), pressure and k_n (q,) of each joint; asked for several times in a step, found once."""
+        if self._known is None or self._known[0] is not u:
+            moves = [self._move(trace, u) for trace, _ in self.joints]
+            found = [
+                (move, *seat.pressure(-(move[:, 0] + trace.gap)))
+                for move, (trace, seat) in zip(moves, self.joints, strict=True)
+            ]
+            self._known = u, found
+        return self._known[1]
+
     def _grips(self, u: Array) -> list[Grip]:
         grips = []
-        for (trace, seat), friction, anchor in zip(self.joints, self.friction, self.anchors, strict=True):
-            p = seat.pressure(-(self._move(trace, u)[:, 0] + trace.gap))[0]
+        for (_, p, _), (_, seat), friction, anchor in zip(
+            self._state(u), self.joints, self.friction, self.anchors, strict=True
+        ):
             grips.append(
                 Grip(k_t=seat.stiffness(p)[1], limit=None if friction is None else friction * p, anchor=anchor)
             )
@@ -230,9 +243,7 @@ class Balance(ABC):
 
     def _out_of_balance(self, u: Array, load: Array, grips: list[Grip]) -> Array:
         force = load - self.stiffness @ u
-        for (trace, seat), grip in zip(self.joints, grips, strict=True):
-            move = self._move(trace, u)
-            p, _ = seat.pressure(-(move[:, 0] + trace.gap))
+        for (move, p, _), (trace, _), grip in zip(self._state(u), self.joints, grips, strict=True):
             local = np.concatenate([-p[:, None], grip.shear(move[:, 1:])], axis=1) * trace.weights[:, None]
             force = force - trace.relative.T @ local.ravel()
         return self._admissible(np.asarray(force))
@@ -240,9 +251,7 @@ class Balance(ABC):
     def _tangents(self, u: Array, grips: list[Grip]) -> list[tuple[Any, Array, Array]]:
         """For each joint: trace, normal stiffness (q,) and tangential tangent (q, 2, 2), both times the area."""
         out = []
-        for (trace, seat), grip in zip(self.joints, grips, strict=True):
-            move = self._move(trace, u)
-            _, k_n = seat.pressure(-(move[:, 0] + trace.gap))
+        for (move, _, k_n), (trace, _), grip in zip(self._state(u), self.joints, grips, strict=True):
             out.append((trace, trace.weights * k_n, trace.weights[:, None, None] * grip.tangent(move[:, 1:])))
         return out
 
@@ -252,12 +261,13 @@ class Balance(ABC):
         linear = float(step @ (load - self.stiffness @ u))
         quadratic = float(step @ stretch)
         local = [self._move(trace, step) for trace, _ in self.joints]
-        moves = [self._move(trace, u) for trace, _ in self.joints]
+        here = self._state(u)
 
         def slope(length: float) -> float:
             total = length * quadratic - linear
-            for (trace, seat), by, move, grip in zip(self.joints, local, moves, grips, strict=True):
-                p, _ = seat.pressure(-(trace.gap + move[:, 0] + length * by[:, 0]))
+            for (trace, seat), by, (move, p, _), grip in zip(self.joints, local, here, grips, strict=True):
+                if length:
+                    p, _ = seat.pressure(-(trace.gap + move[:, 0] + length * by[:, 0]))
                 shear = grip.shear(move[:, 1:] + length * by[:, 1:])
                 work = -p * by[:, 0] + np.einsum("qi,qi->q", shear, by[:, 1:])
                 total += float(trace.weights @ work)

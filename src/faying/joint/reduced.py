@@ -153,12 +153,16 @@ class ReducedModel:
         return values[order], shapes @ inner[:, order], estimate
 
     def _joints(self, springs: Sequence[Densities]) -> tuple[Array, Array]:
+        from scipy.linalg.blas import dsyrk
+
         size = len(self.dynamic_mass)
         real, imaginary = np.zeros((size, size)), np.zeros((size, size))
         for weights, relative, d in zip(self.weights, self.dynamic_relative, springs, strict=True):
             for target, n, t in ((real, d.k_n, d.k_t), (imaginary, d.c_n, d.c_t)):
-                share = weights[:, None] * np.stack([n, t, t], axis=1)
-                target += relative.T @ (share.reshape(-1, 1) * relative)
+                # springs and losses are never negative: half the work through their roots
+                root = np.sqrt(weights[:, None] * np.stack([n, t, t], axis=1)).reshape(-1, 1)
+                lower = dsyrk(1.0, (root * relative).T, lower=1)
+                target += lower + np.tril(lower, -1).T
         return real, imaginary
 
     def evaluate(self, seats: Sequence[Seat], forces: Array) -> Variant:
