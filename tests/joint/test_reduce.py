@@ -97,3 +97,25 @@ def test_the_reduced_model_travels(trained):
 def test_wrong_number_of_forces(trained):
     with pytest.raises(faying.InputError, match="2 bolt forces for 1 bolts"):
         trained[1].evaluate([seat()], np.array([1.0, 2.0]))
+
+
+def test_complex_modes_of_the_small_problem_are_those_of_all_its_vectors(trained):
+    """Higher modes join the lowest by first order; against the eigenvalues of the whole small problem."""
+    from scipy.linalg import eig, eigh
+
+    model = trained[1].model
+    found = model.equilibrium([seat(2.4, 1e-10)], np.array([800.0]))
+    springs = densities([seat(2.4, 1e-10)], found.pressures)
+    values, vectors, _ = model.modes(springs)
+    joint, loss = model._joints(springs)
+    K = model.dynamic_stiffness + joint + 1j * loss
+    exact = eig(K, model.dynamic_mass.astype(complex))[0]
+    nearest = exact[np.argmin(np.abs(exact[:, None] - values), axis=0)]
+    assert values == pytest.approx(nearest, rel=2e-6)
+    real = eigh(K.real, model.dynamic_mass, eigvals_only=True)[:COUNT]
+    assert values.real == pytest.approx(real, rel=0.05)
+    miss = K @ vectors - (model.dynamic_mass @ vectors) * values
+    assert (
+        np.linalg.norm(miss, axis=0).max()
+        < 1e-2 * np.linalg.norm((model.dynamic_mass @ vectors) * values, axis=0).max()
+    )

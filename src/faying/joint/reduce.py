@@ -27,7 +27,7 @@ from faying.joint.structure import Structure
 FEW_STEPS = 60  # enrichments of one variant after which something else must be wrong
 EXTRA_MODES = 25  # real modes of the reference beyond those wanted: they speed the enrichment of the highest ones
 # the force balance enters a frequency through k(p), to first order; the modes enter by the square of their error
-STATIC_SHARE = 30.0
+STATIC_SHARE = 8.0
 
 
 @dataclass

@@ -15,6 +15,9 @@ from faying.joint.balance import Array, Balance, Grip, Preload
 from faying.joint.seat import Seat
 
 Complex = NDArray[np.complex128]
+BALANCED = 1e-8  # imbalance at which the pressure is right to far more digits than a sweep gives
+BLOCK = 12  # real modes beyond those wanted that meet them exactly under the loss
+SLIGHT = 1e-6  # relative error of an eigenvalue up to which first order is enough for the higher modes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,6 +61,33 @@ def densities(seats: Sequence[Seat], pressures: Sequence[Array]) -> list[Densiti
         loss_n, loss_t = seat.loss(p)
         out.append(Densities(k_n=k_n, k_t=k_t, c_n=k_n * loss_n, c_t=k_t * loss_t))
     return out
+
+
+def _complex_modes(real: Array, loss: Array, count: int) -> tuple[Complex, Complex]:
+    """Lowest complex eigenvalues (m,) and vectors (d, m) of diag(real) + i loss, in rising order.
+
+    The lowest real modes, some more than are wanted, meet each other exactly; those above them join by what the loss
+    makes of them to first order. What that leaves is estimated, and where it is not small the whole problem is solved.
+    """
+    from scipy.linalg import eig
+
+    low = min(count + BLOCK, len(real))
+    apart = real[:low, None] - real[None, low:]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mix = 1j * loss[:low, low:] / apart
+        # second-order shift of an eigenvalue, times the square of the greatest loss factor: what first order leaves
+        left = np.sum(np.abs(mix * mix * apart), axis=1) / real[:low] * np.max(np.abs(np.diag(loss)) / real) ** 2
+    if low == len(real) or not left[:count].max() < SLIGHT:
+        values, vectors = eig(np.diag(real) + 1j * loss)
+    else:
+        span = np.concatenate([np.eye(low), mix], axis=1).T
+        small = span.T @ (real[:, None] * span + 1j * (loss @ span))
+        values, inner = eig(small, span.T @ span)
+        vectors = span @ inner
+        vectors = vectors / np.linalg.norm(vectors, axis=0)
+    order = followers(vectors[:count])
+    order = order[np.argsort(values[order].real)]
+    return values[order], vectors[:, order]
 
 
 class SmallBalance(Balance):
@@ -128,18 +158,18 @@ class ReducedModel:
         if self.last is not None:
             balance.last = np.concatenate([self.last, np.zeros(len(load) - len(self.last))])
         try:
-            found = balance.solve(load, beyond=1.0)
+            found = balance.solve(load, beyond=1.0, tolerance=BALANCED)
         except NotConverged:
             if balance.last is None:
                 raise
             balance.last = None
-            found = balance.solve(load, beyond=1.0)
+            found = balance.solve(load, beyond=1.0, tolerance=BALANCED)
         self.last = found.displacement
         return found
 
     def modes(self, springs: Sequence[Densities]) -> tuple[Complex, Complex, Array]:
         """Complex eigenvalues w^2 (1 + i eta) [1/s2] (m,), coefficients (d, m), the estimate (m,)."""
-        from scipy.linalg import eig, eigh
+        from scipy.linalg import eigh
 
         joint, loss = self._joints(springs)
         K, M = self.dynamic_stiffness + joint, self.dynamic_mass
@@ -147,10 +177,8 @@ class ReducedModel:
         cut = slice(0, self.coarse)
         rough = eigh(K[cut, cut], M[cut, cut], eigvals_only=True, subset_by_index=[0, self.count - 1])
         estimate = np.abs(rough / real[: self.count] - 1) / 2
-        values, inner = eig(np.diag(real) + 1j * (shapes.T @ loss @ shapes))
-        order = followers(inner[: self.count])
-        order = order[np.argsort(values[order].real)]
-        return values[order], shapes @ inner[:, order], estimate
+        values, inner = _complex_modes(real, shapes.T @ loss @ shapes, self.count)
+        return values, shapes @ inner, estimate
 
     def _joints(self, springs: Sequence[Densities]) -> tuple[Array, Array]:
         from scipy.linalg.blas import dsyrk

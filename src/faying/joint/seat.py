@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -113,7 +113,7 @@ class Seat:
         return np.log(w), np.log(p), k * w / p
 
     @cached_property
-    def _curve(self) -> object:
+    def _curve(self) -> Any:
         from scipy.interpolate import CubicHermiteSpline
 
         log_w, log_p, slope = self._table
@@ -184,8 +184,11 @@ class Seat:
         shut = closing > 0
         x = np.log(np.where(shut, closing, 1.0))
         inside = np.clip(x, log_w[0], log_w[-1])
-        value = self._curve(inside)  # type: ignore[operator]
-        steep = self._curve(inside, 1)  # type: ignore[operator]
+        cell = np.clip(np.searchsorted(log_w, inside, side="right") - 1, 0, len(log_w) - 2)
+        cubic = self._curve.c[:, cell]
+        dx = inside - log_w[cell]
+        value = ((cubic[0] * dx + cubic[1]) * dx + cubic[2]) * dx + cubic[3]
+        steep = (3 * cubic[0] * dx + 2 * cubic[1]) * dx + cubic[2]
         end = np.where(x > log_w[-1], slope[-1], slope[0])
         beyond = x != inside
         value = value + np.where(beyond, end * (x - inside), 0.0)

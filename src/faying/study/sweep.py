@@ -61,18 +61,11 @@ class Recipe:
             seats.append(self._lately[key])
         return seats, point.forces, [joint.friction for joint in point.study.joints]
 
-    def law_index(self, index: int) -> tuple[int, ...]:
-        """Place of a point along the axes that its laws depend on: all but those of the bolts."""
-        places = np.unravel_index(index, self.grid.shape)
-        return tuple(int(i) for i, axis in zip(places, self.grid.axes, strict=True) if not axis.key.startswith("bolt"))
-
 
 def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dict[str, Array]:
     """Evaluate some points; rows of what the sweep stores, NaN where a point has no answer, and `reasons`."""
     rows: dict[str, list[Any]] = {name: [] for name in (*Store.COLUMNS, "reasons")}
     weights = np.concatenate(model.weights)
-    known: tuple[int, ...] | None = None
-    kept: list[Seat] = []
     for index in indices:
         nothing = np.full(model.count, np.nan)
         row: dict[str, Any] = {"frequencies": nothing, "loss_factors": nothing, "estimate": np.nan,
@@ -80,9 +73,6 @@ def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dic
         reason = ""
         try:
             seats, forces, model.friction = recipe.seats(index)
-            if (law := recipe.law_index(index)) == known:
-                seats = kept  # with the tables they have made
-            known, kept = law, seats
             found = model.evaluate(seats, forces)
             p = np.concatenate(found.preload.pressures)
             end = np.concatenate([np.full(len(q), s.law.greatest_pressure) for q, s in zip(found.preload.pressures, seats,
@@ -109,7 +99,7 @@ def sweep(
     axes: Sequence[Axis],
     out: str | Path,
     *,
-    tolerance: float = 1e-6,
+    tolerance: float = 4e-6,
     jobs: int = 1,
     dask: str | None = None,
     report: Callable[[str, int], None] | None = None,
