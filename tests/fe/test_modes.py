@@ -139,6 +139,33 @@ def test_every_factorisation_solves(bar, name):
     assert factor.solve(right[:, 0].copy()) == pytest.approx(x[:, 0], rel=1e-6, abs=1e-9 * np.abs(x).max())
 
 
+@pytest.mark.skipif("pardiso" not in available(), reason="PARDISO is not installed")
+@pytest.mark.parametrize("drop", [0, 1, 2])
+def test_blocks_of_nodes_and_single_unknowns_give_the_same_factor(bar, drop):
+    """Matrices of nodes go to PARDISO in blocks of three; a size that is no multiple of three cannot."""
+    K, M = sprung(bar, 1e12, 1e12)
+    matrix = (K + (2 * np.pi * SHIFT) ** 2 * M).tocsr()
+    matrix = matrix[drop:, drop:]
+    right = np.random.default_rng(3).standard_normal((matrix.shape[0], 5))
+    factor = factorise(matrix, "pardiso")
+    assert factor._block == (1 if drop else 3)
+    assert np.linalg.norm(matrix @ factor.solve(right) - right) < 1e-8 * np.linalg.norm(right)
+    again = factor.again((7 * matrix).tocsr())
+    assert np.linalg.norm(7 * (matrix @ again.solve(right)) - right) < 1e-8 * np.linalg.norm(right)
+
+
+@pytest.mark.skipif("pardiso" not in available(), reason="PARDISO is not installed")
+@pytest.mark.parametrize("size", [1, 2, 3, 300, 301])
+def test_a_matrix_without_blocks(size):
+    """Springs in a row, one unknown each: k (2, -1); the middle of blocks of three would be mostly zeros."""
+    from scipy.sparse import diags_array
+
+    matrix = diags_array([np.full(size, 2.0), -np.ones(size - 1), -np.ones(size - 1)], offsets=[0, 1, -1]).tocsr()
+    right = np.arange(1.0, size + 1)
+    factor = factorise(matrix, "pardiso")
+    assert matrix @ factor.solve(right) == pytest.approx(right, rel=1e-10)
+
+
 def test_an_unknown_factorisation_is_refused():
     with pytest.raises(faying.InputError, match=r"solver 'banana' is not here; use one of .*superlu"):
         chosen("banana")

@@ -10,10 +10,10 @@ from faying.fe.mesh import Array
 from faying.fe.solve import Factorisation, factorise
 
 SEED = 20240611
-WIDTH = 12  # of a block of vectors: a factor is read once for all of them
+WIDTH = 8  # of a block of vectors: a factor is read once for all of them
 MOST_STEPS = 1200  # vectors of the basis
 SAME = 1e-6  # relative difference of eigenvalues of A^-1 M below which they may be one
-TOLERANCE = 1e-9  # residual of A^-1 M x = theta x over theta; the error of theta is of its square over the gap
+TOLERANCE = 1e-8  # residual of A^-1 M x = theta x over theta; the error of theta is of its square over the gap
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,17 +74,21 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> Array:
     n = mass.shape[0]
     generator = np.random.default_rng(SEED)
     last = factor.solve(mass @ generator.standard_normal((n, width)))
-    last, _ = _orthonormal(last, mass)
+    last, momentum, _ = _orthonormal(last, mass)
+    before, rows = np.zeros((n, 0)), np.zeros((last.shape[1], 0))
     basis, projected = last, np.zeros((0, 0))
     for _ in range(MOST_STEPS // width):
-        image = factor.solve(mass @ last)
-        side = basis.T @ (mass @ image)
+        image = factor.solve(momentum)
+        corner = momentum.T @ image
+        corner = (corner + corner.T) / 2
         old = len(projected)
-        corner = (side[old:] + side[old:].T) / 2
-        projected = np.block([[projected, side[:old]], [side[:old].T, corner]])
-        image -= basis @ side
+        edge = np.zeros((last.shape[1], old))
+        edge[:, old - before.shape[1] :] = rows
+        projected = np.block([[projected, edge.T], [edge, corner]])
+        image -= last @ corner + before @ rows.T
         image -= basis @ (basis.T @ (mass @ image))
-        last, rows = _orthonormal(image, mass)
+        before = last
+        last, momentum, rows = _orthonormal(image, mass)
         values, vectors = np.linalg.eigh(projected)
         values, vectors = values[::-1][:count], vectors[:, ::-1][:, :count]
         converged = np.linalg.norm(rows @ vectors[old:], axis=0) <= TOLERANCE * values
@@ -98,13 +102,14 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> Array:
                        "fewer, or raise modes.shift_frequency towards the first mode")  # fmt: skip
 
 
-def _orthonormal(new: Array, mass: Any) -> tuple[Array, Array]:
-    """Vectors (n, r) orthonormal with the mass that span `new` (n, k), and (r, k) with new = vectors @ that."""
+def _orthonormal(new: Array, mass: Any) -> tuple[Array, Array, Array]:
+    """Vectors x (n, r) orthonormal with the mass that span `new` (n, k), mass @ x, and (r, k) with new = x @ that."""
     rows, least = np.eye(new.shape[1]), 1e-14
     for _ in range(2):  # the Gram matrix squares what is small: what the first pass leaves, the second mends
-        gram = new.T @ (mass @ new)
+        momentum = mass @ new
+        gram = new.T @ momentum
         values, turn = np.linalg.eigh((gram + gram.T) / 2)
         keep = values > least * values[-1]
         root = np.sqrt(values[keep])
         new, rows = new @ (turn[:, keep] / root), (turn[:, keep] * root).T @ rows
-    return new, rows
+    return new, momentum @ (turn[:, keep] / root), rows

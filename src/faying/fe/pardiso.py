@@ -13,6 +13,8 @@ from faying.fe.memory import check
 
 Array = NDArray[np.float64]
 ANALYSE, FACTORISE, SOLVE, FORGET = 11, 22, 33, -1
+BLOCK = 3  # unknowns of a node
+FILLED = 0.7  # least share of entries in the blocks for which blocks are worth it
 POSITIVE = 2  # the kind of matrix: real, symmetric, positive definite
 SINGULAR = (-4, -7)  # a zero or negative pivot
 
@@ -27,6 +29,20 @@ def _library() -> Any:
     return function
 
 
+def _in_blocks(matrix: Any) -> bool:
+    """Whether the entries of a square CSR matrix come in blocks of three by three, by a sample of its rows."""
+    size = matrix.shape[0]
+    if size % BLOCK or not size:
+        return False
+    nodes = np.unique(np.linspace(0, size // BLOCK - 1, 500).astype(np.int64))
+    blocks = entries = 0
+    for node in nodes:
+        columns = matrix.indices[matrix.indptr[BLOCK * node] : matrix.indptr[BLOCK * (node + 1)]]
+        blocks += len(np.unique(columns // BLOCK))
+        entries += len(columns)
+    return entries >= FILLED * BLOCK**2 * blocks
+
+
 class Pardiso:
     """A factor of a symmetric positive definite CSR matrix with sorted indices.
 
@@ -39,24 +55,28 @@ class Pardiso:
     def __init__(self, matrix: Any) -> None:
         matrix.sort_indices()
         self._size = matrix.shape[0]
-        rows = np.repeat(np.arange(self._size, dtype=np.int32), np.diff(matrix.indptr))
-        self._kept = matrix.indices >= rows
-        counts = np.bincount(rows[self._kept], minlength=self._size)
-        if np.any(counts == 0):
-            raise NotConverged(
-                f"{np.count_nonzero(counts == 0)} unknowns have no stiffness at all; is a part held by nothing?"
-            )
-        if self._kept.sum() > np.iinfo(np.int32).max:
+        self._block = BLOCK if _in_blocks(matrix) else 1
+        bare = np.flatnonzero(np.diff(matrix.indptr) == 0)
+        if len(bare):
+            raise NotConverged(f"{len(bare)} unknowns have no stiffness at all; is a part held by nothing?")
+        blocks = matrix.tobsr((self._block, self._block))
+        blocks.sort_indices()
+        rows = np.repeat(np.arange(len(blocks.indptr) - 1, dtype=np.int32), np.diff(blocks.indptr))
+        self._kept = blocks.indices >= rows
+        if self._kept.sum() * self._block**2 > np.iinfo(np.int32).max:
             raise InputError("the matrix has more than 2^31 entries; use faying modes --slepc under mpiexec")
+        counts = np.bincount(rows[self._kept], minlength=len(blocks.indptr) - 1)
         self._starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
-        self._columns = matrix.indices[self._kept].astype(np.int32)
-        self._values = np.asarray(matrix.data[self._kept], dtype=float)
+        self._columns = blocks.indices[self._kept].astype(np.int32)
+        self._values = np.asarray(blocks.data[self._kept], dtype=float).ravel()
+        del blocks, rows
         self._state, self._iparm = np.zeros(64, dtype=np.int64), np.zeros(64, dtype=np.int32)
         iparm = self._iparm
         iparm[0] = 1  # the values below, not the library's
         iparm[1] = 3  # nested dissection (METIS)
         iparm[17] = -1  # report the entries of the factor
         iparm[34] = 1  # indices from 0
+        iparm[36] = self._block if self._block > 1 else 0  # blocks of one node: a third of the graph to order
         self._call(ANALYSE)
         self.memory = max(float(iparm[14]), float(iparm[15]) + float(iparm[16])) * 1024
         try:
@@ -75,7 +95,9 @@ class Pardiso:
 
     def again(self, matrix: Any) -> "Pardiso":
         """Factorise another matrix of the same pattern, indices sorted; the analysis is kept."""
-        self._values = np.asarray(matrix.data[self._kept], dtype=float)
+        blocks = matrix.tobsr((self._block, self._block))
+        blocks.sort_indices()
+        self._values = np.asarray(blocks.data[self._kept], dtype=float).ravel()
         self._call(FACTORISE)
         return self
 
@@ -89,7 +111,7 @@ class Pardiso:
         nothing, fault = np.zeros(1), ctypes.c_int32(0)
         columns = 1 if b is None or b.ndim == 1 else b.shape[1]
         _library()(
-            place(self._state), number(1), number(1), number(POSITIVE), number(phase), number(self._size),
+            place(self._state), number(1), number(1), number(POSITIVE), number(phase), number(self._size // self._block),
             place(self._values), place(self._starts), place(self._columns), place(np.zeros(1, dtype=np.int32)),
             number(columns), place(self._iparm), number(0), place(nothing if b is None else b),
             place(nothing if x is None else x), ctypes.byref(fault),
