@@ -8,13 +8,17 @@ import pytest
 from blocks import SOLID_KINDS, block, row
 from scipy.linalg import eigh
 from scipy.sparse import coo_array, diags_array
+from scipy.sparse.linalg import spsolve
+from voxels import bolted
 
 import faying
+from faying.fe.constraint import hold
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
 from faying.fe.matrices import arranged, read_matrices
 from faying.fe.mesh import Mesh
 from faying.fe.modes import lowest_modes
+from faying.joint.solid_bolt import SolidBolt
 
 pytestmark = [
     pytest.mark.slow,
@@ -150,3 +154,52 @@ def test_the_mass_rules_differ_less_than_the_mesh(tmp_path):
     fine = found[2, "exact"]
     assert np.abs(found[1, "stiffness"] / found[1, "exact"] - 1).max() < 0.02
     assert np.all(found[1, "exact"] > fine)
+
+
+@pytest.mark.parametrize("height", [5e-3, 10e-3])
+def test_pretension_of_a_solid_bolt(tmp_path, height):
+    """Our bolt beside *PRE-TENSION SECTION, which parts the mesh between two layers of elements; springs in the joints.
+
+    A linear problem: displacement of every node.
+    """
+    mesh = bolted(kind="hex8")
+    materials = {"lower": STEEL, "upper": ALU, "bolt0": STEEL}
+    springs, joined = [], 0
+    for pair in (("lower.joint", "upper.joint"), ("bolt0.head", "upper.seat0"), ("bolt0.nut", "lower.seat0")):
+        nodes = join(mesh, *pair).at_nodes()
+        joined = joined + nodes.springs(np.full(len(nodes.weights), 3e14), np.full(len(nodes.weights), 1e14))
+        springs += [(int(a), int(b), [k * w for k in (1e14, 1e14, 3e14)])
+                    for a, b, w in zip(nodes.first_nodes[:, 0], nodes.second_nodes[:, 0], nodes.weights, strict=True)]  # fmt: skip
+    force, n = 5e3, len(mesh.points)
+    corners = [int(np.argmin(np.linalg.norm(mesh.points - p, axis=1))) for p in ((0, 0, 0), (0.04, 0, 0), (0, 0.04, 0))]
+    fixed = np.array([3 * corners[0], 3 * corners[0] + 1, 3 * corners[0] + 2, 3 * corners[1] + 1, 3 * corners[1] + 2,
+                      3 * corners[2] + 2])  # fmt: skip
+
+    # CalculiX: the sides of the shank's elements at this height, seen from below
+    below = [i + 1 for i, cell in enumerate(np.concatenate([b for blocks in mesh.parts.values() for b in blocks]))
+             if cell[0] in set(mesh.part_nodes("bolt0")) and np.isclose(mesh.points[cell, 2].max(), height)]  # fmt: skip
+    text = ccx.deck(mesh, materials, springs, step=[])
+    text += "\n".join([
+        "*NODE", f"{n + 1},0,0,0", "*SURFACE,NAME=CUT,TYPE=ELEMENT", *(f"{e},S2" for e in below),
+        f"*PRE-TENSION SECTION,SURFACE=CUT,NODE={n + 1}", "0,0,1",  # away from those elements: a positive load is tension
+        "*BOUNDARY", *(f"{k // 3 + 1},{k % 3 + 1}" for k in fixed), "*STEP", "*STATIC", "*CLOAD",
+        f"{n + 1},1,{force}", "*NODE PRINT,NSET=NALL", "U", "*END STEP",
+    ]) + "\n"  # fmt: skip
+    printed = ccx.run(tmp_path, text)
+    table = np.array([line.split() for line in (tmp_path / "job.dat").read_text().splitlines() if len(line.split()) == 4
+                      and line.split()[0].isdigit()], dtype=float)  # fmt: skip
+    assert len(table) == n, printed[-2000:]
+    theirs = table[np.argsort(table[:, 0]), 1:] * 1e-3
+
+    K, _ = assemble(mesh, materials)
+    bolt = SolidBolt(name="b", part="bolt0", faces=("bolt0.head", "bolt0.nut"), at=(0.02, 0.02, height + 2.5e-3))
+    fitted = bolt.fitted(mesh, K)
+    right = force * fitted.load
+    right[fixed] = 0
+    ours = spsolve(hold((K + joined - fitted.released).tocsc(), fixed), right).reshape(-1, 3)
+    differ, size = ours - theirs, np.abs(theirs).max()
+    # CalculiX gives the nodes of the section as those of its other half: off by what the shank is drawn in
+    cut = (np.abs(mesh.points[:, 2] - height) < 1e-9) & np.isin(np.arange(n), mesh.part_nodes("bolt0"))
+    assert np.abs(differ[~cut]).max() < 1e-6 * size
+    drawn = (force - fitted.tension(ours.ravel())) / fitted.rigidity
+    assert np.abs(differ[cut] - [0, 0, drawn]).max() < 1e-6 * size

@@ -190,6 +190,11 @@ class FittedBolt:
         return (self.motion.T @ diags_array(lumps) @ self.motion).tocsr()
 
     @property
+    def released(self) -> None:
+        """None: what the parts lose while the bolt's force is given, since the shank is none of them."""
+        return None
+
+    @property
     def axial_stiffness(self) -> float:
         """Stiffness of shank and washers in series [N/m]; 0 without a shank."""
         bolt = self.bolt

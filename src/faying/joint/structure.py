@@ -18,6 +18,7 @@ from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt, FittedBolt
 from faying.joint.preload import Assembly
 from faying.joint.seat import Seat
+from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
 
 Array = NDArray[np.float64]
 
@@ -86,7 +87,7 @@ class Structure:
     mesh: Mesh
     materials: Mapping[str, Solid]
     joints: tuple[Joint, ...]
-    bolts: tuple[Bolt, ...] = ()
+    bolts: tuple[Bolt | SolidBolt, ...] = ()
     supports: tuple[Support, ...] = ()
     masses: tuple[PointMass, ...] = ()
 
@@ -104,7 +105,7 @@ class Structure:
 
     def sharing(self, other: "Structure") -> "Structure":
         """Return this structure with what `other`, which differs in its laws alone, has assembled already."""
-        for name in ("matrices", "held", "fitted_bolts", "loads", "standing", "vibrating", "rigid"):
+        for name in ("matrices", "held", "fitted_bolts", "loads", "_upheld", "standing", "vibrating", "rigid"):
             self.__dict__[name] = getattr(other, name)
         return self
 
@@ -115,9 +116,13 @@ class Structure:
         return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.int64)
 
     @cached_property
-    def fitted_bolts(self) -> tuple[FittedBolt, ...]:
+    def fitted_bolts(self) -> tuple[FittedBolt | FittedSolidBolt, ...]:
         """The bolts in their places."""
-        return tuple(bolt.fitted(self.mesh) for bolt in self.bolts)
+        joined = [*(f for joint in self.joints for f in joint.faces), *(support.face for support in self.supports)]
+        return tuple(
+            bolt.fitted(self.mesh) if isinstance(bolt, Bolt) else bolt.fitted(self.mesh, self.matrices[0], joined)
+            for bolt in self.bolts
+        )
 
     @cached_property
     def loads(self) -> Array:
@@ -127,14 +132,19 @@ class Structure:
         return np.stack([bolt.load for bolt in self.fitted_bolts], axis=1)
 
     @cached_property
+    def _upheld(self) -> Any:
+        """Stiffness [N/m] of the parts and of elastic supports."""
+        return _added(self.matrices[0], [support.springs(self.mesh) for support in self.supports])
+
+    @cached_property
     def standing(self) -> Any:
         """Stiffness [N/m] of the parts and of elastic supports, before any bolt is tight."""
-        return _added(self.matrices[0], [support.springs(self.mesh) for support in self.supports])
+        return _added(self._upheld, [-bolt.released for bolt in self.fitted_bolts if bolt.released is not None])
 
     @cached_property
     def vibrating(self) -> tuple[Any, Any]:
         """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; held unknowns cleared."""
-        K = _added(self.standing, [bolt.stiffness for bolt in self.fitted_bolts])
+        K = _added(self._upheld, [bolt.stiffness for bolt in self.fitted_bolts if bolt.released is None])
         M = _added(self.matrices[1], [bolt.mass for bolt in self.fitted_bolts])
         M = _added(M, [mass.matrix(self.mesh) for mass in self.masses])
         return hold(K, self.held), hold(M, self.held, 0.0)

@@ -12,6 +12,7 @@ from faying.joint.preload import Assembly
 from faying.joint.structure import Structure
 
 Array = NDArray[np.float64]
+SNUG = 0.01  # of its force, in a solid bolt that is yet to be tightened: without any, it would fall out
 
 
 def tighten(
@@ -26,7 +27,7 @@ def tighten(
 
     order: indices of the bolts, in the order of tightening, any of them more than once; None pulls all at once, so that
     each ends at its force. In an order, the bolt at hand is pulled to its force while those tightened before it are
-    springs of their shank's stiffness; bolts yet to come carry nothing. The forces left at the end are in
+    springs of their shank's stiffness; bolts yet to come carry nothing, solid ones a hundredth of their force. The forces left at the end are in
     `bolt_forces`. Raises InputError where an order misses a bolt or a bolt in it has no shank.
     """
     force = np.asarray(forces, dtype=float)
@@ -50,6 +51,9 @@ def tighten(
     try:
         for turn in order:
             assembly.stiffness, load = standing, force[turn] * loads[:, turn]
+            for index, bolt in enumerate(bolts):
+                if bolt.released is not None and index not in tight and index != turn:
+                    load = load + SNUG * force[index] * loads[:, index]
             for index, (held, moved) in tight.items():
                 if index != turn:
                     shank = bolts[index].stiffness

@@ -11,6 +11,7 @@ from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt, Washer
 from faying.joint.gap_map import read_gap_map
 from faying.joint.seat import Seat
+from faying.joint.solid_bolt import SolidBolt
 from faying.joint.structure import Joint, Structure
 from faying.materials import RIGID, ContactPair, Material
 from faying.study.connections import BoltSpec, GapSpec
@@ -63,6 +64,8 @@ def checked_mesh(study: Study) -> Mesh:
     faults += [f"part {name!r} is not in {spec.file.name}; it holds {', '.join(mesh.parts)}" for name in study.parts
                if name not in mesh.parts]  # fmt: skip
     known = ", ".join(sorted(mesh.faces))
+    faults += [f"bolt {bolt.name!r} is the part {bolt.part!r}, which is not in {spec.file.name}; it holds {', '.join(mesh.parts)}"
+               for bolt in study.bolts if bolt.part is not None and bolt.part not in mesh.parts]  # fmt: skip
     named = [("joint", item.name, face) for item in study.joints for face in item.faces]
     named += [("bolt", item.name, face) for item in study.bolts for face in item.faces]
     named += [("support", support.face, support.face) for support in study.supports]
@@ -117,7 +120,9 @@ def _gap(spec: GapSpec, interface: Interface) -> Interface:
     return made.on(interface)
 
 
-def _bolt(spec: BoltSpec, materials: dict[str, Material]) -> Bolt:
+def _bolt(spec: BoltSpec, materials: dict[str, Material]) -> Bolt | SolidBolt:
+    if spec.part is not None:
+        return SolidBolt(name=spec.name, part=spec.part, faces=spec.faces, at=spec.at)
     shank = spec.material is not None
     return Bolt(
         name=spec.name,

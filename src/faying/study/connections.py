@@ -57,11 +57,15 @@ class WasherSpec:
 
 @dataclass(frozen=True, kw_only=True)
 class BoltSpec:
-    """A bolt that pulls two faces towards each other with each of the preloads [N] in turn. Lengths [m], masses [kg]."""
+    """A bolt that pulls two faces towards each other with each of the preloads [N] in turn. Lengths [m], masses [kg].
+
+    part: the part that is this bolt, where it is meshed; its faces are its own then.
+    """
 
     name: str
     faces: tuple[str, str]
     preload: tuple[float, ...]
+    part: str | None = None
     at: tuple[float, float, float] | None = None
     diameter: float | None = None
     material: str | None = None
@@ -140,6 +144,12 @@ def _lengths(value: Any, name: str) -> tuple[float, float]:
 
 def bolt_spec(table: Table, index: int) -> BoltSpec:
     """Read one [[bolt]]: preloads as forces, or torques with what turns them into forces."""
+    part = table.text("part", None)
+    meshed = [key for key in ("material", "seat", "washer", "head_mass", "nut_mass") if key in table.data]
+    if part is not None and meshed:
+        table.faults.add(
+            f"{table.where} is the part {part!r}, whose mesh has shank, head, nut and all; leave out {', '.join(meshed)}"
+        )
     diameter = table.quantity("diameter", "m", None)
     forces = table.take("preload", lambda v, name: _rising(v, name, "N", "12 kN"), None)
     torques = table.take("torque", lambda v, name: _rising(v, name, "N m", "20 N m"), None)
@@ -165,6 +175,7 @@ def bolt_spec(table: Table, index: int) -> BoltSpec:
         name=table.text("name", f"bolt {index + 1}"),
         faces=tuple(table.texts("faces", 2) or ("", "")),
         preload=forces or (),
+        part=part,
         at=table.take("at", point, None),
         diameter=diameter,
         material=table.text("material", None),
