@@ -46,6 +46,68 @@ def test_a_bolt_with_everything(folder):
     assert (bolt.head_mass, bolt.nut_mass) == pytest.approx((5e-3, 4e-3))
 
 
+def test_a_solid_bolt(folder):
+    given = {"name": "b1", "part": "bolt", "faces": ["bolt.head", "bolt.nut"]}
+    bolt = study(folder, bolt=[given | {"preload": "2 kN"}]).bolts[0]
+    assert (bolt.part, bolt.faces) == ("bolt", ("bolt.head", "bolt.nut"))
+    by_torque = {"torque": "20 N m", "diameter": "8 mm", "nut_factor": 0.2}
+    assert study(folder, bolt=[given | by_torque]).bolts[0].preload == pytest.approx((12.5e3,))
+    with pytest.raises(faying.InputError, match=r"the part 'bolt', whose mesh has shank.*; leave out material, seat$"):
+        study(folder, bolt=[given | {"preload": "2 kN"} | SHANK | {"seat": ["9 mm", "16 mm"]}])
+
+
+LAW_TABLE = "pressure [MPa],k_n [MPa/um],k_t [MPa/um]\n0.01,1,0.5\n50,900,400\n"
+
+
+def law_named(folder, **law):
+    from faying.materials import CATALOGUE, ContactPair
+    from faying.study.surface import NO_SURFACE, law_of
+
+    made = study(folder, surface=None, law=law)
+    steel = CATALOGUE["45 steel"]
+    return law_of(made.law, NO_SURFACE, ContactPair(steel, steel))
+
+
+def test_laws_given_in_full_need_no_surface(folder):
+    """Each against the law made by hand."""
+    from faying.contact.greenwood_williamson import GreenwoodWilliamson
+    from faying.contact.persson import Persson
+    from faying.contact.power_law import PowerLaw
+    from faying.contact.tabulated import TabulatedLaw
+    from faying.materials import CATALOGUE, ContactPair
+
+    steel = CATALOGUE["45 steel"]
+    pair = ContactPair(steel, steel)
+    (folder / "law.csv").write_text(LAW_TABLE)
+    summits = {"density": "3e9 1/m^2", "radius": "60 um", "sigma": "0.3 um"}
+    for made, by_hand in (
+        (law_named(folder, model="gw", **summits), GreenwoodWilliamson(density=3e9, radius=60e-6, sigma=3e-7, pair=pair)),
+        (law_named(folder, model="gw-ke", **summits),
+         GreenwoodWilliamson(density=3e9, radius=60e-6, sigma=3e-7, asperity="KogutEtsion", pair=pair)),
+        (law_named(folder, model="persson", slope=0.1, h_rms="1 um"), Persson(slope=0.1, h_rms=1e-6, pair=pair)),
+        (law_named(folder, model="power law", C=2e-10, m=0.5, greatest="20 MPa"), PowerLaw(C=2e-10, m=0.5, greatest=2e7)),
+        (law_named(folder, model="table", file="law.csv"), TabulatedLaw.from_csv(folder / "law.csv")),
+    ):  # fmt: skip
+        assert type(made) is type(by_hand)
+        for p in (1e5, 3e6):
+            assert made.at_pressure(p).k_n == pytest.approx(by_hand.at_pressure(p).k_n, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("law", "fault"),
+    [
+        ({"model": "gw", "density": "3e9 1/m^2", "radius": "60 um"}, r"\[surface\] is missing"),
+        ({"model": "gw", "density": "3e9 1/m^2", "radius": "60 um", "sigma": 0.3}, 'law.sigma = 0.3 .*unit'),
+        ({"model": "gw", "slope": 0.1}, "law.slope is not a key that a study has"),
+        ({"model": "table"}, "law.file is missing"),
+        ({"model": "jk", "file": "heights.csv"}, 'law.file goes with model = "table", not "jk"'),
+    ],
+)  # fmt: skip
+def test_laws_that_lack_something(folder, law, fault):
+    with pytest.raises(faying.InputError, match=fault):
+        study(folder, surface=None, law=law)
+
+
 def test_torque_with_friction(folder):
     given = BOLT | SHANK | {"torque": "20 N m", "pitch": "1.25 mm", "thread_friction": 0.12, "head_friction": 0.14}
     exact = torque_to_preload(20.0, 8e-3, pitch=1.25e-3, thread_friction=0.12, head_friction=0.14)

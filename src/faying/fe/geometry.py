@@ -5,6 +5,7 @@ nearest to it takes the name.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -72,19 +73,19 @@ def mesh_step(
         nearest.name = label
 
     # gluing merges touching faces and keeps one of their names: remember the geometry of every named face
-    marks = [
-        (face.name, names[i], _signature(face)) for i, solid in enumerate(solids) for face in solid.faces if face.name
-    ]
+    marks = [Mark(face.name, names[i], face) for i, solid in enumerate(solids) for face in solid.faces if face.name]
     glued = Glue(solids) if len(solids) > 1 else shape
     parts = list(glued.solids)
     for face in glued.faces:
         face.name = ""
     listed = list(glued.faces)
-    labels = _labels([_signature(face) for face in listed], marks)
-    found = {label for pairs in labels for label, _ in pairs}
-    lost = {label for label, _, _ in marks} - found
+    labels = _labels(listed, marks)
     for number, face in enumerate(listed):
         face.name = f"{number}"
+    cut = [mark for mark in marks if all(mark.name != label for pairs in labels for label, _ in pairs)]
+    if cut:
+        _label_pieces(glued, size, cut, labels)
+    found = {label for pairs in labels for label, _ in pairs}
     for label, size_here in (local_size or {}).items():
         if label not in found:
             raise InputError(f"size of face {label!r}: the faces are {', '.join(sorted(found))}")
@@ -94,7 +95,7 @@ def mesh_step(
 
     mesh = OCCGeometry(glued).GenerateMesh(maxh=size * 1e3, grading=0.4, quad_dominated=False)
     mesh.SecondOrder()
-    return _collect(mesh, [solid.name for solid in parts], labels, lost, source=path.name)
+    return _collect(mesh, [solid.name for solid in parts], labels, source=path.name)
 
 
 def _signature(face: Any) -> NDArray[np.float64]:
@@ -103,21 +104,61 @@ def _signature(face: Any) -> NDArray[np.float64]:
     return np.array([centre.x, centre.y, centre.z, face.mass**0.5])
 
 
-def _labels(
-    faces: list[NDArray[np.float64]], marks: list[tuple[str, str, NDArray[np.float64]]]
-) -> list[list[tuple[str, str]]]:
+@dataclass(frozen=True)
+class Mark:
+    """A named face of the file: name, part, shape."""
+
+    name: str
+    part: str
+    face: Any
+
+
+def _labels(faces: Sequence[Any], marks: Sequence[Mark]) -> list[list[tuple[str, str]]]:
     """Give each glued face the (name, part) of every original face that lies where it lies."""
-    places = np.array(faces)
+    places = np.array([_signature(face) for face in faces])
     close = 1e-6 * float(np.ptp(places, axis=0).max())
     labels: list[list[tuple[str, str]]] = [[] for _ in faces]
-    for label, part, signature in marks:
+    for mark in marks:
         # a face that two solids share is listed once for each of them
-        for number in np.flatnonzero(np.linalg.norm(places - signature, axis=1) < close):
-            labels[number].append((label, part))
+        for number in np.flatnonzero(np.linalg.norm(places - _signature(mark.face), axis=1) < close):
+            labels[number].append((mark.name, mark.part))
     return labels
 
 
-def _collect(mesh: Any, parts: list[str], labels: list[list[tuple[str, str]]], lost: set[str], *, source: str) -> Mesh:
+def _label_pieces(glued: Any, size: float, marks: Sequence[Mark], labels: list[list[tuple[str, str]]]) -> None:
+    """Give (name, part) to the pieces into which gluing has cut faces: where two faces overlap only in part.
+
+    A piece is known by points on it, those of a mesh of the surfaces. Raises InputError for a face without pieces.
+    """
+    from netgen.meshing import MeshingStep
+    from netgen.occ import OCCGeometry, Pnt, Vertex
+
+    mesh = OCCGeometry(glued).GenerateMesh(maxh=size * 1e3, perfstepsend=MeshingStep.MESHSURFACE)
+    points = np.asarray(mesh.Coordinates(), float)
+    tris = mesh.Elements2D().NumPy()
+    close = 1e-6 * float(np.ptp(points, axis=0).max())
+    for mark in marks:
+        low, high = (np.array([corner.x, corner.y, corner.z]) for corner in mark.face.bounding_box)
+        area, reach = 0.0, max(close, 1e-3 * float((high - low).max()))
+        for number, name in enumerate(mesh.GetRegionNames(dim=2), 1):
+            nodes = tris["nodes"][tris["index"] == number][:, :3].astype(np.int64) - 1
+            here = points[np.unique(nodes)]
+            if not len(here) or np.any(here < low - reach) or np.any(here > high + reach):
+                continue
+            if all(mark.face.Distance(Vertex(Pnt(*p))) < close for p in here):
+                labels[int(name)].append((mark.name, mark.part))
+                area += _area(points[nodes])
+        if area < 0.5 * mark.face.mass:
+            raise InputError(f"face {mark.name!r} of part {mark.part!r} is lost where the parts touch; split it in the CAD program where "
+                             "they meet")  # fmt: skip
+
+
+def _area(triangles: NDArray[np.float64]) -> float:
+    sides = triangles[:, 1:] - triangles[:, :1]
+    return float(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum() / 2)
+
+
+def _collect(mesh: Any, parts: list[str], labels: list[list[tuple[str, str]]], *, source: str) -> Mesh:
     points = np.asarray(mesh.Coordinates(), float) * 1e-3
     tets = mesh.Elements3D().NumPy()
     cells = tets["nodes"][:, :10].astype(np.int64)[:, _to_vtk("tet10")] - 1
@@ -146,12 +187,8 @@ def _collect(mesh: Any, parts: list[str], labels: list[list[tuple[str, str]]], l
     blocks = {name: new_cells[domain == i] for i, name in enumerate(parts)}
     for label, tri in faces.items():
         faces[label] = _outward(new_points, tri, blocks[face_part[label]])
-    made = Mesh(points=new_points, parts={name: (cells,) for name, cells in blocks.items()},
+    return Mesh(points=new_points, parts={name: (cells,) for name, cells in blocks.items()},
                 faces={name: (tri,) for name, tri in faces.items()}, face_part=face_part, source=source)  # fmt: skip
-    if lost:
-        raise InputError(f"{source}: the faces {', '.join(sorted(lost))} overlap others only in part, so that gluing cut "
-                         "them; split the larger face in the CAD program where the parts meet")  # fmt: skip
-    return made
 
 
 def _outward(points: Any, tri: NDArray[np.int64], cells: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 
 from faying import units
 from faying.errors import InputError
-from faying.study.contact import LAW_NUMBERS
+from faying.study.contact import JK_NUMBERS
 from faying.study.schema import Study
 from faying.study.surface import Surface
 
 Array = NDArray[np.float64]
 # what a sweep may vary, with its SI unit ("" for a plain number): all of it acts on the joints alone
 NUMBERS = {"surface.D": "", "surface.G": "m", "surface.scan_area": "m^2", "bolt.preload": "N", "joint.friction": ""}
-NUMBERS |= {f"law.{name}": "" for name in LAW_NUMBERS}
+NUMBERS |= {f"law.{name}": "" for name in JK_NUMBERS}
 TEXTS = ("law.model", "law.counterbody")
 
 

@@ -100,6 +100,10 @@ class Table:
             return []
         return [Table(item, f"{self._name(key)}[{i + 1}]", self.faults) for i, item in enumerate(items)]
 
+    def known(self, key: str) -> bool:
+        """Whether this key has been asked for."""
+        return key in self._known
+
     def close(self) -> None:
         """Note every key that was not asked for, with the nearest known one."""
         for key in self.data:

@@ -1,18 +1,19 @@
 """The surface of a study and the contact law that it gives."""
 
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, fields
+from typing import Any, cast
 
 from faying import units
-from faying.contact.compare import laws_of_surface
+from faying.contact.compare import ASPERITIES, laws_of_surface
 from faying.contact.inputs import SurfaceInputs
 from faying.contact.jk import JK
 from faying.contact.law import Array, ContactLaw
 from faying.contact.measured_heights import MeasuredHeights
+from faying.contact.tabulated import TabulatedLaw
 from faying.errors import InputError
 from faying.files import read_numbers
 from faying.materials import ContactPair
-from faying.study.contact import HeightsSpec, LawSpec, SurfaceSpec
+from faying.study.contact import FROM_SURFACE, HeightsSpec, LawSpec, SurfaceSpec, law_class
 from faying.surface.form import prepared
 from faying.surface.fractal import fit_fractal
 from faying.surface.read import read_scan
@@ -73,17 +74,25 @@ def surface_of(spec: SurfaceSpec) -> Surface:
 
 
 def law_of(spec: LawSpec, surface: Surface, pair: ContactPair) -> ContactLaw:
-    """Return the law of a study; any but JK takes its inputs from the scan, so needs one."""
+    """Return the law of a study; any but JK that is not given in full takes its inputs from the scan, so needs one."""
     if spec.heights is not None:
         gaps, chance = _heights(spec.heights)
         return MeasuredHeights(gaps=gaps, chance=chance, density=spec.heights.density, radius=spec.heights.radius,
                                pair=pair, **spec.options)  # fmt: skip
+    if spec.table is not None:
+        return TabulatedLaw.from_csv(spec.table)
     if spec.model.lower() == "jk":
         return JK(D=surface.D, G=surface.G, scan_area=surface.scan_area, pair=pair, **spec.options)
+    if spec.own:
+        cls: Any = law_class(spec.model)
+        own = dict(spec.options)
+        if (asperity := ASPERITIES.get(spec.model.upper())) is not None:
+            own["asperity"] = asperity
+        return cast(ContactLaw, cls(**own, **({"pair": pair} if any(f.name == "pair" for f in fields(cls)) else {})))
     if surface.scan is None:
-        raise InputError(
-            f'law.model = "{spec.model}" takes its inputs from an areal scan; give surface.scan, or use "jk"'
-        )
+        known = [name for name in law_class(spec.model).parameters if name not in FROM_SURFACE]
+        raise InputError(f'law.model = "{spec.model}" takes its inputs from an areal scan; give surface.scan, or its own parameters '
+                         f'under [law] ({", ".join(known)}), or use "jk"')  # fmt: skip
     inputs = SurfaceInputs.from_heights(surface.scan.heights, surface.scan.spacing, D=surface.D, G=surface.G)
     made, left_out = laws_of_surface(inputs, pair, names=[spec.model], scan=surface.scan)
     if left_out:

@@ -1,0 +1,63 @@
+"""The example with a solid bolt: its head overlaps the seat only in part, and every joint carries the preload."""
+
+from dataclasses import replace
+from math import pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from faying.fe.faces import face_centre
+from faying.joint.tighten import tighten
+from faying.study import Study
+from faying.study.build import build_all, checked_mesh
+
+STUDY = Path(__file__).parents[2] / "examples/solid-bolt/study.toml"
+
+
+@pytest.fixture(scope="module")
+def study():
+    return Study.read(STUDY)
+
+
+@pytest.fixture(scope="module")
+def structure(study):
+    return build_all(study, mesh=checked_mesh(study)).structure
+
+
+def test_faces_that_overlap_in_part_keep_their_names(structure):
+    """The head reaches over the rim of the hole and the seat beyond the head; gluing has cut both."""
+    mesh = structure.mesh
+    for name, area in (
+        ("bolt.head", pi * (6.5**2 - 4**2)),
+        ("bolt.nut", pi * (6.5**2 - 4**2)),
+        ("upper.seat", pi * (8**2 - 4.5**2)),
+        ("lower.seat", pi * (8**2 - 4.5**2)),
+    ):
+        _, _, found = face_centre(mesh.points, mesh.face(name))
+        assert found == pytest.approx(area * 1e-6, rel=1e-3), name
+    head = structure.joints[1].interface
+    assert head.weights.sum() == pytest.approx(pi * (6.5**2 - 4.5**2) * 1e-6, rel=1e-3)
+
+
+def test_every_joint_carries_the_preload(structure):
+    found = tighten(structure, structure.assembly(), [2e3])
+    for joint, pressure in zip(structure.joints, found.pressures, strict=True):
+        assert joint.interface.weights @ pressure == pytest.approx(2e3, rel=1e-6), joint.name
+
+
+def test_a_bolt_that_is_no_part_is_named(study):
+    wrong = replace(study, bolts=(replace(study.bolts[0], part="screw"),))
+    with pytest.raises(Exception, match="bolt 'M8' is the part 'screw', which is not in blocks-and-bolt.step"):
+        checked_mesh(wrong)
+
+
+def test_the_bolt_moves_with_the_blocks(structure):
+    """Tight, all three parts have but the six rigid motions."""
+    from faying.fe.modes import lowest_modes
+
+    found = tighten(structure, structure.assembly(), [2e3])
+    K, _ = structure.joined(structure.springs(found.pressures))
+    modes = lowest_modes(K, structure.vibrating[1], 8, shift_frequency=structure.shift_frequency)
+    assert np.all(modes.frequencies[:6] < 1.0)
+    assert modes.frequencies[6] > 5e3
