@@ -10,6 +10,29 @@ ABAQUS = {"tet4": "C3D4", "tet10": "C3D10", "hex8": "C3D8I", "hex20": "C3D20R", 
 NASTRAN = {"tet": "CTETRA", "hex": "CHEXA", "wedge": "CPENTA"}
 ANSYS = {"tet4": 285, "tet10": 187, "hex8": 185, "hex20": 186, "wedge6": 185, "wedge15": 186}
 
+# a study of the two blocks of `blocks.row`, in an Abaqus file
+STUDY = """
+[geometry]
+mesh = "model.inp"
+unit = "mm"
+[part.p0]
+material = "45 steel"
+[part.p1]
+material = "45 steel"
+[surface]
+D = 2.39
+G = "1.53e-10 m"
+scan_area = "16 mm^2"
+[[joint]]
+name = "joint"
+faces = ["p0.right", "p1.left"]
+[[bolt]]
+faces = ["p1.right", "p0.left"]
+preload = ["1 kN", "3 kN"]
+[modes]
+count = 3
+"""
+
 
 def numbers(mesh):
     return NUMBER0 + 3 * np.arange(len(mesh.points))

@@ -119,3 +119,29 @@ def test_complex_modes_of_the_small_problem_are_those_of_all_its_vectors(trained
         np.linalg.norm(miss, axis=0).max()
         < 1e-2 * np.linalg.norm((model.dynamic_mass @ vectors) * values, axis=0).max()
     )
+
+
+def test_a_solid_bolt_in_small_bases():
+    """The same bases, on a structure whose bolt is drawn in: trained at two variants, right at a third."""
+    from test_solid_bolt import structure as with_bolt
+    from voxels import bolted
+
+    made = with_bolt(bolted(kind="hex8"))
+    seats = [joint.seat for joint in made.joints]
+    reduction = Reduction.of(made, seats, np.array([4e3]), count=COUNT)
+    for force in (2e3, 6e3):
+        reduction.train(seats, np.array([force]), tolerance=TOLERANCE)
+    found = made.assembly().solve(made.loads @ [3e3])
+    K, _ = made.joined(made.springs(found.pressures))
+    modes = lowest_modes(K, made.vibrating[1], 6 + COUNT, shift_frequency=made.shift_frequency)
+    variant = reduction.evaluate(seats, np.array([3e3]))
+    assert variant.frequencies == pytest.approx(modes.frequencies[6:], rel=1e-5)
+
+
+def test_a_part_that_is_held_by_nothing_is_named():
+    """The bolt pulls the first two bars together; nothing presses the third."""
+    from test_held import three
+
+    structure = three(50e-6, supports=(Support(face="p0.left"),))
+    with pytest.raises(faying.InputError, match="part 'p2' is held by nothing"):
+        Reduction.of(structure, [joint.seat for joint in structure.joints], np.array([2e3]), count=COUNT)

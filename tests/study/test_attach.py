@@ -19,27 +19,7 @@ from faying.study import Study, run
 from faying.study.attach import attach
 
 FACES = ("p0.right", "p1.left")
-TEXT = """
-[geometry]
-mesh = "model.inp"
-unit = "mm"
-[part.p0]
-material = "45 steel"
-[part.p1]
-material = "45 steel"
-[surface]
-D = 2.39
-G = "1.53e-10 m"
-scan_area = "16 mm^2"
-[[joint]]
-name = "joint"
-faces = ["p0.right", "p1.left"]
-[[bolt]]
-faces = ["p1.right", "p0.left"]
-preload = ["1 kN", "3 kN"]
-[modes]
-count = 3
-"""
+TEXT = meshfiles.STUDY
 
 
 def model(folder, mesh=None, text=TEXT):

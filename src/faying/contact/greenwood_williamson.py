@@ -8,7 +8,7 @@ from typing import ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.asperity.base import Array, AsperityModel, models
+from faying.contact.asperity.base import Array, AsperityModel, summed_model
 from faying.contact.inputs import SurfaceInputs
 from faying.contact.law import ContactLaw, Parameter, Response, require
 from faying.errors import InputError
@@ -64,12 +64,7 @@ class GreenwoodWilliamson(ContactLaw):
 
     @cached_property
     def _asperity(self) -> AsperityModel:
-        known = {name: cls for name, cls in models().items() if name != "ZX"}
-        plain = {name.lower(): cls for name, cls in known.items()}
-        cls = plain.get(self.asperity.lower().replace("-", "").replace("_", ""))
-        if cls is None:
-            raise InputError(f"GW: asperity = {self.asperity!r}; use one of {', '.join(known)}")
-        return cls(R=self.radius, pair=self.pair)
+        return summed_model(self.asperity, "GW")(R=self.radius, pair=self.pair)
 
     @property
     def closure_range(self) -> tuple[float, float]:

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.asperity.base import Array, AsperityModel, models
+from faying.contact.asperity.base import Array, AsperityModel, summed_model
 from faying.contact.law import ContactLaw, Parameter, Response, checked, require
 from faying.errors import InputError
 from faying.materials import ContactPair
@@ -70,11 +70,7 @@ class MeasuredHeights(ContactLaw):
 
     @cached_property
     def _asperity(self) -> AsperityModel:
-        known = {name: cls for name, cls in models().items() if name != "ZX"}
-        plain = {name.lower(): cls for name, cls in known.items()}
-        cls = plain.get(self.asperity.lower().replace("-", "").replace("_", ""))
-        if cls is None:
-            raise InputError(f"{self.name}: asperity = {self.asperity!r}; use one of {', '.join(known)}")
+        cls = summed_model(self.asperity, self.name)
         if self.tangent_ratio is None:
             return cls(R=self.radius, pair=self.pair)
         require(self.name, cls.__name__ == "Ghaednia",

@@ -20,6 +20,7 @@ from faying.fe.modes import lowest_modes
 from faying.fe.sides import Index
 from faying.fe.solve import Factorisation
 from faying.joint.balance import Array, Grip, Preload
+from faying.joint.held import check_motions, held_preload
 from faying.joint.reduced import Complex, Densities, ReducedModel, Variant, densities
 from faying.joint.seat import Seat
 from faying.joint.structure import Structure
@@ -155,16 +156,18 @@ class Reduction:
     ) -> Self:
         """Solve one variant of a structure in full, its bolts pulled at once, and start from that.
 
-        seats: the law of each joint; forces [N] (bolts,); count: elastic modes wanted.
+        seats: the law of each joint; forces [N] (bolts,); count: elastic modes wanted. Raises InputError where a part is held by
+        nothing.
         """
         joints = tuple(replace(joint, seat=seat) for joint, seat in zip(structure.joints, seats, strict=True))
         structure = replace(structure, joints=joints).sharing(structure)
-        found = structure.assembly(solver=solver).solve(structure.loads @ forces)
+        found = held_preload(structure, structure.assembly(solver=solver), [float(f) for f in forces])
         shift = shift_frequency or structure.shift_frequency
         stiffness, mass = structure.vibrating
         joined, _ = structure.joined(structure.springs(found.pressures))
         still = structure.rigid.shape[1]
         modes = lowest_modes(joined, mass, still + count + EXTRA_MODES, shift_frequency=shift, solver=solver)
+        check_motions(structure, modes)
         return cls(
             stiffness=stiffness,
             stiffness_static=hold(structure.standing, structure.held, 0.0),

@@ -216,7 +216,7 @@ def _seat(study: Study, spec: JointSpec, mesh: Mesh, faces: tuple[str, str], mat
 
 def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | None) -> tuple[Seat, Array, str]:
     """Seat and pressure [Pa] at the points of the interface under the study's bolts."""
-    from faying.joint.tighten import tighten
+    from faying.joint.held import held_preload
 
     loads = study.bolts[0].preload
     number = 0
@@ -229,7 +229,7 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
     elif len(loads) > 1:
         raise InputError(f"the study has the preloads {_kilo(loads)}; say which with --preload")
     structure = build_all(study, mesh=mesh).structure
-    found = tighten(
+    found = held_preload(
         structure,
         structure.assembly(solver=study.solver),
         [bolt.preload[number] for bolt in study.bolts],

@@ -170,3 +170,16 @@ def _found() -> tuple[tuple[str, type[AsperityModel]], ...]:
 def models() -> dict[str, type[AsperityModel]]:
     """Return every single-asperity model by the name of its class, in alphabetical order."""
     return dict(_found())
+
+
+def summed_model(name: str, law: str) -> type[AsperityModel]:
+    """Return the model called `name`, in any case and with or without hyphens, for a law that sums asperities.
+
+    All but ZX, whose radius follows its own area. InputError, from `law`, lists them.
+    """
+    known = {key: cls for key, cls in models().items() if key != "ZX"}
+    plain = {key.lower(): cls for key, cls in known.items()}
+    cls = plain.get(name.lower().replace("-", "").replace("_", ""))
+    if cls is None:
+        raise InputError(f"{law}: asperity = {name!r}; use one of {', '.join(known)}")
+    return cls
