@@ -63,14 +63,17 @@ class _Cholmod:
     name = "CHOLMOD"
 
     def __init__(self, matrix: Any) -> None:
-        from scipy.sparse import csc_matrix
-        from sksparse.cholmod import CholmodNotPositiveDefiniteError, cholesky
+        from scipy.sparse import csc_array, csc_matrix
+        from sksparse import cholmod
 
         self.memory = guessed(matrix.shape[0])
         check(self.memory, matrix.shape[0], self.name)
         try:
-            self._factor = cholesky(csc_matrix(matrix))
-        except CholmodNotPositiveDefiniteError as fault:
+            if hasattr(cholmod, "cho_factor"):  # scikit-sparse from 0.5
+                self._solve = cholmod.cho_factor(csc_array(matrix), supernodal_mode="supernodal").solve
+            else:
+                self._solve = cholmod.cholesky(csc_matrix(matrix), mode="supernodal")
+        except cholmod.CholmodNotPositiveDefiniteError as fault:
             raise NotConverged(
                 f"CHOLMOD could not factorise the matrix ({fault}); is a part held by nothing?"
             ) from None
@@ -79,7 +82,7 @@ class _Cholmod:
         return _Cholmod(matrix)
 
     def solve(self, right: Array) -> Array:
-        return np.asarray(self._factor(right))
+        return np.asarray(self._solve(right))
 
 
 class _SuperLU:

@@ -174,7 +174,9 @@ class Balance(ABC):
             if newton >= steps:
                 raise NotConverged(f"preload: after {newton} Newton steps {size:.1e} of the load is out of balance "
                                    f"(tolerance {tolerance:.0e}); refine the mesh of the joint, or load it in steps")  # fmt: skip
-            step, count = self._direction(u, force, grips, accuracy=min(1e-2, 0.1 * size))
+            # as exact as Newton's own convergence asks, and no more than the tolerance does
+            accuracy = max(min(1e-2, 0.1 * size), 0.3 * tolerance / size)
+            step, count = self._direction(u, force, grips, accuracy=accuracy)
             length = self._line_search(u, step, load, grips)
             u = u + length * step
             if size > SETTLED:  # far off, k_t follows at once; near the end it is held so that Newton converges
