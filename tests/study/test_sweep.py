@@ -11,6 +11,7 @@ from faying.study import Study, run
 from faying.study import sweep as module
 from faying.study.axes import Grid, axis_of
 from faying.study.build import surfaces_of
+from faying.study.contact import LawSpec
 from faying.study.sweep import sweep
 from faying.study.template import write
 
@@ -159,6 +160,32 @@ def test_the_path_through_the_grid_meets_every_point_once_and_steps_to_neighbour
     assert sorted(path) == list(range(12))
     places = np.array(np.unravel_index(path, grid.shape)).T
     assert np.all(np.abs(np.diff(places, axis=0)).sum(axis=1) == 1)
+
+
+def in_full(plan):
+    """The plan with a law given in full and no surface."""
+    options = {"density": 3e9, "radius": 60e-6, "sigma": 0.5e-6}
+    joints = tuple(replace(joint, tangential="mindlin") for joint in plan.joints)
+    return replace(plan, surface=None, joints=joints, law=LawSpec(model="gw-ke", options=options, own=True))
+
+
+def test_parameters_of_a_law_given_in_full(plan, tmp_path):
+    given = in_full(plan)
+    swept = sweep(given, axes("law.sigma=0.3 um:0.8 um:3", "bolt.preload=1 kN,3 kN"), tmp_path / "out.nc")
+    assert swept.axes[0].values == pytest.approx((0.3e-6, 0.55e-6, 0.8e-6))
+    law = replace(given.law, options=given.law.options | {"sigma": 0.55e-6})
+    full = run(replace(given, law=law, bolts=tuple(replace(b, preload=(3e3,)) for b in given.bolts)))
+    assert swept.frequencies[1, 1] == pytest.approx(full.frequencies[0], rel=1e-5)
+
+
+def test_laws_take_their_own_parameters_alone(plan):
+    given = in_full(plan)
+    with pytest.raises(faying.InputError, match='the law "gw-ke" takes density, radius, sigma'):
+        Grid(study=given, surfaces=surfaces_of(given), axes=axes("law.cutoff=0.01,0.02"))
+    with pytest.raises(faying.InputError, match='gives "gw-ke" in full; other laws would lack their surface'):
+        Grid(study=given, surfaces=surfaces_of(given), axes=axes("law.model=jk,gw"))
+    with pytest.raises(faying.InputError, match='the law "jk" takes gamma, alpha, cutoff'):
+        Grid(study=plan, surfaces=surfaces_of(plan), axes=axes("law.sigma=0.1 um,0.2 um"))
 
 
 def test_what_a_sweep_cannot_do(plan, tmp_path):

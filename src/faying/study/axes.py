@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faying import units
+from faying.contact.tabulated import TabulatedLaw
 from faying.errors import InputError
-from faying.study.contact import JK_NUMBERS
+from faying.study.contact import FROM_SURFACE, JK_NUMBERS, LawSpec, law_class
 from faying.study.schema import Study
 from faying.study.surface import Surface
 
 Array = NDArray[np.float64]
 # what a sweep may vary, with its SI unit ("" for a plain number): all of it acts on the joints alone
 NUMBERS = {"surface.D": "", "surface.G": "m", "surface.scan_area": "m^2", "bolt.preload": "N", "joint.friction": ""}
-NUMBERS |= {f"law.{name}": "" for name in JK_NUMBERS}
 TEXTS = ("law.model", "law.counterbody")
 
 
@@ -55,9 +55,10 @@ def axis_of(text: str) -> Axis:
     if key in TEXTS:
         return Axis(key=key, unit="", values=tuple(word.strip() for word in given.split(",")))
     parts = key.split(".")
-    unit = NUMBERS.get("bolt.preload" if parts[0] == "bolt" and parts[-1] == "preload" and len(parts) == 3 else key)
+    known_units = NUMBERS | _law_units()
+    unit = known_units.get("bolt.preload" if parts[0] == "bolt" and parts[-1] == "preload" and len(parts) == 3 else key)
     if unit is None:
-        known = ", ".join((*NUMBERS, "bolt.NAME.preload", *TEXTS))
+        known = ", ".join((*NUMBERS, "bolt.NAME.preload", "law.NAME (a parameter of the law)", *TEXTS))
         raise InputError(f"--set {key}: a sweep varies what acts on the joints alone, which is {known}; anything else changes "
                          "the parts, and takes a study of its own")  # fmt: skip
     words = given.split(":")
@@ -72,6 +73,30 @@ def axis_of(text: str) -> Axis:
     if len(words) == 1:
         return Axis(key=key, unit=unit, values=tuple(_value(word, unit, key) for word in given.split(",")))
     raise InputError(f"--set {text}: give first:last:count, first:last:count:log, or values with commas between")
+
+
+def _law_units() -> dict[str, str]:
+    """SI unit of every number that some law states as its own parameter, by `law.NAME`."""
+    from faying.contact.registry import laws
+
+    return {
+        f"law.{name}": parameter.unit
+        for law in laws().values()
+        if law is not TabulatedLaw
+        for name, parameter in law.parameters.items()
+        if parameter.unit != "text" and name not in FROM_SURFACE
+    }
+
+
+def _law_takes(law: LawSpec) -> tuple[str, ...]:
+    """Numbers under [law] that a sweep can vary, for the law that the study has."""
+    if law.model.lower() == "jk":
+        return JK_NUMBERS
+    if law.heights is not None or law.table is not None:
+        return ()
+    return tuple(
+        name for name, p in law_class(law.model).parameters.items() if p.unit != "text" and name not in FROM_SURFACE
+    )
 
 
 def _value(text: str, unit: str, name: str) -> float:
@@ -118,6 +143,14 @@ class Grid:
                 )
             if parts[0] == "law" and all(joint.law is not None for joint in self.study.joints):
                 raise InputError(f"--set {key}: every joint has a law of its own; a sweep varies the study's [law]")
+            law = self.study.law
+            if key in TEXTS[:1] and not law.needs_surface:
+                raise InputError(f'--set {key}: [law] gives "{law.model}" in full; other laws would lack their surface. Vary them on a '
+                                 "study with [surface]")  # fmt: skip
+            if parts[0] == "law" and key not in TEXTS and "law.model" not in keys and parts[1] not in _law_takes(law):
+                raise InputError(
+                    f'--set {key}: the law "{law.model}" takes {", ".join(_law_takes(law)) or "no numbers"}'
+                )
         if self.study.order is not None:
             raise InputError("a sweep pulls all bolts at once; leave out [tightening], or run studies one by one")
         self.point(0)
