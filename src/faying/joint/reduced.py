@@ -16,7 +16,7 @@ from faying.joint.seat import Seat
 
 Complex = NDArray[np.complex128]
 BALANCED = 1e-8  # imbalance at which the pressure is right to far more digits than a sweep gives
-BLOCK = 12  # real modes beyond those wanted that meet them exactly under the loss
+BLOCK = 36  # real modes beyond those wanted that meet them exactly under the loss
 SLIGHT = 1e-6  # relative error of an eigenvalue up to which first order is enough for the higher modes
 
 
@@ -82,7 +82,7 @@ def _complex_modes(real: Array, loss: Array, count: int) -> tuple[Complex, Compl
     else:
         span = np.concatenate([np.eye(low), mix], axis=1).T
         small = span.T @ (real[:, None] * span + 1j * (loss @ span))
-        values, inner = eig(small, span.T @ span)
+        values, inner = eig(np.linalg.solve(span.T @ span, small))  # the matrix on the left is close to one
         vectors = span @ inner
         vectors = vectors / np.linalg.norm(vectors, axis=0)
     order = followers(vectors[:count])
