@@ -18,7 +18,7 @@ from faying.fe.modes import Modes
 from faying.fe.sides import Index
 
 Complex = NDArray[np.complex128]
-ROUNDS = 12  # enrichments after which the loss must be so great that nothing here applies
+ROUNDS = 25  # enrichments after which the loss must be so great that nothing here applies
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,5 +165,5 @@ class _Span:
             vectors = vectors / np.linalg.norm(vectors, axis=0)
             squared = -(root**2)
         order = followers(vectors[:count])
-        order = order[np.argsort(np.abs(squared[order].real))]
+        order = order[np.argsort(_frequency(squared[order], root[order], kind))]
         return squared[order], root[order], vectors[:, order]

@@ -48,24 +48,36 @@ def lowest_modes(
     if not 0 < count <= most:
         raise InputError(f"{count} modes of a structure with {most} unknowns that have mass; ask for 1 to {most}")
     factor = factorise((stiffness + shift * mass).tocsr(), solver)
-    shapes = _krylov(factor, mass, count, min(WIDTH, stiffness.shape[0]))
-    # a last Rayleigh-Ritz step restores what the shifted inverse has lost on the lowest eigenvalues
-    image, momentum = stiffness @ shapes, mass @ shapes
-    small, gram = shapes.T @ image, shapes.T @ momentum
-    from scipy.linalg import eigh
-
-    values, turn = eigh((small + small.T) / 2, (gram + gram.T) / 2)
+    inverse, shapes = _krylov(factor, mass, count, min(WIDTH, stiffness.shape[0]))
+    if len(inverse) < count:
+        raise InputError(f"{count} modes of a structure whose masses allow {len(inverse)}; ask for 1 to {len(inverse)}")
+    values, shapes = _ritz(stiffness, mass, shapes)
+    if np.any(np.abs(np.sort(values + shift) * np.sort(inverse)[::-1] - 1) > SAME):
+        # motions without mass have crept in, which the projection on the mass does not see: one more solve has none
+        shapes, _, _ = _orthonormal(factor.solve(np.asfortranarray(mass @ shapes)), mass)
+        values, shapes = _ritz(stiffness, mass, shapes)
     order = np.argsort(np.abs(values))
     return Modes(
         frequencies=np.sqrt(np.abs(values[order])) / (2 * np.pi),
-        shapes=shapes @ turn[:, order],
+        shapes=shapes[:, order],
         factorisation=factor,
         shift=shift,
     )
 
 
-def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> Array:
-    """Eigenvectors (n, count) of A^-1 M with the greatest eigenvalues, orthonormal with the mass.
+def _ritz(stiffness: Any, mass: Any, shapes: Array) -> tuple[Array, Array]:
+    """Eigenvalues and vectors in the span of the shapes: restores what the shifted inverse loses on the lowest."""
+    from scipy.linalg import eigh
+
+    small, gram = shapes.T @ (stiffness @ shapes), shapes.T @ (mass @ shapes)
+    values, turn = eigh((small + small.T) / 2, (gram + gram.T) / 2)
+    return values, shapes @ turn
+
+
+def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[Array, Array]:
+    """The greatest eigenvalues (count,) of A^-1 M and their vectors (n, count), orthonormal with the mass.
+
+    Fewer where the mass has a lower rank.
 
     Block Lanczos with full reorthogonalisation (Grimes, Lewis, Simon 1994, doi:10.1137/S0895479888151111), without
     restarts: a factor takes far more memory than the basis. An eigenvalue that comes as often as the blocks are wide may
@@ -92,11 +104,11 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> Array:
         values, vectors = np.linalg.eigh(projected)
         values, vectors = values[::-1][:count], vectors[:, ::-1][:, :count]
         converged = np.linalg.norm(rows @ vectors[old:], axis=0) <= TOLERANCE * values
-        if len(values) == count and (np.all(converged) or not last.shape[1]):
+        if (len(values) == count and np.all(converged)) or not last.shape[1]:
             often = max(int(np.count_nonzero(np.abs(values / value - 1) < SAME)) for value in values)
             if width <= often < count and width < n:
                 return _krylov(factor, mass, count, 2 * width)
-            return np.asarray(basis @ vectors)
+            return values, np.asarray(basis @ vectors)
         basis = np.concatenate([basis, last], axis=1)
     raise NotConverged(f"{np.count_nonzero(converged)} of {count} modes have converged after {basis.shape[1]} steps; ask for "
                        "fewer, or raise modes.shift_frequency towards the first mode")  # fmt: skip
@@ -109,7 +121,7 @@ def _orthonormal(new: Array, mass: Any) -> tuple[Array, Array, Array]:
         momentum = mass @ new
         gram = new.T @ momentum
         values, turn = np.linalg.eigh((gram + gram.T) / 2)
-        keep = values > least * values[-1]
+        keep = values > least * values.max(initial=0.0)
         root = np.sqrt(values[keep])
         new, rows = new @ (turn[:, keep] / root), (turn[:, keep] * root).T @ rows
     return new, momentum @ (turn[:, keep] / root), rows

@@ -53,7 +53,7 @@ class Pardiso:
     name = "PARDISO"
 
     def __init__(self, matrix: Any) -> None:
-        matrix.sort_indices()
+        matrix.sum_duplicates()  # and sorts the indices
         self._size = matrix.shape[0]
         self._block = BLOCK if _in_blocks(matrix) else 1
         bare = np.flatnonzero(np.diff(matrix.indptr) == 0)

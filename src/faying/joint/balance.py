@@ -83,8 +83,7 @@ class Grip:
         """Points (q,) where the traction has reached its limit."""
         if self.limit is None:
             return np.zeros(len(self.k_t), dtype=bool)
-        return np.asarray((np.linalg.norm(self.k_t[:, None] * (slip - self.anchor), axis=1) > self.limit)
-                          & (self.limit > 0))  # fmt: skip
+        return np.asarray(np.linalg.norm(self.k_t[:, None] * (slip - self.anchor), axis=1) > self.limit)
 
     def tangent(self, slip: Array) -> Array:
         """Tangent (q, 2, 2) [Pa/m] of the shear traction: k_t where it sticks; across the motion only where it slides."""
@@ -185,14 +184,15 @@ class Balance(ABC):
             if report:
                 report(f"Newton {newton}: imbalance {size:.1e}, {count} inner steps, step {length:.3g}")
         self.last = u
-        moves = [move for move, _, _ in self._state(u)]
         slipping = []
-        for index, (move, grip, (trace, _)) in enumerate(zip(moves, grips, self.joints, strict=True)):
+        for index, ((move, p, _), grip, (trace, _)) in enumerate(zip(self._state(u), grips, self.joints, strict=True)):
             slides = grip.sliding(move[:, 1:])
             slipping.append(float(trace.weights @ slides / trace.weights.sum()))
             if np.any(slides):  # the shear that is left holds until the next load moves on
                 rest = grip.shear(move[:, 1:]) / np.where(grip.k_t > 0, grip.k_t, 1.0)[:, None]
                 self.anchors[index] = np.where(slides[:, None], move[:, 1:] - rest, self.anchors[index])
+            if grip.limit is not None:  # what moves while it is open starts without shear when it closes
+                self.anchors[index] = np.where((p > 0)[:, None], self.anchors[index], move[:, 1:])
         openings, pressures = self.contact(u)
         self._check_ends(pressures, beyond)
         return Preload(pressures=pressures, openings=openings, slipping=tuple(slipping), displacement=u, imbalance=size,

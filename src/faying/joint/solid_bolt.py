@@ -14,6 +14,7 @@ from faying.fe.mesh import Mesh
 from faying.fe.sides import Index
 
 Array = NDArray[np.float64]
+MOST = 6000  # unknowns of the layer that is drawn in: its dense block takes .3 GB then
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,6 +63,9 @@ class SolidBolt:
         if met:
             raise InputError(f"bolt {self.name!r}: the plane through {_mm(place)} mm in which it is drawn in meets its face {met[0]!r}, "
                              "which is in a joint; give a point of the bare shank as `at`, or a finer mesh")  # fmt: skip
+        if 3 * len(layer) > MOST:
+            raise InputError(f"bolt {self.name!r}: the elements in the plane across its shank have {3 * len(layer):,} unknowns, which all "
+                             f"couple while it is pulled ({MOST:,} at most); mesh the shank more coarsely, or give a beam")  # fmt: skip
         drawn = np.zeros((len(mesh.points), 3))
         drawn[beyond] = axis
         pull = np.zeros_like(drawn)  # nothing but rounding outside the layer, where the motion is rigid

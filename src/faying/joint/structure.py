@@ -81,7 +81,7 @@ class Springs:
 class Structure:
     """Mesh, material of each part, joints, bolts, supports and point masses.
 
-    Raises InputError where a part is held by nothing: neither a joint nor a support.
+    Raises InputError where a part is held by nothing, neither a joint nor a support, or is two solid bolts.
     """
 
     mesh: Mesh
@@ -94,6 +94,10 @@ class Structure:
     def __post_init__(self) -> None:
         faces = [face for joint in self.joints for face in joint.faces] + [support.face for support in self.supports]
         held = {self.mesh.face_part[face] for face in faces if face in self.mesh.face_part}
+        meshed = [bolt.part for bolt in self.bolts if isinstance(bolt, SolidBolt)]
+        twice = sorted({part for part in meshed if meshed.count(part) > 1})
+        if twice:
+            raise InputError(f"part {', '.join(twice)} is two solid bolts; a part is drawn in once, with one preload")
         loose = [part for part in self.mesh.parts if part not in held]
         if loose and len(self.mesh.parts) > 1:
             raise InputError(f"part {', '.join(loose)} has no joint; add a [[joint]] that holds it, or leave it out")
@@ -232,16 +236,21 @@ def tie(mesh: Mesh, pairs: Sequence[tuple[str, str]]) -> Any | None:
     None where the meshes of a pair do not match.
     """
     from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
 
     n = len(mesh.points)
-    owner = np.arange(n)
+    near, far = [], []
     for first, second in pairs:
         a, b = mesh.face_nodes(first), mesh.face_nodes(second)
         distance, index = cKDTree(mesh.points[a]).query(mesh.points[b])
         if not np.all(distance < 1e-6 * mesh.size):
             return None
-        owner[b] = owner[a[index]]
-    kept, column = np.unique(owner, return_inverse=True)
+        near.append(a[index])
+        far.append(b)
+    ends = np.concatenate(near), np.concatenate(far)
+    # a node of several joints grows together with all that it meets in any of them
+    _, column = connected_components(csr_array((np.ones(len(ends[0])), ends), shape=(n, n)), directed=False)
+    count = int(column.max()) + 1
     columns = (3 * column.reshape(-1, 1) + np.arange(3)).ravel()
-    return csr_array((np.ones(3 * n), (np.arange(3 * n), columns)), shape=(3 * n, 3 * len(kept)))
+    return csr_array((np.ones(3 * n), (np.arange(3 * n), columns)), shape=(3 * n, 3 * count))

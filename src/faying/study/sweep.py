@@ -255,6 +255,9 @@ def _fingerprint(study: Study, axes: Sequence[Axis], tolerance: float) -> str:
     files = [study.geometry.file]
     specs = (study.surface, *(joint.surface for joint in study.joints))
     files += [spec.scan for spec in specs if spec is not None and spec.scan is not None]
+    laws = (study.law, *(joint.law for joint in study.joints if joint.law is not None))
+    files += [law.table for law in laws if law.table is not None]
+    files += [law.heights.file for law in laws if law.heights is not None]
     files += [joint.gap_map.file for joint in study.joints if joint.gap_map is not None]
     for file in files:
         digest.update(file.read_bytes())
