@@ -61,3 +61,18 @@ def test_the_bolt_moves_with_the_blocks(structure):
     modes = lowest_modes(K, structure.vibrating[1], 8, shift_frequency=structure.shift_frequency)
     assert np.all(modes.frequencies[:6] < 1.0)
     assert modes.frequencies[6] > 5e3
+
+
+def test_a_sweep_over_its_preload(study, tmp_path):
+    """Against full solutions of the same study, at an end and between the ends."""
+    from faying.study import run
+    from faying.study.axes import axis_of
+    from faying.study.sweep import sweep
+
+    fine = dict.fromkeys(("bolt.head", "bolt.nut", "upper.seat", "lower.seat"), 4e-3)
+    coarse = replace(study.geometry, size=15e-3, face_size={"upper.joint": 7e-3, **fine})
+    plan = replace(study, geometry=coarse, mode_count=4)
+    swept = sweep(plan, (axis_of("bolt.preload=1 kN:3 kN:3"),), tmp_path / "out.nc")
+    for place, force in ((1, 2e3), (2, 3e3)):
+        full = run(replace(plan, bolts=(replace(plan.bolts[0], preload=(force,)),)))
+        assert swept.frequencies[place] == pytest.approx(full.frequencies[0], rel=1e-5)

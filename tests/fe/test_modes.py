@@ -128,6 +128,42 @@ def test_no_loss_no_damping(bar):
     assert damped.frequencies == pytest.approx(modes.frequencies[6:], rel=1e-9)
 
 
+@pytest.mark.parametrize(("massive", "count"), [(40, 60), (20, 50)])
+def test_unknowns_without_mass(massive, count):
+    """Masses at some nodes only: the others follow, which condensing them out beforehand does as well."""
+    from scipy.linalg import eigh
+    from scipy.sparse import diags_array
+
+    mesh = stack([0.3], [10], width=0.03, height=0.03, sections=[(1, 1)])
+    K, _ = assemble(mesh, {"p0": BAR})
+    chosen_nodes = np.random.default_rng(1).choice(len(mesh.points), massive, replace=False)
+    heavy = (3 * chosen_nodes[:, None] + np.arange(3)).ravel()
+    weight = np.zeros(mesh.unknowns)
+    weight[heavy] = 0.1
+    ground = 1e6 * diags_array(np.ones(mesh.unknowns))
+    K = (K + ground).tocsr()
+    found = lowest_modes(K, diags_array(weight).tocsr(), count, shift_frequency=SHIFT)
+    light = np.setdiff1d(np.arange(mesh.unknowns), heavy)
+    dense = K.toarray()
+    small = dense[np.ix_(heavy, heavy)] - dense[np.ix_(heavy, light)] @ np.linalg.solve(
+        dense[np.ix_(light, light)], dense[np.ix_(light, heavy)]
+    )
+    exact = np.sqrt(eigh(small / 0.1, eigvals_only=True)[:count]) / 2 / np.pi
+    assert found.frequencies == pytest.approx(exact, rel=1e-6)
+
+
+def test_more_modes_than_the_masses_allow():
+    """Three masses that one motion moves together have one mode."""
+    from scipy.sparse import csr_array
+
+    mass = csr_array(np.ones((3, 3)))
+    stiffness = csr_array(np.diag([1.0, 2.0, 3.0]))
+    one = lowest_modes(stiffness, mass, 1, shift_frequency=0.01)
+    assert one.frequencies == pytest.approx(np.sqrt(1 / (1 + 1 / 2 + 1 / 3)) / 2 / np.pi, rel=1e-9)
+    with pytest.raises(faying.InputError, match="whose masses allow 1; ask for 1 to 1"):
+        lowest_modes(stiffness, mass, 3, shift_frequency=0.01)
+
+
 @pytest.mark.parametrize("name", available())
 def test_every_factorisation_solves(bar, name):
     _, K, M, _ = bar
@@ -172,7 +208,9 @@ def test_no_factorisation_takes_a_matrix_that_is_not_positive_definite(name):
 
     if name == "superlu":
         pytest.skip("LU factorises it: singular matrices alone are found")
-    matrix = diags_array([np.r_[np.full(59, 2.0), -1.0], np.full(59, 0.1), np.full(59, 0.1)], offsets=[0, 1, -1]).tocsr()
+    matrix = diags_array(
+        [np.r_[np.full(59, 2.0), -1.0], np.full(59, 0.1), np.full(59, 0.1)], offsets=[0, 1, -1]
+    ).tocsr()
     with pytest.raises(faying.NotConverged, match="is a part held by nothing"):
         factorise(matrix, name)
 
@@ -196,3 +234,39 @@ def test_a_broken_installation_is_left_out(tmp_path, monkeypatch):
         monkeypatch.delitem(sys.modules, name)
     assert "cholmod" not in available.__wrapped__()
     assert "superlu" in available.__wrapped__()
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_ties_over_several_joints_do_not_depend_on_their_order(turned):
+    """Three bars end to end, the middle one a single layer of elements whose corners lie in both joints."""
+    mesh = stack([0.1, 0.1, 0.1], [2, 1, 2], width=0.02, height=0.02, sections=[(1, 1)] * 3)
+    pairs = [("p0.right", "p1.left"), ("p2.left", "p1.right") if turned else ("p1.right", "p2.left")]
+    merge = tie(mesh, pairs)
+    whole = stack([0.3], [5], width=0.02, height=0.02, sections=[(1, 1)])
+    assert merge.shape == (mesh.unknowns, whole.unknowns)
+
+
+def test_a_node_of_two_joints_grows_together_with_both():
+    """Three cubes in an L: the corner's edge lies in two joints, and the same nodes come out whatever is named first."""
+    from blocks import block
+
+    from faying.fe.mesh import Mesh
+    from faying.fe.sides import sides_on
+
+    points, parts, faces, owner, offset = [], {}, {}, {}, 0
+    for name, origin in (("a", (0, 0, 1)), ("b", (0, 0, 0)), ("c", (1, 0, 0))):
+        where, cells = block("hex8", (2, 2, 2), (1.0, 1.0, 1.0), origin)
+        parts[name] = cells + offset
+        for side, axis, place in (("bottom", 2, 0), ("top", 2, 1), ("left", 0, 0), ("right", 0, 1)):
+            on = np.flatnonzero(np.abs(where[:, axis] - origin[axis] - place) < 1e-9)
+            faces[f"{name}.{side}"] = tuple(f + offset for f in sides_on(on, (cells,), len(where)))
+            owner[f"{name}.{side}"] = name
+        points.append(where)
+        offset += len(where)
+    mesh = Mesh(points=np.concatenate(points), parts=parts, faces=faces, face_part=owner)
+    sizes = {
+        tie(mesh, [first, second]).shape[1]
+        for first in (("a.bottom", "b.top"), ("b.top", "a.bottom"))
+        for second in (("c.left", "b.right"), ("b.right", "c.left"))
+    }
+    assert sizes == {3 * len(np.unique(np.round(mesh.points, 6), axis=0))}

@@ -110,3 +110,34 @@ def test_frequencies_must_rise_from_above_zero(bar, wrong):
     push = end_force(bar[0], L)[:, None]
     with pytest.raises(faying.InputError, match="must be positive and rise"):
         respond(bar, push, push, frequencies=np.array(wrong))
+
+
+def test_structural_loss_is_that_of_the_parts_alone(bar):
+    """Two halves on a joint: the width of the first axial resonance is the parts' share of its energy, times eta.
+
+    That share is what the frequency gains when the modulus does: d ln f / d ln E is half of it.
+    """
+    mesh, _, M, nothing, _, _ = bar
+    parts, _ = assemble(mesh, dict.fromkeys(mesh.parts, BAR))
+    joint = join(mesh, "p0.right", "p1.left")
+    ones = np.ones(len(joint.weights))
+    soft = (parts + joint.springs(1e11 * ones, 1e14 * ones)).tocsr()
+    modes = lowest_modes(soft, M, 30, shift_frequency=20.0)
+    damped = damped_modes(modes, soft, M, nothing, rigid=6, count=12)
+    axial = modes.frequencies[6 + np.argmax([np.sum(s[0::3] ** 2) / np.sum(s**2) for s in modes.shapes[:, 6:].T])]
+    force = end_force(mesh, 0.0)[:, None]
+    given = {"forces": force, "outputs": force, "rigid": 6, "structural_loss": ETA}
+
+    def width(span, **changes):
+        lines = np.linspace(1 - span, 1 + span, 2001) * axial
+        found = frequency_response(modes, damped, soft, M, nothing, frequencies=lines, **given, **changes)
+        power = np.abs(found.receptance[:, 0, 0]) ** 2
+        high = lines[power > power.max() / 2]
+        return (high[-1] - high[0]) / axial
+
+    more = (parts * 1.01 + soft - parts).tocsr()
+    raised = lowest_modes(more, M, 30, shift_frequency=20.0).frequencies
+    share = 2 * np.log(raised[np.argmin(np.abs(raised - axial))] / axial) / np.log(1.01)
+    assert share < 0.2
+    assert width(0.05) == pytest.approx(ETA, rel=0.03)
+    assert width(0.05 * share, parts=parts) == pytest.approx(ETA * share, rel=0.03)

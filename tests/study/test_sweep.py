@@ -162,6 +162,15 @@ def test_the_path_through_the_grid_meets_every_point_once_and_steps_to_neighbour
     assert np.all(np.abs(np.diff(places, axis=0)).sum(axis=1) == 1)
 
 
+def test_a_sweep_whose_middle_has_no_answer(plan, tmp_path):
+    """The bases begin where there is an answer; the rest is NaN and told."""
+    swept = sweep(plan, axes("bolt.preload=2 kN,400 kN"), tmp_path / "out.nc")
+    assert np.all(np.isfinite(swept.frequencies[0]))
+    assert np.all(np.isnan(swept.frequencies[1]))
+    with pytest.raises(faying.InputError, match="lower the preload"):
+        sweep(plan, axes("bolt.preload=400 kN,500 kN"), tmp_path / "none.nc")
+
+
 def in_full(plan):
     """The plan with a law given in full and no surface."""
     options = {"density": 3e9, "radius": 60e-6, "sigma": 0.5e-6}
@@ -182,6 +191,8 @@ def test_laws_take_their_own_parameters_alone(plan):
     given = in_full(plan)
     with pytest.raises(faying.InputError, match='the law "gw-ke" takes density, radius, sigma'):
         Grid(study=given, surfaces=surfaces_of(given), axes=axes("law.cutoff=0.01,0.02"))
+    with pytest.raises(faying.InputError, match=r"no joint takes its law from \[surface\]; it would change nothing"):
+        Grid(study=given, surfaces=surfaces_of(given), axes=axes("surface.D=2.3,2.4"))
     with pytest.raises(faying.InputError, match='gives "gw-ke" in full; other laws would lack their surface'):
         Grid(study=given, surfaces=surfaces_of(given), axes=axes("law.model=jk,gw"))
     with pytest.raises(faying.InputError, match='the law "jk" takes gamma, alpha, cutoff'):

@@ -35,6 +35,11 @@ class DampedModes:
     error: Array
     shapes: Complex
 
+    def real_shapes(self, mass: Any) -> Array:
+        """Shapes (unknowns, m) of the motion at its greatest: the real parts, mass-normalised."""
+        real = self.shapes.real
+        return np.asarray(real / np.sqrt(np.einsum("im,im->m", real, mass @ real)))
+
     @property
     def damping_ratios(self) -> Array:
         """Damping ratios [-] (m,): half of the loss factors."""

@@ -50,12 +50,13 @@ def frequency_response(
     rigid: int,
     kind: Literal["hysteretic", "viscous"] = "hysteretic",
     structural_loss: float = 0.0,
+    parts: Any | None = None,
     checks: int = 5,
 ) -> Response:
-    """Solve (K (1 + i eta) + i C - w^2 M) u = f, or with i w C where kind is viscous, in a basis.
+    """Solve (K + i eta P + i C - w^2 M) u = f, or with i w C where kind is viscous, in a basis.
 
     forces (unknowns, i): unit forces; outputs (unknowns, o): what is read of u; frequencies [Hz] (f,);
-    structural_loss: eta of the parts themselves. Basis: rigid motions, real and complex modes, and the response to the
+    structural_loss: eta of the parts themselves, whose stiffness is P (parts; K where None). Basis: rigid motions, real and complex modes, and the response to the
     forces at the shift of the factorisation, so that modes beyond the last one count through their static part. Raises
     InputError for frequencies that do not rise from above 0.
     """
@@ -70,19 +71,23 @@ def frequency_response(
     columns = np.concatenate([modes.shapes, damped.shapes.real, damped.shapes.imag, static], axis=1)
     basis = _orthonormal(columns, mass, leading=modes.shapes.shape[1])
     small_k, small_c = basis.T @ (stiffness @ basis), basis.T @ (loss @ basis)
-    small_k[:rigid] = small_k[:, :rigid] = 0.0
+    lossy = stiffness if parts is None else parts
+    small_p = basis.T @ (lossy @ basis)
+    for small in (small_k, small_p):
+        small[:rigid] = small[:, :rigid] = 0.0
     small_m = basis.T @ (mass @ basis)
     push, read = basis.T @ forces, basis.T @ outputs
     root = cholesky(small_m)
     turn = solve_triangular(root, np.eye(len(root)))
-    small_k, small_c, push, read = turn.T @ small_k @ turn, turn.T @ small_c @ turn, turn.T @ push, turn.T @ read
+    small_k, small_p, small_c = (turn.T @ small @ turn for small in (small_k, small_p, small_c))
+    push, read = turn.T @ push, turn.T @ read
     answers = np.empty((len(frequencies), read.shape[1], push.shape[1]), dtype=complex)
     inner = np.empty((len(frequencies), len(small_k), push.shape[1]), dtype=complex)
     identity = np.eye(len(small_k))
     for i, omega in enumerate(2 * np.pi * frequencies):
         damping = omega * small_c if kind == "viscous" else small_c
         inner[i] = np.linalg.solve(
-            small_k * (1 + 1j * structural_loss) + 1j * damping - omega**2 * identity, push.astype(complex)
+            small_k + 1j * (structural_loss * small_p + damping) - omega**2 * identity, push.astype(complex)
         )
         answers[i] = read.T @ inner[i]
     where = np.unique(np.linspace(0, len(frequencies) - 1, min(checks, len(frequencies))).astype(int))
@@ -92,7 +97,8 @@ def frequency_response(
         omega = 2 * np.pi * frequencies[i]
         u = basis @ inner[i]
         damping = omega if kind == "viscous" else 1.0
-        miss = forces - (stiffness @ u) * (1 + 1j * structural_loss) - 1j * damping * (loss @ u) + omega**2 * (mass @ u)
+        absorbed = 1j * (structural_loss * (lossy @ u) + damping * (loss @ u))
+        miss = forces - stiffness @ u - absorbed + omega**2 * (mass @ u)
         solved = [modes.factorisation.solve(np.asfortranarray(part)) for part in (miss.real, miss.imag)]
         left = np.sqrt(sum(abs(np.sum(part * s)) for part, s in zip((miss.real, miss.imag), solved, strict=True)))
         energy = np.sqrt(abs(np.vdot(u, stiffness @ u)) + modes.shift * abs(np.vdot(u, mass @ u)))

@@ -28,7 +28,19 @@ from faying.joint.structure import Structure
 FEW_STEPS = 60  # enrichments of one variant after which something else must be wrong
 EXTRA_MODES = 25  # real modes of the reference beyond those wanted: they speed the enrichment of the highest ones
 # the force balance enters a frequency through k(p), to first order; the modes enter by the square of their error
-STATIC_SHARE = 8.0
+STATIC_SHARE = 15.0
+
+
+def _pressed(traces: Sequence[Any], seats: Sequence[Seat], found: Preload) -> float:
+    """Root of the energy [sqrt(J)], twice, of the joints' normal springs under their pressures.
+
+    What the parts and a bolt's shank store beside it says nothing of how exact the pressures are.
+    """
+    total = 0.0
+    for trace, seat, p in zip(traces, seats, found.pressures, strict=True):
+        k_n = np.where(p > 0, seat.stiffness(p)[0], 1.0)
+        total += float(trace.weights @ (p**2 / k_n))
+    return float(np.sqrt(total))
 
 
 @dataclass
@@ -99,6 +111,7 @@ class Reduction:
         factor: Factorisation,
         reference: Any,
         loads: Array,
+        state: Array,
         shapes: Array,
         count: int,
         rigid: Array,
@@ -109,7 +122,7 @@ class Reduction:
 
         stiffness, stiffness_static, mass (n, n): of the parts with their attachments, for vibration and for preload
         (held unknowns cleared); reference (n, n): stiffness + joints + shift x mass, of which `factor` is the
-        factorisation; loads (n, b): one column for 1 N in each bolt; shapes (n, m): elastic modes at the reference,
+        factorisation; loads (n, b): one column for 1 N in each bolt; state (n,): a displacement in equilibrium; shapes (n, m): elastic modes at the reference,
         more of them than the `count` that is asked for; rigid (n, r): motions that nothing resists; held: unknowns at rest.
         """
         from scipy.linalg import cholesky, solve_triangular
@@ -125,6 +138,7 @@ class Reduction:
             rigid = solve_triangular(root, rigid.T, trans="T").T
         still = {"rigid": rigid, "rigid_momentum": np.asarray(mass @ rigid)}
         self.static = Basis(reference=reference, operators=(stiffness_static,), traces=self.traces, **still)
+        self.static.add(state[:, None])
         self.static.add(factor.solve(np.asfortranarray(loads)))
         self.dynamic = Basis(reference=reference, operators=(stiffness, mass), traces=self.traces, **still)
         self.dynamic.add(shapes)
@@ -176,6 +190,7 @@ class Reduction:
             factor=modes.factorisation,
             reference=(joined + modes.shift * mass).tocsr(),
             loads=structure.loads,
+            state=found.displacement,
             shapes=modes.shapes[:, still:],
             count=count,
             rigid=structure.rigid,
@@ -204,17 +219,20 @@ class Reduction:
         residual[self.held] = 0.0
         return np.asarray(residual)
 
+    def static_error(self, seats: Sequence[Seat], forces: Array, found: Preload) -> tuple[float, Array]:
+        """Error of an equilibrium in energy, over that of the joints' normal springs [-], and what would mend it (n,)."""
+        residual = self._static_residual(seats, forces, found)
+        answer = self.factor.solve(residual)
+        return float(np.sqrt(np.maximum(residual @ answer, 0.0)) / _pressed(self.traces, seats, found)), answer
+
     def train_static(self, seats: Sequence[Seat], forces: Array, tolerance: float) -> int:
         """Enrich until the equilibrium of a variant is right to `tolerance` in energy; return the vectors added."""
         added, error = 0, np.inf
         for _ in range(FEW_STEPS):
-            found = self.model.equilibrium(seats, forces)
-            residual = self._static_residual(seats, forces, found)
-            answer = self.factor.solve(residual)
-            error = float(np.sqrt(np.maximum(residual @ answer, 0.0)) / np.linalg.norm(found.displacement))
+            error, mend = self.static_error(seats, forces, self.model.equilibrium(seats, forces))
             if error < tolerance:
                 return added
-            added += self.static.add(answer[:, None])
+            added += self.static.add(mend[:, None])
             self._refresh()
         raise NotConverged(
             f"reduction: {FEW_STEPS} enrichments leave the preload wrong by {error:.1e}; raise the tolerance"
@@ -269,6 +287,11 @@ class Reduction:
         dynamic = self.train_dynamic(springs, 2 * tolerance)
         self._seen.append(springs)
         return static + dynamic
+
+    @property
+    def trained(self) -> int:
+        """Number of variants that the bases have been made to fit."""
+        return len(self._seen)
 
     def compress(self, tolerance: float) -> None:
         """Keep of the basis for vibration what the modes of all variants trained on need, most needed first."""

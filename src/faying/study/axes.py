@@ -141,6 +141,10 @@ class Grid:
                 raise InputError(
                     f"--set {key}: every joint has a surface of its own; a sweep varies the study's [surface]"
                 )
+            if parts[0] == "surface" and not any(
+                joint.surface is None and (joint.law or self.study.law).needs_surface for joint in self.study.joints
+            ):
+                raise InputError(f"--set {key}: no joint takes its law from [surface]; it would change nothing")
             if parts[0] == "law" and all(joint.law is not None for joint in self.study.joints):
                 raise InputError(f"--set {key}: every joint has a law of its own; a sweep varies the study's [law]")
             law = self.study.law

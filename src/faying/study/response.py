@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from faying.fe.constraint import hold
 from faying.fe.damped import DampedModes
 from faying.fe.modes import Modes
 from faying.fe.response import Response, frequency_response
@@ -71,6 +72,7 @@ class Solved:
             self.modes, self.damped, self.stiffness, self.mass, self.loss, forces=self._columns(*inputs),
             outputs=self._columns(*outputs), frequencies=frequencies, rigid=self.structure.rigid.shape[1], kind=self.study.damping,
             structural_loss=0.0 if spec is None else spec.structural_loss,
+            parts=hold(self.structure.matrices[0], self.structure.held, 0.0),
         )  # fmt: skip
 
     def _columns(self, nodes: Array, axes: Array) -> Array:

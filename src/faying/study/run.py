@@ -96,8 +96,9 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
 
     nodes, triangles = structure.outline()
     elastic = slice(still, still + study.mode_count)
-    shapes = np.stack([m.shapes[:, elastic].T.reshape(study.mode_count, -1, 3)[:, nodes] for m in modes])
-    comparison = _compare(study, loads, structure, modes, np.stack([d.frequencies for d in damped]), notes)
+    # those of the complex modes, whose frequencies stand beside them: real modes that lie close mix otherwise
+    shapes = np.stack([d.real_shapes(M).T.reshape(len(d.frequencies), -1, 3) for d in damped])
+    comparison = _compare(study, loads, structure, shapes, np.stack([d.frequencies for d in damped]), notes)
     rigid = np.max([m.frequencies[:still] for m in modes], axis=0)
     if still and rigid.max() > 1e-2:
         notes.append(
@@ -128,11 +129,11 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         factor_memory=max(m.factorisation.memory for m in modes),
         outline=structure.mesh.points[nodes],
         triangles=triangles,
-        shapes=shapes,
+        shapes=shapes[:, :, nodes],
         bolts=tuple(bolt.name for bolt in study.bolts),
         bolt_forces=np.array([p.bolt_forces for p in preloads]),
         slipping=np.array([p.slipping for p in preloads]),
-        mac=np.stack([_mac(modes[0], m, elastic) for m in modes]),
+        mac=np.stack([_mac(damped[0].shapes, d.shapes) for d in damped]),
         response=tuple(responses),
         surface=surfaces[0].facts,
         law=law_facts(built.laws[0]),
@@ -148,10 +149,10 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     return replace(result, hammer=hammer.beside(result, full))
 
 
-def _mac(first: Modes, other: Modes, elastic: slice) -> Array:
-    """Modal assurance criterion [-] (m, m) of two sets of real modes (Allemang 2003, eq. 4)."""
-    a, b = first.shapes[:, elastic], other.shapes[:, elastic]
-    return np.asarray((a.T @ b) ** 2 / np.outer((a**2).sum(axis=0), (b**2).sum(axis=0)))
+def _mac(first: NDArray[np.complex128], other: NDArray[np.complex128]) -> Array:
+    """Modal assurance criterion [-] (m, m) of two sets of modes (unknowns, m) (Allemang 2003, eq. 4)."""
+    sizes = [np.einsum("im,im->m", a.conj(), a).real for a in (first, other)]
+    return np.asarray(np.abs(first.conj().T @ other) ** 2 / np.outer(*sizes))
 
 
 def _tied(structure: Structure, count: int, shift: float, solver: str | None, notes: list[str]) -> Modes:
@@ -217,7 +218,7 @@ def _convergence(preload: Preload, springs: tuple[Springs, ...]) -> dict[str, fl
 
 
 def _compare(
-    study: Study, loads: Array, structure: Structure, modes: list[Modes], frequencies: Array, notes: list[str]
+    study: Study, loads: Array, structure: Structure, shapes: Array, frequencies: Array, notes: list[str]
 ) -> Comparison | None:
     """Pair the test's frequencies, in order, with the modes that the test can see."""
     test = study.test
@@ -227,11 +228,8 @@ def _compare(
     axis = np.array(test.direction) / np.linalg.norm(test.direction)
     here = [int(np.argmin(np.linalg.norm(structure.mesh.points - np.array(p), axis=1))) for p in test.points]
     predicted, paired = np.empty_like(measured), np.empty(measured.shape, dtype=np.int64)
-    still = structure.rigid.shape[1]
-    for row, found in enumerate(modes):
-        shape = found.shapes[:, still:].T.reshape(found.shapes.shape[1] - still, -1, 3)[:, here] @ axis
-        motion = np.abs(shape).max(axis=1)
-        motion = motion[: study.mode_count]
+    for row, found in enumerate(shapes):
+        motion = np.abs(found[:, here] @ axis).max(axis=1)
         seen = np.flatnonzero(motion >= test.threshold * motion.max())
         if len(seen) < measured.shape[1]:
             notes.append(f"the test lists {measured.shape[1]} modes but only {len(seen)} of those computed move at its points; "

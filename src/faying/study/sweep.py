@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faying.errors import FayingError, InputError
-from faying.joint.reduce import Reduction
+from faying.joint.reduce import STATIC_SHARE, Reduction
 from faying.joint.reduced import ReducedModel, densities
 from faying.joint.seat import Seat
 from faying.joint.structure import Structure
@@ -169,13 +169,10 @@ class _Trainer:
         grid = self.recipe.grid
         generator = np.random.default_rng(SEED)
         if self.reduction is None:
-            self.tell("reference solution", 0)
-            middle = int(np.ravel_multi_index(tuple(n // 2 for n in grid.shape), grid.shape))
-            seats, forces, _ = self.recipe.seats(middle)
-            self.reduction = Reduction.of(self.structure, seats, forces, count=self.study.mode_count,
-                                          shift_frequency=self.study.shift_frequency, solver=self.study.solver)  # fmt: skip
             points = grid.corners(CORNERS)
             points += generator.choice(grid.size, min(RANDOM, grid.size), replace=False).tolist()
+            middle = int(np.ravel_multi_index(tuple(n // 2 for n in grid.shape), grid.shape))
+            self.reduction = self._begun([middle, *points])
             self._train(self.reduction, [*points, *more], "training")
             self.reduction.compress(self.tolerance)
             checks = generator.choice(grid.size, min(CHECKS, grid.size), replace=False).tolist()
@@ -184,14 +181,32 @@ class _Trainer:
             self._train(self.reduction, more, "training")
         return self.reduction
 
+    def _begun(self, points: Sequence[int]) -> Reduction:
+        """Bases from the first of the points that has an answer; raises what the first of them met where none has."""
+        fault: FayingError | None = None
+        for index in dict.fromkeys(points):
+            self.tell("reference solution", 0)
+            try:
+                seats, forces, _ = self.recipe.seats(index)
+                return Reduction.of(self.structure, seats, forces, count=self.study.mode_count,
+                                    shift_frequency=self.study.shift_frequency, solver=self.study.solver)  # fmt: skip
+            except FayingError as met:
+                fault = fault or met
+        assert fault is not None
+        raise fault
+
     def _train(self, reduction: Reduction, points: Iterable[int], what: str) -> None:
+        fault: FayingError | None = None
         for number, index in enumerate(points):
             self.tell(f"{what} {number + 1}", 0)
             try:
                 seats, forces, reduction.model.friction = self.recipe.seats(index)
                 reduction.train(seats, forces, tolerance=self.tolerance)
-            except FayingError:  # a point without an answer is reported when it is evaluated
+            except FayingError as met:  # a point without an answer is reported when it is evaluated
+                fault = met
                 reduction.model.last = None
+        if fault is not None and not reduction.trained:
+            raise fault
 
     def _check(self, reduction: Reduction, points: Sequence[int]) -> None:
         """Look at points that were not trained on by their full residual; train on those that are not good enough."""
@@ -202,10 +217,11 @@ class _Trainer:
                 seats, forces, reduction.model.friction = self.recipe.seats(index)
                 found = reduction.model.equilibrium(seats, forces)
                 error, _ = reduction.modal_error(densities(seats, found.pressures))
+                balance, _ = reduction.static_error(seats, forces, found)
             except FayingError:
                 reduction.model.last = None
                 continue
-            if error.max() > 4 * self.tolerance:
+            if error.max() > 4 * self.tolerance or balance > 4 * STATIC_SHARE * self.tolerance:
                 poor.append(index)
         self._train(reduction, poor, "training")
 
