@@ -270,3 +270,32 @@ def test_a_node_of_two_joints_grows_together_with_both():
         for second in (("c.left", "b.right"), ("b.right", "c.left"))
     }
     assert sizes == {3 * len(np.unique(np.round(mesh.points, 6), axis=0))}
+
+
+@pytest.mark.parametrize("strength", [10.0, 60.0])
+def test_strong_dampers_against_the_whole_problem(strength):
+    """Viscous joint, loss factors up to a tenth and more: every mode is one of the full companion's, in rising order."""
+    mesh = stack([0.1, 0.1], [4, 4], width=0.03, height=0.02, sections=[(1, 1), (1, 1)])
+    parts, M = assemble(mesh, dict.fromkeys(mesh.parts, BAR))
+    joint = join(mesh, "p0.right", "p1.left")
+    ones = np.ones(len(joint.weights))
+    K = (parts + joint.springs(1e12 * ones, 5e11 * ones)).tocsr()
+    C = joint.springs(strength * 1e6 * ones, strength * 5e5 * ones)
+    modes = lowest_modes(K, M, 26, shift_frequency=100.0)
+    found = damped_modes(modes, K, M, C, rigid=6, count=14, kind="viscous", tolerance=1e-8)
+    assert np.all(np.diff(found.frequencies) >= 0)
+    assert found.loss_factors.max() > 0.02
+    n = mesh.unknowns
+    inverse = np.linalg.inv(M.toarray())
+    companion = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ K.toarray(), -inverse @ C.toarray()]])
+    roots = np.linalg.eigvals(companion)
+    roots = roots[roots.imag > 100.0]
+    for frequency, loss in zip(found.frequencies, found.loss_factors, strict=True):
+        near = roots[
+            np.argmin(
+                np.abs(np.abs(roots) / 2 / np.pi - frequency) / frequency
+                + np.abs(-2 * roots.real / np.abs(roots) - loss)
+            )
+        ]
+        assert abs(near) / 2 / np.pi == pytest.approx(frequency, rel=1e-6)
+        assert -2 * near.real / abs(near) == pytest.approx(loss, rel=1e-3, abs=1e-7)

@@ -1,5 +1,7 @@
 """Friction under the preload: the limit, stick, what is left after slip, the tangent of the shear."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -128,3 +130,38 @@ def test_the_tangent_of_a_joint_against_differences():
 def test_a_friction_that_is_none():
     with pytest.raises(faying.InputError, match="friction -0.1 is no coefficient of friction"):
         plates(friction=-0.1)
+
+
+def test_no_friction_at_all_is_the_limit_of_a_little():
+    """The plate slides as if on ice; what holds it sideways is a soft spring."""
+    made = [
+        replace(held(mu), supports=(Support(face="low.bottom"), Support(face="high.top", stiffness=1e9)))
+        for mu in (1e-5, 0.0)
+    ]
+    little, none = (s.assembly().solve(pushed(s, 2e3, 1.0)) for s in made)
+    assert none.slipping == little.slipping == (1.0,)
+    assert none.displacement == pytest.approx(little.displacement, abs=0.02 * np.abs(little.displacement).max())
+    assert none.newton_steps <= little.newton_steps + 2
+    moved = none.displacement.reshape(-1, 3)[made[1].mesh.face_nodes("high.top"), 0].mean()
+    assert moved == pytest.approx(1.0 / (1e9 * 0.08 * 0.04), rel=0.01)
+
+
+def test_what_moves_while_it_is_open_closes_without_shear():
+    """Pushed over a gap, then pressed: the joint closes where the push has brought it, and takes nothing of the push."""
+    mesh = stacked(gap=2e-6)
+    supports = (Support(face="low.bottom"), Support(face="high.top", stiffness=3e9))
+    structure = plates(mesh, friction=0.2, supports=supports)
+    up = face_load(mesh.points, mesh.face("high.top"), np.array([0.04, 0.02, 0.02]), np.array([0.0, 0.0, 1.0]))
+    push = np.zeros_like(mesh.points)
+    nodes = mesh.face_nodes("high.top")
+    push[nodes, 0] = up.reshape(-1, 3)[nodes, 2]
+    assembly, joint = structure.assembly(), structure.joints[0].interface
+    load = 50 * push.ravel()
+    load[structure.held] = 0.0
+    before = assembly.solve(load)
+    assert not before.pressures[0].any()
+    slipped = joint.slip(before.displacement).mean(axis=0)
+    after = assembly.solve(load - 4e4 * up)
+    assert joint.weights @ after.pressures[0] > 1e4
+    assert np.linalg.norm(joint.slip(after.displacement).mean(axis=0) - slipped) < 0.03 * np.linalg.norm(slipped)
+    assert abs(shear(structure, after, 0.2)) < 1.5  # of the 50 N

@@ -76,15 +76,18 @@ def mesh_step(
     marks = [Mark(face.name, names[i], face) for i, solid in enumerate(solids) for face in solid.faces if face.name]
     glued = Glue(solids) if len(solids) > 1 else shape
     parts = list(glued.solids)
+    if len(parts) != len(solids):
+        raise InputError(f"{path.name}: the parts {', '.join(names)} run into each other: gluing makes {len(parts)} solids of them; "
+                         "parts may touch, not overlap")  # fmt: skip
     for face in glued.faces:
         face.name = ""
     listed = list(glued.faces)
-    labels = _labels(listed, marks)
+    labels, cut = _labels(listed, marks)
     for number, face in enumerate(listed):
         face.name = f"{number}"
-    cut = [mark for mark in marks if all(mark.name != label for pairs in labels for label, _ in pairs)]
     if cut:
-        _label_pieces(glued, size, cut, labels)
+        sides = {solid.name: {int(face.name) for face in solid.faces} for solid in parts}
+        _label_pieces(glued, listed, sides, size, cut, labels)
     found = {label for pairs in labels for label, _ in pairs}
     for label, size_here in (local_size or {}).items():
         if label not in found:
@@ -113,22 +116,32 @@ class Mark:
     face: Any
 
 
-def _labels(faces: Sequence[Any], marks: Sequence[Mark]) -> list[list[tuple[str, str]]]:
-    """Give each glued face the (name, part) of every original face that lies where it lies."""
+Labels = list[list[tuple[str, str]]]
+
+
+def _labels(faces: Sequence[Any], marks: Sequence[Mark]) -> tuple[Labels, list[Mark]]:
+    """The (name, part) of every original face that lies where a glued one lies, and the originals that none does."""
     places = np.array([_signature(face) for face in faces])
     close = 1e-6 * float(np.ptp(places, axis=0).max())
-    labels: list[list[tuple[str, str]]] = [[] for _ in faces]
+    labels: Labels = [[] for _ in faces]
+    cut = []
     for mark in marks:
         # a face that two solids share is listed once for each of them
-        for number in np.flatnonzero(np.linalg.norm(places - _signature(mark.face), axis=1) < close):
+        found = np.flatnonzero(np.linalg.norm(places - _signature(mark.face), axis=1) < close)
+        for number in found:
             labels[number].append((mark.name, mark.part))
-    return labels
+        if not len(found):
+            cut.append(mark)
+    return labels, cut
 
 
-def _label_pieces(glued: Any, size: float, marks: Sequence[Mark], labels: list[list[tuple[str, str]]]) -> None:
+def _label_pieces(
+    glued: Any, listed: Sequence[Any], sides: Mapping[str, set[int]], size: float, marks: Sequence[Mark], labels: Labels
+) -> None:
     """Give (name, part) to the pieces into which gluing has cut faces: where two faces overlap only in part.
 
-    A piece is known by points on it, those of a mesh of the surfaces. Raises InputError for a face without pieces.
+    sides: numbers of the glued faces that bound each part. A piece bounds the part and lies on the face, which points on
+    it tell, those of a mesh of the surfaces. Raises InputError where the pieces do not make up the face.
     """
     from netgen.meshing import MeshingStep
     from netgen.occ import OCCGeometry, Pnt, Vertex
@@ -137,28 +150,21 @@ def _label_pieces(glued: Any, size: float, marks: Sequence[Mark], labels: list[l
     points = np.asarray(mesh.Coordinates(), float)
     tris = mesh.Elements2D().NumPy()
     close = 1e-6 * float(np.ptp(points, axis=0).max())
+    regions = {int(name): number for number, name in enumerate(mesh.GetRegionNames(dim=2), 1)}
     for mark in marks:
-        low, high = (np.array([corner.x, corner.y, corner.z]) for corner in mark.face.bounding_box)
-        area, reach = 0.0, max(close, 1e-3 * float((high - low).max()))
-        for number, name in enumerate(mesh.GetRegionNames(dim=2), 1):
-            nodes = tris["nodes"][tris["index"] == number][:, :3].astype(np.int64) - 1
+        area = 0.0
+        for number in sides[mark.part] & regions.keys():
+            nodes = tris["nodes"][tris["index"] == regions[number]][:, :3].astype(np.int64) - 1
             here = points[np.unique(nodes)]
-            if not len(here) or np.any(here < low - reach) or np.any(here > high + reach):
-                continue
-            if all(mark.face.Distance(Vertex(Pnt(*p))) < close for p in here):
-                labels[int(name)].append((mark.name, mark.part))
-                area += _area(points[nodes])
-        if area < 0.5 * mark.face.mass:
-            raise InputError(f"face {mark.name!r} of part {mark.part!r} is lost where the parts touch; split it in the CAD program where "
-                             "they meet")  # fmt: skip
+            if len(here) and all(mark.face.Distance(Vertex(Pnt(*p))) < close for p in here):
+                labels[number].append((mark.name, mark.part))
+                area += listed[number].mass
+        if not np.isclose(area, mark.face.mass, rtol=1e-4):
+            raise InputError(f"face {mark.name!r} of part {mark.part!r} ({mark.face.mass:.6g} mm2) comes out as {area:.6g} mm2 where the "
+                             "parts touch; do they overlap? Else split it in the CAD program where they meet")  # fmt: skip
 
 
-def _area(triangles: NDArray[np.float64]) -> float:
-    sides = triangles[:, 1:] - triangles[:, :1]
-    return float(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum() / 2)
-
-
-def _collect(mesh: Any, parts: list[str], labels: list[list[tuple[str, str]]], *, source: str) -> Mesh:
+def _collect(mesh: Any, parts: list[str], labels: Labels, *, source: str) -> Mesh:
     points = np.asarray(mesh.Coordinates(), float) * 1e-3
     tets = mesh.Elements3D().NumPy()
     cells = tets["nodes"][:, :10].astype(np.int64)[:, _to_vtk("tet10")] - 1
