@@ -1,5 +1,7 @@
 """Solid bolts: what presses the seats is the tension asked for, wherever the shank is drawn in, and what is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from test_tighten import LinearLaw
@@ -109,3 +111,17 @@ def test_what_is_refused(single, changes, fault):
     bolt = SolidBolt(**({"name": "bolt0", "part": "bolt0", "faces": ("bolt0.head", "bolt0.nut")} | changes))
     with pytest.raises(faying.InputError, match=fault):
         bolt.fitted(single, made.matrices[0], ["bolt0.head", "bolt0.nut", "bolt0.shank"])
+
+
+def test_bolts_that_are_no_bolts_of_a_structure(single):
+    made = structure(single)
+    with pytest.raises(faying.InputError, match="bolt 'bolt0': its face 'bolt0.nut' is in no joint; add a"):
+        replace(made, joints=made.joints[:2])
+    with pytest.raises(faying.InputError, match="part bolt0 is two solid bolts"):
+        replace(made, bolts=made.bolts * 2)
+
+
+def test_a_layer_too_fine_to_couple(single, monkeypatch):
+    monkeypatch.setattr("faying.joint.solid_bolt.MOST", 30)
+    with pytest.raises(faying.InputError, match="unknowns, which all couple .* mesh the shank more coarsely"):
+        structure(single).loads  # noqa: B018

@@ -277,7 +277,9 @@ class Balance(ABC):
 
         start = slope(0.0)
         if start >= 0:
-            raise NotConverged("preload: the search direction does not lower the energy; the joint may be wholly open")
+            apart = min(float(trace.gap.min()) for trace, _ in self.joints)
+            raise NotConverged("preload: the search direction does not lower the energy; a joint may be wholly open (before any load the "
+                               f"nearest faces lie {apart * 1e6:.4g} um apart): put the faces on each other, or pull harder")  # fmt: skip
         end = slope(1.0)
         if abs(end) <= 0.5 * abs(start):
             return 1.0

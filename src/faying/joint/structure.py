@@ -81,7 +81,8 @@ class Springs:
 class Structure:
     """Mesh, material of each part, joints, bolts, supports and point masses.
 
-    Raises InputError where a part is held by nothing, neither a joint nor a support, or is two solid bolts.
+    Raises InputError where a part is held by nothing, neither a joint nor a support, or is two solid bolts, and where a
+    solid bolt's face is in no joint.
     """
 
     mesh: Mesh
@@ -98,6 +99,11 @@ class Structure:
         twice = sorted({part for part in meshed if meshed.count(part) > 1})
         if twice:
             raise InputError(f"part {', '.join(twice)} is two solid bolts; a part is drawn in once, with one preload")
+        for bolt in self.bolts:
+            apart = [face for face in bolt.faces if isinstance(bolt, SolidBolt) and face not in faces]
+            if apart:
+                raise InputError(f"bolt {bolt.name!r}: its face {apart[0]!r} is in no joint; add a [[joint]] of it and the seat that it "
+                                 "presses")  # fmt: skip
         loose = [part for part in self.mesh.parts if part not in held]
         if loose and len(self.mesh.parts) > 1:
             raise InputError(f"part {', '.join(loose)} has no joint; add a [[joint]] that holds it, or leave it out")
