@@ -37,6 +37,8 @@ def checkout(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(ROOT)))
 def test_commands(page, checkout):
+    """They run, in one folder; what they write there lies where git does not see it."""
+    before = {path for path in checkout.rglob("*") if path.is_file()}
     for line in commands(page):
         if T_SPECIMEN in line and line.startswith("run "):
             continue
@@ -44,6 +46,17 @@ def test_commands(page, checkout):
             [sys.executable, "-m", "faying", *shlex.split(line)], capture_output=True, text=True, check=False
         )
         assert done.returncode == 0, f"faying {line}\n{done.stderr}"
+    made = [str(path.relative_to(checkout)) for path in checkout.rglob("*") if path.is_file() and path not in before]
+    if made and (ROOT / ".git").exists() and shutil.which("git"):
+        told = subprocess.run(
+            ["git", "check-ignore", "--no-index", *made], cwd=ROOT, capture_output=True, text=True, check=False
+        )
+        assert sorted(told.stdout.split()) == sorted(made)
+
+
+def test_one_folder_holds_the_studies_of_all_pages(checkout):
+    for line in [line for page in PAGES for line in commands(page) if line.startswith("init ")]:
+        subprocess.run([sys.executable, "-m", "faying", *shlex.split(line)], capture_output=True, check=True)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(ROOT)))

@@ -38,12 +38,26 @@ def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
     for name, figure in drawn.items():
         if not name.startswith(TEST):
             parts.append(f"<figure>{page.picture(name, figure)}<figcaption>{CAPTIONS[name]}</figcaption></figure>")
-    parts += ["<h2>Surface</h2>", page.facts(result.surface), "<h2>Contact law</h2>", page.facts(result.law)]
+    parts += _contact(result)
     parts += ["<h2>Sources</h2>", "<ul>", *(f"<li>{escape(line)}</li>" for line in result.sources), "</ul>"]
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(result.title)}</title>'
     return f"<!doctype html><html lang='en'><head>{head}<style>{STYLE}</style></head><body>{''.join(parts)}</body></html>\n"
 
 
+def _contact(result: Result) -> list[str]:
+    """Surface and law; with several joints those of the first, which is what the result holds, and the names of all laws."""
+    whose = f" of {escape(result.joints[0])}" if len(result.joints) > 1 else ""
+    parts = [f"<h2>Surface{whose}</h2>", page.facts(result.surface)]
+    parts += [f"<h2>Contact law{whose}</h2>", page.facts(result.law)]
+    laws = [line.removeprefix(LAW) for line in result.sources if line.startswith(LAW)]
+    if len(laws) > 1:
+        parts.append(
+            f"<p>The joints have several laws: {escape(', '.join(laws))}. Their parameters stand in the study.</p>"
+        )
+    return parts
+
+
+LAW = "contact law "  # so begin the sources of laws
 TEST = "test_"  # the figures of the hammer test begin with it
 CAPTIONS = {
     "frequencies": "Frequency against preload, relative to the tied value of each mode.",

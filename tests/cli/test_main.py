@@ -52,10 +52,6 @@ def test_init_and_run(tmp_path, capsys):
     assert stop.value.code == 0
     capsys.readouterr()
     with pytest.raises(SystemExit) as stop:
-        main(["init", str(path)])
-    assert stop.value.code == 1
-    assert "exists already" in capsys.readouterr().err
-    with pytest.raises(SystemExit) as stop:
         main(["run", str(path), "--json"])
     assert stop.value.code == 0
     captured = capsys.readouterr()
@@ -68,6 +64,55 @@ def test_init_and_run(tmp_path, capsys):
     assert "outside its ground" in report  # the flag travels with the numbers
     assert not re.search(r'(src|href)="(?!data:|#)', report)  # nothing is fetched: one self-contained file
     assert "\x1b[" not in captured.out  # no colour when not a terminal
+
+
+def test_init_keeps_what_is_not_its_own(tmp_path, capsys):
+    """Another study, or the same again, goes beside the same blocks; what somebody changed stays unless forced."""
+    study, step = tmp_path / "mine.toml", tmp_path / "two-blocks.step"
+
+    def init(*words):
+        with pytest.raises(SystemExit) as stop:
+            main(["init", *map(str, words)])
+        return stop.value.code, capsys.readouterr().err
+
+    assert init(study)[0] == 0
+    first, blocks = study.read_text(), step.read_bytes()
+    assert init(study)[0] == init(tmp_path / "other.toml")[0] == 0
+    assert step.read_bytes() == blocks
+    study.write_text(first + "# mine\n")
+    code, said = init(study)
+    assert code == 1
+    assert "mine.toml exists already, with other content; name another file, or replace it with --force" in said
+    step.write_bytes(blocks.replace(b"upper.seat", b"upper.bolt"))
+    code, said = init(tmp_path / "third.toml")
+    assert code == 1
+    assert "two-blocks.step exists already" in said
+    assert not (tmp_path / "third.toml").exists()
+    assert init(study, "--force")[0] == 0
+    assert study.read_text() == first
+    assert b"upper.bolt" not in step.read_bytes()
+
+
+def test_a_run_that_fails_leaves_no_folder(tmp_path, capsys):
+    from faying.study.template import write
+
+    path = tmp_path / "study.toml"
+    write(path)
+    path.write_text(path.read_text().replace('"upper.seat"', '"upper.set"'))
+    kept = tmp_path / "kept"
+    kept.mkdir()
+    (kept / "mine.txt").write_text("mine")
+    for folder in (tmp_path / "new" / "deep", kept, kept / "below"):
+        with pytest.raises(SystemExit) as stop:
+            main(["run", str(path), "--out", str(folder)])
+        assert stop.value.code == 1
+        assert "'upper.set', which does not exist" in capsys.readouterr().err
+    assert not (tmp_path / "new").exists()
+    assert [p.name for p in kept.iterdir()] == ["mine.txt"]
+    with pytest.raises(SystemExit) as stop:
+        main(["run", str(path), "--out", str(kept / "mine.txt" / "below")])
+    assert stop.value.code == 1
+    assert "cannot make the folder" in capsys.readouterr().err
 
 
 def test_version(capsys):

@@ -102,7 +102,7 @@ def test_ground_of_the_model_is_marked() -> None:
 
 
 @pytest.mark.parametrize(("change", "message"), [
-    ({"density": 0.0}, "density = 0.0; it must be positive"), ({"radius": -1.0}, "radius"),
+    ({"density": 0.0}, "density = 0 1/m.2; it must be positive"), ({"radius": -60e-6}, "radius = -6e-05 m; it must be positive"),
     ({"sigma": float("nan")}, "sigma"),
     ({"asperity": "cube"}, "asperity = 'cube'; use one of"),
 ])  # fmt: skip

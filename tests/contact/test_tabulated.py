@@ -1,5 +1,6 @@
 """A law from a curve: exact on power laws, honest outside, read back from a file."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -57,10 +58,26 @@ def test_approach_gives_the_stiffness_of_a_power_law() -> None:
 
 def test_a_file_comes_back_in_si(tmp_path: Path) -> None:
     file = tmp_path / "joint.csv"
-    file.write_text("# a comment\npressure [MPa], k_n [MPa/um], colour\n1, 40, red\n2, 60, blue\n")
+    file.write_text('\ufeff# a comment\n"pressure [MPa]", k_n [MPa/um], area [-]\n1, 40, .1 # by hand\n\n2, 60, .2\n')
     law = TabulatedLaw.from_csv(file)
     assert law.at_pressure([1e6, 2e6]).k_n == pytest.approx([40e12, 60e12], rel=1e-12)
+    assert law.at_pressure([1e6, 2e6]).area == pytest.approx([0.1, 0.2], rel=1e-12)
     assert law.origin == str(file)
+
+
+def test_files_of_the_command_law_are_read(tmp_path: Path) -> None:
+    from faying import JK, ContactPair
+    from faying.cli.law import write_csv
+    from faying.materials import CATALOGUE
+
+    steel = CATALOGUE["45 steel"]
+    jk = JK(D=2.39, G=1.53e-10, scan_area=16e-6, pair=ContactPair(steel, steel))
+    made = jk.at_pressure(np.geomspace(1e5, 4e7, 40))
+    write_csv(str(tmp_path / "law.csv"), jk, made)
+    back = TabulatedLaw.from_csv(tmp_path / "law.csv").at_pressure(made.pressure).quantities()
+    assert back.keys() == made.quantities().keys()
+    for name, value in made.quantities().items():
+        assert back[name] == pytest.approx(value, rel=1e-12)
 
 
 def test_tables_do_not_change() -> None:
@@ -87,21 +104,42 @@ def test_bad_tables_are_refused(make: object, message: str) -> None:
         make()  # type: ignore[operator]
 
 
+HEAD = "pressure [MPa],k_n [MPa/um]\n"
+
+
 @pytest.mark.parametrize(("text", "message"), [
-    ("", "the head is empty"), ("a,b\n1,2\n", 'no column "pressure'),
-    ("pressure [MPa],k_n [MPa/um]\n1,x\n2,3\n", "not a number"),
+    ("", ": the head is empty; a table looks like: pressure"),
+    ("1,40\n2,60\n", ", line 1: no head with the names of the columns; a table looks like: pressure"),
+    ("pressure [MPa],kt [MPa/um]\n1,2\n2,3\n", ', line 1: the column "kt [MPa/um]" is unknown; known are pressure, area, k_n'),
+    ("pressure [MPa],k_n [MPa/um],\n1,2\n2,3\n", ', line 1: the column "" is unknown'),
+    ("k_n [MPa/um]\n1\n2\n", ', line 1: no column "pressure [unit]"; the head is k_n'),
+    ("pressure [MPa]\n1\n2\n", ", line 1: nothing but pressure is given; add any of area, k_n"),
+    ("pressure [MPa],k_n [MPa/um],k_n [Pa/m]\n1,2,3\n2,3,4\n", ', line 1: 2 columns are called "k_n"'),
+    ("# c\npressure,k_n [MPa/um]\n1,2\n2,3\n", ', line 2: the column "pressure" lacks its unit; write for example "pressure [MPa]"'),
+    ("pressure [MPa],k_n [MPa]\n1,2\n2,3\n", ', line 1: "MPa" of the column "k_n [MPa]" is not a unit like Pa/m; write for example '
+     '"k_n [MPa/um]"'),
+    ("pressure [MPa],area [%]\n1,2\n2,3\n", 'the column "area [%]" has no unit; give plain numbers under "area"'),
+    ("pressure [MPa];k_n [MPa/um]\n1;2\n2;3\n", ", line 1: semicolons between the columns; put commas there"),
+    ("pressure [MPa]\tk_n [MPa/um]\n1\t2\n2\t3\n", ", line 1: tabs between the columns; put commas there"),
+    (HEAD, ": 0 rows under the head; give 2 or more"),
+    (HEAD + "1,2\n", ": 1 row under the head; give 2 or more"),
+    (HEAD + "1,2\n\n2,x\n", ', line 4: "x" in the column "k_n" is not a number'),
+    (HEAD + "1,2\n2\n", ', line 3: no value in the column "k_n"'),
+    (HEAD + "1,2\n,3\n", ', line 3: no value in the column "pressure"'),
+    (HEAD + "1,2\n2,3,4\n", ", line 3: 3 values under the 2 columns of the head"),
+    (HEAD + "1,2\n2,nan\n", ', line 3: "nan" in the column "k_n" is not a finite number'),
+    (HEAD + "1,2\n2,-3\n", ', line 3: -3 in the column "k_n"; it must be 0 or more'),
+    (HEAD + "0,2\n2,3\n", ', line 2: 0 in the column "pressure"; pressures must be above 0'),
+    (HEAD + "1,2\n2,3\n2,4\n", ", line 4: the pressure 2 does not rise above 2, that of the row before"),
 ])  # fmt: skip
-def test_bad_files_are_refused(tmp_path: Path, text: str, message: str) -> None:
+def test_bad_files_are_refused_with_file_and_line(tmp_path: Path, text: str, message: str) -> None:
     file = tmp_path / "t.csv"
     file.write_text(text)
-    with pytest.raises(ReadError, match=message):
+    with pytest.raises(ReadError, match=re.escape(f"{file}{message}" if message[0] in ":," else message)) as caught:
         TabulatedLaw.from_csv(file)
+    assert str(caught.value).startswith(str(file))
 
 
-def test_missing_files_and_units_are_told(tmp_path: Path) -> None:
+def test_missing_files_are_told(tmp_path: Path) -> None:
     with pytest.raises(ReadError, match="cannot be read"):
         TabulatedLaw.from_csv(tmp_path / "none.csv")
-    file = tmp_path / "t.csv"
-    file.write_text("pressure,k_n [MPa/um]\n1,2\n2,3\n")
-    with pytest.raises(InputError, match="unit of pressure"):
-        TabulatedLaw.from_csv(file)

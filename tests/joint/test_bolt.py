@@ -1,5 +1,6 @@
 """Bolts: torque, beam between the seats, load, rings, washers, masses."""
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -185,9 +186,25 @@ def test_bolts_against_a_fixed_plate_in_closed_form():
         ({"diameter": -1.0}, "diameter -1 m must be positive"),
         ({"seat": (16e-3, 8e-3)}, "inner diameter must be less than its outer"),
         ({"faces": ("low.top", "high.bottom")}, "do not look away from each other"),
+        ({"faces": ("high.top", "low.left")}, "do not look away from each other"),
         ({"faces": ("low.left", "low.left"), "diameter": None, "material": None}, "both on part 'low'"),
     ],
 )
 def test_messages(given, text):
     with pytest.raises(faying.InputError, match=text):
         bolt(**given).fitted(stacked())
+
+
+def test_seats_without_a_common_axis_need_a_point_on_it():
+    """Centres 60 mm aside and 20 mm apart."""
+    mesh = stacked(counts=(16, 8, 1))
+    points = mesh.points.copy()
+    points[mesh.part_nodes("high"), 0] += 0.06
+    shifted = replace(mesh, points=points)
+    with pytest.raises(
+        faying.InputError, match=r"look away from each other, but no axis .* 60 mm aside .*give at .* and seat"
+    ):
+        bolt().fitted(shifted)
+    fitted = bolt(at=(0.07, 0.02, 0.0), seat=(0.0, 12e-3)).fitted(shifted)
+    assert fitted.axis == pytest.approx([0, 0, -1])
+    assert fitted.length == pytest.approx(0.02)

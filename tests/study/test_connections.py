@@ -1,5 +1,6 @@
 """What a study may say of bolts, supports, masses, gaps, friction, tightening, response and damping."""
 
+import re
 import tomllib
 
 import pytest
@@ -53,9 +54,16 @@ def test_a_solid_bolt(folder):
     by_torque = {"torque": "20 N m", "diameter": "8 mm", "nut_factor": 0.2}
     assert study(folder, bolt=[given | by_torque]).bolts[0].preload == pytest.approx((12.5e3,))
     with pytest.raises(faying.InputError, match=r"the part 'bolt', whose mesh has shank.*; leave out material, seat$"):
-        study(folder, bolt=[given | {"preload": "2 kN"} | SHANK | {"seat": ["9 mm", "16 mm"]}])
+        study(folder, bolt=[given | {"torque": "20 N m", "nut_factor": 0.2} | SHANK | {"seat": ["9 mm", "16 mm"]}])
+    with pytest.raises(faying.InputError, match=r"1 fault\n.*leave out material$"):
+        study(folder, bolt=[given | {"preload": "2 kN", "material": "45 steel"}])
+    with pytest.raises(
+        faying.InputError, match=r"bolt\[1\].diameter goes only with torque here, since the part 'bolt'"
+    ):
+        study(folder, bolt=[given | {"preload": "2 kN", "diameter": "8 mm"}])
 
 
+SUMMITS = {"model": "gw", "density": "3e9 1/m^2", "radius": "60 um", "sigma": "0.3 um"}
 LAW_TABLE = "pressure [MPa],k_n [MPa/um],k_t [MPa/um]\n0.01,1,0.5\n50,900,400\n"
 
 
@@ -71,7 +79,6 @@ def law_named(folder, **law):
 def test_laws_given_in_full_need_no_surface(folder):
     """Each against the law made by hand."""
     from faying.contact.greenwood_williamson import GreenwoodWilliamson
-    from faying.contact.persson import Persson
     from faying.contact.power_law import PowerLaw
     from faying.contact.tabulated import TabulatedLaw
     from faying.materials import CATALOGUE, ContactPair
@@ -84,7 +91,6 @@ def test_laws_given_in_full_need_no_surface(folder):
         (law_named(folder, model="gw", **summits), GreenwoodWilliamson(density=3e9, radius=60e-6, sigma=3e-7, pair=pair)),
         (law_named(folder, model="gw-ke", **summits),
          GreenwoodWilliamson(density=3e9, radius=60e-6, sigma=3e-7, asperity="KogutEtsion", pair=pair)),
-        (law_named(folder, model="persson", slope=0.1, h_rms="1 um"), Persson(slope=0.1, h_rms=1e-6, pair=pair)),
         (law_named(folder, model="power law", C=2e-10, m=0.5, greatest="20 MPa"), PowerLaw(C=2e-10, m=0.5, greatest=2e7)),
         (law_named(folder, model="table", file="law.csv"), TabulatedLaw.from_csv(folder / "law.csv")),
     ):  # fmt: skip
@@ -96,16 +102,47 @@ def test_laws_given_in_full_need_no_surface(folder):
 @pytest.mark.parametrize(
     ("law", "fault"),
     [
-        ({"model": "gw", "density": "3e9 1/m^2", "radius": "60 um"}, r"\[surface\] is missing"),
-        ({"model": "gw", "density": "3e9 1/m^2", "radius": "60 um", "sigma": 0.3}, 'law.sigma = 0.3 .*unit'),
-        ({"model": "gw", "slope": 0.1}, "law.slope is not a key that a study has"),
+        (SUMMITS | {"sigma": None}, r"law.sigma is missing \(standard deviation of the summit heights, m\); give it, or a "
+         r"\[surface\] with a scan"),
+        ({"model": "gw"}, r"law: density \(summits per area, 1/m\^2\), radius \(.*, m\) and sigma \(.*, m\) are missing; "
+         r"give them, or a \[surface\] with a scan"),
+        ({"model": "power law", "C": 2e-10}, r"law.m is missing \(power of pressure\); give it$"),
+        (SUMMITS | {"sigma": 0.3}, 'law.sigma = 0.3 .*unit'),
+        (SUMMITS | {"sigma": "0.3 s"}, "law.sigma .*not in a unit like m"),
+        (SUMMITS | {"sigma": None, "sigmo": "0.3 um"}, "law.sigmo is not a key that a study has; did you mean sigma"),
+        (SUMMITS | {"model": "gv"}, "no contact law 'gv'"),
+        (SUMMITS | {"model": "gw-ke", "asperity": "JacksonGreen"},
+         'law.asperity goes with model = "gw"; "gw-ke" has the asperity KogutEtsion'),
+        ({"model": "persson", "slope": 0.1, "h_rms": "1 um"}, 'law.model = "persson" cannot carry a joint by itself: .*never meet'),
+        ({"model": "jk"}, r"\[surface\] is missing"),
+        ({"model": "mb"}, r'\[surface\] is missing; model = "mb" takes its inputs from a scan there'),
+        ({"model": "table", "file": "none.csv"}, "law.file: no file"),
+        ({"model": "table", "file": "heights.csv"}, "heights.csv, line 1: no head"),
+        (SUMMITS | {"slope": 0.1}, "law.slope is not a key that a study has"),
         ({"model": "table"}, "law.file is missing"),
         ({"model": "jk", "file": "heights.csv"}, 'law.file goes with model = "table", not "jk"'),
     ],
 )  # fmt: skip
 def test_laws_that_lack_something(folder, law, fault):
-    with pytest.raises(faying.InputError, match=fault):
+    """One fault each, of [law] and of a joint's own law alike."""
+    law = {key: value for key, value in law.items() if value is not None}
+    with pytest.raises(faying.InputError, match=r"1 fault\n(.|\n)*" + fault):
         study(folder, surface=None, law=law)
+    of_joint = fault.replace("law.", r"joint\[1\].law.", 1).replace("law:", r"joint\[1\].law:", 1)
+    with pytest.raises(faying.InputError, match=r"1 fault\n(.|\n)*" + of_joint):
+        study(folder, surface=None, joint=joint(law=law))
+
+
+@pytest.mark.parametrize("model", ["jk", "mb", "wk", "yk", "me", "js"])
+def test_the_fractal_parameters_go_under_surface(folder, model):
+    text = "law.G is not a key of the law; D, G and scan_area go under [surface]"
+    with pytest.raises(faying.InputError, match=re.escape(text)):
+        study(folder, law={"model": model, "D": 2.4, "G": "1e-10 m"})
+
+
+def test_laws_that_a_scan_gives_are_read_with_what_changes_them(folder):
+    found = study(folder, law={"model": "gw", "sigma": "1 um"})
+    assert (found.law.options, found.law.own) == ({"sigma": pytest.approx(1e-6)}, False)
 
 
 def test_torque_with_friction(folder):

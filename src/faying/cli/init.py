@@ -7,7 +7,7 @@ import click
 
 @click.command()
 @click.argument("study", type=click.Path(path_type=Path), default="study.toml")
-@click.option("--force", is_flag=True, help="Replace the file if it exists.")
+@click.option("--force", is_flag=True, help="Replace files that exist with other content.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was written as JSON.")
 def command(study: Path, force: bool, as_json: bool) -> None:
     """Write a commented study to STUDY, with a small bolted pair (STEP) beside it, so that it runs as it is."""

@@ -2,6 +2,8 @@
 
 import json
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 
 import click
@@ -27,13 +29,9 @@ def command(study: Path, out: Path | None, as_json: bool, no_files: bool, uff: b
     if uff:
         universal.check(plan.response)
     folder = out or plan.folder / "results"
-    if not no_files:
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as fault:
-            raise InputError(f"cannot make the folder {folder}: {fault.strerror}; give another with --out") from None
     stages = 3 + (2 + (plan.response is not None)) * plan.load_count + (plan.hammer is not None) + (not no_files)
-    with click.progressbar(length=stages, file=sys.stderr, label="study", item_show_func=lambda s: s or "") as bar:
+    bar = click.progressbar(length=stages, file=sys.stderr, label="study", item_show_func=lambda s: s or "")
+    with nullcontext() if no_files else _folder(folder), bar:
 
         def tell(stage: str) -> None:
             bar.update(0 if stage.endswith("of the test") else 1, stage)
@@ -59,3 +57,22 @@ def command(study: Path, out: Path | None, as_json: bool, no_files: bool, uff: b
         click.echo(f"note: {line}")
     if files:
         click.echo(f"\nwritten to {folder}: {', '.join(f.name for f in files)}")
+
+
+@contextmanager
+def _folder(folder: Path) -> Iterator[None]:
+    """Make a folder before hours of work, and take it away again if they come to nothing."""
+    from faying.errors import InputError
+
+    new = [path for path in (folder, *folder.parents) if not path.exists()]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as fault:
+        raise InputError(f"cannot make the folder {folder}: {fault.strerror}; give another with --out") from None
+    try:
+        yield
+    except BaseException:
+        for path in new:
+            with suppress(OSError):  # it holds something by now
+                path.rmdir()
+        raise

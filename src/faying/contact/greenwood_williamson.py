@@ -53,7 +53,8 @@ class GreenwoodWilliamson(ContactLaw):
     def __post_init__(self) -> None:
         need = partial(require, "GW")
         for name in ("density", "radius", "sigma"):
-            need(0 < getattr(self, name) < inf, f"{name} = {getattr(self, name)}; it must be positive")
+            value, unit = getattr(self, name), self.parameters[name].unit
+            need(0 < value < inf, f"{name} = {value:g} {unit}; it must be positive and finite")
         self._asperity  # noqa: B018  # names its own faults
 
     @classmethod

@@ -62,7 +62,8 @@ class MeasuredHeights(ContactLaw):
         need(bool(np.all(np.diff(g) > 0)), "gaps do not rise; sort the table and drop repetitions")
         need(bool(np.trapezoid(c, g) > 0), "the chance of every gap is 0")
         for name in ("density", "radius"):
-            need(0 < getattr(self, name) < inf, f"{name} = {getattr(self, name)}; it must be positive")
+            value, unit = getattr(self, name), self.parameters[name].unit
+            need(0 < value < inf, f"{name} = {value:g} {unit}; it must be positive and finite")
         for name, value in (("gaps", g.copy()), ("chance", c / np.trapezoid(c, g))):
             value.setflags(write=False)
             object.__setattr__(self, name, value)

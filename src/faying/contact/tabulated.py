@@ -1,8 +1,10 @@
 """A law from any measured or computed curve."""
 
+import csv
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
+from math import isfinite
 from pathlib import Path
 from typing import Any, ClassVar, Self, final
 
@@ -12,6 +14,9 @@ from numpy.typing import ArrayLike
 from faying.contact.law import Array, ContactLaw, Parameter, Response, checked, require
 from faying.errors import InputError, ReadError
 
+FORM = "a table looks like: pressure [MPa],k_n [MPa/um] and under it rows such as 1,40"
+EXAMPLES = {"Pa": "MPa", "Pa/m": "MPa/um", "J/m^2": "J/m^2"}
+PASSED_OVER = "valid"
 QUANTITIES = ("area", "k_n", "k_t", "loss_n", "loss_t", "energy_n", "energy_t", "k_load")
 
 
@@ -88,9 +93,15 @@ class TabulatedLaw(ContactLaw):
     def from_csv(cls, path: str | Path) -> Self:
         """Read a table with a head such as `pressure [MPa],k_n [MPa/um]`; lines from # on are comments.
 
-        `faying law --csv` writes such files. Raises ReadError for files that are missing or do not hold a table.
+        `faying law --csv` writes such files. Raises ReadError, with the file and the line, for files that are missing or
+        do not hold a table.
         """
-        return cls(**read_columns(Path(path)), origin=str(path))
+        try:
+            return cls(**read_columns(Path(path)), origin=str(path))
+        except ReadError:
+            raise
+        except InputError as fault:
+            raise ReadError(f"{path}: {fault}") from None
 
     @property
     def _columns(self) -> dict[str, Array]:
@@ -136,26 +147,107 @@ def _frozen(values: Array) -> Array:
 
 
 def read_columns(path: Path) -> dict[str, Array]:
-    """Read the columns of a CSV file whose head names quantities and units; SI arrays by name."""
-    from faying.units import scale
+    """Read the columns of a CSV file whose head names quantities and units; SI arrays by name.
 
+    Comments begin with #; a column "valid", as `faying law --csv` writes it, is passed over. Raises ReadError.
+    """
     try:
-        lines = [line for line in path.read_text().splitlines() if line.strip() and not line.startswith("#")]
+        text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as fault:
         raise ReadError(f"{path}: cannot be read as text ({fault})") from None
-    head = [cell.strip() for cell in lines[0].split(",")] if lines else []
-    out: dict[str, Array] = {}
-    for i, cell in enumerate(head):
-        name, _, unit = cell.partition("[")
-        name, unit = name.strip(), unit.rstrip("] ").strip()
-        if name not in TabulatedLaw.parameters or name == "origin":
+    lines = [(i, bare) for i, line in enumerate(text.splitlines(), start=1) if (bare := line.partition("#")[0].strip())]
+    if not lines:
+        raise ReadError(f"{path}: the head is empty; {FORM}")
+    (first, head), *body = lines
+    if "," not in head and (";" in head or "\t" in head):
+        mark = "semicolons" if ";" in head else "tabs"
+        raise ReadError(
+            f"{path}, line {first}: {mark} between the columns; put commas there, and points in decimal numbers"
+        )
+    if _is_number(_cells(head)[0]):
+        raise ReadError(f"{path}, line {first}: no head with the names of the columns; {FORM}")
+    columns = [_column(cell, f"{path}, line {first}") for cell in _cells(head)]
+    names = [name for name, _ in columns]
+    for name in names:
+        if names.count(name) > 1:
+            raise ReadError(f'{path}, line {first}: {names.count(name)} columns are called "{name}"; leave one')
+    if "pressure" not in names:
+        raise ReadError(f'{path}, line {first}: no column "pressure [unit]"; the head is {head}')
+    if not set(names) & set(QUANTITIES):
+        raise ReadError(f"{path}, line {first}: nothing but pressure is given; add any of {', '.join(QUANTITIES)}")
+    rows = [_row(line, names, f"{path}, line {number}") for number, line in body]
+    if len(rows) < 2:
+        raise ReadError(
+            f"{path}: {len(rows)} row{'s' * (len(rows) != 1)} under the head; give 2 or more, rising in pressure"
+        )
+    for (number, _), above, row in zip(body[1:], rows, rows[1:], strict=False):
+        if not row["pressure"] > above["pressure"]:
+            raise ReadError(f"{path}, line {number}: the pressure {row['pressure']:g} does not rise above {above['pressure']:g}, "
+                            "that of the row before; sort the rows and drop repetitions")  # fmt: skip
+    return {name: factor * np.array([row[name] for row in rows]) for name, factor in columns if name != PASSED_OVER}
+
+
+def _cells(line: str) -> list[str]:
+    """The cells of one line, without blanks and quotation marks around them."""
+    return [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))]
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
+
+
+def _column(cell: str, where: str) -> tuple[str, float]:
+    """Name and factor to SI of one cell of the head."""
+    from faying.units import scale
+
+    name, _, unit = cell.partition("[")
+    name, unit = name.strip(), unit.rstrip("] ").strip()
+    if name == PASSED_OVER:
+        return name, 1.0
+    if name != "pressure" and name not in QUANTITIES:
+        known = ", ".join(("pressure", *QUANTITIES))
+        raise ReadError(f'{where}: the column "{cell}" is unknown; known are {known}; {FORM}')
+    wanted = TabulatedLaw.parameters[name].unit
+    if not wanted:
+        if unit not in ("", "-", "1"):
+            raise ReadError(f'{where}: the column "{cell}" has no unit; give plain numbers under "{name}"')
+        return name, 1.0
+    example = f'write for example "{name} [{EXAMPLES[wanted]}]"'
+    if not unit:
+        raise ReadError(f'{where}: the column "{cell}" lacks its unit; {example}')
+    try:
+        return name, scale(unit, wanted)
+    except InputError:
+        raise ReadError(f'{where}: "{unit}" of the column "{cell}" is not a unit like {wanted}; {example}') from None
+
+
+def _row(line: str, names: list[str], where: str) -> dict[str, float]:
+    """The numbers of one line by the names of their columns."""
+    cells = _cells(line)
+    if len(cells) > len(names):
+        raise ReadError(f"{where}: {len(cells)} values under the {len(names)} columns of the head; {FORM}")
+    row = {}
+    for i, name in enumerate(names):
+        if name == PASSED_OVER:
             continue
-        wanted = TabulatedLaw.parameters[name].unit
-        factor = scale(unit, wanted, name=f"unit of {name}") if wanted else 1.0
+        cell = cells[i] if i < len(cells) else ""
+        if not cell:
+            raise ReadError(f'{where}: no value in the column "{name}"; give one, or leave the row out')
         try:
-            out[name] = factor * np.array([float(line.split(",")[i]) for line in lines[1:]])
-        except (ValueError, IndexError):
-            raise ReadError(f"{path}: column {cell!r} holds something that is not a number") from None
-    if "pressure" not in out:
-        raise ReadError(f'{path}: no column "pressure [unit]"; the head is {", ".join(head) or "empty"}')
-    return out
+            value = row[name] = float(cell)
+        except ValueError:
+            raise ReadError(f'{where}: "{cell}" in the column "{name}" is not a number') from None
+        if not isfinite(value):
+            raise ReadError(f'{where}: "{cell}" in the column "{name}" is not a finite number; leave the row out')
+        if value < 0 or (value == 0 and name == "pressure"):
+            least = (
+                "pressures must be above 0, where the faces begin to touch"
+                if name == "pressure"
+                else "it must be 0 or more"
+            )
+            raise ReadError(f'{where}: {cell} in the column "{name}"; {least}')
+    return row

@@ -13,6 +13,7 @@ from faying.fe.attach import Ring, mean_motion
 from faying.fe.elasticity import Solid
 from faying.fe.faces import face_centre
 from faying.fe.mesh import Mesh
+from faying.units import show
 
 Array = NDArray[np.float64]
 # proportions of hexagon heads and nuts, of the thread's diameter: width across flats, heights (ISO 4014, ISO 4032)
@@ -104,7 +105,7 @@ class Bolt:
             raise InputError(f"bolt {self.name!r}: the seat's inner diameter must be less than its outer")
 
     def fitted(self, mesh: Mesh) -> "FittedBolt":
-        """Return the bolt in its place. Raises InputError where its faces do not look away from each other."""
+        """Return the bolt in its place. Raises InputError where its faces do not look away from each other, or no axis joins them."""
         first, second = self.faces
         if mesh.face_part[first] == mesh.face_part[second] and self.diameter is None:
             raise InputError(f"the bolt's faces {first!r} and {second!r} are both on part {mesh.face_part[first]!r}; a bolt "
@@ -119,6 +120,12 @@ class Bolt:
         axis = centre_b - centre_a
         length = float(np.linalg.norm(axis))
         if length < 1e-6 * mesh.size or normal_a @ axis > -0.5 * length or normal_b @ axis < 0.5 * length:
+            apart = min(-normal_a @ axis, normal_b @ axis)
+            if normal_a @ normal_b < -0.5 and apart > 1e-6 * mesh.size:
+                raise InputError(f"the bolt's faces {first!r} and {second!r} look away from each other, but no axis joins their "
+                                 f"centres, which lie {show(float(np.linalg.norm(axis - (axis @ normal_a) * normal_a)), 'm')} "
+                                 "aside of each other; give at (a point on the bolt's axis) and seat (the ring that head and nut "
+                                 "press on)")  # fmt: skip
             raise InputError(f"the bolt's faces {first!r} and {second!r} do not look away from each other; name the two seats "
                              "that head and nut press on")  # fmt: skip
         rings: list[Ring | None] = [None, None]

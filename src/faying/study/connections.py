@@ -153,6 +153,9 @@ def bolt_spec(table: Table, index: int) -> BoltSpec:
     diameter = table.quantity("diameter", "m", None)
     forces = table.take("preload", lambda v, name: _rising(v, name, "N", "12 kN"), None)
     torques = table.take("torque", lambda v, name: _rising(v, name, "N m", "20 N m"), None)
+    if part is not None and diameter is not None and "torque" not in table.data:
+        table.faults.add(f"{table.where}.diameter goes only with torque here, since the part {part!r} has a shank of its own; leave "
+                         "it out")  # fmt: skip
     factor = table.number("nut_factor", None)
     pitch = table.quantity("pitch", "m", None)
     frictions = table.number("thread_friction", None), table.number("head_friction", None)

@@ -90,8 +90,11 @@ class Study:
         parts = _parts(top, materials)
         joints = tuple(joint_spec(t, i, folder) for i, t in enumerate(top.tables("joint", required=True)))
         law = law_spec(top.table("law") or Table({}, "law", faults), folder)
-        bare = any(joint.surface is None and (joint.law or law).needs_surface for joint in joints)
-        shared = top.table("surface", required=bare)
+        shared = top.table("surface")
+        if "surface" not in data:
+            for text in dict.fromkeys((joint.law or law).lacking for joint in joints if joint.surface is None):
+                if text:
+                    faults.add(text)
         surface = None if shared is None else surface_spec(shared, folder)
         bolts = tuple(bolt_spec(t, i) for i, t in enumerate(top.tables("bolt", required=True)))
         supports = tuple(support_spec(t) for t in top.tables("support"))
@@ -145,6 +148,8 @@ def _materials(top: Table) -> dict[str, Material]:
 
 def _known_materials(bolts: tuple[BoltSpec, ...], materials: dict[str, Material], faults: Faults) -> None:
     for bolt in bolts:
+        if bolt.part is not None:  # its material is that of the part
+            continue
         for name in (bolt.material, *(washer.material for washer in bolt.washers)):
             if name is not None and name not in materials:
                 known = ", ".join(f'"{m}"' for m in materials)

@@ -13,7 +13,7 @@ from faying.contact.tabulated import TabulatedLaw
 from faying.errors import InputError
 from faying.files import read_numbers
 from faying.materials import ContactPair
-from faying.study.contact import FROM_SURFACE, HeightsSpec, LawSpec, SurfaceSpec, law_class
+from faying.study.contact import HeightsSpec, LawSpec, SurfaceSpec, law_class, needed
 from faying.surface.form import prepared
 from faying.surface.fractal import fit_fractal
 from faying.surface.read import read_scan
@@ -90,9 +90,12 @@ def law_of(spec: LawSpec, surface: Surface, pair: ContactPair) -> ContactLaw:
             own["asperity"] = asperity
         return cast(ContactLaw, cls(**own, **({"pair": pair} if any(f.name == "pair" for f in fields(cls)) else {})))
     if surface.scan is None:
-        known = [name for name in law_class(spec.model).parameters if name not in FROM_SURFACE]
-        raise InputError(f'law.model = "{spec.model}" takes its inputs from an areal scan; give surface.scan, or its own parameters '
-                         f'under [law] ({", ".join(known)}), or use "jk"')  # fmt: skip
+        must = needed(law_class(spec.model))
+        lacking = ", ".join(name for name in must or () if name not in spec.options)
+        own_way = f", or its own parameters under [law] ({lacking})" if lacking else ""
+        raise InputError(
+            f'law.model = "{spec.model}" takes its inputs from an areal scan; give surface.scan{own_way}, or use "jk"'
+        )
     inputs = SurfaceInputs.from_heights(surface.scan.heights, surface.scan.spacing, D=surface.D, G=surface.G)
     made, left_out = laws_of_surface(inputs, pair, names=[spec.model], scan=surface.scan)
     if left_out:

@@ -1,6 +1,7 @@
 """The study that `faying init` writes: every key explained, and a geometry so small that it runs in seconds."""
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from faying.errors import InputError
 from faying.files import whole
@@ -122,10 +123,29 @@ def blocks(path: Path) -> None:
 
 
 def write(study: Path, *, force: bool = False) -> list[Path]:
-    """Write the study and its geometry; InputError where a file exists already, unless `force`."""
+    """Write the study and its geometry; InputError where a file of other content exists already, unless `force`."""
     step = study.with_name("two-blocks.step")
-    for path in (study, step):
-        if path.exists() and not force:
-            raise InputError(f"{path} exists already; name another file, or replace it with --force")
     text = TEXT.format(name=study.name, step=step.name)
-    return [whole(step, blocks), whole(study, lambda path: path.write_text(text, encoding="utf-8"))]
+    kept = not force and step.exists() and _solids(step) == _solids(None)
+    for path, same in ((study, not study.exists() or _text(study) == text), (step, kept or not step.exists())):
+        if not (same or force):
+            raise InputError(
+                f"{path} exists already, with other content; name another file, or replace it with --force"
+            )
+    return [step if kept else whole(step, blocks), whole(study, lambda path: path.write_text(text, encoding="utf-8"))]
+
+
+def _solids(step: Path | None) -> list[str]:
+    """The lines of a STEP file, of a fresh one where None, without those that count the writings and tell their time."""
+    if step is None:
+        with TemporaryDirectory() as folder:
+            blocks(Path(folder) / "fresh.step")
+            return _solids(Path(folder) / "fresh.step")
+    return [line for line in _text(step).splitlines() if "FILE_NAME(" not in line and "STEP translator" not in line]
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8", errors="replace")
+    except OSError:  # a folder, for example
+        return ""
