@@ -16,6 +16,7 @@ def result(joints, laws):
         weights=np.ones(n), joint_of_point=np.arange(n), joints=joints, unknowns=9, solver="s", outline=np.eye(3),
         triangles=np.array([[0, 1, 2]]), shapes=np.ones((1, 1, 3, 3)), bolts=("b",), bolt_forces=one,
         slipping=np.zeros((1, n)), mac=np.ones((1, 1, 1)), surface={"D": 2.4}, law={"name": "JK", "cutoff": 0.01},
+        convergence=({"total_k_n [N/m]": 1.0, "total_k_t [N/m]": 1.0, "imbalance": 0.0},),
         sources=("material steel: book", *(f"contact law {law}: doi:{law}" for law in laws)),
     )  # fmt: skip
 
