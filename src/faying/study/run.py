@@ -14,7 +14,7 @@ from faying.fe.modes import Modes, lowest_modes
 from faying.fe.solve import chosen
 from faying.joint.balance import Preload
 from faying.joint.held import STILL, check_motions, held_preload, open_joints
-from faying.joint.structure import Springs, Structure
+from faying.joint.structure import Springs, Structure, tie
 from faying.measured.model import FullResponse
 from faying.result import Comparison, Receptance, Result
 from faying.study.build import build_all, checked_mesh, surfaces_of
@@ -163,8 +163,11 @@ def _tied(structure: Structure, count: int, shift: float, solver: str | None, no
         return lowest_modes(
             (merge.T @ K @ merge).tocsr(), (merge.T @ M @ merge).tocsr(), count, shift_frequency=shift, solver=solver
         )
-    notes.append("the faces of a joint do not match node for node, or a support holds some of them: the tied modes use springs a thousand times as stiff as "
-                 "the parts in place of grown-together faces")  # fmt: skip
+    apart = [joint.name for joint in structure.joints if tie(structure.mesh, [joint.faces]) is None]
+    why = f"the faces of {', '.join(apart)} do not match node for node" if apart else "supports hold some of the nodes"
+    notes.append(
+        f"{why}: the tied modes use springs a thousand times as stiff as the parts in place of grown-together faces"
+    )
     stiff = 1e3 * max(m.E for m in structure.materials.values()) / structure.mesh.size
     for joint in structure.joints:
         springs = joint.interface.springs(*2 * (np.full(len(joint.interface.weights), stiff),))
@@ -186,7 +189,10 @@ def _flags(structure: Structure, preload: Preload, load: float) -> list[str]:
                 f"{joint.name}, {load / 1e3:g} kN: on {share:.2%} of the joint the pressure exceeds the {end / 1e6:.3g} MPa at "
                 f"which {joint.seat.law.name} ends with this surface; stiffness is held there"
             )
-        reasons = getattr(joint.seat.answer(pressure), "reasons", {})
+        answer = joint.seat.answer(pressure)
+        reasons = getattr(answer, "reasons", {})
+        if answer.loss_n is None and answer.loss_t is None:
+            out.append(f"{joint.name}: {joint.seat.law.name} defines no loss; the joint damps nothing")
         for text, mask in reasons.items():
             share = float(joint.interface.weights @ mask / joint.interface.area)
             if share > 0:
