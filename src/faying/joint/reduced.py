@@ -110,9 +110,15 @@ class SmallBalance(Balance):
 
     def _direction(self, u: Array, force: Array, grips: list[Grip], accuracy: float) -> tuple[Array, int]:
         from scipy.linalg import LinAlgError, cho_factor, cho_solve
+        from scipy.linalg.blas import dsyrk
 
         matrix = self.stiffness.copy()
         for trace, k_n, k_t in self._tangents(u, grips):
+            if not k_t[:, 0, 1].any():  # nothing slides: half the work through the roots of the springs
+                root = np.sqrt(np.stack([k_n, k_t[:, 0, 0], k_t[:, 1, 1]], axis=1)).reshape(-1, 1)
+                lower = dsyrk(1.0, (root * trace.relative).T, lower=1)
+                matrix += lower + np.tril(lower, -1).T
+                continue
             local = trace.relative.reshape(len(k_n), 3, -1)
             scaled = np.empty_like(local)
             scaled[:, 0] = k_n[:, None] * local[:, 0]
