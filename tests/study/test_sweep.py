@@ -169,6 +169,7 @@ def test_a_sweep_whose_middle_has_no_answer(plan, tmp_path):
     assert np.all(np.isnan(swept.frequencies[1]))
     with pytest.raises(faying.InputError, match="lower the preload"):
         sweep(plan, axes("bolt.preload=400 kN,500 kN"), tmp_path / "none.nc")
+    assert not list(tmp_path.glob("none*"))
 
 
 def in_full(plan):

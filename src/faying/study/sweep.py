@@ -123,17 +123,21 @@ def sweep(
     grid = Grid(study=study, surfaces=surfaces_of(study), axes=tuple(axes))
     store = Store(Path(out), _fingerprint(study, axes, tolerance), grid.size, study.mode_count)
     tell("mesh", 0)
-    mesh = checked_mesh(study)
-    structure = build_all(study, mesh=mesh, surfaces=grid.surfaces).structure
-    pairs = [
-        tuple(study.materials[study.parts[mesh.face_part[face]]] for face in joint.faces) for joint in study.joints
-    ]
-    recipe = Recipe(grid=grid, pairs=tuple(pairs))  # type: ignore[arg-type]
-    trainer = _Trainer(study, structure, recipe, tolerance, tell)
-    model = store.model()
-    if model is None:
-        model = trainer.trained().model
-        store.keep_model(model)
+    try:
+        mesh = checked_mesh(study)
+        structure = build_all(study, mesh=mesh, surfaces=grid.surfaces).structure
+        pairs = [
+            tuple(study.materials[study.parts[mesh.face_part[face]]] for face in joint.faces) for joint in study.joints
+        ]
+        recipe = Recipe(grid=grid, pairs=tuple(pairs))  # type: ignore[arg-type]
+        trainer = _Trainer(study, structure, recipe, tolerance, tell)
+        model = store.model()
+        if model is None:
+            model = trainer.trained().model
+            store.keep_model(model)
+    except FayingError:
+        store.forget()
+        raise
     tell("evaluations", int(store.done.sum()))
     todo = [i for i in grid.winding() if not store.done[i]]
     chunks = [todo[i : i + CHUNK] for i in range(0, len(todo), CHUNK)]

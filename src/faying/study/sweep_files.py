@@ -102,6 +102,11 @@ class Store:
             whole(label, lambda temporary: temporary.write_text(text, encoding="utf-8"))
         self.number = len(list(self.folder.glob("chunk-*.npz")))
 
+    def forget(self) -> None:
+        """Remove the folder where nothing has been kept in it, so that it bars no other sweep."""
+        if not any(self.folder.glob("chunk-*.npz")) and self.model() is None:
+            shutil.rmtree(self.folder, ignore_errors=True)
+
     def _take(self, indices: Any, rows: dict[str, Array]) -> None:
         for name in self.COLUMNS:
             self.rows[name][indices] = rows[name]
