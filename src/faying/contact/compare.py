@@ -22,6 +22,14 @@ ASPERITIES = {
 }
 
 
+def law_class(name: str) -> type[ContactLaw]:
+    """Return the class of a law by any of its names; "GW-KE" and the like are Greenwood and Williamson's.
+
+    Raises InputError for unknown names.
+    """
+    return laws()["GreenwoodWilliamson"] if name.upper() in ASPERITIES else find_law(name)
+
+
 @final
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
@@ -64,7 +72,7 @@ def laws_of_surface(
     left_out: dict[str, str] = {}
     for name in wanted:
         upper = name.strip().upper()
-        cls = laws()["GreenwoodWilliamson"] if upper in ASPERITIES else find_law(name)
+        cls = law_class(name.strip())
         label = upper if upper in ASPERITIES else cls.name
         takes_scan = any(f.name == "scan" for f in fields(cls))  # type: ignore[arg-type]
         if names is None and cls.from_surface.__func__ is ContactLaw.from_surface.__func__:  # type: ignore[attr-defined]

@@ -59,8 +59,7 @@ class Pardiso:
         bare = np.flatnonzero(np.diff(matrix.indptr) == 0)
         if len(bare):
             raise NotConverged(f"{len(bare)} unknowns have no stiffness at all; is a part held by nothing?")
-        blocks = matrix.tobsr((self._block, self._block))
-        blocks.sort_indices()
+        blocks = self._in_nodes(matrix)
         rows = np.repeat(np.arange(len(blocks.indptr) - 1, dtype=np.int32), np.diff(blocks.indptr))
         self._kept = blocks.indices >= rows
         if self._kept.sum() * self._block**2 > np.iinfo(np.int32).max:
@@ -95,11 +94,15 @@ class Pardiso:
 
     def again(self, matrix: Any) -> "Pardiso":
         """Factorise another matrix of the same pattern, indices sorted; the analysis is kept."""
-        blocks = matrix.tobsr((self._block, self._block))
-        blocks.sort_indices()
-        self._values = np.asarray(blocks.data[self._kept], dtype=float).ravel()
+        self._values = np.asarray(self._in_nodes(matrix).data[self._kept], dtype=float).ravel()
         self._call(FACTORISE)
         return self
+
+    def _in_nodes(self, matrix: Any) -> Any:
+        """The matrix in blocks of one node, in order."""
+        blocks = matrix.tobsr((self._block, self._block))
+        blocks.sort_indices()
+        return blocks
 
     def _call(self, phase: int, b: Array | None = None, x: Array | None = None) -> None:
         def number(value: int) -> Any:

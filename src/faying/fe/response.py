@@ -56,8 +56,8 @@ def frequency_response(
     """Solve (K + i eta P + i C - w^2 M) u = f, or with i w C where kind is viscous, in a basis.
 
     forces (unknowns, i): unit forces; outputs (unknowns, o): what is read of u; frequencies [Hz] (f,);
-    structural_loss: eta of the parts themselves, whose stiffness is P (parts; K where None). Basis: rigid motions, real and complex modes, and the response to the
-    forces at the shift of the factorisation, so that modes beyond the last one count through their static part. Raises
+    structural_loss: eta of the parts themselves, whose stiffness is P (parts; K where None). Basis: rigid motions, real and
+    complex modes, and the response to the forces at the shift of the factorisation, so that modes beyond the last one count through their static part. Raises
     InputError for frequencies that do not rise from above 0.
     """
     from scipy.linalg import cholesky, solve_triangular
@@ -72,7 +72,7 @@ def frequency_response(
     basis = _orthonormal(columns, mass, leading=modes.shapes.shape[1])
     small_k, small_c = basis.T @ (stiffness @ basis), basis.T @ (loss @ basis)
     lossy = stiffness if parts is None else parts
-    small_p = basis.T @ (lossy @ basis)
+    small_p = small_k if parts is None else basis.T @ (parts @ basis)
     for small in (small_k, small_p):
         small[:rigid] = small[:, :rigid] = 0.0
     small_m = basis.T @ (mass @ basis)

@@ -90,6 +90,17 @@ def _complex_modes(real: Array, loss: Array, count: int) -> tuple[Complex, Compl
     return values[order], vectors[:, order]
 
 
+def _sprung(relative: Array, springs: Array) -> Array:
+    """Stiffness (m, m) of springs (q, 3) [N/m], normal and both tangential, on a relative motion (3q, m).
+
+    Springs and losses are never negative: half the work through their roots.
+    """
+    from scipy.linalg.blas import dsyrk
+
+    lower = dsyrk(1.0, (np.sqrt(springs).reshape(-1, 1) * relative).T, lower=1)
+    return np.asarray(lower + np.tril(lower, -1).T)
+
+
 class SmallBalance(Balance):
     """Equilibrium in a basis: dense Newton."""
 
@@ -110,14 +121,11 @@ class SmallBalance(Balance):
 
     def _direction(self, u: Array, force: Array, grips: list[Grip], accuracy: float) -> tuple[Array, int]:
         from scipy.linalg import LinAlgError, cho_factor, cho_solve
-        from scipy.linalg.blas import dsyrk
 
         matrix = self.stiffness.copy()
         for trace, k_n, k_t in self._tangents(u, grips):
-            if not k_t[:, 0, 1].any():  # nothing slides: half the work through the roots of the springs
-                root = np.sqrt(np.stack([k_n, k_t[:, 0, 0], k_t[:, 1, 1]], axis=1)).reshape(-1, 1)
-                lower = dsyrk(1.0, (root * trace.relative).T, lower=1)
-                matrix += lower + np.tril(lower, -1).T
+            if not k_t[:, 0, 1].any():  # nothing slides
+                matrix += _sprung(trace.relative, np.stack([k_n, k_t[:, 0, 0], k_t[:, 1, 1]], axis=1))
                 continue
             local = trace.relative.reshape(len(k_n), 3, -1)
             scaled = np.empty_like(local)
@@ -187,16 +195,11 @@ class ReducedModel:
         return values, shapes @ inner, estimate
 
     def _joints(self, springs: Sequence[Densities]) -> tuple[Array, Array]:
-        from scipy.linalg.blas import dsyrk
-
         size = len(self.dynamic_mass)
         real, imaginary = np.zeros((size, size)), np.zeros((size, size))
         for weights, relative, d in zip(self.weights, self.dynamic_relative, springs, strict=True):
             for target, n, t in ((real, d.k_n, d.k_t), (imaginary, d.c_n, d.c_t)):
-                # springs and losses are never negative: half the work through their roots
-                root = np.sqrt(weights[:, None] * np.stack([n, t, t], axis=1)).reshape(-1, 1)
-                lower = dsyrk(1.0, (root * relative).T, lower=1)
-                target += lower + np.tril(lower, -1).T
+                target += _sprung(relative, weights[:, None] * np.stack([n, t, t], axis=1))
         return real, imaginary
 
     def evaluate(self, seats: Sequence[Seat], forces: Array) -> Variant:

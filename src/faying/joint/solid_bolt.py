@@ -21,8 +21,8 @@ MOST = 6000  # unknowns of the layer that is drawn in: its dense block takes .3 
 class SolidBolt:
     """A bolt that is a meshed part; its faces meet the seats in joints like those of any other part.
 
-    part: its name; faces: those of the bolt itself under its head and under its nut, or round its thread; at [m] (3,): a point of the plane
-    in which the shank is drawn in, half-way between the faces where None.
+    part: its name; faces: those of the bolt itself under its head and under its nut, or round its thread; at [m] (3,): a
+    point of the plane in which the shank is drawn in, half-way between the faces where None.
     """
 
     name: str
@@ -71,12 +71,12 @@ class SolidBolt:
         pull = np.zeros_like(drawn)  # nothing but rounding outside the layer, where the motion is rigid
         pull[layer] = np.asarray(stiffness @ drawn.ravel()).reshape(-1, 3)[layer]
         rigidity = float(np.sum(pull * drawn))
-        return FittedSolidBolt(bolt=self, axis=axis, length=length, pull=pull.ravel(), rigidity=rigidity)
+        return FittedSolidBolt(bolt=self, pull=pull.ravel(), rigidity=rigidity)
 
 
 @dataclass(frozen=True, kw_only=True)
 class FittedSolidBolt:
-    """A solid bolt in its place: axis (3,) from head to nut, distance of its faces [m], pull [N/m] and rigidity [N/m].
+    """A solid bolt in its place: pull (unknowns,) and rigidity [N/m].
 
     The far half is drawn towards the head by a (the turn of a nut), v being 1 along the axis in that half and 0 in the
     other. The bolt is strained by u + a v, so that its tension is v.K(u + a v) = pull.u + rigidity a: the resultant of the
@@ -85,8 +85,6 @@ class FittedSolidBolt:
     """
 
     bolt: SolidBolt
-    axis: Array
-    length: float
     pull: Array
     rigidity: float
 

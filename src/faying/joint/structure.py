@@ -95,12 +95,13 @@ class Structure:
     def __post_init__(self) -> None:
         faces = [face for joint in self.joints for face in joint.faces] + [support.face for support in self.supports]
         held = {self.mesh.face_part[face] for face in faces if face in self.mesh.face_part}
-        meshed = [bolt.part for bolt in self.bolts if isinstance(bolt, SolidBolt)]
+        solid = [bolt for bolt in self.bolts if isinstance(bolt, SolidBolt)]
+        meshed = [bolt.part for bolt in solid]
         twice = sorted({part for part in meshed if meshed.count(part) > 1})
         if twice:
             raise InputError(f"part {', '.join(twice)} is two solid bolts; a part is drawn in once, with one preload")
-        for bolt in self.bolts:
-            apart = [face for face in bolt.faces if isinstance(bolt, SolidBolt) and face not in faces]
+        for bolt in solid:
+            apart = [face for face in bolt.faces if face not in faces]
             if apart:
                 raise InputError(f"bolt {bolt.name!r}: its face {apart[0]!r} is in no joint; add a [[joint]] of it and the seat that it "
                                  "presses")  # fmt: skip

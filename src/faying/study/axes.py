@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faying import units
+from faying.contact.compare import law_class
 from faying.contact.tabulated import TabulatedLaw
 from faying.errors import InputError
-from faying.study.contact import FROM_SURFACE, JK_NUMBERS, LawSpec, law_class
+from faying.study.contact import JK_NUMBERS, LawSpec, own_numbers
 from faying.study.schema import Study
 from faying.study.surface import Surface
 
@@ -79,13 +80,8 @@ def _law_units() -> dict[str, str]:
     """SI unit of every number that some law states as its own parameter, by `law.NAME`."""
     from faying.contact.registry import laws
 
-    return {
-        f"law.{name}": parameter.unit
-        for law in laws().values()
-        if law is not TabulatedLaw
-        for name, parameter in law.parameters.items()
-        if parameter.unit != "text" and name not in FROM_SURFACE
-    }
+    taken = (own_numbers(law) for law in laws().values() if law is not TabulatedLaw)
+    return {f"law.{name}": unit for numbers in taken for name, unit in numbers.items()}
 
 
 def _law_takes(law: LawSpec) -> tuple[str, ...]:
@@ -94,9 +90,7 @@ def _law_takes(law: LawSpec) -> tuple[str, ...]:
         return JK_NUMBERS
     if law.heights is not None or law.table is not None:
         return ()
-    return tuple(
-        name for name, p in law_class(law.model).parameters.items() if p.unit != "text" and name not in FROM_SURFACE
-    )
+    return tuple(own_numbers(law_class(law.model)))
 
 
 def _value(text: str, unit: str, name: str) -> float:

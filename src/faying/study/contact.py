@@ -5,6 +5,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Literal
 
+from faying.contact.compare import ASPERITIES, law_class
 from faying.contact.law import ContactLaw
 from faying.contact.tabulated import TabulatedLaw
 from faying.errors import InputError
@@ -121,8 +122,6 @@ def law_spec(table: Table, folder: Path) -> LawSpec:
 
 def _misplaced(table: Table, model: str) -> bool:
     """Note keys that belong elsewhere, each with its place; whether one belongs to another model."""
-    from faying.contact.compare import ASPERITIES
-
     foreign = [key for key in BELONGS if key in table.data and not table.known(key)]
     for key in foreign:
         table.faults.add(f'{table.where}.{key} goes with model = "{BELONGS[key]}", not "{model}"')
@@ -206,12 +205,9 @@ def needed(cls: Any) -> list[str] | None:
     return own if all(name in cls.parameters and name not in FROM_SURFACE for name in own) else None
 
 
-def law_class(model: str) -> type[ContactLaw]:
-    """Return the class of a law by any of its names; "GW-KE" and the like are Greenwood and Williamson's."""
-    from faying.contact.compare import ASPERITIES
-    from faying.contact.registry import find_law, laws
-
-    return laws()["GreenwoodWilliamson"] if model.upper() in ASPERITIES else find_law(model)
+def own_numbers(law: type[ContactLaw]) -> dict[str, str]:
+    """SI unit of every number that a law states as its own parameter ("" for plain ones), by name."""
+    return {name: p.unit for name, p in law.parameters.items() if p.unit != "text" and name not in FROM_SURFACE}
 
 
 def _plain(model: str) -> str:

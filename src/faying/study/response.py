@@ -68,11 +68,12 @@ class Solved:
 
     def _at(self, frequencies: Array, outputs: tuple[Array, Array], inputs: tuple[Array, Array]) -> Response:
         spec = self.study.response
+        eta = 0.0 if spec is None else spec.structural_loss
         return frequency_response(
             self.modes, self.damped, self.stiffness, self.mass, self.loss, forces=self._columns(*inputs),
             outputs=self._columns(*outputs), frequencies=frequencies, rigid=self.structure.rigid.shape[1], kind=self.study.damping,
-            structural_loss=0.0 if spec is None else spec.structural_loss,
-            parts=hold(self.structure.matrices[0], self.structure.held, 0.0),
+            structural_loss=eta,
+            parts=hold(self.structure.matrices[0], self.structure.held, 0.0) if eta else None,
         )  # fmt: skip
 
     def _columns(self, nodes: Array, axes: Array) -> Array:

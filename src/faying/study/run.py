@@ -97,7 +97,7 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     nodes, triangles = structure.outline()
     elastic = slice(still, still + study.mode_count)
     # those of the complex modes, whose frequencies stand beside them: real modes that lie close mix otherwise
-    shapes = np.stack([d.real_shapes(M).T.reshape(len(d.frequencies), -1, 3) for d in damped])
+    shapes = [d.real_shapes(M).T.reshape(len(d.frequencies), -1, 3) for d in damped]
     comparison = _compare(study, loads, structure, shapes, np.stack([d.frequencies for d in damped]), notes)
     rigid = np.max([m.frequencies[:still] for m in modes], axis=0)
     if still and rigid.max() > 1e-2:
@@ -129,7 +129,7 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         factor_memory=max(m.factorisation.memory for m in modes),
         outline=structure.mesh.points[nodes],
         triangles=triangles,
-        shapes=shapes[:, :, nodes],
+        shapes=np.stack([shape[:, nodes] for shape in shapes]),
         bolts=tuple(bolt.name for bolt in study.bolts),
         bolt_forces=np.array([p.bolt_forces for p in preloads]),
         slipping=np.array([p.slipping for p in preloads]),
@@ -224,7 +224,7 @@ def _convergence(preload: Preload, springs: tuple[Springs, ...]) -> dict[str, fl
 
 
 def _compare(
-    study: Study, loads: Array, structure: Structure, shapes: Array, frequencies: Array, notes: list[str]
+    study: Study, loads: Array, structure: Structure, shapes: list[Array], frequencies: Array, notes: list[str]
 ) -> Comparison | None:
     """Pair the test's frequencies, in order, with the modes that the test can see."""
     test = study.test

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any, cast
 
 from faying import units
-from faying.contact.compare import ASPERITIES, laws_of_surface
+from faying.contact.compare import ASPERITIES, law_class, laws_of_surface
 from faying.contact.inputs import SurfaceInputs
 from faying.contact.jk import JK
 from faying.contact.law import Array, ContactLaw
@@ -13,7 +13,7 @@ from faying.contact.tabulated import TabulatedLaw
 from faying.errors import InputError
 from faying.files import read_numbers
 from faying.materials import ContactPair
-from faying.study.contact import HeightsSpec, LawSpec, SurfaceSpec, law_class, needed
+from faying.study.contact import HeightsSpec, LawSpec, SurfaceSpec, needed
 from faying.surface.form import prepared
 from faying.surface.fractal import fit_fractal
 from faying.surface.read import read_scan
