@@ -17,11 +17,11 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
 
 from faying import Material, solve_asperity  # noqa: E402  the thread limits are read when NumPy is loaded
-from faying.fe.asperity import AsperityResult  # noqa: E402
-from faying.fe.asperity.cases import AsperityCase, solve_cases  # noqa: E402
+from faying.asperity_fe import AsperityResult  # noqa: E402
+from faying.asperity_fe.cases import AsperityCase, solve_cases  # noqa: E402
 from faying.fe.solve import available  # noqa: E402
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "fe"))
+sys.path.insert(0, str(Path(__file__).parent.parent))
 CAPS = [(15, 100), (20, 750), (40, 3000), (80, 6000)]
 
 
@@ -34,18 +34,36 @@ def table_1(elements: int, solver: str) -> list[float]:
     for ratio in (1.0, 1.5, 2.0):
         for R, h_a in CAPS:
             start = time.process_time()
-            found = solve_asperity(R=R * 1e-6, h_a=h_a * 1e-9, cap=material(ratio * 100e9), substrate=material(100e9),
-                                   displacement=h_a * 1e-10, elements=elements, solver=solver)  # fmt: skip
+            found = solve_asperity(
+                R=R * 1e-6,
+                h_a=h_a * 1e-9,
+                cap=material(ratio * 100e9),
+                substrate=material(100e9),
+                displacement=h_a * 1e-10,
+                elements=elements,
+                solver=solver,
+            )
             seconds.append(time.process_time() - start)
-            print(f"  R {R:3d} um  Ea/Eb {ratio:.1f}  F {found.force * 1e3:8.4g} mN  A {found.area * 1e12:7.4g} um2"
-                  f"  {found.unknowns} unknowns  {found.factorisations} factorisations  {seconds[-1]:6.2f} s")  # fmt: skip
+            print(
+                f"  R {R:3d} um  Ea/Eb {ratio:.1f}  F {found.force * 1e3:8.4g} mN  A {found.area * 1e12:7.4g} um2"
+                f"  {found.unknowns} unknowns  {found.factorisations} factorisations  {seconds[-1]:6.2f} s"
+            )
     return seconds
 
 
 def runner(elements: int, processes: int) -> None:
-    cases = [AsperityCase(R=R * 1e-6, h_a=h_a * 1e-9, cap=material(ratio * 100e9), substrate=material(100e9),
-                          displacement=(h_a * 1e-10,), elements=elements)
-             for ratio in (1.0, 1.5, 2.0) for R, h_a in CAPS]  # fmt: skip
+    cases = [
+        AsperityCase(
+            R=R * 1e-6,
+            h_a=h_a * 1e-9,
+            cap=material(ratio * 100e9),
+            substrate=material(100e9),
+            displacement=(h_a * 1e-10,),
+            elements=elements,
+        )
+        for ratio in (1.0, 1.5, 2.0)
+        for R, h_a in CAPS
+    ]
     before, start = os.times(), time.perf_counter()
     found = solve_cases(cases, processes=processes)
     after, wall = os.times(), time.perf_counter() - start
@@ -55,7 +73,7 @@ def runner(elements: int, processes: int) -> None:
 
 
 def against_calculix(elements: int, repeats: int = 3) -> None:
-    import calculix
+    from tests.helpers import calculix
 
     for R, h_a, ratio in ((20e-6, 0.75e-6, 1.0), (20e-6, 0.75e-6, 2.0)):
         ours, theirs = [], []
@@ -68,8 +86,10 @@ def against_calculix(elements: int, repeats: int = 3) -> None:
                 seen = calculix.run(Path(folder), model, touching, element="CAX4", increments=1)
             theirs.append(seen.seconds)
         a, b = statistics.median(ours), statistics.median(theirs)
-        print(f"  R {R * 1e6:.0f} um, Ea/Eb {ratio}: {len(model.mesh.nodes)} nodes, force over CalculiX's"
-              f" {force / seen.force:.4f}, CPU {a:.2f} s against {b:.2f} s: ratio {b / a:.1f}")  # fmt: skip
+        print(
+            f"  R {R * 1e6:.0f} um, Ea/Eb {ratio}: {len(model.mesh.nodes)} nodes, force over CalculiX's"
+            f" {force / seen.force:.4f}, CPU {a:.2f} s against {b:.2f} s: ratio {b / a:.1f}"
+        )
 
 
 def main() -> None:

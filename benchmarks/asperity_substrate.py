@@ -12,7 +12,7 @@ import os
 import numpy as np
 
 from faying import RIGID, Material
-from faying.fe.asperity.cases import AsperityCase, solve_cases
+from faying.asperity_fe.cases import AsperityCase, solve_cases
 
 RATIOS = (1.0, 1.5, 2.0)
 WIDER_RATIOS = (1.0, 1.5, 2.0, 4.0)
@@ -103,18 +103,27 @@ def main(elements: int = 40) -> None:
         (f"effective modulus, alpha = {alpha[0]:.3f} (fitted)", effective(alpha)),
     ):
         same = ratio == 1
-        print(f"{name:45s} error of F: rms {100 * np.sqrt(np.mean(error**2)):5.1f} %, largest {100 * abs(error).max():5.1f} %,"
-              f" rms at Ea = Eb {100 * np.sqrt(np.mean(error[same] ** 2)):5.1f} %")  # fmt: skip
+        print(
+            f"{name:45s} error of F: rms {100 * np.sqrt(np.mean(error**2)):5.1f} %, largest {100 * abs(error).max():5.1f} %,"
+            f" rms at Ea = Eb {100 * np.sqrt(np.mean(error[same] ** 2)):5.1f} %"
+        )
 
 
 def wider(alpha: float, elements: int = 32) -> None:
     """How far the effective modulus holds beyond the caps that it was fitted to."""
     tops = (2e-5, 5e-4, 0.076)
-    spheres = [AsperityCase(R=1.0, h_a=1.0, cap=material(e), substrate=RIGID, foot="sliding", displacement=(d,),
-                            elements=elements) for e in WIDER_RATIOS for d in tops]  # fmt: skip
+    spheres = [
+        AsperityCase(
+            R=1.0, h_a=1.0, cap=material(e), substrate=RIGID, foot="sliding", displacement=(d,), elements=elements
+        )
+        for e in WIDER_RATIOS
+        for d in tops
+    ]
     keys = [(R, h, top, e) for R, h in WIDER_CAPS for top in (0.1, 0.6, 1.0) for e in WIDER_RATIOS]
-    caps = [AsperityCase(R=R, h_a=h, cap=material(e), substrate=material(1.0), displacement=(top * h,),
-                         elements=elements) for R, h, top, e in keys]  # fmt: skip
+    caps = [
+        AsperityCase(R=R, h_a=h, cap=material(e), substrate=material(1.0), displacement=(top * h,), elements=elements)
+        for R, h, top, e in keys
+    ]
     found = solve_cases(spheres + caps, progress=lambda done: print(f"{done} of {len(spheres + caps)}", end="\r"))
     runs = [r.history for r in found]
     n = len(tops)

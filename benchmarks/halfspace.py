@@ -19,10 +19,11 @@ from pathlib import Path
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
 
+sys.path.insert(0, str(Path(__file__).parent.parent))
 import numpy as np  # noqa: E402  the thread counts come first
-from self_affine import self_affine  # noqa: E402
 
-from faying.contact.halfspace import certify, solve_half_space  # noqa: E402
+from faying.halfspace import certify, solve_half_space  # noqa: E402
+from tests.helpers.self_affine import self_affine  # noqa: E402
 
 WITNESS = Path(__file__).with_name("halfspace_witness.py")
 PEERS = {"tamaas": 1e-6, "contactmechanics": 1e-6, "aspher-periodic": 1e-7}
@@ -49,15 +50,19 @@ def theirs(code, python, h, pressure, hardness, tol):
 
 
 def line(code, area, mean, residual, seconds, ratio):
-    print(f"  {code:18s} area {area:.5f}  load error {mean:8.1e}  residual {residual:8.1e}  {seconds:8.2f} s  x {ratio:6.1f}",
-          flush=True)  # fmt: skip
+    print(
+        f"  {code:18s} area {area:.5f}  load error {mean:8.1e}  residual {residual:8.1e}  {seconds:8.2f} s  x {ratio:6.1f}",
+        flush=True,
+    )
 
 
 def compare(n, pressure, hardness, peers):
     h = self_affine(n)
     contact, mine = ours(h, pressure, hardness)
-    print(f"{n} x {n}, p/E* {pressure:g}, H/E* {hardness or 'none'}: {contact.iterations} steps, "
-          f"{contact.applications} products on the finest map")  # fmt: skip
+    print(
+        f"{n} x {n}, p/E* {pressure:g}, H/E* {hardness or 'none'}: {contact.iterations} steps, "
+        f"{contact.applications} products on the finest map"
+    )
     line("faying", contact.area, contact.pressure / pressure - 1, contact.residual, mine, 1.0)
     for code, python in peers.items():
         if hardness and code.startswith("aspher"):

@@ -38,9 +38,13 @@ def contactmechanics(h, pressure, hardness, tol):
     topography = Topography(h, (1.0, 1.0), periodic=True)
     begin = time.process_time()
     result = constrained_conjugate_gradients(
-        substrate, topography, external_force=pressure, hardness=hardness / n**2 if hardness else None,
-        pentol=tol * h.std(), maxiter=1000 if hardness else 20000,
-    )  # fmt: skip
+        substrate,
+        topography,
+        external_force=pressure,
+        hardness=hardness / n**2 if hardness else None,
+        pentol=tol * h.std(),
+        maxiter=1000 if hardness else 20000,
+    )
     return np.array(result.jac) * n**2, time.process_time() - begin
 
 

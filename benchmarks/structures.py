@@ -46,8 +46,8 @@ def meshed(size):
 
 def bar(lengths=(0.3, 0.3), layers=(60, 60), section=(27, 13)):
     """Two bars end to end, of bricks cut into tet10."""
-    sys.path[:0] = [str(ROOT / "tests/fe")]
-    from boxes import stack
+    sys.path[:0] = [str(ROOT)]
+    from tests.helpers.boxes import stack
 
     return stack(list(lengths), list(layers), width=0.06, height=0.025, sections=[section] * 2)
 
@@ -83,8 +83,12 @@ def ours(mesh):
     middle = time.process_time()
     found = lowest_modes(K, M, MODES, shift_frequency=shift_frequency(mesh))
     end = time.process_time()
-    return {"cpu": end - begin, "modes": end - middle, "factor_gb": found.factorisation.memory / 1e9,
-            "frequencies": found.frequencies.tolist()}  # fmt: skip
+    return {
+        "cpu": end - begin,
+        "modes": end - middle,
+        "factor_gb": found.factorisation.memory / 1e9,
+        "frequencies": found.frequencies.tolist(),
+    }
 
 
 def bare(mesh):
@@ -113,11 +117,10 @@ def bare(mesh):
 
 
 def calculix(mesh, folder):
-    sys.path[:0] = [str(ROOT / "tests/witness")]
-    import ccx
-
+    sys.path[:0] = [str(ROOT)]
     import faying
     from faying.fe.interface import join
+    from tests.helpers import ccx
 
     nodes = join(mesh, *faces(mesh)).at_nodes()
     axis = abs(nodes.normals[0]).argmax()
@@ -129,8 +132,11 @@ def calculix(mesh, folder):
     text = ccx.deck(mesh, dict.fromkeys(mesh.parts, faying.CATALOGUE["45 steel"]), springs, step=step)
     ccx.run(folder, text)
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return {"cpu": used.ru_utime + used.ru_stime, "peak_gb": used.ru_maxrss * 1024 / 1e9,
-            "frequencies": ccx.frequencies(folder)[:MODES].tolist()}  # fmt: skip
+    return {
+        "cpu": used.ru_utime + used.ru_stime,
+        "peak_gb": used.ru_maxrss * 1024 / 1e9,
+        "frequencies": ccx.frequencies(folder)[:MODES].tolist(),
+    }
 
 
 def measured(who, path):
@@ -175,16 +181,22 @@ def compare(size, repeats, with_ccx):
                 print(f"  {name}: {row['fault']}", flush=True)
                 continue
             if name == "ours":
-                print(f"  ours  {row['cpu']:7.1f} CPU s, of them modes {row['modes']:7.1f}; peak {row['peak_gb']:.2f} GB, factor "
-                      f"estimated {row['factor_gb']:.2f} GB", flush=True)  # fmt: skip
+                print(
+                    f"  ours  {row['cpu']:7.1f} CPU s, of them modes {row['modes']:7.1f}; peak {row['peak_gb']:.2f} GB, factor "
+                    f"estimated {row['factor_gb']:.2f} GB",
+                    flush=True,
+                )
                 continue
             mine = rows["ours"]["modes" if name == "bare" else "cpu"]
             elastic = slice(6, None)
             differ = np.abs(
                 np.array(row["frequencies"])[elastic] / np.array(rows["ours"]["frequencies"])[elastic] - 1
             ).max()
-            print(f"  {name:5s} {row['cpu']:7.1f} CPU s; ours takes {mine / row['cpu']:.3f} of it; peak {row['peak_gb']:.2f} GB; "
-                  f"frequencies differ by {differ:.1e}", flush=True)  # fmt: skip
+            print(
+                f"  {name:5s} {row['cpu']:7.1f} CPU s; ours takes {mine / row['cpu']:.3f} of it; peak {row['peak_gb']:.2f} GB; "
+                f"frequencies differ by {differ:.1e}",
+                flush=True,
+            )
 
 
 def main():

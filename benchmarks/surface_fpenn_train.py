@@ -73,8 +73,13 @@ def main() -> None:
         parts = (xs.T @ d1, d1.sum(0), h1.T @ d2, d2.sum(0), h2.T @ d3, d3.sum(0))
         return float(np.mean(r**2)), np.concatenate([g.ravel() for g in parts])
 
-    found = minimize(loss, start, jac=True, method="L-BFGS-B",
-                     options={"maxiter": ROUNDS, "maxfun": 2 * ROUNDS, "maxcor": 40, "ftol": 0, "gtol": 1e-12})  # fmt: skip
+    found = minimize(
+        loss,
+        start,
+        jac=True,
+        method="L-BFGS-B",
+        options={"maxiter": ROUNDS, "maxfun": 2 * ROUNDS, "maxcor": 40, "ftol": 0, "gtol": 1e-12},
+    )
     w |= unpack(found.x)
     x, y = cases(100_000, np.random.default_rng(SEED + 1))
     error = network(x, w) - y
@@ -89,8 +94,10 @@ def main() -> None:
     }
     path = Path(sys.argv[1]) if len(sys.argv) > 1 else WEIGHTS
     np.savez(path, **w)
-    print(f"{path}: {found.nit} rounds, loss {found.fun:.3g}, D error rms {w['rms_D']:.2e} largest {w['error_D']:.2e}, "
-          f"level error rms {w['rms_log_level']:.2e} largest {w['error_log_level']:.2e}")  # fmt: skip
+    print(
+        f"{path}: {found.nit} rounds, loss {found.fun:.3g}, D error rms {w['rms_D']:.2e} largest {w['error_D']:.2e}, "
+        f"level error rms {w['rms_log_level']:.2e} largest {w['error_log_level']:.2e}"
+    )
 
 
 if __name__ == "__main__":

@@ -22,13 +22,13 @@ AXES = ("surface.D=2.3:2.5:10", "surface.G='5e-11 m:5e-10 m:10:log'", "bolt.prel
 OUTSIDE = ("surface.D=2.26:2.54:7", "surface.G='3e-11 m:8e-10 m:7:log'", "bolt.preload='3 kN:14 kN:7'")
 
 
-def full(structure, seats, forces, count):
+def full(structure, laws, forces, count):
     """The same variant with the full matrices: frequencies of the complex modes."""
     from faying.fe.damped import damped_modes
     from faying.fe.modes import lowest_modes
     from faying.study.run import SPARE_MODES
 
-    joints = tuple(replace(joint, seat=seat) for joint, seat in zip(structure.joints, seats, strict=True))
+    joints = tuple(replace(joint, law=law) for joint, law in zip(structure.joints, laws, strict=True))
     variant = replace(structure, joints=joints).sharing(structure)
     found = variant.assembly().solve(variant.loads @ forces)
     K, loss = variant.joined(variant.springs(found.pressures))
@@ -64,22 +64,27 @@ def main():
 
     begin = clock()
     structure.vibrating, structure.loads, structure.rigid  # noqa: B018
-    seats, forces, _ = near.seats(near.grid.size // 2 + 5)
-    full(structure, seats, forces, plan.mode_count)
+    laws, forces, _ = near.laws(near.grid.size // 2 + 5)
+    full(structure, laws, forces, plan.mode_count)
     single = clock() - begin
     print(f"{mesh.unknowns:,} unknowns: one full solution {single:.1f} CPU s", flush=True)
 
     begin = clock()
     model = _Trainer(plan, structure, near, 4e-6, lambda *_: None).trained().model
     training = clock() - begin
-    print(f"bases of {len(model.static_stiffness)} and {len(model.dynamic_mass)} vectors: {training:.1f} CPU s, "
-          f"{training / single:.2f} of a full solution", flush=True)  # fmt: skip
+    print(
+        f"bases of {len(model.static_stiffness)} and {len(model.dynamic_mass)} vectors: {training:.1f} CPU s, "
+        f"{training / single:.2f} of a full solution",
+        flush=True,
+    )
     begin = clock()
     rows = evaluate(model, near, near.grid.winding())
     online = clock() - begin
     answered = np.isfinite(rows["frequencies"][:, 0]).sum()
-    print(f"{near.grid.size} evaluations: {online:.1f} CPU s, {online / single:.2f} of a full solution; {answered} answered",
-          flush=True)  # fmt: skip
+    print(
+        f"{near.grid.size} evaluations: {online:.1f} CPU s, {online / single:.2f} of a full solution; {answered} answered",
+        flush=True,
+    )
 
     generator = np.random.default_rng(0)
     for where, recipe, share in (("inside", near, 2), ("outside", wide, 2)):
@@ -93,8 +98,8 @@ def main():
             got = evaluate(model, recipe, [index])["frequencies"][0]
             if (where == "outside" and all(inner)) or not np.isfinite(got[0]):
                 continue
-            seats, forces, _ = recipe.seats(index)
-            differ.append(float(np.abs(got / full(structure, seats, forces, plan.mode_count) - 1).max()))
+            laws, forces, _ = recipe.laws(index)
+            differ.append(float(np.abs(got / full(structure, laws, forces, plan.mode_count) - 1).max()))
         print(
             f"{len(differ)} random points {where} the ranges: frequencies differ by {max(differ):.1e} at most",
             flush=True,

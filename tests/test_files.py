@@ -8,7 +8,7 @@ import sys
 import pytest
 
 import faying
-from faying.files import whole
+from faying.files import write_atomically
 from faying.study.template import write
 
 
@@ -21,14 +21,14 @@ def test_a_full_disk_leaves_the_old_file(tmp_path):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     with pytest.raises(faying.InputError, match=r"cannot write .*result.nc: No space left on device"):
-        whole(target, fill)
+        write_atomically(target, fill)
     assert target.read_text() == "old"
     assert [p.name for p in tmp_path.iterdir()] == ["result.nc"]
 
 
 def test_a_folder_that_is_not_there(tmp_path):
     with pytest.raises(faying.InputError, match="make it first"):
-        whole(tmp_path / "none" / "x", lambda p: p.write_text("x"))
+        write_atomically(tmp_path / "none" / "x", lambda p: p.write_text("x"))
 
 
 LIMITED = """
@@ -46,8 +46,12 @@ def test_no_half_results_where_writing_stops_short(tmp_path, command):
     write(tmp_path / "study.toml")
     option = {"run": "--out", "modes": "--export"}[command]
     out = tmp_path / "out"
-    done = subprocess.run([sys.executable, "-c", LIMITED, command, str(tmp_path / "study.toml"), option, str(out)],
-                          capture_output=True, text=True, check=False)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-c", LIMITED, command, str(tmp_path / "study.toml"), option, str(out)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 1, done.stderr
     assert f"cannot write {out}" in done.stderr
     assert "Traceback" not in done.stderr

@@ -36,8 +36,9 @@ def figure(results: list[Result], gap: np.ndarray, path: Path) -> None:
     x, y = 1e3 * results[0].points[:, 0], 1e3 * results[0].points[:, 1]
     top = max(float(result.pressure.max()) for result in results) / 1e6
     panels = [("gap before the load [um]", 1e6 * gap, None)]
-    panels += [(f"pressure, {name} [MPa]", result.pressure[0] / 1e6, top)
-               for name, result in zip(NAMES, results, strict=True)]  # fmt: skip
+    panels += [
+        (f"pressure, {name} [MPa]", result.pressure[0] / 1e6, top) for name, result in zip(NAMES, results, strict=True)
+    ]
     for ax, (title, values, most) in zip(axes, panels, strict=True):
         dots = ax.scatter(x, y, c=values, s=5, vmin=0, vmax=most, linewidths=0)
         ax.set(title=title, ylabel="y [mm]", aspect="equal")

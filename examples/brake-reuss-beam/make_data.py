@@ -22,8 +22,10 @@ def source(arguments: list[str]) -> Path:
     folder = Path(os.environ.get("FAYING_DATA", USUAL)) / "brake-reuss-beam"
     path = Path(arguments[0]) if arguments else folder / NAME
     if not path.is_file():
-        sys.exit(f"no file {path}: get {NAME} from https://github.com/tmd-lab/tmdsimpy (examples/structures/data), then "
-                 f"run: python {Path(__file__).name} PATH/{NAME}")  # fmt: skip
+        sys.exit(
+            f"no file {path}: get {NAME} from https://github.com/tmd-lab/tmdsimpy (examples/structures/data), then "
+            f"run: python {Path(__file__).name} PATH/{NAME}"
+        )
     return path
 
 

@@ -82,8 +82,14 @@ def main() -> None:
     values = values + 0.005 * np.sqrt(np.mean(np.abs(values) ** 2)) * (noise[0] + 1j * noise[1]) / np.sqrt(2)
     here = (points[nodes] - turn.shift) @ turn.rotation
     positions = {k + 1: tuple(float(v) for v in xyz) for k, xyz in enumerate(here)}
-    frf = FRF(frequency=frequency, values=values, outputs=tuple(places), inputs=((1, "z"),), quantity="accelerance",
-              positions=positions)  # fmt: skip
+    frf = FRF(
+        frequency=frequency,
+        values=values,
+        outputs=tuple(places),
+        inputs=((1, "z"),),
+        quantity="accelerance",
+        positions=positions,
+    )
     write_uff(HERE / "blocks.uff", frf, title="two blocks, synthetic hammer test")
     rows = [f"{k + 1},{','.join(f'{1e3 * v:.3f}' for v in points[nodes[k]])}" for k in range(4)]
     (HERE / "frame.csv").write_text("\n".join(["point,x [mm],y [mm],z [mm]", *rows]) + "\n", encoding="utf-8")

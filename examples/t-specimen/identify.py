@@ -39,8 +39,14 @@ STEEL = faying.CATALOGUE["45 steel"]
 def dimensions(x: np.ndarray) -> Dimensions:
     """The wing is what the flange stands out beyond the stem on each side; the bolt sits in its middle."""
     height, thickness, wing, flange = map(float, x)
-    return replace(Dimensions(), stem_height=height, stem_thickness=thickness, flange_length=thickness + 2 * wing,
-                   flange_thickness=flange, bolt_distance=thickness + wing)  # fmt: skip
+    return replace(
+        Dimensions(),
+        stem_height=height,
+        stem_thickness=thickness,
+        flange_length=thickness + 2 * wing,
+        flange_thickness=flange,
+        bolt_distance=thickness + wing,
+    )
 
 
 def in_plane(d: Dimensions) -> np.ndarray:
@@ -102,9 +108,17 @@ def main() -> None:
         moved, x = np.abs(fit.x / x - 1).max(), fit.x
         found = study_at_4_kn(dimensions(x))
         ratio = np.sqrt(ratio * found / in_plane(dimensions(x)))  # halfway, so that it does not swing
-        print(json.dumps({"mm": dict(zip(NAMES, x.round(2), strict=True)), "at bounds": fit.active_mask.tolist(),
-                          "study over plane model": ratio.round(4).tolist(),
-                          "study's error %": (100 * (found / TEST - 1)).round(2).tolist()}), flush=True)  # fmt: skip
+        print(
+            json.dumps(
+                {
+                    "mm": dict(zip(NAMES, x.round(2), strict=True)),
+                    "at bounds": fit.active_mask.tolist(),
+                    "study over plane model": ratio.round(4).tolist(),
+                    "study's error %": (100 * (found / TEST - 1)).round(2).tolist(),
+                }
+            ),
+            flush=True,
+        )
         if moved < 2e-3:
             break
 

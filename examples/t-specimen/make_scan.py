@@ -50,8 +50,10 @@ def main() -> None:
     for method in ("psd", "moments", "structure"):
         fit = fit_fractal(scan, method)
         low, high = fit.D_interval
-        print(f"  {method}: D {fit.D:.3f} ({low:.3f} .. {high:.3f}), G {fit.G:.3g} m "
-              f"({fit.G_interval[0]:.3g} .. {fit.G_interval[1]:.3g}), Rq {fit.Rq:.3g} m, implied {fit.implied_Rq:.3g} m")  # fmt: skip
+        print(
+            f"  {method}: D {fit.D:.3f} ({low:.3f} .. {high:.3f}), G {fit.G:.3g} m "
+            f"({fit.G_interval[0]:.3g} .. {fit.G_interval[1]:.3g}), Rq {fit.Rq:.3g} m, implied {fit.implied_Rq:.3g} m"
+        )
 
 
 if __name__ == "__main__":

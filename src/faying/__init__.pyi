@@ -1,11 +1,12 @@
 # The public names. Each is imported when it is first used (lazy_loader reads this file).
 from . import contact
-from .contact.halfspace import HalfSpace, solve_half_space
+from .asperity_fe import solve_asperity
+from .contact.half_space import HalfSpace
 from .contact.jk import JK
 from .errors import FayingError, InputError, NotConverged, OutsideValidity, ReadError
-from .fe.asperity import solve_asperity
 from .fe.matrices import read_matrices
 from .fe.meshfile import read_mesh
+from .halfspace import solve_half_space
 from .materials import CATALOGUE, RIGID, ContactPair, Material
 from .measured.compare import compare_modes
 from .measured.frf import FRF

@@ -8,7 +8,7 @@ from typing import Any
 from faying.errors import InputError, ReadError
 
 
-def whole(path: Path, write: Callable[[Path], object]) -> Path:
+def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
     """Let `write` fill a temporary file beside `path` and move it there, so that no half-written file is left.
 
     Raises InputError where the folder does not exist or the file cannot be written.

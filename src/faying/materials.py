@@ -106,12 +106,32 @@ class ContactPair:
 CATALOGUE = {
     m.name: m
     for m in (
-        Material(name="45 steel", E=200e9, nu=0.3, density=7800.0, yield_strength=355e6, hardness=994e6,
-                 friction=0.25, source="Zhang et al. 2024, doi:10.3390/fractalfract8100611, Table 2"),
-        Material(name="S355", E=210e9, nu=0.3, density=7850.0, yield_strength=355e6,
-                 source="EN 1993-1-1, 3.2.6 and Table 3.1; EN 1991-1-1, Table A.4"),
-        Material(name="EN AW-6082 T6", E=70e9, nu=0.3, density=2700.0, yield_strength=260e6,
-                 source="EN 1999-1-1, 3.2.5 and Table 3.2b (extrusions, 5 < t <= 15 mm)"),
+        Material(
+            name="45 steel",
+            E=200e9,
+            nu=0.3,
+            density=7800.0,
+            yield_strength=355e6,
+            hardness=994e6,
+            friction=0.25,
+            source="Zhang et al. 2024, doi:10.3390/fractalfract8100611, Table 2",
+        ),
+        Material(
+            name="S355",
+            E=210e9,
+            nu=0.3,
+            density=7850.0,
+            yield_strength=355e6,
+            source="EN 1993-1-1, 3.2.6 and Table 3.1; EN 1991-1-1, Table A.4",
+        ),
+        Material(
+            name="EN AW-6082 T6",
+            E=70e9,
+            nu=0.3,
+            density=2700.0,
+            yield_strength=260e6,
+            source="EN 1999-1-1, 3.2.5 and Table 3.2b (extrusions, 5 < t <= 15 mm)",
+        ),
     )
-}  # fmt: skip
+}
 """A few materials with their sources. Friction depends on the pair and its finish: give your own."""

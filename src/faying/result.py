@@ -7,13 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
-from faying.files import whole
+from faying.files import write_atomically
 from faying.measured.compare import ModalComparison
-
-Array = NDArray[np.float64]
+from faying.typing import Array, Complex, Index
 
 UNITS = {
     "loads": "N",
@@ -43,7 +41,7 @@ class Comparison:
     source: str
     frequencies: Array
     predicted: Array
-    modes: NDArray[np.int64]
+    modes: Index
     published: Array | None = None
     published_name: str = "published"
 
@@ -62,7 +60,7 @@ class Receptance:
     """
 
     frequencies: Array
-    values: NDArray[np.complex128]
+    values: Complex
     inputs: tuple[tuple[tuple[float, ...], tuple[float, ...]], ...]
     outputs: tuple[tuple[tuple[float, ...], tuple[float, ...]], ...]
     error: float
@@ -97,12 +95,12 @@ class Result:
     k_t: Array
     points: Array
     weights: Array
-    joint_of_point: NDArray[np.int64]
+    joint_of_point: Index
     joints: tuple[str, ...]
     unknowns: int
     solver: str
     outline: Array
-    triangles: NDArray[np.int64]
+    triangles: Index
     shapes: Array
     bolts: tuple[str, ...]
     bolt_forces: Array
@@ -132,8 +130,12 @@ class Result:
     def to_dict(self) -> dict[str, Any]:
         """Return the numbers a reader wants, ready for JSON; maps and shapes are left to NetCDF."""
         names = ("loads", "frequencies", "loss_factors", "tied", "free", "rigid")
-        out: dict[str, Any] = {"title": self.title, "unknowns": self.unknowns, "solver": self.solver,
-                               "factor_memory": {"unit": "B", "value": self.factor_memory}}  # fmt: skip
+        out: dict[str, Any] = {
+            "title": self.title,
+            "unknowns": self.unknowns,
+            "solver": self.solver,
+            "factor_memory": {"unit": "B", "value": self.factor_memory},
+        }
         out |= {name: {"unit": UNITS[name], "values": getattr(self, name).tolist()} for name in names}
         out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
         out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
@@ -166,13 +168,24 @@ class Result:
         from scipy.io import netcdf_file
 
         dims = {
-            "loads": ("load",), "frequencies": ("load", "mode"), "loss_factors": ("load", "mode"),
-            "loss_error": ("load", "mode"), "tied": ("mode",), "free": ("mode",), "rigid": ("rigid_motion",),
-            "pressure": ("load", "point"), "k_n": ("load", "point"), "k_t": ("load", "point"),
-            "points": ("point", "axis"), "weights": ("point",), "outline": ("node", "axis"),
-            "shapes": ("load", "mode", "node", "axis"), "bolt_forces": ("load", "bolt"),
-            "slipping": ("load", "joint"), "mac": ("load", "mode", "other_mode"),
-        }  # fmt: skip
+            "loads": ("load",),
+            "frequencies": ("load", "mode"),
+            "loss_factors": ("load", "mode"),
+            "loss_error": ("load", "mode"),
+            "tied": ("mode",),
+            "free": ("mode",),
+            "rigid": ("rigid_motion",),
+            "pressure": ("load", "point"),
+            "k_n": ("load", "point"),
+            "k_t": ("load", "point"),
+            "points": ("point", "axis"),
+            "weights": ("point",),
+            "outline": ("node", "axis"),
+            "shapes": ("load", "mode", "node", "axis"),
+            "bolt_forces": ("load", "bolt"),
+            "slipping": ("load", "joint"),
+            "mac": ("load", "mode", "other_mode"),
+        }
 
         def write(temporary: Path) -> None:
             with netcdf_file(temporary, "w", version=2) as nc:
@@ -212,7 +225,7 @@ class Result:
                 if self.response:
                     self._write_response(nc)
 
-        return whole(Path(path), write)
+        return write_atomically(Path(path), write)
 
     def _write_response(self, nc: Any) -> None:
         first = self.response[0]
@@ -234,7 +247,7 @@ class Result:
 
     def to_csv(self, path: str | Path) -> Path:
         """Write one row for each load and mode, units in the heading; the file appears whole or not at all."""
-        return whole(Path(path), lambda temporary: temporary.write_text(self.csv_text(), encoding="utf-8"))
+        return write_atomically(Path(path), lambda temporary: temporary.write_text(self.csv_text(), encoding="utf-8"))
 
     def csv_text(self) -> str:
         """Return the rows of to_csv as text."""

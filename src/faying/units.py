@@ -55,8 +55,17 @@ def parse(text: object, unit: str, *, name: str = "value") -> float:
 
     try:
         quantity = _registry().Quantity(text)
-    except (pint.errors.PintError, ValueError, TypeError, AttributeError, SyntaxError, AssertionError, KeyError,
-            ZeroDivisionError, OverflowError) as fault:  # fmt: skip
+    except (
+        pint.errors.PintError,
+        ValueError,
+        TypeError,
+        AttributeError,
+        SyntaxError,
+        AssertionError,
+        KeyError,
+        ZeroDivisionError,
+        OverflowError,
+    ) as fault:
         raise InputError(f'{name} = "{text}" is not a quantity ({fault}); write for example "{example}"') from None
     except Exception as fault:  # pint's tokenizer lets other kinds through
         raise InputError(f'{name} = "{text}" is not a quantity; write for example "{example}"') from fault

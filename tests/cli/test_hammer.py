@@ -33,12 +33,31 @@ def result(tmp_path):
     m = model()
     q = np.ones((2, 5))
     return Result(
-        title="plate", loads=np.array([2e3, 8e3]), frequencies=np.stack([0.9 * FREQUENCIES, FREQUENCIES]), loss_factors=np.full((2, 4), 0.01),
-        loss_error=np.zeros((2, 4)), tied=FREQUENCIES, free=FREQUENCIES, rigid=np.zeros(6), pressure=q, k_n=q, k_t=q,
-        points=np.zeros((5, 3)), weights=np.ones(5), joint_of_point=np.zeros(5, dtype=np.int64), joints=("joint",), unknowns=90,
-        solver="none", outline=m.points, triangles=np.array([[0, 1, 2], [2, 3, 4]]), shapes=np.stack([m.shapes, m.shapes]), bolts=("bolt",),
-        bolt_forces=np.ones((2, 1)), slipping=np.zeros((2, 1)), mac=np.ones((2, 4, 4)),
-    ).to_netcdf(tmp_path / "result.nc")  # fmt: skip
+        title="plate",
+        loads=np.array([2e3, 8e3]),
+        frequencies=np.stack([0.9 * FREQUENCIES, FREQUENCIES]),
+        loss_factors=np.full((2, 4), 0.01),
+        loss_error=np.zeros((2, 4)),
+        tied=FREQUENCIES,
+        free=FREQUENCIES,
+        rigid=np.zeros(6),
+        pressure=q,
+        k_n=q,
+        k_t=q,
+        points=np.zeros((5, 3)),
+        weights=np.ones(5),
+        joint_of_point=np.zeros(5, dtype=np.int64),
+        joints=("joint",),
+        unknowns=90,
+        solver="none",
+        outline=m.points,
+        triangles=np.array([[0, 1, 2], [2, 3, 4]]),
+        shapes=np.stack([m.shapes, m.shapes]),
+        bolts=("bolt",),
+        bolt_forces=np.ones((2, 1)),
+        slipping=np.zeros((2, 1)),
+        mac=np.ones((2, 4, 4)),
+    ).to_netcdf(tmp_path / "result.nc")
 
 
 @pytest.fixture
@@ -52,8 +71,14 @@ def test_file(tmp_path):
     outputs = (np.repeat(nodes, 3), np.tile(axes, (8, 1)))
     values = higher.frf(f, outputs, (nodes[:1], axes[:1]), "accelerance")
     here = (m.points[nodes] - TURN.shift) @ TURN.rotation
-    frf = FRF(frequency=f, values=values, outputs=[(k + 1, d) for k in range(8) for d in "xyz"], inputs=[(1, "x")],
-              quantity="accelerance", positions={k + 1: tuple(p) for k, p in enumerate(here)})  # fmt: skip
+    frf = FRF(
+        frequency=f,
+        values=values,
+        outputs=[(k + 1, d) for k in range(8) for d in "xyz"],
+        inputs=[(1, "x")],
+        quantity="accelerance",
+        positions={k + 1: tuple(p) for k, p in enumerate(here)},
+    )
     return write_uff(tmp_path / "test.uff", frf)
 
 
@@ -203,5 +228,5 @@ def measured_frfs():
 
 
 def test_the_libraries_are_loaded_only_when_needed():
-    code = "import sys, faying, faying.cli.hammer, faying.cli.compare_test; sys.exit(any(m in sys.modules for m in ('pyuff', 'sdypy', 'scipy')))"
+    code = "import sys, faying, faying.cli.test, faying.cli.law_table; sys.exit(any(m in sys.modules for m in ('pyuff', 'sdypy', 'scipy')))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

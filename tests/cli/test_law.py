@@ -39,8 +39,22 @@ def test_json_agrees_with_the_library() -> None:
 
 
 def test_options_reach_the_law() -> None:
-    out = json.loads(run(*SPECIMEN, "--set", "closure=printed", "--set", "shear_stress=1 MPa", "--hardness", "1 GPa",
-                         "--against", "same", "--pressure", "2 MPa", "--json"))  # fmt: skip
+    out = json.loads(
+        run(
+            *SPECIMEN,
+            "--set",
+            "closure=printed",
+            "--set",
+            "shear_stress=1 MPa",
+            "--hardness",
+            "1 GPa",
+            "--against",
+            "same",
+            "--pressure",
+            "2 MPa",
+            "--json",
+        )
+    )
     steel = CATALOGUE["45 steel"]
     from dataclasses import replace
 
@@ -50,8 +64,23 @@ def test_options_reach_the_law() -> None:
 
 
 def test_material_without_catalogue() -> None:
-    words = ["--D", "2.39", "--G", "1.53e-10 m", "--scan-area", "16 mm^2", "--E", "200 GPa", "--nu", "0.3",
-             "--yield-strength", "355 MPa", "--pressure", "2 MPa", "--json"]  # fmt: skip
+    words = [
+        "--D",
+        "2.39",
+        "--G",
+        "1.53e-10 m",
+        "--scan-area",
+        "16 mm^2",
+        "--E",
+        "200 GPa",
+        "--nu",
+        "0.3",
+        "--yield-strength",
+        "355 MPa",
+        "--pressure",
+        "2 MPa",
+        "--json",
+    ]
     same = LAW.with_(pair=ContactPair(LAW.pair.first, RIGID))
     assert json.loads(run(*words))["k_n"] == pytest.approx([float(same.at_pressure(2e6).k_n)], rel=1e-9)
 
@@ -74,23 +103,26 @@ def test_csv_and_figure(tmp_path: Path) -> None:
     assert "nominal pressure [MPa]" in figure.read_text()
 
 
-@pytest.mark.parametrize(("words", "message"), [
-    (["--model", "nothing"], "no contact law 'nothing'; known are"),
-    (["--D", "2.39", "--material", "45 steel"], r"JK needs G .*in m.*; scan_area"),
-    ([*SPECIMEN[:6]], "no material: give --material"),
-    ([*SPECIMEN, "--material", "cheese"], "no material 'cheese' in the catalogue"),
-    ([*SPECIMEN, "--against", "cheese"], "no material 'cheese'"),
-    ([*SPECIMEN, "--set", "colour=red"], "has no parameter 'colour'"),
-    ([*SPECIMEN, "--set", "cutoff"], "is not NAME=VALUE"),
-    ([*SPECIMEN, "--G", "1e-10"], "has no unit"),
-    ([*SPECIMEN, "--D", "3.2"], "between 2 and 3"),
-    ([*SPECIMEN, "--pressure", "1 MPa:2 MPa:3:4"], "write FROM:TO"),
-    ([*SPECIMEN, "--pressure", "2 MPa:1 MPa"], "below the second"),
-    ([*SPECIMEN, "--pressure", "1 MPa:2 MPa:1"], "whole number of 2 or more"),
-    ([*SPECIMEN, "--pressure", "1:2"], "has no unit"),
-    ([*SPECIMEN, "--pressure", "1 GPa"], "more than JK covers"),
-    ([*SPECIMEN, "--plot", "law.xyz"], "figures can be written as"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--model", "nothing"], "no contact law 'nothing'; known are"),
+        (["--D", "2.39", "--material", "45 steel"], r"JK needs G .*in m.*; scan_area"),
+        ([*SPECIMEN[:6]], "no material: give --material"),
+        ([*SPECIMEN, "--material", "cheese"], "no material 'cheese' in the catalogue"),
+        ([*SPECIMEN, "--against", "cheese"], "no material 'cheese'"),
+        ([*SPECIMEN, "--set", "colour=red"], "has no parameter 'colour'"),
+        ([*SPECIMEN, "--set", "cutoff"], "is not NAME=VALUE"),
+        ([*SPECIMEN, "--G", "1e-10"], "has no unit"),
+        ([*SPECIMEN, "--D", "3.2"], "between 2 and 3"),
+        ([*SPECIMEN, "--pressure", "1 MPa:2 MPa:3:4"], "write FROM:TO"),
+        ([*SPECIMEN, "--pressure", "2 MPa:1 MPa"], "below the second"),
+        ([*SPECIMEN, "--pressure", "1 MPa:2 MPa:1"], "whole number of 2 or more"),
+        ([*SPECIMEN, "--pressure", "1:2"], "has no unit"),
+        ([*SPECIMEN, "--pressure", "1 GPa"], "more than JK covers"),
+        ([*SPECIMEN, "--plot", "law.xyz"], "figures can be written as"),
+    ],
+)
 def test_faults_are_told(words: list[str], message: str) -> None:
     with pytest.raises(InputError, match=message):
         run(*words)

@@ -35,8 +35,9 @@ def run(*arguments):
 
 def test_the_half_space_stands_beside_the_analytic_laws(scan_file, tmp_path):
     plot, picture = tmp_path / "law.png", tmp_path / "map.png"
-    result = run(*scan_file, *STEEL, "--models", "jk,gw,persson,halfspace", "--plot", str(plot), "--contact-map",
-                 str(picture))  # fmt: skip
+    result = run(
+        *scan_file, *STEEL, "--models", "jk,gw,persson,halfspace", "--plot", str(plot), "--contact-map", str(picture)
+    )
     assert result.exit_code == 0, result.output
     assert "half-space" in result.stdout
     assert "max / min" in result.stdout

@@ -18,8 +18,10 @@ def test_help_lists_every_command_and_imports_nothing_heavy():
     assert out.returncode == 0
     for command in ("init", "law", "run", "surface"):
         assert f"\n  {command} " in out.stdout
-    code = "import sys; from faying.cli import main\ntry: main(['--help'])\nexcept SystemExit: pass\n" \
-           "print([m for m in ('numpy', 'scipy', 'matplotlib', 'pint', 'netgen', 'skfem') if m in sys.modules])"  # fmt: skip
+    code = (
+        "import sys; from faying.cli import main\ntry: main(['--help'])\nexcept SystemExit: pass\n"
+        "print([m for m in ('numpy', 'scipy', 'matplotlib', 'pint', 'netgen', 'skfem') if m in sys.modules])"
+    )
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert loaded.stdout.strip().endswith("[]")
 
@@ -58,8 +60,16 @@ def test_init_and_run(tmp_path, capsys):
     data = json.loads(captured.out)
     assert data["title"] == "Two blocks and a bolt"
     made = {p.name for p in (tmp_path / "results").iterdir()}
-    assert made == {"result.nc", "modes.csv", "report.html", "frequencies.svg", "pressure.svg", "law.svg", "modes.png",
-                    "mac.svg"}  # fmt: skip
+    assert made == {
+        "result.nc",
+        "modes.csv",
+        "report.html",
+        "frequencies.svg",
+        "pressure.svg",
+        "law.svg",
+        "modes.png",
+        "mac.svg",
+    }
     report = (tmp_path / "results" / "report.html").read_text()
     assert "outside its ground" in report  # the flag travels with the numbers
     assert not re.search(r'(src|href)="(?!data:|#)', report)  # nothing is fetched: one self-contained file

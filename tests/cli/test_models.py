@@ -48,8 +48,19 @@ needs_scan = pytest.mark.skipif(not SCAN.exists(), reason="the synthetic scan of
 @needs_scan
 def test_one_scan_all_models(tmp_path: Path) -> None:
     figure, table = tmp_path / "all.svg", tmp_path / "all.csv"
-    out = run(law, "--scan", str(SCAN), *STEEL, "--all-models", "--pressure", "0.1 MPa:100 MPa:9", "--plot", str(figure),
-              "--csv", str(table))  # fmt: skip
+    out = run(
+        law,
+        "--scan",
+        str(SCAN),
+        *STEEL,
+        "--all-models",
+        "--pressure",
+        "0.1 MPa:100 MPa:9",
+        "--plot",
+        str(figure),
+        "--csv",
+        str(table),
+    )
     for name in ("JK", "MB", "WK", "YK", "ME", "JS", "Persson", "GW", "GW-CEB", "GW-KE", "GW-ZMC", "GW-JG"):
         assert f"\n  {name} " in out
     assert out.count("max / min") == 2
@@ -62,8 +73,9 @@ def test_one_scan_all_models(tmp_path: Path) -> None:
 
 @needs_scan
 def test_each_law_gets_its_inputs_from_the_same_scan() -> None:
-    tree = json.loads(run(law, "--scan", str(SCAN), *STEEL, "--models", "jk,gw,persson", "--pressure", "1 MPa:2 MPa:2",
-                          "--json"))  # fmt: skip
+    tree = json.loads(
+        run(law, "--scan", str(SCAN), *STEEL, "--models", "jk,gw,persson", "--pressure", "1 MPa:2 MPa:2", "--json")
+    )
     assert set(tree["laws"]) == {"JK", "GW", "Persson"}
     fit = fit_fractal(read_scan(SCAN))
     assert tree["surface"]["D"] == pytest.approx(fit.D)

@@ -50,8 +50,20 @@ def fault(capsys, argv):
 def test_a_study_and_its_matrices_have_the_same_modes(exported, capsys):
     of_study = values(capsys, ["modes", str(exported / "study.toml"), "--count", "9"])
     out = exported / "out"
-    of_files = values(capsys, ["modes", "--stiffness", str(out / "stiffness.npz"), "--mass", str(out / "mass.npz"),
-                               "--count", "9", "--shift", "800 Hz"])  # fmt: skip
+    of_files = values(
+        capsys,
+        [
+            "modes",
+            "--stiffness",
+            str(out / "stiffness.npz"),
+            "--mass",
+            str(out / "mass.npz"),
+            "--count",
+            "9",
+            "--shift",
+            "800 Hz",
+        ],
+    )
     assert np.all(of_study[:6] < 1)
     assert of_files[6:] == pytest.approx(of_study[6:], rel=1e-10)
     assert len((out / "dofs.txt").read_text().splitlines()) == load_npz(out / "mass.npz").shape[0]
@@ -98,9 +110,11 @@ def test_without_slepc_the_way_is_told(exported, capsys, monkeypatch):
 
 def python_with_slepc():
     """An interpreter that has slepc4py: this one, or the system's."""
-    look = ("import glob, sys\nfor p in ('petsc', 'slepc'):\n"
-            "    sys.path += glob.glob(f'/usr/lib/{p}dir/{p}*/*-real/lib/python3/dist-packages')\n"
-            "from petsc4py import PETSc\nfrom slepc4py import SLEPc\nimport scipy\n")  # fmt: skip
+    look = (
+        "import glob, sys\nfor p in ('petsc', 'slepc'):\n"
+        "    sys.path += glob.glob(f'/usr/lib/{p}dir/{p}*/*-real/lib/python3/dist-packages')\n"
+        "from petsc4py import PETSc\nfrom slepc4py import SLEPc\nimport scipy\n"
+    )
     for python in (sys.executable, "/usr/bin/python3"):
         if (
             Path(python).exists()
@@ -118,10 +132,18 @@ def test_slepc_on_two_processes(exported, capsys):
     out = exported / "out"
     files = [str(out / "stiffness.npz"), str(out / "mass.npz")]
     # Open MPI asks twice before it lets root start two processes on one core
-    environment = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-                                "OMPI_MCA_rmaps_base_oversubscribe": "1"}  # fmt: skip
-    done = subprocess.run([mpiexec, "-n", "2", python, str(WORKER), *files, "--count", "20", "--shift", "800"],
-                          capture_output=True, text=True, check=False, env=environment)  # fmt: skip
+    environment = os.environ | {
+        "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    }
+    done = subprocess.run(
+        [mpiexec, "-n", "2", python, str(WORKER), *files, "--count", "20", "--shift", "800"],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=environment,
+    )
     assert done.returncode == 0, done.stderr[-2000:]
     found = json.loads(done.stdout)
     assert found["processes"] == 2

@@ -60,14 +60,31 @@ def test_laws_do_not_depend_on_the_units() -> None:
     # lengths in units of 1 mm, forces of 1 kN: every number changes, no dimensionless answer does
     L, S = 1e3, 1e-9  # 1 m = 1000 mm, 1 Pa = 1e-9 kN/mm2
     values = vars(SURFACE)
-    other = SurfaceInputs(**(values | {
-        "G": values["G"] * L, "scan_area": values["scan_area"] * L**2, "m0": values["m0"] * L**2,
-        "m4": values["m4"] / L**2, "h_rms": values["h_rms"] * L, "shortest": values["shortest"] * L,
-    }))  # fmt: skip
+    other = SurfaceInputs(
+        **(
+            values
+            | {
+                "G": values["G"] * L,
+                "scan_area": values["scan_area"] * L**2,
+                "m0": values["m0"] * L**2,
+                "m4": values["m4"] / L**2,
+                "h_rms": values["h_rms"] * L,
+                "shortest": values["shortest"] * L,
+            }
+        )
+    )
     m = PAIR.first
     pair = ContactPair(Material(name="m", E=m.E * S, nu=m.nu, yield_strength=(m.yield_strength or 0) * S), RIGID)
-    units = {"pressure": S, "area": 1.0, "k_n": S / L, "k_t": S / L, "loss_n": 1.0, "loss_t": 1.0, "energy_n": S * L,
-             "energy_t": S * L}  # fmt: skip
+    units = {
+        "pressure": S,
+        "area": 1.0,
+        "k_n": S / L,
+        "k_t": S / L,
+        "loss_n": 1.0,
+        "loss_t": 1.0,
+        "energy_n": S * L,
+        "energy_t": S * L,
+    }
     here = compare(laws_of_surface(SURFACE, PAIR)[0], P)
     there = compare(laws_of_surface(other, pair)[0], P * S)
     assert here.responses.keys() == there.responses.keys()

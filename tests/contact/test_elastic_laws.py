@@ -53,9 +53,14 @@ def test_persson_marks_its_ground() -> None:
     assert PERSSON.with_(slope=0.005).at_pressure(1e6).valid
 
 
-@pytest.mark.parametrize(("change", "message"), [
-    ({"slope": 0.0}, "slope"), ({"h_rms": -1.0}, "h_rms"), ({"gamma": float("nan")}, "gamma"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"slope": 0.0}, "slope"),
+        ({"h_rms": -1.0}, "h_rms"),
+        ({"gamma": float("nan")}, "gamma"),
+    ],
+)
 def test_persson_refuses(change: dict[str, float], message: str) -> None:
     with pytest.raises(InputError, match=message):
         PERSSON.with_(**change)
@@ -115,11 +120,17 @@ def test_stack_marks_yield() -> None:
     assert r.reasons["mean pressure of the contacts above the hardness"] == (1e7 / float(r.area) > PAIR.hardness)
 
 
-@pytest.mark.parametrize(("change", "message"), [
-    ({"D": 3.0}, "between 2 and 3"), ({"G": 0.0}, "G = 0.0"), ({"scan_area": 0.0}, "scan_area"),
-    ({"gamma": 1.0}, "gamma"),
-    ({"shortest": 5e-3}, "below 0.004 m"), ({"shortest": 0.0}, "shortest"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"D": 3.0}, "between 2 and 3"),
+        ({"G": 0.0}, "G = 0.0"),
+        ({"scan_area": 0.0}, "scan_area"),
+        ({"gamma": 1.0}, "gamma"),
+        ({"shortest": 5e-3}, "below 0.004 m"),
+        ({"shortest": 0.0}, "shortest"),
+    ],
+)
 def test_stack_refuses(change: dict[str, float], message: str) -> None:
     with pytest.raises(InputError, match=message):
         STACK.with_(**change)

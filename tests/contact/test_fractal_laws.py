@@ -78,8 +78,17 @@ def test_yan_komvopoulos(D: float, ratio: float) -> None:
     assert float(r.area) == pytest.approx(real / A0, rel=1e-8)
     if ratio > 1 and abs(D - 2.5) > 1e-3:  # the printed totals
         x = ac / al
-        Fe = (2 ** ((11 - 2 * D) / 2) / (3 * pi ** ((4 - D) / 2)) * (D - 1) / (5 - 2 * D) * sqrt(g) * G ** (D - 2) * E
-              * al ** ((4 - D) / 2) * (1 - x ** ((5 - 2 * D) / 2)))  # fmt: skip
+        Fe = (
+            2 ** ((11 - 2 * D) / 2)
+            / (3 * pi ** ((4 - D) / 2))
+            * (D - 1)
+            / (5 - 2 * D)
+            * sqrt(g)
+            * G ** (D - 2)
+            * E
+            * al ** ((4 - D) / 2)
+            * (1 - x ** ((5 - 2 * D) / 2))
+        )
         Fp = (D - 1) / (3 - D) * H * al * x ** ((3 - D) / 2)
         assert float(r.pressure) == pytest.approx((Fe + Fp) / A0, rel=1e-9)
 
@@ -99,12 +108,15 @@ def test_morag_etsion(D: float, log_x: float) -> None:
     r = law.at_closure(al)
     cuts = [0.0, *(c for c in (2 * pi * R * one.critical * b for b in one.borders) if c < al), al]
     for field, value in (("force", r.pressure), ("area", r.area)):
-        total = sum(islands_sum(lambda a, f=field: float(getattr(one.at(a / (2 * pi * R)), f)), D, 1.0, al, p, q)
-                    for p, q in pairwise(cuts))  # fmt: skip
+        total = sum(
+            islands_sum(lambda a, f=field: float(getattr(one.at(a / (2 * pi * R)), f)), D, 1.0, al, p, q)
+            for p, q in pairwise(cuts)
+        )
         assert float(value) == pytest.approx(total / A0, rel=1e-7), field
     cuts = [al / 100, *(c for c in cuts if al / 100 < c < al), al]
-    stiff = sum(islands_sum(lambda a: float(one.at(a / (2 * pi * R)).stiffness), D, 1.0, al, p, q)
-                for p, q in pairwise(cuts))  # fmt: skip
+    stiff = sum(
+        islands_sum(lambda a: float(one.at(a / (2 * pi * R)).stiffness), D, 1.0, al, p, q) for p, q in pairwise(cuts)
+    )
     assert float(r.k_n) == pytest.approx(stiff / A0, rel=1e-7)
 
 
@@ -147,10 +159,11 @@ def test_jk_reduces_to_morag_etsion_where_the_cap_is_the_same() -> None:
 
 
 LAWS = [
-    MajumdarBhushan(D=2.4, G=1e-10, pair=PAIR, scan_area=A0), WangKomvopoulos(D=2.4, G=1e-10, pair=PAIR, scan_area=A0),
+    MajumdarBhushan(D=2.4, G=1e-10, pair=PAIR, scan_area=A0),
+    WangKomvopoulos(D=2.4, G=1e-10, pair=PAIR, scan_area=A0),
     YanKomvopoulos(D=2.4, G=1e-10, pair=PAIR, scan_area=A0),
     MoragEtsion(D=2.4, G=1e-10, wavelength=4e-3, pair=PAIR, scan_area=A0),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
@@ -166,10 +179,15 @@ def test_pressure_in_and_out(law: MajumdarBhushan) -> None:
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
-@pytest.mark.parametrize(("change", "message"), [
-    ({"D": 2.0}, "between 2 and 3"), ({"G": 0.0}, "it must be positive"), ({"scan_area": -1.0}, "it must be positive"),
-    ({"pair": ContactPair(Material(name="m", E=1e9, nu=0.3), RIGID)}, "neither hardness nor yield_strength"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"D": 2.0}, "between 2 and 3"),
+        ({"G": 0.0}, "it must be positive"),
+        ({"scan_area": -1.0}, "it must be positive"),
+        ({"pair": ContactPair(Material(name="m", E=1e9, nu=0.3), RIGID)}, "neither hardness nor yield_strength"),
+    ],
+)
 def test_parameters_out_of_range_are_refused(law: MajumdarBhushan, change: dict[str, object], message: str) -> None:
     with pytest.raises(InputError, match=message):
         law.with_(**change)

@@ -50,10 +50,15 @@ def test_every_asperity_equals_quadrature(name: str, h: float, log_sigma: float)
     cuts = sorted({*ends, *np.linspace(0, 11 * s, 9)})
     for field, value in (("force", r.pressure), ("area", r.area), ("energy", r.energy_n)):
         expected = sum(
-            quad(lambda t, f=field: float(getattr(model.at(t), f)) * np.exp(-((t / s + h) ** 2) / 2), a, b, epsabs=0,
-                 epsrel=1e-9)[0]
+            quad(
+                lambda t, f=field: float(getattr(model.at(t), f)) * np.exp(-((t / s + h) ** 2) / 2),
+                a,
+                b,
+                epsabs=0,
+                epsrel=1e-9,
+            )[0]
             for a, b in pairwise(cuts)
-        )  # fmt: skip
+        )
         assert float(value) == pytest.approx(1e10 * expected / (s * sqrt(2 * pi)), rel=1e-7), field
 
 
@@ -101,11 +106,15 @@ def test_ground_of_the_model_is_marked() -> None:
     )
 
 
-@pytest.mark.parametrize(("change", "message"), [
-    ({"density": 0.0}, "density = 0 1/m.2; it must be positive"), ({"radius": -60e-6}, "radius = -6e-05 m; it must be positive"),
-    ({"sigma": float("nan")}, "sigma"),
-    ({"asperity": "cube"}, "asperity = 'cube'; use one of"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"density": 0.0}, "density = 0 1/m.2; it must be positive"),
+        ({"radius": -60e-6}, "radius = -6e-05 m; it must be positive"),
+        ({"sigma": float("nan")}, "sigma"),
+        ({"asperity": "cube"}, "asperity = 'cube'; use one of"),
+    ],
+)
 def test_parameters_out_of_range_are_refused(change: dict[str, object], message: str) -> None:
     with pytest.raises(InputError, match=message):
         LAW.with_(**change)

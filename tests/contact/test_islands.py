@@ -12,8 +12,18 @@ from faying.contact.islands import Islands, domain_extension, power_integral
 from faying.errors import InputError
 
 # psi of Wang and Komvopoulos for a surface of dimension D, tabulated in theory notes to four decimals
-PSI = {2.1: 2.4435, 2.2: 2.3014, 2.3: 2.1837, 2.39: 2.0940, 2.4: 2.0849, 2.5: 2.0007, 2.6: 1.9283, 2.7: 1.8654,
-       2.8: 1.8103, 2.9: 1.7616}  # fmt: skip
+PSI = {
+    2.1: 2.4435,
+    2.2: 2.3014,
+    2.3: 2.1837,
+    2.39: 2.0940,
+    2.4: 2.0849,
+    2.5: 2.0007,
+    2.6: 1.9283,
+    2.7: 1.8654,
+    2.8: 1.8103,
+    2.9: 1.7616,
+}
 
 
 @pytest.mark.parametrize(("D", "psi"), PSI.items())

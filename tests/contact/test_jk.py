@@ -20,16 +20,23 @@ TOTALS = ("pressure", "area", "k_n", "k_t", "energy_n")
 def materials() -> st.SearchStrategy[Material]:
     return st.builds(
         lambda E, nu, share: Material(name="m", E=E, nu=nu, hardness=share * E, friction=0.25),
-        st.floats(1e9, 6e11), st.floats(0, 0.5), st.floats(1e-3, 0.05),
-    )  # fmt: skip
+        st.floats(1e9, 6e11),
+        st.floats(0, 0.5),
+        st.floats(1e-3, 0.05),
+    )
 
 
 def laws(**fixed: object) -> st.SearchStrategy[JK]:
     return st.builds(
-        lambda D, logG, m, lam, **more: JK(D=D, G=10**logG, pair=ContactPair(m, RIGID), scan_area=16e-6,
-                                           substrate=lam, **(more | fixed)),
-        st.floats(2.1, 2.9), st.floats(-13, -8), materials(), st.floats(0.3, 1), cutoff=st.floats(1e-4, 0.01),
-    )  # fmt: skip
+        lambda D, logG, m, lam, **more: JK(
+            D=D, G=10**logG, pair=ContactPair(m, RIGID), scan_area=16e-6, substrate=lam, **(more | fixed)
+        ),
+        st.floats(2.1, 2.9),
+        st.floats(-13, -8),
+        materials(),
+        st.floats(0.3, 1),
+        cutoff=st.floats(1e-4, 0.01),
+    )
 
 
 def across_the_stages(law: JK, points: int, room: float = 3.0) -> np.ndarray:
@@ -182,14 +189,23 @@ def test_answers_do_not_depend_on_the_units(law: JK, log_length: float, log_forc
     stress = force / length**2
     m = law.pair.softer
     other = law.with_(
-        G=law.G * length, scan_area=law.scan_area * length**2,
+        G=law.G * length,
+        scan_area=law.scan_area * length**2,
         pair=ContactPair(Material(name="m", E=m.E * stress, nu=m.nu, hardness=(m.hardness or 0) * stress), RIGID),
-    )  # fmt: skip
+    )
     al1, al2, _ = law.limits
     al = al1 * (al2 / al1) ** (3 * u - 1)
     here, there = law.at_closure(al), other.at_closure(al * length**2)
-    units = {"pressure": stress, "area": 1, "k_n": stress / length, "k_t": stress / length, "loss_n": 1, "loss_t": 1,
-             "energy_n": force / length, "energy_t": 1}  # fmt: skip
+    units = {
+        "pressure": stress,
+        "area": 1,
+        "k_n": stress / length,
+        "k_t": stress / length,
+        "loss_n": 1,
+        "loss_t": 1,
+        "energy_n": force / length,
+        "energy_t": 1,
+    }
     for name, value in here.quantities().items():
         assert float(there.quantities()[name]) == pytest.approx(float(value) * units[name], rel=1e-9, abs=1e-300), name
     assert other.limits == pytest.approx([v * length**2 for v in law.limits], rel=1e-9)
@@ -235,10 +251,16 @@ def test_exact_substrate_lies_between_its_constant_shares() -> None:
 
 
 @settings(max_examples=15, deadline=None)
-@given(D=st.floats(2.1, 2.9), modulus_ratio=st.floats(0.1, 4), u=st.floats(-0.5, 1.5), closure=st.sampled_from(
-    ["consistent", "printed"]), cutoff=st.sampled_from([0.01, 1e-5]))  # fmt: skip
-def test_exact_substrate_equals_the_sum_of_asperities(D: float, modulus_ratio: float, u: float, closure: str,
-                                                      cutoff: float) -> None:  # fmt: skip
+@given(
+    D=st.floats(2.1, 2.9),
+    modulus_ratio=st.floats(0.1, 4),
+    u=st.floats(-0.5, 1.5),
+    closure=st.sampled_from(["consistent", "printed"]),
+    cutoff=st.sampled_from([0.01, 1e-5]),
+)
+def test_exact_substrate_equals_the_sum_of_asperities(
+    D: float, modulus_ratio: float, u: float, closure: str, cutoff: float
+) -> None:
     """Each asperity by eq. (1) on its own, summed by the trapezoidal rule on a fine grid in ln a' per regime."""
     from scipy.optimize import brentq
 
@@ -388,22 +410,44 @@ def test_every_sign_of_leaving_the_ground_is_reported() -> None:
     assert "D outside" in reasons(LAW.with_(D=2.05), 1e-10)
 
 
-@pytest.mark.parametrize(("change", "message"), [
-    ({"D": 2.0}, "between 2 and 3"), ({"D": 3.0}, "between 2 and 3"), ({"D": float("nan")}, "between 2 and 3"),
-    ({"G": 0.0}, "positive"), ({"G": -1e-10}, "positive"), ({"G": inf}, "positive"),
-    ({"scan_area": 0.0}, "scan_area"), ({"scan_area": float("nan")}, "scan_area"),
-    ({"gamma": 1.0}, "above 1"), ({"alpha": 1.0}, "below 1"), ({"alpha": -0.1}, "at least 0"),
-    ({"closure": "other"}, '"consistent" or "printed"'), ({"loss": "other"}, '"held" or "literal"'),
-    ({"cutoff": 0.0}, "between 0 and 1"), ({"cutoff": 1.0}, "between 0 and 1"),
-    ({"psi": 0.5}, "1 or more"), ({"psi": float("nan")}, "1 or more"),
-    ({"substrate": 0.0}, "a share lies above 0"), ({"substrate": 1.2}, "a share lies above 0"),
-    ({"substrate": "other"}, '"computed" or a share'), ({"modulus_ratio": 0.0}, "positive"),
-    ({"shear_ratio": -0.1}, "0 or more"), ({"shear_ratio": 1.0}, "slips as a whole"),
-    ({"shear_stress": -1.0}, "0 or more"), ({"shear_stress": 1e6, "shear_ratio": 0.1}, "give one of them"),
-    ({"shear_ratio": 0.1, "pair": ContactPair(Material(name="m", E=1e9, nu=0.3, hardness=1e7, friction=0.0), RIGID)},
-     "friction above 0"),
-    ({"pair": ContactPair(Material(name="m", E=1e9, nu=0.3), RIGID)}, "neither hardness nor yield_strength"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"D": 2.0}, "between 2 and 3"),
+        ({"D": 3.0}, "between 2 and 3"),
+        ({"D": float("nan")}, "between 2 and 3"),
+        ({"G": 0.0}, "positive"),
+        ({"G": -1e-10}, "positive"),
+        ({"G": inf}, "positive"),
+        ({"scan_area": 0.0}, "scan_area"),
+        ({"scan_area": float("nan")}, "scan_area"),
+        ({"gamma": 1.0}, "above 1"),
+        ({"alpha": 1.0}, "below 1"),
+        ({"alpha": -0.1}, "at least 0"),
+        ({"closure": "other"}, '"consistent" or "printed"'),
+        ({"loss": "other"}, '"held" or "literal"'),
+        ({"cutoff": 0.0}, "between 0 and 1"),
+        ({"cutoff": 1.0}, "between 0 and 1"),
+        ({"psi": 0.5}, "1 or more"),
+        ({"psi": float("nan")}, "1 or more"),
+        ({"substrate": 0.0}, "a share lies above 0"),
+        ({"substrate": 1.2}, "a share lies above 0"),
+        ({"substrate": "other"}, '"computed" or a share'),
+        ({"modulus_ratio": 0.0}, "positive"),
+        ({"shear_ratio": -0.1}, "0 or more"),
+        ({"shear_ratio": 1.0}, "slips as a whole"),
+        ({"shear_stress": -1.0}, "0 or more"),
+        ({"shear_stress": 1e6, "shear_ratio": 0.1}, "give one of them"),
+        (
+            {
+                "shear_ratio": 0.1,
+                "pair": ContactPair(Material(name="m", E=1e9, nu=0.3, hardness=1e7, friction=0.0), RIGID),
+            },
+            "friction above 0",
+        ),
+        ({"pair": ContactPair(Material(name="m", E=1e9, nu=0.3), RIGID)}, "neither hardness nor yield_strength"),
+    ],
+)
 def test_parameters_out_of_range_are_refused(change: dict[str, object], message: str) -> None:
     with pytest.raises(InputError, match=message):
         LAW.with_(**change)

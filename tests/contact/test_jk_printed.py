@@ -42,9 +42,18 @@ class Case:
 
     def law(self) -> JK:
         other = self.material if self.two_bodies else Material(name="rigid", E=float("inf"), nu=0.0)
-        return JK(D=self.D, G=self.G, pair=ContactPair(self.material, other), scan_area=16e-6, closure="printed",
-                  substrate=self.lam, shear_ratio=self.X, alpha=self.alpha, cutoff=self.cutoff,
-                  loss="literal")  # fmt: skip
+        return JK(
+            D=self.D,
+            G=self.G,
+            pair=ContactPair(self.material, other),
+            scan_area=16e-6,
+            closure="printed",
+            substrate=self.lam,
+            shear_ratio=self.X,
+            alpha=self.alpha,
+            cutoff=self.cutoff,
+            loss="literal",
+        )
 
     @property
     def al(self) -> float:
@@ -178,14 +187,39 @@ def printed(case: Case) -> dict[str, float]:
         B = d(3) / 5 - (1 - X) ** (d(2) / 3) + d(2) / 5 * (1 - X) ** (d(5) / 3)
         slip = (1 - X) ** (d(1) / 3)
         G2 = G ** (D - 2)
-        Hg1 = L ** d("1.16") * 2 ** (d("0.44") - d("0.32") * D) * Es ** d("0.32") * g ** d("0.16") * G2 ** d("0.32") / (
-            pi_ ** (d("0.64") - d("0.16") * D) * KH ** d("0.32"))  # fmt: skip
-        Hg2 = L ** d("1.38") * 2 ** (d("3.42") - d("0.76") * D) * KH ** d("0.24") * g ** d("0.38") * Es ** d("0.76") * (
-            G2 ** d("0.76")) / (3 * pi_ ** (d("1.52") - d("0.38") * D))  # fmt: skip
-        Hg3 = d("1.38") * L ** d("0.38") * 2 ** (d("0.42") + d("0.24") * D) * KH ** d("0.24") * Es ** d("0.76") / (
-            3 * G2 ** d("0.24") * g ** d("0.12") * pi_ ** (d("0.02") + d("0.12") * D))  # fmt: skip
-        Hg4 = L ** d("2.38") * 2 ** (d("5.42") - d("1.76") * D) * KH ** d("0.24") * Es ** d("0.76") * (
-            G2 ** d("1.76") * g ** d("0.88")) / (d("3.57") * pi_ ** (d("3.02") - d("0.88") * D))  # fmt: skip
+        Hg1 = (
+            L ** d("1.16")
+            * 2 ** (d("0.44") - d("0.32") * D)
+            * Es ** d("0.32")
+            * g ** d("0.16")
+            * G2 ** d("0.32")
+            / (pi_ ** (d("0.64") - d("0.16") * D) * KH ** d("0.32"))
+        )
+        Hg2 = (
+            L ** d("1.38")
+            * 2 ** (d("3.42") - d("0.76") * D)
+            * KH ** d("0.24")
+            * g ** d("0.38")
+            * Es ** d("0.76")
+            * (G2 ** d("0.76"))
+            / (3 * pi_ ** (d("1.52") - d("0.38") * D))
+        )
+        Hg3 = (
+            d("1.38")
+            * L ** d("0.38")
+            * 2 ** (d("0.42") + d("0.24") * D)
+            * KH ** d("0.24")
+            * Es ** d("0.76")
+            / (3 * G2 ** d("0.24") * g ** d("0.12") * pi_ ** (d("0.02") + d("0.12") * D))
+        )
+        Hg4 = (
+            L ** d("2.38")
+            * 2 ** (d("5.42") - d("1.76") * D)
+            * KH ** d("0.24")
+            * Es ** d("0.76")
+            * (G2 ** d("1.76") * g ** d("0.88"))
+            / (d("3.57") * pi_ ** (d("3.02") - d("0.88") * D))
+        )
         Hg5 = mu**2 * L ** d("2.5") * 2 ** (d("6.5") - 2 * D) / (3 * pi_ ** (d("2.5") - D) * Gs) * g * Es**2 * G2**2 * B
         Hg6 = 3 * pi_ ** d("1.5") * mu**2 / (8 * Gs) * Hg2**2 / Hg1.sqrt() * B
         Hg7 = 3 * pi_ ** d("1.5") * mu**2 * L ** d("1.5") * H**2 / (8 * Gs) * B
@@ -204,21 +238,67 @@ def printed(case: Case) -> dict[str, float]:
         )
         Arp = L * (D - 1) / (3 - D) * P * al ** ((D - 1) / 2) * step(d("1.5") - D / 2, al, a2)
         # (A1) is printed with al'^0 because the powers of al' cancel
-        Fe = (2 ** (d("4.5") - D) * (D - 1) * L ** d("1.5") / (3 * (4 - D) * pi_ ** (2 - D / 2)) * Es * G2 * g.sqrt()
-              * P * a1 ** ((4 - D) / 2))  # fmt: skip
+        Fe = (
+            2 ** (d("4.5") - D)
+            * (D - 1)
+            * L ** d("1.5")
+            / (3 * (4 - D) * pi_ ** (2 - D / 2))
+            * Es
+            * G2
+            * g.sqrt()
+            * P
+            * a1 ** ((4 - D) / 2)
+        )
         Fep = Hg2 * (D - 1) / (d("3.76") - D) * P * al ** (d("0.12") * (D - 1)) * step(d("1.88") - D / 2, a2, a1)
         Fp = L * (D - 1) * H / (3 - D) * P * al ** ((D - 1) / 2) * step(d("1.5") - D / 2, al, a2)
         Kne = (D - 1) / (2 - D) * (2 * L / pi_).sqrt() * Es * P * al ** ((D - 1) / 2) * step((2 - D) / 2, a1, eps)
         Knep = (D - 1) * Hg3 / (d("1.76") - D) * P * al ** (d("0.62") * (D - 1)) * step(d("0.88") - D / 2, a2, a1)
-        Kte = (8 * (D - 1) / (2 - D) * (L / (2 * pi_)).sqrt() * Gs * P * al ** ((D - 1) / 2)
-               * step((2 - D) / 2, a1, eps) * slip)  # fmt: skip
-        Ktep = (slip * (Hg1 / pi_).sqrt() * Gs * P * al ** (d("0.42") * (D - 1)) * 8 * (D - 1) / (d("2.16") - D)
-                * step(d("1.08") - D / 2, a2, a1))  # fmt: skip
-        Wne = (2 ** (d("8.5") - 2 * D) * L ** d("2.5") * (D - 1) / (15 * (6 - D) * pi_ ** (d("3.5") - D)) * Es * G2**2
-               * g * P * al ** ((1 - D) / 2) * a1 ** (3 - D / 2))  # fmt: skip
+        Kte = (
+            8
+            * (D - 1)
+            / (2 - D)
+            * (L / (2 * pi_)).sqrt()
+            * Gs
+            * P
+            * al ** ((D - 1) / 2)
+            * step((2 - D) / 2, a1, eps)
+            * slip
+        )
+        Ktep = (
+            slip
+            * (Hg1 / pi_).sqrt()
+            * Gs
+            * P
+            * al ** (d("0.42") * (D - 1))
+            * 8
+            * (D - 1)
+            / (d("2.16") - D)
+            * step(d("1.08") - D / 2, a2, a1)
+        )
+        Wne = (
+            2 ** (d("8.5") - 2 * D)
+            * L ** d("2.5")
+            * (D - 1)
+            / (15 * (6 - D) * pi_ ** (d("3.5") - D))
+            * Es
+            * G2**2
+            * g
+            * P
+            * al ** ((1 - D) / 2)
+            * a1 ** (3 - D / 2)
+        )
         Wnep = (D - 1) / (d("5.76") - D) * Hg4 * P * al ** (d("0.38") * (1 - D)) * step(d("2.88") - D / 2, a2, a1)
-        Wnp = (H * (D - 1) * L**2 / ((5 - D) * pi_ ** (d("1.5") - D / 2)) * 2 ** (2 - D) * G2 * g.sqrt() * P
-               * step((5 - D) / 2, al, a2))  # fmt: skip
+        Wnp = (
+            H
+            * (D - 1)
+            * L**2
+            / ((5 - D) * pi_ ** (d("1.5") - D / 2))
+            * 2 ** (2 - D)
+            * G2
+            * g.sqrt()
+            * P
+            * step((5 - D) / 2, al, a2)
+        )
         Wte = (D - 1) / (6 - D) * Hg5 * P * al ** ((1 - D) / 2) * a1 ** (3 - D / 2)
         Wtep = (D - 1) / (d("5.36") - D) * Hg6 * P * al ** (d("0.18") * (1 - D)) * step(d("2.68") - D / 2, a2, a1)
         Wtp = (D - 1) / (4 - D) * Hg7 * P * al ** ((D - 1) / 2) * step((4 - D) / 2, al, a2)

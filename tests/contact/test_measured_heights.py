@@ -12,7 +12,7 @@ from scipy.integrate import quad
 from faying import ContactPair, InputError, Material
 from faying.contact import GreenwoodWilliamson, MeasuredHeights, asperity
 from faying.contact.asperity import Brake
-from faying.joint.seat import Seat
+from faying.joint.joint_law import JointLaw
 
 STEEL = Material(name="m", E=192.31e9, nu=0.3, yield_strength=331.7e6)
 PAIR = ContactPair(STEEL, STEEL)
@@ -86,8 +86,10 @@ def test_any_table_equals_quadrature(seed: int, share: float) -> None:
     cuts = sorted({*g, g[0] + w, *(g[0] + w - b * model.critical for b in model.borders)})
     cuts = [c for c in cuts if g[0] <= c <= min(g[-1], g[0] + w)]
     for field, value in (("force", law.at_closure(w).pressure), ("area", law.at_closure(w).area)):
-        total = sum(quad(lambda x, f=field: float(getattr(model.at(max(g[0] + w - x, 0.0)), f)) * density(x), a, b)[0]
-                    for a, b in itertools.pairwise(cuts))  # fmt: skip
+        total = sum(
+            quad(lambda x, f=field: float(getattr(model.at(max(g[0] + w - x, 0.0)), f)) * density(x), a, b)[0]
+            for a, b in itertools.pairwise(cuts)
+        )
         assert float(value) == pytest.approx(ETA * total, rel=1e-4), field
 
 
@@ -110,11 +112,11 @@ def test_stiffness_after_yield_is_the_slope_of_unloading(x: float) -> None:
 
 def test_the_joint_closes_by_the_loading_slope() -> None:
     law = uniform(asperity="Ghaednia", tangent_ratio=0.003)
-    seat = Seat(law=law)
+    joined = JointLaw(model=law)
     p = np.array([1e6, 1e7, 5e7])
-    closing = np.array([seat.closing(one) for one in p])
+    closing = np.array([joined.closing(one) for one in p])
     assert np.diff(closing) == pytest.approx(np.diff(law._closure_at(p)), rel=1e-4)
-    assert seat.stiffness(p)[0] == pytest.approx(law.at_pressure(p).k_n, rel=1e-9)
+    assert joined.stiffness(p)[0] == pytest.approx(law.at_pressure(p).k_n, rel=1e-9)
     assert np.all(law.at_pressure(p).k_n > law.at_pressure(p).k_load)
 
 

@@ -39,9 +39,15 @@ def test_beyond_the_measurement() -> None:
     assert LAW.at_pressure(9.7e6).valid
 
 
-@pytest.mark.parametrize(("change", "message"), [
-    ({"C": 0.0}, "C = "), ({"m": 1.0}, "between 0 and 1"), ({"m": 0.0}, "between 0 and 1"), ({"greatest": -1.0}, "greatest"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"C": 0.0}, "C = "),
+        ({"m": 1.0}, "between 0 and 1"),
+        ({"m": 0.0}, "between 0 and 1"),
+        ({"greatest": -1.0}, "greatest"),
+    ],
+)
 def test_parameters_out_of_range_are_refused(change: dict[str, float], message: str) -> None:
     with pytest.raises(InputError, match=message):
         LAW.with_(**change)

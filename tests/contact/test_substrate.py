@@ -54,10 +54,16 @@ def test_share_forwards_and_backwards(deformation: float, ratio: float) -> None:
 
 
 @settings(max_examples=40)
-@given(st.floats(2.1, 2.9), st.sampled_from([0.5, 1.0, 1.16, 1.38, 1.5, 2.38, 2.5]), st.floats(0.1, 4),
-       st.floats(1e-6, 0.999), st.booleans())  # fmt: skip
-def test_weighted_islands_equal_brute_quadrature(D: float, power: float, ratio: float, lower: float,
-                                                 whole: bool) -> None:  # fmt: skip
+@given(
+    st.floats(2.1, 2.9),
+    st.sampled_from([0.5, 1.0, 1.16, 1.38, 1.5, 2.38, 2.5]),
+    st.floats(0.1, 4),
+    st.floats(1e-6, 0.999),
+    st.booleans(),
+)
+def test_weighted_islands_equal_brute_quadrature(
+    D: float, power: float, ratio: float, lower: float, whole: bool
+) -> None:
     islands = WeightedIslands(D, None, ratio)
     exponent = power + (1 - D) / 2
     if whole and exponent <= 0.05:
@@ -76,8 +82,9 @@ def test_weighted_islands_equal_brute_quadrature(D: float, power: float, ratio: 
 
 def test_a_rigid_substrate_leaves_the_plain_islands() -> None:
     exact = WeightedIslands(2.39, None, 1e-14).total(1.0, 0.0, 0.7)
-    assert float(exact) == pytest.approx(float(super(WeightedIslands, WeightedIslands(2.39, None, 1)).total(1, 0, 0.7)),
-                                         rel=1e-12)  # fmt: skip
+    assert float(exact) == pytest.approx(
+        float(super(WeightedIslands, WeightedIslands(2.39, None, 1)).total(1, 0, 0.7)), rel=1e-12
+    )
 
 
 def test_weighted_islands_take_ranges_from_zero_and_above_it_together() -> None:
@@ -119,10 +126,18 @@ def test_a_border_lies_where_the_deformation_over_that_of_yield_says(y: float, s
 
 
 @settings(max_examples=40)
-@given(st.floats(2.1, 2.9), st.sampled_from([0.5, 1.0, 1.16, 1.38, 1.5, 2.5]), st.floats(0.3, 8),
-       st.floats(1e-3, 0.3), st.floats(1e-6, 0.999), st.sampled_from([0, 2, 4]), st.booleans())  # fmt: skip
-def test_mixed_islands_equal_brute_quadrature(D: float, power: float, ratio: float, slope: float, lower: float,
-                                              softness: int, whole: bool) -> None:  # fmt: skip
+@given(
+    st.floats(2.1, 2.9),
+    st.sampled_from([0.5, 1.0, 1.16, 1.38, 1.5, 2.5]),
+    st.floats(0.3, 8),
+    st.floats(1e-3, 0.3),
+    st.floats(1e-6, 0.999),
+    st.sampled_from([0, 2, 4]),
+    st.booleans(),
+)
+def test_mixed_islands_equal_brute_quadrature(
+    D: float, power: float, ratio: float, slope: float, lower: float, softness: int, whole: bool
+) -> None:
     exponent = power + (1 - D) / 2
     if whole and exponent <= 0.05:
         return
@@ -211,8 +226,9 @@ def test_a_cap_on_a_softer_substrate_is_one_body_of_the_effective_modulus(R: flo
 
     def cap(E: float, below: float) -> float:
         bodies = [Material(name="m", E=e, nu=0.3, yield_strength=355e6) for e in (E, below)]
-        return solve_asperity(R=R, h_a=h_a, cap=bodies[0], substrate=bodies[1], displacement=applied * h_a,
-                              elements=20).force  # fmt: skip
+        return solve_asperity(
+            R=R, h_a=h_a, cap=bodies[0], substrate=bodies[1], displacement=applied * h_a, elements=20
+        ).force
 
     effective = 200e9 / compliance(applied / SHAPE, np.sqrt(h_a / (2 * R)), 2.0)
     assert cap(200e9, 100e9) == pytest.approx(cap(effective, effective), rel=0.04)

@@ -89,16 +89,19 @@ def test_tables_do_not_change() -> None:
         law.pressure[0] = 1.0  # type: ignore[index]
 
 
-@pytest.mark.parametrize(("make", "message"), [
-    (lambda: TabulatedLaw(pressure=P), "nothing but pressure"),
-    (lambda: TabulatedLaw(pressure=[1.0], k_n=[1.0]), "at least 2 values"),
-    (lambda: TabulatedLaw(pressure=[2.0, 1.0], k_n=[1.0, 2.0]), "does not rise"),
-    (lambda: TabulatedLaw(pressure=[1.0, 2.0], k_n=[1.0]), r"k_n has shape \(1,\)"),
-    (lambda: TabulatedLaw(pressure=[1.0, 2.0], k_n=[1.0, -2.0]), "0 or more"),
-    (lambda: TabulatedLaw(pressure=[1.0, 2.0], k_n=[1.0, float("nan")]), "NaN or infinite"),
-    (lambda: TabulatedLaw(pressure=[0.0, 2.0], k_n=[1.0, 2.0]), "positive"),
-    (lambda: TabulatedLaw.from_approach([1.0, 2.0], [2.0, 1.0]), "both rising"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: TabulatedLaw(pressure=P), "nothing but pressure"),
+        (lambda: TabulatedLaw(pressure=[1.0], k_n=[1.0]), "at least 2 values"),
+        (lambda: TabulatedLaw(pressure=[2.0, 1.0], k_n=[1.0, 2.0]), "does not rise"),
+        (lambda: TabulatedLaw(pressure=[1.0, 2.0], k_n=[1.0]), r"k_n has shape \(1,\)"),
+        (lambda: TabulatedLaw(pressure=[1.0, 2.0], k_n=[1.0, -2.0]), "0 or more"),
+        (lambda: TabulatedLaw(pressure=[1.0, 2.0], k_n=[1.0, float("nan")]), "NaN or infinite"),
+        (lambda: TabulatedLaw(pressure=[0.0, 2.0], k_n=[1.0, 2.0]), "positive"),
+        (lambda: TabulatedLaw.from_approach([1.0, 2.0], [2.0, 1.0]), "both rising"),
+    ],
+)
 def test_bad_tables_are_refused(make: object, message: str) -> None:
     with pytest.raises(InputError, match=message):
         make()  # type: ignore[operator]
@@ -107,31 +110,42 @@ def test_bad_tables_are_refused(make: object, message: str) -> None:
 HEAD = "pressure [MPa],k_n [MPa/um]\n"
 
 
-@pytest.mark.parametrize(("text", "message"), [
-    ("", ": the head is empty; a table looks like: pressure"),
-    ("1,40\n2,60\n", ", line 1: no head with the names of the columns; a table looks like: pressure"),
-    ("pressure [MPa],kt [MPa/um]\n1,2\n2,3\n", ', line 1: the column "kt [MPa/um]" is unknown; known are pressure, area, k_n'),
-    ("pressure [MPa],k_n [MPa/um],\n1,2\n2,3\n", ', line 1: the column "" is unknown'),
-    ("k_n [MPa/um]\n1\n2\n", ', line 1: no column "pressure [unit]"; the head is k_n'),
-    ("pressure [MPa]\n1\n2\n", ", line 1: nothing but pressure is given; add any of area, k_n"),
-    ("pressure [MPa],k_n [MPa/um],k_n [Pa/m]\n1,2,3\n2,3,4\n", ', line 1: 2 columns are called "k_n"'),
-    ("# c\npressure,k_n [MPa/um]\n1,2\n2,3\n", ', line 2: the column "pressure" lacks its unit; write for example "pressure [MPa]"'),
-    ("pressure [MPa],k_n [MPa]\n1,2\n2,3\n", ', line 1: "MPa" of the column "k_n [MPa]" is not a unit like Pa/m; write for example '
-     '"k_n [MPa/um]"'),
-    ("pressure [MPa],area [%]\n1,2\n2,3\n", 'the column "area [%]" has no unit; give plain numbers under "area"'),
-    ("pressure [MPa];k_n [MPa/um]\n1;2\n2;3\n", ", line 1: semicolons between the columns; put commas there"),
-    ("pressure [MPa]\tk_n [MPa/um]\n1\t2\n2\t3\n", ", line 1: tabs between the columns; put commas there"),
-    (HEAD, ": 0 rows under the head; give 2 or more"),
-    (HEAD + "1,2\n", ": 1 row under the head; give 2 or more"),
-    (HEAD + "1,2\n\n2,x\n", ', line 4: "x" in the column "k_n" is not a number'),
-    (HEAD + "1,2\n2\n", ', line 3: no value in the column "k_n"'),
-    (HEAD + "1,2\n,3\n", ', line 3: no value in the column "pressure"'),
-    (HEAD + "1,2\n2,3,4\n", ", line 3: 3 values under the 2 columns of the head"),
-    (HEAD + "1,2\n2,nan\n", ', line 3: "nan" in the column "k_n" is not a finite number'),
-    (HEAD + "1,2\n2,-3\n", ', line 3: -3 in the column "k_n"; it must be 0 or more'),
-    (HEAD + "0,2\n2,3\n", ', line 2: 0 in the column "pressure"; pressures must be above 0'),
-    (HEAD + "1,2\n2,3\n2,4\n", ", line 4: the pressure 2 does not rise above 2, that of the row before"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", ": the head is empty; a table looks like: pressure"),
+        ("1,40\n2,60\n", ", line 1: no head with the names of the columns; a table looks like: pressure"),
+        (
+            "pressure [MPa],kt [MPa/um]\n1,2\n2,3\n",
+            ', line 1: the column "kt [MPa/um]" is unknown; known are pressure, area, k_n',
+        ),
+        ("pressure [MPa],k_n [MPa/um],\n1,2\n2,3\n", ', line 1: the column "" is unknown'),
+        ("k_n [MPa/um]\n1\n2\n", ', line 1: no column "pressure [unit]"; the head is k_n'),
+        ("pressure [MPa]\n1\n2\n", ", line 1: nothing but pressure is given; add any of area, k_n"),
+        ("pressure [MPa],k_n [MPa/um],k_n [Pa/m]\n1,2,3\n2,3,4\n", ', line 1: 2 columns are called "k_n"'),
+        (
+            "# c\npressure,k_n [MPa/um]\n1,2\n2,3\n",
+            ', line 2: the column "pressure" lacks its unit; write for example "pressure [MPa]"',
+        ),
+        (
+            "pressure [MPa],k_n [MPa]\n1,2\n2,3\n",
+            ', line 1: "MPa" of the column "k_n [MPa]" is not a unit like Pa/m; write for example "k_n [MPa/um]"',
+        ),
+        ("pressure [MPa],area [%]\n1,2\n2,3\n", 'the column "area [%]" has no unit; give plain numbers under "area"'),
+        ("pressure [MPa];k_n [MPa/um]\n1;2\n2;3\n", ", line 1: semicolons between the columns; put commas there"),
+        ("pressure [MPa]\tk_n [MPa/um]\n1\t2\n2\t3\n", ", line 1: tabs between the columns; put commas there"),
+        (HEAD, ": 0 rows under the head; give 2 or more"),
+        (HEAD + "1,2\n", ": 1 row under the head; give 2 or more"),
+        (HEAD + "1,2\n\n2,x\n", ', line 4: "x" in the column "k_n" is not a number'),
+        (HEAD + "1,2\n2\n", ', line 3: no value in the column "k_n"'),
+        (HEAD + "1,2\n,3\n", ', line 3: no value in the column "pressure"'),
+        (HEAD + "1,2\n2,3,4\n", ", line 3: 3 values under the 2 columns of the head"),
+        (HEAD + "1,2\n2,nan\n", ', line 3: "nan" in the column "k_n" is not a finite number'),
+        (HEAD + "1,2\n2,-3\n", ', line 3: -3 in the column "k_n"; it must be 0 or more'),
+        (HEAD + "0,2\n2,3\n", ', line 2: 0 in the column "pressure"; pressures must be above 0'),
+        (HEAD + "1,2\n2,3\n2,4\n", ", line 4: the pressure 2 does not rise above 2, that of the row before"),
+    ],
+)
 def test_bad_files_are_refused_with_file_and_line(tmp_path: Path, text: str, message: str) -> None:
     file = tmp_path / "t.csv"
     file.write_text(text)

@@ -16,8 +16,12 @@ EXAMPLE = Path(__file__).parent.parent.parent / "examples" / "t-specimen"
 def outcome(tmp_path_factory):
     folder = tmp_path_factory.mktemp("example") / "t-specimen"
     shutil.copytree(EXAMPLE, folder, ignore=shutil.ignore_patterns("results"))
-    done = subprocess.run([sys.executable, "-m", "faying", "run", str(folder / "study.toml"), "--json"],
-                          capture_output=True, text=True, check=False)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-m", "faying", "run", str(folder / "study.toml"), "--json"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout), folder / "results"
 

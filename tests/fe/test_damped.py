@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from boxes import stack
 from scipy.linalg import eig
 
 import faying
@@ -11,6 +10,7 @@ from faying.fe.damped import damped_modes, followers
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
+from tests.helpers.boxes import stack
 
 STEEL = faying.CATALOGUE["45 steel"]
 
@@ -177,8 +177,14 @@ def test_a_hundred_and_fifty_thousand_unknowns():
         return np.concatenate([x, f + s * x])
 
     start = np.random.default_rng(3).standard_normal(2 * n)
-    theta = eigs(LinearOperator((2 * n, 2 * n), matvec=solve, dtype=float), k=60, ncv=140, v0=start, tol=1e-12,
-                 return_eigenvectors=False)  # fmt: skip
+    theta = eigs(
+        LinearOperator((2 * n, 2 * n), matvec=solve, dtype=float),
+        k=60,
+        ncv=140,
+        v0=start,
+        tol=1e-12,
+        return_eigenvectors=False,
+    )
     roots = s + 1 / theta
     for frequency, loss in zip(found.frequencies, found.loss_factors, strict=True):
         omega = 2 * np.pi * frequency

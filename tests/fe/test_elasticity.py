@@ -1,12 +1,12 @@
 import numpy as np
 import pytest
-from boxes import box, stack
 
 import faying
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.faces import face_centre, face_load
 from faying.fe.mesh import Mesh
 from faying.fe.modes import lowest_modes
+from tests.helpers.boxes import box, stack
 
 STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0)
 

@@ -4,7 +4,6 @@ from math import factorial
 
 import numpy as np
 import pytest
-from blocks import SOLID_KINDS, block, row
 
 import faying
 from faying.fe.elasticity import assemble, rigid_motions
@@ -15,6 +14,7 @@ from faying.fe.mesh import MASS_RULE, STIFFNESS_RULE, Mesh, least_jacobian
 from faying.fe.modes import lowest_modes
 from faying.fe.sides import all_sides, nodes_of, sides_like, skin
 from faying.joint.structure import tie
+from tests.helpers.blocks import SOLID_KINDS, block, row
 
 STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0)
 SIZE = np.array([1.0, 0.8, 0.6])
@@ -93,8 +93,12 @@ def mixed():
     left = points[cells].mean(axis=1)[:, 0] < 0.5
     wedges = np.concatenate([cells[~left][:, c] for c in ([0, 1, 2, 4, 5, 6], [0, 2, 3, 4, 6, 7])])
     other, tets = block("tet10", (1, 1, 1), (0.3, 0.8, 0.6), (-0.5, 0, 0))
-    return Mesh(points=np.concatenate([points, other]), parts={"p": (cells[left], wedges), "q": tets + len(points)},
-                faces={}, face_part={})  # fmt: skip
+    return Mesh(
+        points=np.concatenate([points, other]),
+        parts={"p": (cells[left], wedges), "q": tets + len(points)},
+        faces={},
+        face_part={},
+    )
 
 
 GRADIENT = np.array([[1.0, 0.3, -0.2], [0.1, -0.5, 0.4], [0.25, 0.6, 0.7]]) * 1e-4

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
-from boxes import stack
 
 import faying
 from faying.fe.elasticity import rigid_motions
 from faying.fe.interface import join
 from faying.joint.structure import tie
+from tests.helpers.boxes import stack
 
 
 @pytest.fixture(params=[((2, 3), (2, 3)), ((2, 3), (3, 2))], ids=["matched", "unmatched"])

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from blocks import block
 from scipy.io import mmwrite
 
 import faying
 from faying.fe.elasticity import assemble
 from faying.fe.matrices import arranged, read_matrices
 from faying.fe.mesh import Mesh
+from tests.helpers.blocks import block
 
 STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0)
 UNITS = {"stiffness_unit": "N/mm", "mass_unit": "t"}
@@ -102,8 +102,10 @@ def test_faults(model, tmp_path):
     refused("stiffness matrix is not symmetric", **market(tmp_path, lame.tocsr(), M, dofs, "general"))
     zero = K.copy().tolil()
     zero[5, :], zero[:, 5] = 0, 0
-    refused(rf"1 unknowns have no positive stiffness, node {dofs[5, 0]} direction {dofs[5, 1]} for one",
-            **market(tmp_path, zero.tocsr(), M, dofs))  # fmt: skip
+    refused(
+        rf"1 unknowns have no positive stiffness, node {dofs[5, 0]} direction {dofs[5, 1]} for one",
+        **market(tmp_path, zero.tocsr(), M, dofs),
+    )
     refused("the mass matrix is zero", **market(tmp_path, K, 0 * M, dofs))
     refused("unknowns have no positive mass", **market(tmp_path, K, -1 * M, dofs))
     refused("the stiffness matrix is 36 x 36 for 35 unknowns", **market(tmp_path, K, M, dofs[1:]))

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from boxes import stack
 
 import faying
 from faying.fe import memory
 from faying.fe.elasticity import assemble
 from faying.fe.modes import lowest_modes
 from faying.fe.solve import available, factorise
+from tests.helpers.boxes import stack
 
 STEEL = faying.CATALOGUE["45 steel"]
 

@@ -3,16 +3,16 @@
 import re
 import subprocess
 
-import meshfiles
 import numpy as np
 import pytest
-from blocks import SOLID_KINDS, row
 
 import faying
 from faying.fe.elasticity import assemble
 from faying.fe.faces import face_centre
 from faying.fe.formats.nastran import number
 from faying.fe.interface import join
+from tests.helpers import meshfiles
+from tests.helpers.blocks import SOLID_KINDS, row
 
 STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0)
 MIXED = ("hex20", "tet10")
@@ -30,8 +30,11 @@ def same(mesh, expected, rename=lambda name: name, parts=None, digits=1e-9):
     assert list(mesh.parts) == [names[part] for part in expected.parts]
     for name in expected.faces:
         assert mesh.face_part[rename(name)] == names[expected.face_part[name]]
-        for got, want in zip(face_centre(mesh.points, mesh.face(rename(name))),
-                             face_centre(expected.points, expected.faces[name]), strict=True):  # fmt: skip
+        for got, want in zip(
+            face_centre(mesh.points, mesh.face(rename(name))),
+            face_centre(expected.points, expected.faces[name]),
+            strict=True,
+        ):
             assert got == pytest.approx(want, abs=digits)
     rigid = np.tile([1.0, 0, 0], len(mesh.points))
     _, M = assemble(mesh, dict.fromkeys(mesh.parts, STEEL))
@@ -100,8 +103,18 @@ def test_files_that_meshio_writes(tmp_path, kinds, name):
     meshio = pytest.importorskip("meshio")
     meshio._mesh.topological_dimension["wedge15"] = 3  # forgotten in meshio 5.3.5
     expected = two(kinds, gap=1e-4)
-    names = {"tet4": "tetra", "tet10": "tetra10", "hex8": "hexahedron", "hex20": "hexahedron20", "wedge6": "wedge",
-             "wedge15": "wedge15", 3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8"}  # fmt: skip
+    names = {
+        "tet4": "tetra",
+        "tet10": "tetra10",
+        "hex8": "hexahedron",
+        "hex20": "hexahedron20",
+        "wedge6": "wedge",
+        "wedge15": "wedge15",
+        3: "triangle",
+        4: "quad",
+        6: "triangle6",
+        8: "quad8",
+    }
     cells = [(names[kind], block) for kind, block in zip(kinds, expected.blocks, strict=True)]
     labels = [np.full(len(block), 10 + i) for i, (_, block) in enumerate(cells)]
     if not name.endswith("inp"):
@@ -122,8 +135,12 @@ def test_files_that_meshio_writes(tmp_path, kinds, name):
         return
     face = {label: f"face{i}" if i or not name.endswith("msh") else "face0" for i, label in enumerate(expected.faces)}
     if name.endswith("msh"):  # Gmsh's group 0 is none
-        expected = faying.fe.mesh.Mesh(points=expected.points, parts=expected.parts, face_part=expected.face_part,
-                                       faces={k: v for k, v in expected.faces.items() if face[k] != "face0"})  # fmt: skip
+        expected = faying.fe.mesh.Mesh(
+            points=expected.points,
+            parts=expected.parts,
+            face_part=expected.face_part,
+            faces={k: v for k, v in expected.faces.items() if face[k] != "face0"},
+        )
     same(mesh, expected, face.get, {"p0": "part10", "p1": "part11"})
 
 
@@ -208,8 +225,11 @@ def test_faults_of_a_mesh_file(tmp_path):
     end = good.index("\n", good.index("\n", at) + 1)
     turned = ", ".join(map(str, [first[1], *first[3][4:], *first[3][:4]]))
     fault(tmp_path, good[:at] + turned + good[end:], r"1 elements have no or negative volume: 9; repair")
-    fault(tmp_path, good.replace("*Node, nset=NALL\n", "*Node, nset=NALL\n7, 1., 2., 3.\n"),
-          r"1 nodes belong to no element: 7; delete them")  # fmt: skip
+    fault(
+        tmp_path,
+        good.replace("*Node, nset=NALL\n", "*Node, nset=NALL\n7, 1., 2., 3.\n"),
+        r"1 nodes belong to no element: 7; delete them",
+    )
     fault(tmp_path, good + "*ELEMENT, TYPE=C3D8\n" + turned + "\n", "element 9 is given twice")
     fault(tmp_path, good.replace("C3D8I", "C3D27"), "elements of type C3D27 are not known; known are C3D4")
     fault(tmp_path, good.replace("C3D8I", "C3D20"), "do not make elements of 20 nodes; is the file whole")
@@ -284,8 +304,10 @@ def test_pyramids_in_an_archive_are_named(tmp_path):
     fault(tmp_path, archive.replace(whole, pyramid), rf"element {number_} \(SOLID185\) is a pyramid", "m.cdb")
 
 
-@pytest.mark.parametrize(("text", "value"), [("1.5", 1.5), ("1.5+3", 1500.0), ("-2.-1", -0.2), ("1.5D3", 1500.0), (".7E-2", 0.007),
-                                             ("-7", -7.0)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [("1.5", 1.5), ("1.5+3", 1500.0), ("-2.-1", -0.2), ("1.5D3", 1500.0), (".7E-2", 0.007), ("-7", -7.0)],
+)
 def test_reals_of_nastran(text, value):
     assert number(text) == pytest.approx(value, rel=1e-15)
 

@@ -4,7 +4,6 @@ import sys
 
 import numpy as np
 import pytest
-from boxes import stack
 from scipy.optimize import brentq, fsolve
 
 import faying
@@ -14,6 +13,7 @@ from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
 from faying.fe.solve import available, chosen, factorise
 from faying.joint.structure import tie
+from tests.helpers.boxes import stack
 
 BAR = faying.Material(name="bar", E=200e9, nu=0.0, density=7800.0)  # nu = 0: the bar of the textbook
 HALF, SIDE = 0.5, 0.02
@@ -248,10 +248,9 @@ def test_ties_over_several_joints_do_not_depend_on_their_order(turned):
 
 def test_a_node_of_two_joints_grows_together_with_both():
     """Three cubes in an L: the corner's edge lies in two joints, and the same nodes come out whatever is named first."""
-    from blocks import block
-
     from faying.fe.mesh import Mesh
     from faying.fe.sides import sides_on
+    from tests.helpers.blocks import block
 
     points, parts, faces, owner, offset = [], {}, {}, {}, 0
     for name, origin in (("a", (0, 0, 1)), ("b", (0, 0, 0)), ("c", (1, 0, 0))):

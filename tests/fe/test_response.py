@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from boxes import stack
 
 import faying
 from faying.fe.damped import damped_modes
@@ -10,6 +9,7 @@ from faying.fe.elasticity import assemble
 from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
 from faying.fe.response import frequency_response
+from tests.helpers.boxes import stack
 
 BAR = faying.Material(name="bar", E=200e9, nu=0.0, density=7800.0)
 L, SIDE, ETA = 0.5, 0.02, 0.02
@@ -97,8 +97,9 @@ def test_a_lossy_joint_against_the_full_equations(kind):
     push = np.zeros((K.shape[0], 1))
     push[[1, 5, 40], 0] = 1.0, -0.5, 0.7
     frequencies = np.array([50.0, 400.0, 1300.0, 3000.0])
-    found = frequency_response(modes, damped, K, M, loss, forces=push, outputs=push, frequencies=frequencies, rigid=6,
-                               kind=kind, checks=4)  # fmt: skip
+    found = frequency_response(
+        modes, damped, K, M, loss, forces=push, outputs=push, frequencies=frequencies, rigid=6, kind=kind, checks=4
+    )
     for i, f in enumerate(frequencies):
         w = 2 * np.pi * f
         u = spsolve((K + 1j * (w if kind == "viscous" else 1.0) * loss - w**2 * M).tocsc(), push[:, 0].astype(complex))

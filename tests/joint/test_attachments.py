@@ -4,7 +4,6 @@ from math import pi
 
 import numpy as np
 import pytest
-from blocks import block
 from scipy.optimize import brentq
 
 import faying
@@ -13,6 +12,7 @@ from faying.fe.modes import lowest_modes
 from faying.fe.sides import sides_on
 from faying.joint.attachments import PointMass, Support
 from faying.joint.structure import Structure
+from tests.helpers.blocks import block
 
 SIMPLE = faying.Material(name="simple", E=200e9, nu=0.0, density=7800.0)
 SPEED = (200e9 / 7800) ** 0.5
@@ -22,8 +22,10 @@ L, WIDTH, HEIGHT = 0.5, 0.02, 0.03
 def bar(counts=(12, 1, 1)):
     """A bar along x with the faces foot and tip."""
     points, cells = block("hex20", counts, (L, WIDTH, HEIGHT))
-    faces = {name: sides_on(np.flatnonzero(np.abs(points[:, 0] - x) < 1e-9), (cells,), len(points))
-             for name, x in (("foot", 0.0), ("tip", L))}  # fmt: skip
+    faces = {
+        name: sides_on(np.flatnonzero(np.abs(points[:, 0] - x) < 1e-9), (cells,), len(points))
+        for name, x in (("foot", 0.0), ("tip", L))
+    }
     return Mesh(points=points, parts={"bar": cells}, faces=faces, face_part={"foot": "bar", "tip": "bar"})
 
 

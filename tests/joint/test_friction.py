@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from plates import plates, stacked
 
 import faying
 from faying.fe.faces import face_load
 from faying.joint.attachments import Support
-from faying.joint.balance import Grip
+from faying.joint.equilibrium import StickSlip
+from tests.helpers.plates import plates, stacked
 
 MU = 0.3
 
@@ -95,7 +95,7 @@ def test_what_slipped_does_not_come_back_by_itself():
 @given(st.floats(-1, 1), st.floats(-1, 1), st.floats(1e-6, 2.0))
 def test_the_tangent_is_the_derivative_of_the_shear(x: float, y: float, limit: float):
     slip, anchor = 1e-6 * np.array([[x, y]]), np.array([[2e-7, -1e-7]])
-    grip = Grip(k_t=np.array([1e12]), limit=1e6 * np.array([limit]), anchor=anchor)
+    grip = StickSlip(k_t=np.array([1e12]), limit=1e6 * np.array([limit]), anchor=anchor)
     size = 1e12 * np.linalg.norm(slip - anchor)
     if abs(size - 1e6 * limit) < 1e3:
         return  # at the edge of slip there is no derivative

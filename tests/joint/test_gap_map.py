@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from plates import plates, stacked
 
 import faying
 from faying.files import read_numbers
 from faying.joint.gap_map import GapMap, read_gap_map
+from tests.helpers.plates import plates, stacked
 
 GRID = np.stack(np.meshgrid(np.linspace(0, 0.08, 9), np.linspace(0, 0.04, 5), indexing="ij"), -1).reshape(-1, 2)
 ARGUMENTS = {

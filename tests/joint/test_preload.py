@@ -1,12 +1,12 @@
 import numpy as np
 import pytest
-from boxes import stack
 
 import faying
 from faying.fe.faces import face_centre, face_load
 from faying.fe.interface import join
-from faying.joint.seat import Seat
+from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Joint, Structure
+from tests.helpers.boxes import stack
 
 STEEL = faying.CATALOGUE["45 steel"]
 SIMPLE = faying.Material(name="simple", E=200e9, nu=0.0, density=7800.0)
@@ -18,8 +18,13 @@ def law(G=1.53e-10):
 
 def bars(sections=((2, 2), (2, 2)), material=SIMPLE, **changes):
     mesh = stack([0.05, 0.05], [3, 3], width=0.02, height=0.02, sections=sections)
-    joint = Joint(name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"),
-                  seat=Seat(law=law()), **changes)  # fmt: skip
+    joint = Joint(
+        name="j",
+        faces=("p0.right", "p1.left"),
+        interface=join(mesh, "p0.right", "p1.left"),
+        law=JointLaw(model=law()),
+        **changes,
+    )
     return Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, material), joints=(joint,))
 
 
@@ -39,7 +44,7 @@ def test_uniform_pressure(sections):
         assert weights @ found.pressures[0] == pytest.approx(force, rel=1e-8)
         assert found.pressures[0] == pytest.approx(np.full_like(found.pressures[0], p), rel=tolerance)
         closing = -(weights @ found.openings[0]) / weights.sum()
-        assert closing == pytest.approx(structure.joints[0].seat.closing(p), rel=max(tolerance / 10, 1e-7))
+        assert closing == pytest.approx(structure.joints[0].law.closing(p), rel=max(tolerance / 10, 1e-7))
 
 
 def test_balance_and_warm_start():
@@ -84,7 +89,7 @@ def test_a_gap_before_the_load_is_closed_first():
     """Bars 2 um apart: the same pressure as without the gap, and the ends come that much nearer."""
     mesh = stack([0.05, 0.05], [3, 3], width=0.02, height=0.02, gap=2e-6)
     joint = Joint(
-        name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), seat=Seat(law=law())
+        name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), law=JointLaw(model=law())
     )
     structure = Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, SIMPLE), joints=(joint,))
     found = structure.assembly().solve(squeeze(structure, 2000.0))
@@ -92,7 +97,7 @@ def test_a_gap_before_the_load_is_closed_first():
     moved = found.displacement.reshape(-1, 3)[:, 0]
     left, right = (np.unique(mesh.face(name)) for name in ("p0.right", "p1.left"))
     approach = moved[left].mean() - moved[right].mean()
-    assert approach == pytest.approx(2e-6 + joint.seat.closing(5e6), rel=1e-4)
+    assert approach == pytest.approx(2e-6 + joint.law.closing(5e6), rel=1e-4)
 
 
 def test_preload_beyond_the_law():
@@ -126,7 +131,7 @@ def test_bolts_that_pull_nothing_together():
 def test_a_part_without_joint_is_refused():
     mesh = stack([0.05, 0.05, 0.05], [2, 2, 2], width=0.02, height=0.02, gap=1e-6)
     joint = Joint(
-        name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), seat=Seat(law=law())
+        name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), law=JointLaw(model=law())
     )
     with pytest.raises(faying.InputError, match="part p2 has no joint"):
         Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=(joint,))
@@ -138,8 +143,14 @@ def test_per_area_springs_do_not_depend_on_the_mesh_and_per_node_springs_do():
     for n in (1, 2, 4):
         mesh = stack([0.02, 0.02], [2 * n, 2 * n], width=0.02, height=0.02, sections=[(n, n), (n, n)])
         for per_node in totals:
-            joint = Joint(name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"),
-                          seat=Seat(law=law()), per_node=per_node, scan_area=16e-6)  # fmt: skip
+            joint = Joint(
+                name="j",
+                faces=("p0.right", "p1.left"),
+                interface=join(mesh, "p0.right", "p1.left"),
+                law=JointLaw(model=law()),
+                per_node=per_node,
+                scan_area=16e-6,
+            )
             structure = Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=(joint,))
             found = structure.assembly().solve(squeeze(structure, 600.0))
             totals[per_node].append(structure.springs(found.pressures)[0].total()[0])

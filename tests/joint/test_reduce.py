@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from boxes import stack
 
 import faying
 from faying.fe.damped import damped_modes
@@ -12,29 +11,30 @@ from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
 from faying.joint.attachments import Support
 from faying.joint.bolt import Bolt
+from faying.joint.joint_law import JointLaw
 from faying.joint.reduce import Reduction
 from faying.joint.reduced import densities
-from faying.joint.seat import Seat
 from faying.joint.structure import Joint, Structure
+from tests.helpers.boxes import stack
 
 STEEL = faying.CATALOGUE["45 steel"]
 COUNT = 6
 TOLERANCE = 1e-7
 
 
-def seat(D=2.39, G=1.5e-10):
-    return Seat(law=faying.JK(D=D, G=G, pair=faying.ContactPair(STEEL, STEEL), scan_area=16e-6))
+def law(D=2.39, G=1.5e-10):
+    return JointLaw(model=faying.JK(D=D, G=G, pair=faying.ContactPair(STEEL, STEEL), scan_area=16e-6))
 
 
 def beam(**changes):
     mesh = stack([0.06, 0.05], [5, 4], width=0.02, height=0.015)
-    joint = Joint(name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), seat=seat())
+    joint = Joint(name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), law=law())
     bolt = Bolt(name="b", faces=("p0.left", "p1.right"), at=(0.0, 0.009, 0.0075))
     return Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=(joint,), bolts=(bolt,), **changes)
 
 
 def full(structure, law, force):
-    joint = replace(structure.joints[0], seat=law)
+    joint = replace(structure.joints[0], law=law)
     structure = replace(structure, joints=(joint,)).sharing(structure)
     found = structure.assembly().solve(structure.loads @ [force])
     K, loss = structure.joined(structure.springs(found.pressures))
@@ -49,9 +49,9 @@ CORNERS = [(D, G, F) for D in (2.3, 2.5) for G in (3e-11, 3e-10) for F in (300.0
 @pytest.fixture(scope="module", params=["free", "clamped"])
 def trained(request):
     structure = beam(supports=(Support(face="p0.left"),) if request.param == "clamped" else ())
-    reduction = Reduction.of(structure, [seat()], np.array([1000.0]), count=COUNT)
+    reduction = Reduction.of(structure, [law()], np.array([1000.0]), count=COUNT)
     for D, G, F in CORNERS:
-        reduction.train([seat(D, G)], np.array([F]), tolerance=TOLERANCE)
+        reduction.train([law(D, G)], np.array([F]), tolerance=TOLERANCE)
     reduction.compress(TOLERANCE)
     return structure, reduction
 
@@ -60,8 +60,8 @@ def trained(request):
 @pytest.mark.parametrize(("D", "G", "F"), [(2.41, 1e-10, 900.0), (2.33, 5e-11, 2100.0), (2.55, 4e-10, 200.0)])
 def test_frequencies_and_damping_are_those_of_the_full_solution(trained, D, G, F):
     structure, reduction = trained
-    found, damped = full(structure, seat(D, G), F)
-    variant = reduction.evaluate([seat(D, G)], np.array([F]))
+    found, damped = full(structure, law(D, G), F)
+    variant = reduction.evaluate([law(D, G)], np.array([F]))
     assert variant.frequencies == pytest.approx(damped.frequencies, rel=1e-5)
     assert variant.loss_factors == pytest.approx(damped.loss_factors, rel=1e-2)
     pressed = found.pressures[0]
@@ -71,8 +71,8 @@ def test_frequencies_and_damping_are_those_of_the_full_solution(trained, D, G, F
 def test_the_estimate_covers_the_error(trained):
     structure, reduction = trained
     for D, G, F in [(2.41, 1e-10, 900.0), (2.55, 4e-10, 200.0)]:
-        _, damped = full(structure, seat(D, G), F)
-        variant = reduction.evaluate([seat(D, G)], np.array([F]))
+        _, damped = full(structure, law(D, G), F)
+        variant = reduction.evaluate([law(D, G)], np.array([F]))
         error = np.abs(variant.frequencies / damped.frequencies - 1)
         assert error.max() < variant.estimate.max() + 5e-7  # the share of the force balance
 
@@ -80,8 +80,8 @@ def test_the_estimate_covers_the_error(trained):
 def test_a_variant_trained_on_is_solved_and_adds_nothing(trained):
     _, reduction = trained
     D, G, F = CORNERS[3]
-    found = reduction.model.equilibrium([seat(D, G)], np.array([F]))
-    error, _ = reduction.modal_error(densities([seat(D, G)], found.pressures))
+    found = reduction.model.equilibrium([law(D, G)], np.array([F]))
+    error, _ = reduction.modal_error(densities([law(D, G)], found.pressures))
     assert error.max() < 3 * TOLERANCE
 
 
@@ -89,14 +89,14 @@ def test_the_reduced_model_travels(trained):
     import pickle
 
     _, reduction = trained
-    law, force = [seat(2.4, 1e-10)], np.array([800.0])
-    there = pickle.loads(pickle.dumps(reduction.model)).evaluate(law, force)
-    assert there.frequencies == pytest.approx(reduction.evaluate(law, force).frequencies, rel=1e-9)
+    laws, force = [law(2.4, 1e-10)], np.array([800.0])
+    there = pickle.loads(pickle.dumps(reduction.model)).evaluate(laws, force)
+    assert there.frequencies == pytest.approx(reduction.evaluate(laws, force).frequencies, rel=1e-9)
 
 
 def test_wrong_number_of_forces(trained):
     with pytest.raises(faying.InputError, match="2 bolt forces for 1 bolts"):
-        trained[1].evaluate([seat()], np.array([1.0, 2.0]))
+        trained[1].evaluate([law()], np.array([1.0, 2.0]))
 
 
 def test_complex_modes_of_the_small_problem_are_those_of_all_its_vectors(trained):
@@ -104,8 +104,8 @@ def test_complex_modes_of_the_small_problem_are_those_of_all_its_vectors(trained
     from scipy.linalg import eig, eigh
 
     model = trained[1].model
-    found = model.equilibrium([seat(2.4, 1e-10)], np.array([800.0]))
-    springs = densities([seat(2.4, 1e-10)], found.pressures)
+    found = model.equilibrium([law(2.4, 1e-10)], np.array([800.0]))
+    springs = densities([law(2.4, 1e-10)], found.pressures)
     values, vectors, _ = model.modes(springs)
     joint, loss = model._joints(springs)
     K = model.dynamic_stiffness + joint + 1j * loss
@@ -123,25 +123,25 @@ def test_complex_modes_of_the_small_problem_are_those_of_all_its_vectors(trained
 
 def test_a_solid_bolt_in_small_bases():
     """The same bases, on a structure whose bolt is drawn in: trained at two variants, right at a third."""
-    from test_solid_bolt import structure as with_bolt
-    from voxels import bolted
+    from tests.helpers.voxels import bolted
+    from tests.joint.test_solid_bolt import structure as with_bolt
 
     made = with_bolt(bolted(kind="hex8"))
-    seats = [joint.seat for joint in made.joints]
-    reduction = Reduction.of(made, seats, np.array([4e3]), count=COUNT)
+    laws = [joint.law for joint in made.joints]
+    reduction = Reduction.of(made, laws, np.array([4e3]), count=COUNT)
     for force in (2e3, 6e3):
-        reduction.train(seats, np.array([force]), tolerance=TOLERANCE)
+        reduction.train(laws, np.array([force]), tolerance=TOLERANCE)
     found = made.assembly().solve(made.loads @ [3e3])
     K, _ = made.joined(made.springs(found.pressures))
     modes = lowest_modes(K, made.vibrating[1], 6 + COUNT, shift_frequency=made.shift_frequency)
-    variant = reduction.evaluate(seats, np.array([3e3]))
+    variant = reduction.evaluate(laws, np.array([3e3]))
     assert variant.frequencies == pytest.approx(modes.frequencies[6:], rel=1e-5)
 
 
 def test_a_part_that_is_held_by_nothing_is_named():
     """The bolt pulls the first two bars together; nothing presses the third."""
-    from test_held import three
+    from tests.joint.test_support_check import three
 
     structure = three(50e-6, supports=(Support(face="p0.left"),))
     with pytest.raises(faying.InputError, match="part 'p2' is held by nothing"):
-        Reduction.of(structure, [joint.seat for joint in structure.joints], np.array([2e3]), count=COUNT)
+        Reduction.of(structure, [joint.law for joint in structure.joints], np.array([2e3]), count=COUNT)

@@ -4,15 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_tighten import LinearLaw
-from voxels import bolted
 
 import faying
 from faying.fe.interface import join
-from faying.joint.seat import Seat
+from faying.joint.joint_law import JointLaw
 from faying.joint.solid_bolt import SolidBolt
 from faying.joint.structure import Joint, Structure
 from faying.joint.tighten import tighten
+from tests.helpers.voxels import bolted
+from tests.joint.test_tighten import LinearLaw
 
 STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0)
 
@@ -22,9 +22,14 @@ def structure(mesh, bolts=1, **changes):
     for i in range(bolts):
         pairs += [(f"bolt{i}.head", f"upper.seat{i}"), (f"bolt{i}.nut", f"lower.seat{i}")]
     joints = tuple(
-        Joint(name=first, faces=(first, second), interface=join(mesh, first, second),
-              seat=Seat(law=LinearLaw(2e13), tangential="law", nu=0.3)) for first, second in pairs
-    )  # fmt: skip
+        Joint(
+            name=first,
+            faces=(first, second),
+            interface=join(mesh, first, second),
+            law=JointLaw(model=LinearLaw(2e13), tangential="law", nu=0.3),
+        )
+        for first, second in pairs
+    )
     solids = tuple(
         SolidBolt(name=f"bolt{i}", part=f"bolt{i}", faces=(f"bolt{i}.head", f"bolt{i}.nut"), **changes)
         for i in range(bolts)

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from plates import STEEL, plates, stacked
 
 import faying
 from faying.joint.bolt import Bolt
 from faying.joint.tighten import tighten
+from tests.helpers.plates import STEEL, plates, stacked
 
 FACES = ("high.top", "low.bottom")
 RIGID_LIKE = faying.Material(name="stiff", E=2e12, nu=0.0, density=7800.0)
@@ -29,8 +29,10 @@ class LinearLaw:
 
 
 def two_bolts(material=RIGID_LIKE, k=1e10, thickness=0.03):
-    bolts = tuple(Bolt(name=name, faces=FACES, at=(x, 0.02, 0.0), seat=(0.0, 24e-3), diameter=8e-3, material=STEEL)
-                  for name, x in (("one", 0.03), ("two", 0.05)))  # fmt: skip
+    bolts = tuple(
+        Bolt(name=name, faces=FACES, at=(x, 0.02, 0.0), seat=(0.0, 24e-3), diameter=8e-3, material=STEEL)
+        for name, x in (("one", 0.03), ("two", 0.05))
+    )
     return plates(
         stacked(counts=(8, 4, 1), size=(0.08, 0.04, thickness)), material=material, bolts=bolts, law=LinearLaw(k)
     )

@@ -7,12 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from faying import FRF, InputError, ReadError, compare_modes, report_measured
+from faying import FRF, InputError, ReadError, compare_modes
 from faying.measured.mac import mac
 from faying.measured.mapping import Transform
 from faying.measured.model import ModelModes, read_model_modes
 from faying.measured.modes import ModeSet
 from faying.measured.pairing import pair_modes
+from faying.output import report_measured
 
 NODES, COUNT = 60, 8
 
@@ -22,8 +23,14 @@ def model(seed=0, count=COUNT):
     rng = np.random.default_rng(seed)
     shapes = np.linalg.qr(rng.standard_normal((3 * NODES, count)))[0].T.reshape(count, NODES, 3)
     frequencies = np.sort(rng.uniform(100, 1000, count))
-    return ModelModes(frequencies=frequencies, loss_factors=np.linspace(0.01, 0.02, count), shapes=shapes,
-                      points=rng.uniform(0, 1, (NODES, 3)), title="box", load=8e3)  # fmt: skip
+    return ModelModes(
+        frequencies=frequencies,
+        loss_factors=np.linspace(0.01, 0.02, count),
+        shapes=shapes,
+        points=rng.uniform(0, 1, (NODES, 3)),
+        title="box",
+        load=8e3,
+    )
 
 
 def turned(seed):
@@ -70,8 +77,9 @@ def test_a_noisy_sparse_turned_copy_in_another_order_still_pairs(seed):
     rng = np.random.default_rng(seed)
     theirs, nodes, order = model(seed), rng.choice(NODES, 12, replace=False), rng.permutation(COUNT)
     wider = ModelModes(**{**vars(theirs), "frequencies": np.linspace(500, 540, COUNT)})
-    c = compare_modes(hammered(wider, nodes, turned(seed), noise=0.05, order=order, scale=0.9, rng=rng), wider,
-                      transform=turned(seed))  # fmt: skip
+    c = compare_modes(
+        hammered(wider, nodes, turned(seed), noise=0.05, order=order, scale=0.9, rng=rng), wider, transform=turned(seed)
+    )
     np.testing.assert_array_equal(c.pairs[:, 1], order)
     np.testing.assert_allclose(c.nodes[::3], nodes)
     expected = wider.frequencies[order] / (0.9 * wider.frequencies[order]) - 1
@@ -187,8 +195,13 @@ def test_frfs_of_the_model_itself_fit_and_obey_reciprocity():
 def test_table_csv_and_json(tmp_path):
     theirs = model()
     test = hammered(theirs, np.arange(12), Transform())
-    test = ModeSet(**{**vars(test), "frequencies": test.frequencies * np.where(np.arange(COUNT) == 2, 5, 1.02),
-                      "loss_interval": np.tile([0.02, 0.04], (COUNT, 1))})  # fmt: skip
+    test = ModeSet(
+        **{
+            **vars(test),
+            "frequencies": test.frequencies * np.where(np.arange(COUNT) == 2, 5, 1.02),
+            "loss_interval": np.tile([0.02, 0.04], (COUNT, 1)),
+        }
+    )
     c = compare_modes(test, theirs)
     rows = c.rows()
     assert rows[1][4] == "-1.96"

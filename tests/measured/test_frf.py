@@ -20,8 +20,13 @@ def test_oscillator_in_its_three_quantities():
     w = 2 * np.pi * F
     frf = one((1 / (k - m * w**2 + 1j * c * w))[None, None])
     assert frf.values[0, 0, 0] == pytest.approx(1 / k)
-    resonance = FRF(frequency=[1.0, np.sqrt(k / m) / (2 * np.pi)], values=[[[1, 1 / (1j * c * np.sqrt(k / m))]]],
-                    outputs=[(1, "z")], inputs=[(1, "z")], quantity="receptance")  # fmt: skip
+    resonance = FRF(
+        frequency=[1.0, np.sqrt(k / m) / (2 * np.pi)],
+        values=[[[1, 1 / (1j * c * np.sqrt(k / m))]]],
+        outputs=[(1, "z")],
+        inputs=[(1, "z")],
+        quantity="receptance",
+    )
     assert resonance.to("mobility").values[0, 0, 1] == pytest.approx(1 / c)
     assert frf.to("accelerance").values[0, 0, -1] == pytest.approx(1 / m, rel=0.15)
     assert [frf.to(q).unit for q in ("receptance", "mobility", "accelerance")] == ["m/N", "m/(N*s)", "m/(N*s^2)"]

@@ -96,8 +96,13 @@ def compared(case, lines, more=()):
         frequency=lines, values=values, outputs=places, inputs=[(7, "z")], quantity="accelerance", positions=positions
     )
     dofs = [(k, d) for k in positions for d in "xyz"]
-    test = ModeSet(frequencies=F, loss_factors=ETA, dofs=dofs, positions=positions,
-                   shapes=model.shapes[:, list(positions)].reshape(2, -1).astype(complex))  # fmt: skip
+    test = ModeSet(
+        frequencies=F,
+        loss_factors=ETA,
+        dofs=dofs,
+        positions=positions,
+        shapes=model.shapes[:, list(positions)].reshape(2, -1).astype(complex),
+    )
     return compare_modes(test, model, frf=frf)
 
 
@@ -123,5 +128,9 @@ def test_lines_beyond_it_do_not_count(case):
 
 def test_shapes_of_a_full_response(points):
     with pytest.raises(InputError, match="need"):
-        FullResponse(frequency=np.array([1.0, 2]), receptance=np.zeros((1, 1, 3), complex), outputs=(points[:1], points[:1]),
-                     inputs=(points[:1], points[:1]))  # fmt: skip
+        FullResponse(
+            frequency=np.array([1.0, 2]),
+            receptance=np.zeros((1, 1, 3), complex),
+            outputs=(points[:1], points[:1]),
+            inputs=(points[:1], points[:1]),
+        )

@@ -109,8 +109,13 @@ def test_many_frfs_are_compressed_without_loss(synthetic):
 
 def test_a_roving_hammer_and_a_roving_sensor_give_the_same_shapes(synthetic):
     frf, _ = synthetic(MODES)
-    turned = FRF(frequency=frf.frequency, values=frf.values.transpose(1, 0, 2), outputs=frf.inputs, inputs=frf.outputs,
-                 quantity=frf.quantity)  # fmt: skip
+    turned = FRF(
+        frequency=frf.frequency,
+        values=frf.values.transpose(1, 0, 2),
+        outputs=frf.inputs,
+        inputs=frf.outputs,
+        quantity=frf.quantity,
+    )
     a, b = identify_modes(frf).modes, identify_modes(turned).modes
     assert a.dofs == b.dofs
     np.testing.assert_allclose(a.shapes, b.shapes, atol=1e-9)

@@ -20,25 +20,63 @@ def raw(path, *sets):
 def function(**changes):
     f = np.arange(20.0)
     return {
-        "type": 58, "func_type": 4, "rsp_node": 1, "rsp_dir": 3, "ref_node": 2, "ref_dir": -3, "data": f * (1 + 2j), "x": f,
-        "abscissa_spacing": 1, "abscissa_spec_data_type": 18, "ordinate_spec_data_type": 12, "orddenom_spec_data_type": 13,
-    } | changes  # fmt: skip
+        "type": 58,
+        "func_type": 4,
+        "rsp_node": 1,
+        "rsp_dir": 3,
+        "ref_node": 2,
+        "ref_dir": -3,
+        "data": f * (1 + 2j),
+        "x": f,
+        "abscissa_spacing": 1,
+        "abscissa_spec_data_type": 18,
+        "ordinate_spec_data_type": 12,
+        "orddenom_spec_data_type": 13,
+    } | changes
 
 
 def units(length=1.0, force=1.0):
-    return {"type": 164, "units_code": 9, "units_description": "mine", "temp_mode": 1, "length": length, "force": force,
-            "temp": 1.0, "temp_offset": 0.0}  # fmt: skip
+    return {
+        "type": 164,
+        "units_code": 9,
+        "units_description": "mine",
+        "temp_mode": 1,
+        "length": length,
+        "force": force,
+        "temp": 1.0,
+        "temp_offset": 0.0,
+    }
 
 
 def nodes(**changes):
     zero = np.zeros(2, dtype=int)
-    return {"type": 2411, "node_nums": np.array([1, 2]), "def_cs": zero, "disp_cs": zero, "color": zero,
-            "x": np.array([1.0, 100.0]), "y": np.array([2.0, 200.0]), "z": np.array([3.0, 300.0])} | changes  # fmt: skip
+    return {
+        "type": 2411,
+        "node_nums": np.array([1, 2]),
+        "def_cs": zero,
+        "disp_cs": zero,
+        "color": zero,
+        "x": np.array([1.0, 100.0]),
+        "y": np.array([2.0, 200.0]),
+        "z": np.array([3.0, 300.0]),
+    } | changes
 
 
 def shape(**changes):
-    return {"type": 55, "analysis_type": 2, "data_ch": 2, "spec_data_type": 8, "load_case": 1, "mode_n": 1, "freq": 12.0,
-            "modal_damp_vis": 0.01, "node_nums": [1, 2], "r1": np.array([1.0, 0.5]), "r2": np.zeros(2), "r3": np.zeros(2)} | changes  # fmt: skip
+    return {
+        "type": 55,
+        "analysis_type": 2,
+        "data_ch": 2,
+        "spec_data_type": 8,
+        "load_case": 1,
+        "mode_n": 1,
+        "freq": 12.0,
+        "modal_damp_vis": 0.01,
+        "node_nums": [1, 2],
+        "r1": np.array([1.0, 0.5]),
+        "r2": np.zeros(2),
+        "r3": np.zeros(2),
+    } | changes
 
 
 def modes(**changes):
@@ -111,8 +149,14 @@ def test_frfs_come_back_to_eleven_digits(tmp_path, quantity, spacing):
     x = np.arange(50.0) * 0.25 if spacing == "even" else np.arange(50.0) ** 1.2
     values = rng.standard_normal((2, 2, 50)) + 1j * rng.standard_normal((2, 2, 50))
     values[1, 0] = np.nan
-    sent = FRF(frequency=x, values=values, outputs=[(1, "x"), (2, "-y")], inputs=[(1, "x"), (5, "rz")], quantity=quantity,
-               coherence=np.where(np.isnan(values), np.nan, 0.9).real)  # fmt: skip
+    sent = FRF(
+        frequency=x,
+        values=values,
+        outputs=[(1, "x"), (2, "-y")],
+        inputs=[(1, "x"), (5, "rz")],
+        quantity=quantity,
+        coherence=np.where(np.isnan(values), np.nan, 0.9).real,
+    )
     got = read_uff(write_uff(tmp_path / "a.uff", sent)).frf()
     np.testing.assert_allclose(got.values, sent.values, rtol=1e-10)
     np.testing.assert_allclose(got.frequency, sent.frequency, rtol=5e-6)
@@ -194,8 +238,17 @@ def test_positions_in_the_units_of_the_file(tmp_path):
 
 def test_coordinate_systems(tmp_path):
     """Point 1 lies at (1, 2, 3) of a system turned by 90 degrees and shifted by 10 in x; its x is the file's y."""
-    system = {"type": 2420, "Part_UID": 1, "Part_Name": "part", "CS_sys_labels": [4], "CS_types": [0], "CS_colors": [1],
-              "CS_names": ["turned"], "CS_matrices": [np.array([*SYSTEM, [10.0, 0, 0]])], "nodes": 1}  # fmt: skip
+    system = {
+        "type": 2420,
+        "Part_UID": 1,
+        "Part_Name": "part",
+        "CS_sys_labels": [4],
+        "CS_types": [0],
+        "CS_colors": [1],
+        "CS_names": ["turned"],
+        "CS_matrices": [np.array([*SYSTEM, [10.0, 0, 0]])],
+        "nodes": 1,
+    }
     four = np.array([4, 0])
     path = raw(tmp_path / "a.uff", units(), system, nodes(def_cs=four, disp_cs=four), shape(), function(rsp_dir=1))
     file = read_uff(path)
@@ -309,9 +362,16 @@ def test_damaged_data_sets(tmp_path):
     path = tmp_path / "b.uff"
     lines = text.splitlines(keepends=True)
     for changed, match in (
-        ([*lines[:14], "  words where numbers should stand                                              \n", *lines[15:]], "damaged or of a variant"),
+        (
+            [
+                *lines[:14],
+                "  words where numbers should stand                                              \n",
+                *lines[15:],
+            ],
+            "damaged or of a variant",
+        ),
         ([*lines[:14], *lines[16:]], "of the 20 values that its header announces"),
-    ):  # fmt: skip
+    ):
         path.write_text("".join(changed))
         with pytest.raises(ReadError, match=match):
             read_uff(path)

@@ -3,11 +3,8 @@
 import json
 from dataclasses import replace
 
-import meshfiles
 import numpy as np
 import pytest
-from blocks import row
-from models import two
 from scipy.io import mmwrite
 
 import faying
@@ -17,6 +14,9 @@ from faying.fe.mesh import Mesh
 from faying.fe.modes import lowest_modes
 from faying.study import Study, run
 from faying.study.attach import attach
+from tests.helpers import meshfiles
+from tests.helpers.blocks import row
+from tests.helpers.models import two
 
 FACES = ("p0.right", "p1.left")
 TEXT = meshfiles.STUDY
@@ -116,16 +116,33 @@ def test_frequencies_are_those_of_a_study(tmp_path):
     from faying.study.bare import modes_with_joint
 
     made = attach(file, FACES, unit="mm", study=study, pressure="solve", preload="3 kN", coupling="faces")
-    found, rigid = modes_with_joint(made, tmp_path / "K.mtx", mass=tmp_path / "M.mtx", dofs=tmp_path / "dofs",
-                                    stiffness_unit="N/mm", mass_unit="t", count=3)  # fmt: skip
+    found, rigid = modes_with_joint(
+        made,
+        tmp_path / "K.mtx",
+        mass=tmp_path / "M.mtx",
+        dofs=tmp_path / "dofs",
+        stiffness_unit="N/mm",
+        mass_unit="t",
+        count=3,
+    )
     assert rigid == 6
     assert found.frequencies == pytest.approx(wanted.frequencies[0], rel=1e-6)
     assert found.loss_factors == pytest.approx(wanted.loss_factors[0], rel=1e-4)
 
 
 def common(file):
-    return ["attach", str(file), "--face-a", FACES[0], "--face-b", FACES[1], "--unit", "mm", "--law",
-            str(file.with_name("study.toml"))]  # fmt: skip
+    return [
+        "attach",
+        str(file),
+        "--face-a",
+        FACES[0],
+        "--face-b",
+        FACES[1],
+        "--unit",
+        "mm",
+        "--law",
+        str(file.with_name("study.toml")),
+    ]
 
 
 def invoke(capsys, *words):
@@ -140,8 +157,19 @@ def invoke(capsys, *words):
 @pytest.mark.parametrize("solver", ["mapdl", "abaqus", "nastran", "calculix", "aster"])
 def test_the_command(tmp_path, capsys, solver):
     file, _ = model(tmp_path)
-    code, out, err = invoke(capsys, *common(file), "--pressure", "5 MPa", "--to", solver, "--out", tmp_path / "out",
-                            "--frequency", "500 Hz", "--json")  # fmt: skip
+    code, out, err = invoke(
+        capsys,
+        *common(file),
+        "--pressure",
+        "5 MPa",
+        "--to",
+        solver,
+        "--out",
+        tmp_path / "out",
+        "--frequency",
+        "500 Hz",
+        "--json",
+    )
     assert code == 0, err
     document = json.loads(out)
     assert document["pairs"] == 9
@@ -161,8 +189,19 @@ def test_the_command_gives_modes(tmp_path, capsys):
     K, M = assemble(mesh, dict.fromkeys(mesh.parts, faying.CATALOGUE["45 steel"]))
     mmwrite(tmp_path / "K.mtx", K), mmwrite(tmp_path / "M.mtx", M)
     (tmp_path / "dofs").write_text("\n".join(f"{i}.{c}" for i in meshfiles.numbers(mesh) for c in (1, 2, 3)))
-    words = [*common(file), "--pressure", "5 MPa", "--matrices", tmp_path / "K.mtx", "--mass", tmp_path / "M.mtx",
-             "--dofs", tmp_path / "dofs", "--modes", "4"]  # fmt: skip
+    words = [
+        *common(file),
+        "--pressure",
+        "5 MPa",
+        "--matrices",
+        tmp_path / "K.mtx",
+        "--mass",
+        tmp_path / "M.mtx",
+        "--dofs",
+        tmp_path / "dofs",
+        "--modes",
+        "4",
+    ]
     code, out, err = invoke(capsys, *words, "--stiffness-unit", "N/m", "--mass-unit", "kg", "--json")
     assert code == 0, err
     found = json.loads(out)["modes"]
@@ -193,11 +232,16 @@ def test_faces_with_nodes_without_partner(tmp_path):
     wide = row([0.06], [2], kinds=("hex8",), sections=((4, 2),), width=0.04, height=0.02)
     thin = row([0.04], [2], kinds=("hex8",), sections=((2, 2),), width=0.02, height=0.02)
     n = len(wide.points)
-    mesh = Mesh(points=np.concatenate([wide.points, thin.points + np.array([0.06, 0, 0])]),
-                parts={"p0": wide.parts["p0"], "p1": tuple(b + n for b in thin.parts["p0"])},
-                faces={**wide.faces, "p1.left": tuple(b + n for b in thin.faces["p0.left"]),
-                       "p1.right": tuple(b + n for b in thin.faces["p0.right"])},
-                face_part={**wide.face_part, "p1.left": "p1", "p1.right": "p1"})  # fmt: skip
+    mesh = Mesh(
+        points=np.concatenate([wide.points, thin.points + np.array([0.06, 0, 0])]),
+        parts={"p0": wide.parts["p0"], "p1": tuple(b + n for b in thin.parts["p0"])},
+        faces={
+            **wide.faces,
+            "p1.left": tuple(b + n for b in thin.faces["p0.left"]),
+            "p1.right": tuple(b + n for b in thin.faces["p0.right"]),
+        },
+        face_part={**wide.face_part, "p1.left": "p1", "p1.right": "p1"},
+    )
     found = attached(tmp_path, mesh=mesh)
     assert len(found.pairs) == 9
     assert any("6 of 15 nodes of 'p0.right' have no partner" in note for note in found.notes)
@@ -258,8 +302,11 @@ def test_faults_of_pressures(tmp_path):
     fault(tmp_path, "should begin with the heading", pressure=path)
     fault(tmp_path, "should begin with the heading", pressure=csv(tmp_path, mesh, head="node,pressure"))
     fault(tmp_path, "unit of pressure", pressure=csv(tmp_path, mesh, head="node,pressure [mm]"))
-    fault(tmp_path, "9 pressures are negative; .* change the sign",
-          pressure=csv(tmp_path, mesh, value=lambda x: -1 - x[:, 0]))  # fmt: skip
+    fault(
+        tmp_path,
+        "9 pressures are negative; .* change the sign",
+        pressure=csv(tmp_path, mesh, value=lambda x: -1 - x[:, 0]),
+    )
     path = csv(tmp_path, mesh)
     lines = path.read_text().splitlines()
     path.write_text("\n".join(lines[:-2]))
@@ -301,5 +348,11 @@ def test_matrices_half_held(tmp_path):
 
     made = attach(file, FACES, unit="mm", study=study, pressure="5 MPa")
     with pytest.raises(faying.InputError, match="leave 3 of the six rigid motions free"):
-        modes_with_joint(made, tmp_path / "K.mtx", mass=tmp_path / "M.mtx", dofs=tmp_path / "dofs",
-                         stiffness_unit="N/m", mass_unit="kg")  # fmt: skip
+        modes_with_joint(
+            made,
+            tmp_path / "K.mtx",
+            mass=tmp_path / "M.mtx",
+            dofs=tmp_path / "dofs",
+            stiffness_unit="N/m",
+            mass_unit="kg",
+        )

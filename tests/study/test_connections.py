@@ -36,8 +36,19 @@ WASHER = {"outer": "16 mm", "inner": "8.4 mm", "thickness": "1.6 mm", "material"
 
 
 def test_a_bolt_with_everything(folder):
-    given = BOLT | SHANK | {"torque": ["10 N m", "20 N m"], "nut_factor": 0.2, "at": ["0 mm", "1 mm", "2 mm"],
-                            "seat": ["8.4 mm", "16 mm"], "washer": [WASHER, WASHER], "head_mass": "5 g", "nut_mass": "4 g"}  # fmt: skip
+    given = (
+        BOLT
+        | SHANK
+        | {
+            "torque": ["10 N m", "20 N m"],
+            "nut_factor": 0.2,
+            "at": ["0 mm", "1 mm", "2 mm"],
+            "seat": ["8.4 mm", "16 mm"],
+            "washer": [WASHER, WASHER],
+            "head_mass": "5 g",
+            "nut_mass": "4 g",
+        }
+    )
     bolt = study(folder, bolt=[given]).bolts[0]
     assert bolt.preload == pytest.approx((10 / (0.2 * 8e-3), 20 / (0.2 * 8e-3)))
     assert bolt.at == pytest.approx((0.0, 1e-3, 2e-3))
@@ -88,12 +99,20 @@ def test_laws_given_in_full_need_no_surface(folder):
     (folder / "law.csv").write_text(LAW_TABLE)
     summits = {"density": "3e9 1/m^2", "radius": "60 um", "sigma": "0.3 um"}
     for made, by_hand in (
-        (law_named(folder, model="gw", **summits), GreenwoodWilliamson(density=3e9, radius=60e-6, sigma=3e-7, pair=pair)),
-        (law_named(folder, model="gw-ke", **summits),
-         GreenwoodWilliamson(density=3e9, radius=60e-6, sigma=3e-7, asperity="KogutEtsion", pair=pair)),
-        (law_named(folder, model="power law", C=2e-10, m=0.5, greatest="20 MPa"), PowerLaw(C=2e-10, m=0.5, greatest=2e7)),
+        (
+            law_named(folder, model="gw", **summits),
+            GreenwoodWilliamson(density=3e9, radius=60e-6, sigma=3e-7, pair=pair),
+        ),
+        (
+            law_named(folder, model="gw-ke", **summits),
+            GreenwoodWilliamson(density=3e9, radius=60e-6, sigma=3e-7, asperity="KogutEtsion", pair=pair),
+        ),
+        (
+            law_named(folder, model="power law", C=2e-10, m=0.5, greatest="20 MPa"),
+            PowerLaw(C=2e-10, m=0.5, greatest=2e7),
+        ),
         (law_named(folder, model="table", file="law.csv"), TabulatedLaw.from_csv(folder / "law.csv")),
-    ):  # fmt: skip
+    ):
         assert type(made) is type(by_hand)
         for p in (1e5, 3e6):
             assert made.at_pressure(p).k_n == pytest.approx(by_hand.at_pressure(p).k_n, rel=1e-9)
@@ -102,18 +121,29 @@ def test_laws_given_in_full_need_no_surface(folder):
 @pytest.mark.parametrize(
     ("law", "fault"),
     [
-        (SUMMITS | {"sigma": None}, r"law.sigma is missing \(standard deviation of the summit heights, m\); give it, or a "
-         r"\[surface\] with a scan"),
-        ({"model": "gw"}, r"law: density \(summits per area, 1/m\^2\), radius \(.*, m\) and sigma \(.*, m\) are missing; "
-         r"give them, or a \[surface\] with a scan"),
+        (
+            SUMMITS | {"sigma": None},
+            r"law.sigma is missing \(standard deviation of the summit heights, m\); give it, or a "
+            r"\[surface\] with a scan",
+        ),
+        (
+            {"model": "gw"},
+            r"law: density \(summits per area, 1/m\^2\), radius \(.*, m\) and sigma \(.*, m\) are missing; "
+            r"give them, or a \[surface\] with a scan",
+        ),
         ({"model": "power law", "C": 2e-10}, r"law.m is missing \(power of pressure\); give it$"),
-        (SUMMITS | {"sigma": 0.3}, 'law.sigma = 0.3 .*unit'),
+        (SUMMITS | {"sigma": 0.3}, "law.sigma = 0.3 .*unit"),
         (SUMMITS | {"sigma": "0.3 s"}, "law.sigma .*not in a unit like m"),
         (SUMMITS | {"sigma": None, "sigmo": "0.3 um"}, "law.sigmo is not a key that a study has; did you mean sigma"),
         (SUMMITS | {"model": "gv"}, "no contact law 'gv'"),
-        (SUMMITS | {"model": "gw-ke", "asperity": "JacksonGreen"},
-         'law.asperity goes with model = "gw"; "gw-ke" has the asperity KogutEtsion'),
-        ({"model": "persson", "slope": 0.1, "h_rms": "1 um"}, 'law.model = "persson" cannot carry a joint by itself: .*never meet'),
+        (
+            SUMMITS | {"model": "gw-ke", "asperity": "JacksonGreen"},
+            'law.asperity goes with model = "gw"; "gw-ke" has the asperity KogutEtsion',
+        ),
+        (
+            {"model": "persson", "slope": 0.1, "h_rms": "1 um"},
+            'law.model = "persson" cannot carry a joint by itself: .*never meet',
+        ),
         ({"model": "jk"}, r"\[surface\] is missing"),
         ({"model": "mb"}, r'\[surface\] is missing; model = "mb" takes its inputs from a scan there'),
         ({"model": "table", "file": "none.csv"}, "law.file: no file"),
@@ -122,7 +152,7 @@ def test_laws_given_in_full_need_no_surface(folder):
         ({"model": "table"}, "law.file is missing"),
         ({"model": "jk", "file": "heights.csv"}, 'law.file goes with model = "table", not "jk"'),
     ],
-)  # fmt: skip
+)
 def test_laws_that_lack_something(folder, law, fault):
     """One fault each, of [law] and of a joint's own law alike."""
     law = {key: value for key, value in law.items() if value is not None}
@@ -227,8 +257,14 @@ def joint(**more):
 
 
 def test_a_joint_of_its_own(folder):
-    gap = {"file": "gap.csv", "xy_unit": "mm", "gap_unit": "um", "origin": ["1 mm", "0 mm", "0 mm"], "x_axis": [0, 1, 0],
-           "y_axis": [-1, 0, 0]}  # fmt: skip
+    gap = {
+        "file": "gap.csv",
+        "xy_unit": "mm",
+        "gap_unit": "um",
+        "origin": ["1 mm", "0 mm", "0 mm"],
+        "x_axis": [0, 1, 0],
+        "y_axis": [-1, 0, 0],
+    }
     surface = {"D": 2.5, "G": "1e-10 m", "scan_area": "4 mm^2"}
     given = joint(friction=0.2, reach="2 mm", gap=gap, surface=surface, law={"model": "gw"})
     found = study(folder, joint=given).joints[0]
@@ -241,8 +277,15 @@ def test_a_joint_of_its_own(folder):
 
 
 def test_measured_heights_need_no_surface(folder):
-    law = {"model": "gw-measured", "gaps": "heights.csv", "gaps_unit": "um", "density": "1e6 1/m^2", "radius": "1 mm",
-           "tangent_ratio": 0.01, "asperity": "Ghaednia"}  # fmt: skip
+    law = {
+        "model": "gw-measured",
+        "gaps": "heights.csv",
+        "gaps_unit": "um",
+        "density": "1e6 1/m^2",
+        "radius": "1 mm",
+        "tangent_ratio": 0.01,
+        "asperity": "Ghaednia",
+    }
     found = study(folder, law=law, surface=None)
     assert found.surface is None
     assert found.law.heights.density == pytest.approx(1e6)

@@ -163,8 +163,18 @@ def test_the_command_writes_report_figures_and_files(result, tmp_path, monkeypat
     assert "hysteretic loss" in out
     assert "note: the model's FRFs are its full response" in out
     made = {p.name for p in tmp_path.iterdir()}
-    assert made >= {"comparison.csv", "test_mac.svg", "test_frf.svg", "test_shapes.png", "mac.svg", "response.svg", "modes.uff", "frf.uff",
-                    "test_modes.uff", "test_frf.uff"}  # fmt: skip
+    assert made >= {
+        "comparison.csv",
+        "test_mac.svg",
+        "test_frf.svg",
+        "test_shapes.png",
+        "mac.svg",
+        "response.svg",
+        "modes.uff",
+        "frf.uff",
+        "test_modes.uff",
+        "test_frf.uff",
+    }
     page = (tmp_path / "report.html").read_text()
     for heading in ("<h2>Hammer test</h2>", "<h2>Modes</h2>", "<h2>Joints</h2>"):
         assert page.count(heading) == 1

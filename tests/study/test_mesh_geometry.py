@@ -1,14 +1,14 @@
 """A study whose geometry is a mesh file of another program."""
 
-import meshfiles
 import numpy as np
 import pytest
-from blocks import row
 
 import faying
 from faying.fe.elasticity import assemble
 from faying.fe.modes import lowest_modes
 from faying.study import Study, run
+from tests.helpers import meshfiles
+from tests.helpers.blocks import row
 
 TEXT = meshfiles.STUDY
 

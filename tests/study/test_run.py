@@ -154,8 +154,14 @@ def test_per_node_and_mindlin_options(study, result):
 
 def on_the_milled_scan(study, model, tangential):
     scan = Path(__file__).parents[2] / "examples" / "t-specimen" / "milled.x3p"
-    return build(replace(study, law=LawSpec(model=model), surface=SurfaceSpec(scan=scan),
-                         joints=(replace(study.joints[0], tangential=tangential),)))  # fmt: skip
+    return build(
+        replace(
+            study,
+            law=LawSpec(model=model),
+            surface=SurfaceSpec(scan=scan),
+            joints=(replace(study.joints[0], tangential=tangential),),
+        )
+    )
 
 
 def test_another_law_presses_the_joint(study):
@@ -176,4 +182,4 @@ def test_a_law_in_which_faces_would_never_meet_says_so(study):
     """Persson's stiffness is proportional to pressure at every load: the integral of dp/k_n diverges at 0."""
     structure = on_the_milled_scan(study, "persson", "mindlin")
     with pytest.raises(faying.InputError, match="never meet"):
-        structure.joints[0].seat.pressure(np.array([1e-9]))
+        structure.joints[0].law.pressure(np.array([1e-9]))

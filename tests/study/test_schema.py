@@ -83,8 +83,13 @@ def test_all_faults_are_reported_in_one_go(folder):
         study(folder, geometry__sice="3 mm", law__modle="jk", joint__0__name=3, surface__D=1.0, bolt__0__preload="4")
     text = str(caught.value)
     assert "5 faults" in text
-    for part in ("geometry.sice is not a key that a study has; did you mean size?", "law.modle", "joint[1].name = 3",
-                 "surface.D = 1.0", 'bolt[1].preload = "4" has no unit'):  # fmt: skip
+    for part in (
+        "geometry.sice is not a key that a study has; did you mean size?",
+        "law.modle",
+        "joint[1].name = 3",
+        "surface.D = 1.0",
+        'bolt[1].preload = "4" has no unit',
+    ):
         assert part in text
 
 

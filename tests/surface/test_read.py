@@ -200,7 +200,13 @@ def test_x3p_with_a_mask_and_with_heights_in_the_xml(tmp_path):
     back = read_scan(repacked(good, tmp_path / "list.x3p", main_xml=inline))
     assert np.array_equal(back.heights, scan.heights)
     with pytest.raises(ReadError, match="lists 95 heights"):
-        read_scan(repacked(good, tmp_path / "short.x3p", main_xml=inline.replace("<Datum>", "<Other>", 1).replace("</Datum>", "</Other>", 1)))  # fmt: skip
+        read_scan(
+            repacked(
+                good,
+                tmp_path / "short.x3p",
+                main_xml=inline.replace("<Datum>", "<Other>", 1).replace("</Datum>", "</Other>", 1),
+            )
+        )
 
 
 def test_writing_refuses_what_it_cannot_do(rough, tmp_path):

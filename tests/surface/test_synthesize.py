@@ -29,8 +29,10 @@ def test_weierstrass_mandelbrot_surface_equals_its_double_sum():
 
 
 def test_the_two_conventions_differ_by_the_root_of_ln_gamma():
-    a, b = (weierstrass_mandelbrot(64, spacing=1e-6, D=2.4, G=1e-9, convention=name).heights
-            for name in ("yan-komvopoulos", "majumdar-bhushan"))  # fmt: skip
+    a, b = (
+        weierstrass_mandelbrot(64, spacing=1e-6, D=2.4, G=1e-9, convention=name).heights
+        for name in ("yan-komvopoulos", "majumdar-bhushan")
+    )
     assert np.allclose(a, b * np.log(1.5) ** 0.5)
 
 

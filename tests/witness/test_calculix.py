@@ -2,14 +2,11 @@
 
 import shutil
 
-import ccx
 import numpy as np
 import pytest
-from blocks import SOLID_KINDS, block, row
 from scipy.linalg import eigh
 from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import spsolve
-from voxels import bolted
 
 import faying
 from faying.fe.constraint import hold
@@ -19,6 +16,9 @@ from faying.fe.matrices import arranged, read_matrices
 from faying.fe.mesh import Mesh
 from faying.fe.modes import lowest_modes
 from faying.joint.solid_bolt import SolidBolt
+from tests.helpers import ccx
+from tests.helpers.blocks import SOLID_KINDS, block, row
+from tests.helpers.voxels import bolted
 
 pytestmark = [
     pytest.mark.slow,
@@ -120,8 +120,12 @@ def test_frequencies_of_two_blocks_and_springs_between_their_nodes(tmp_path, kin
     materials = {"p0": STEEL, "p1": ALU}
     nodes = join(mesh, "p0.right", "p1.left").at_nodes()
     k_n, k_t = 4e13 * np.ones(len(nodes.weights)), 2e13 * np.ones(len(nodes.weights))
-    springs = [(int(a), int(b), (n * w, t * w, t * w)) for a, b, n, t, w in zip(
-        nodes.first_nodes[:, 0], nodes.second_nodes[:, 0], k_n, k_t, nodes.weights, strict=True)]  # fmt: skip
+    springs = [
+        (int(a), int(b), (n * w, t * w, t * w))
+        for a, b, n, t, w in zip(
+            nodes.first_nodes[:, 0], nodes.second_nodes[:, 0], k_n, k_t, nodes.weights, strict=True
+        )
+    ]
     K, M = assemble(mesh, materials, mass="stiffness")
     ours, theirs = both(tmp_path, mesh, springs, K + nodes.springs(k_n, k_t), M, materials, 10)
     assert ours == pytest.approx(theirs, rel=1e-6)
@@ -168,26 +172,61 @@ def test_pretension_of_a_solid_bolt(tmp_path, height):
     for pair in (("lower.joint", "upper.joint"), ("bolt0.head", "upper.seat0"), ("bolt0.nut", "lower.seat0")):
         nodes = join(mesh, *pair).at_nodes()
         joined = joined + nodes.springs(np.full(len(nodes.weights), 3e14), np.full(len(nodes.weights), 1e14))
-        springs += [(int(a), int(b), [k * w for k in (1e14, 1e14, 3e14)])
-                    for a, b, w in zip(nodes.first_nodes[:, 0], nodes.second_nodes[:, 0], nodes.weights, strict=True)]  # fmt: skip
+        springs += [
+            (int(a), int(b), [k * w for k in (1e14, 1e14, 3e14)])
+            for a, b, w in zip(nodes.first_nodes[:, 0], nodes.second_nodes[:, 0], nodes.weights, strict=True)
+        ]
     force, n = 5e3, len(mesh.points)
     corners = [int(np.argmin(np.linalg.norm(mesh.points - p, axis=1))) for p in ((0, 0, 0), (0.04, 0, 0), (0, 0.04, 0))]
-    fixed = np.array([3 * corners[0], 3 * corners[0] + 1, 3 * corners[0] + 2, 3 * corners[1] + 1, 3 * corners[1] + 2,
-                      3 * corners[2] + 2])  # fmt: skip
+    fixed = np.array(
+        [
+            3 * corners[0],
+            3 * corners[0] + 1,
+            3 * corners[0] + 2,
+            3 * corners[1] + 1,
+            3 * corners[1] + 2,
+            3 * corners[2] + 2,
+        ]
+    )
 
     # CalculiX: the sides of the shank's elements at this height, seen from below
-    below = [i + 1 for i, cell in enumerate(np.concatenate([b for blocks in mesh.parts.values() for b in blocks]))
-             if cell[0] in set(mesh.part_nodes("bolt0")) and np.isclose(mesh.points[cell, 2].max(), height)]  # fmt: skip
+    below = [
+        i + 1
+        for i, cell in enumerate(np.concatenate([b for blocks in mesh.parts.values() for b in blocks]))
+        if cell[0] in set(mesh.part_nodes("bolt0")) and np.isclose(mesh.points[cell, 2].max(), height)
+    ]
     text = ccx.deck(mesh, materials, springs, step=[])
-    text += "\n".join([
-        "*NODE", f"{n + 1},0,0,0", "*SURFACE,NAME=CUT,TYPE=ELEMENT", *(f"{e},S2" for e in below),
-        f"*PRE-TENSION SECTION,SURFACE=CUT,NODE={n + 1}", "0,0,1",  # away from those elements: a positive load is tension
-        "*BOUNDARY", *(f"{k // 3 + 1},{k % 3 + 1}" for k in fixed), "*STEP", "*STATIC", "*CLOAD",
-        f"{n + 1},1,{force}", "*NODE PRINT,NSET=NALL", "U", "*END STEP",
-    ]) + "\n"  # fmt: skip
+    text += (
+        "\n".join(
+            [
+                "*NODE",
+                f"{n + 1},0,0,0",
+                "*SURFACE,NAME=CUT,TYPE=ELEMENT",
+                *(f"{e},S2" for e in below),
+                f"*PRE-TENSION SECTION,SURFACE=CUT,NODE={n + 1}",
+                "0,0,1",  # away from those elements: a positive load is tension
+                "*BOUNDARY",
+                *(f"{k // 3 + 1},{k % 3 + 1}" for k in fixed),
+                "*STEP",
+                "*STATIC",
+                "*CLOAD",
+                f"{n + 1},1,{force}",
+                "*NODE PRINT,NSET=NALL",
+                "U",
+                "*END STEP",
+            ]
+        )
+        + "\n"
+    )
     printed = ccx.run(tmp_path, text)
-    table = np.array([line.split() for line in (tmp_path / "job.dat").read_text().splitlines() if len(line.split()) == 4
-                      and line.split()[0].isdigit()], dtype=float)  # fmt: skip
+    table = np.array(
+        [
+            line.split()
+            for line in (tmp_path / "job.dat").read_text().splitlines()
+            if len(line.split()) == 4 and line.split()[0].isdigit()
+        ],
+        dtype=float,
+    )
     assert len(table) == n, printed[-2000:]
     theirs = table[np.argsort(table[:, 0]), 1:] * 1e-3
 

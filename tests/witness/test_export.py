@@ -11,18 +11,16 @@ import shutil
 import subprocess
 from pathlib import Path
 
-import ccx
-import meshfiles
 import numpy as np
 import pytest
-import readers
-from models import FACES, deck_of, two
 
 import faying
-from faying.export import calculix, mapdl, nastran
+from faying.decks import calculix, mapdl, nastran
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
+from tests.helpers import ccx, meshfiles, readers
+from tests.helpers.models import FACES, deck_of, two
 
 pytestmark = pytest.mark.slow
 HERE = Path(__file__).parent
@@ -58,8 +56,15 @@ def test_calculix_runs_the_springs(tmp_path, kind, angle, coupling):
     mesh = two((kind, kind), sections, angle, numbers=False)
     deck = deck_of(mesh, coupling)
     fixed = held(mesh, "p0.left", "p1.right")
-    step = [calculix.spring2(deck), "*BOUNDARY", *(f"{n + 1},1,3" for n in fixed), "*STEP",
-            "*FREQUENCY,SOLVER=ARPACK", "10", "*END STEP"]  # fmt: skip
+    step = [
+        calculix.spring2(deck),
+        "*BOUNDARY",
+        *(f"{n + 1},1,3" for n in fixed),
+        "*STEP",
+        "*FREQUENCY,SOLVER=ARPACK",
+        "10",
+        "*END STEP",
+    ]
     ccx.run(tmp_path, ccx.deck(mesh, dict.fromkeys(mesh.parts, STEEL), step=step))
     assert frequencies(mesh, deck.pairs.matrix(), fixed, 10) == pytest.approx(
         np.sort(ccx.frequencies(tmp_path))[:10], rel=1e-6
@@ -69,8 +74,9 @@ def test_calculix_runs_the_springs(tmp_path, kind, angle, coupling):
 def contact_step(mesh, traction, fixed, modes):
     """Traction on the free end, then modes about that state; nothing but the contact holds the second block sideways."""
     area = 0.03 * 0.02 * 1e6
-    force = faying.fe.faces.face_load(mesh.points, mesh.face("p1.right"), np.array([0.1, 0.015, 0.01]),
-                                      np.array([-1.0, 0, 0]))  # fmt: skip
+    force = faying.fe.faces.face_load(
+        mesh.points, mesh.face("p1.right"), np.array([0.1, 0.015, 0.01]), np.array([-1.0, 0, 0])
+    )
     loads = [f"{i // 3 + 1},{i % 3 + 1},{f * traction * area:.12e}" for i, f in enumerate(force) if f]
     out = ["*BOUNDARY", *(f"{n + 1},1,3" for n in fixed), "*STEP,NLGEOM", "*STATIC", "1.,1.", "*CLOAD", *loads]
     out += ["*NODE FILE", "U", "*NODE PRINT,NSET=SLAVES", "U", "*END STEP"]
@@ -109,22 +115,31 @@ def surfaces(mesh):
 @needs_ccx
 def test_calculix_runs_the_contact_table(tmp_path):
     """Node-to-surface contact with the law's table, under a uniform pressure, against SPRING2: 1e-3."""
-    law = faying.JK(D=2.39, G=1.53e-10, scan_area=16e-6,
-                    pair=faying.ContactPair(faying.CATALOGUE["45 steel"], faying.CATALOGUE["45 steel"]))  # fmt: skip
+    law = faying.JK(
+        D=2.39,
+        G=1.53e-10,
+        scan_area=16e-6,
+        pair=faying.ContactPair(faying.CATALOGUE["45 steel"], faying.CATALOGUE["45 steel"]),
+    )
+    from faying.joint.joint_law import JointLaw
     from faying.joint.pairs import lumped
-    from faying.joint.seat import Seat
     from faying.study.attach import _contact
     from faying.study.connections import JointSpec
 
     mesh = two(("hex8", "hex8"), ((3, 2), (3, 2)), numbers=False)
-    seat = Seat(law=law)
+    joined = JointLaw(model=law)
     pressure = 5e6
     nodes = join(mesh, *FACES).at_nodes()
     p = np.full(len(nodes.weights), pressure)
-    pairs = lumped(nodes, (*seat.stiffness(p), *seat.loss(p)), p)
+    pairs = lumped(nodes, (*joined.stiffness(p), *joined.loss(p)), p)
     spec = JointSpec(name="j", faces=FACES, friction=0.9)
-    deck = deck_of(mesh, pairs=pairs, viscous=None, contact=_contact(seat, spec, pressure, pressure),
-                   faces=tuple(name.upper().replace(".", "") for name in FACES))  # fmt: skip
+    deck = deck_of(
+        mesh,
+        pairs=pairs,
+        viscous=None,
+        contact=_contact(joined, spec, pressure, pressure),
+        faces=tuple(name.upper().replace(".", "") for name in FACES),
+    )
     fixed = held(mesh, "p0.left")
     slaves = ["*NSET,NSET=SLAVES", *(f"{n + 1}," for n in mesh.face_nodes(FACES[0]))]
     materials = dict.fromkeys(mesh.parts, STEEL)
@@ -144,13 +159,19 @@ def test_pynastran_reads_the_same_matrix(tmp_path, angle):
     """CBUSH, CELAS2 and DMIG read by pyNastran: the matrix of the pairs."""
     python = program("FAYING_PYNASTRAN")
     deck = deck_of(two(("hex8", "hex8"), ((2, 2), (2, 2)), angle, counts=(1, 1)))
-    grids = [line for n, x in zip(deck.mesh.numbers, deck.mesh.points * 1e3, strict=True)
-             for line in nastran.card("GRID", int(n), "", *map(float, x))]  # fmt: skip
+    grids = [
+        line
+        for n, x in zip(deck.mesh.numbers, deck.mesh.points * 1e3, strict=True)
+        for line in nastran.card("GRID", int(n), "", *map(float, x))
+    ]
     for name, text in nastran.decks(deck).items():
         path = tmp_path / name
         path.write_text("\n".join(["SOL 103", "CEND", "BEGIN BULK", *grids, text, "ENDDATA"]) + "\n")
         done = subprocess.run(
-            [python, str(HERE / "read_nastran.py"), str(path)], capture_output=True, text=True, check=False
+            [python, str(HERE.parent / "helpers" / "read_nastran.py"), str(path)],
+            capture_output=True,
+            text=True,
+            check=False,
         )
         assert done.returncode == 0, done.stderr
         found = json.loads(done.stdout)
@@ -168,7 +189,9 @@ def test_mapdl_archive_reads_the_same_constants(tmp_path):
     deck = deck_of(two(("hex8", "hex8"), ((2, 2), (2, 2)), np.pi / 6, counts=(1, 1)))
     path = tmp_path / "joint.cdb"
     path.write_text(mapdl.archive(deck))
-    done = subprocess.run([python, str(HERE / "read_cdb.py"), str(path)], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [python, str(HERE.parent / "helpers" / "read_cdb.py"), str(path)], capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
     place = readers.places(*deck.ends)
@@ -218,8 +241,13 @@ def mystran(folder, text):
 
 
 def renumbered(mesh):
-    return faying.fe.mesh.Mesh(points=mesh.points, parts=mesh.parts, faces=mesh.faces, face_part=mesh.face_part,
-                               node_numbers=meshfiles.numbers(mesh))  # fmt: skip
+    return faying.fe.mesh.Mesh(
+        points=mesh.points,
+        parts=mesh.parts,
+        faces=mesh.faces,
+        face_part=mesh.face_part,
+        node_numbers=meshfiles.numbers(mesh),
+    )
 
 
 def test_mystran_runs_cbush_and_celas2(tmp_path):
@@ -248,8 +276,10 @@ def test_mystran_runs_cbush_and_celas2(tmp_path):
 def study_on(tmp_path, model, faces, bolts, extra=""):
     parts = "".join(f'[part.{p}]\nmaterial = "45 steel"\n' for p in model)
     bolt = "".join(f'[[bolt]]\nfaces = ["{a}", "{b}"]\npreload = ["{force}"]\n' for a, b, force in bolts)
-    text = (f'[geometry]\nmesh = "model.inp"\nunit = "mm"\n{parts}[surface]\nD = 2.39\nG = "1.53e-10 m"\n'
-            f'scan_area = "16 mm^2"\n[[joint]]\nname = "j"\nfaces = ["{faces[0]}", "{faces[1]}"]\n{extra}{bolt}')  # fmt: skip
+    text = (
+        f'[geometry]\nmesh = "model.inp"\nunit = "mm"\n{parts}[surface]\nD = 2.39\nG = "1.53e-10 m"\n'
+        f'scan_area = "16 mm^2"\n[[joint]]\nname = "j"\nfaces = ["{faces[0]}", "{faces[1]}"]\n{extra}{bolt}'
+    )
     (tmp_path / "study.toml").write_text(text)
     return faying.Study.read(tmp_path / "study.toml")
 
@@ -265,8 +295,14 @@ def calculix_model(mesh, materials):
     lines = [text]
     for part in mesh.parts:
         m = materials[part]
-        lines += [f"*MATRIAL,NAME=M{part}".replace("MATRIAL", "MATERIAL"), "*ELASTIC", f"{m.E * 1e-6:.12e},{m.nu}",
-                  "*DENSITY", f"{m.density * 1e-12:.12e}", f"*SOLID SECTION,ELSET={part},MATERIAL=M{part}"]  # fmt: skip
+        lines += [
+            f"*MATRIAL,NAME=M{part}".replace("MATRIAL", "MATERIAL"),
+            "*ELASTIC",
+            f"{m.E * 1e-6:.12e},{m.nu}",
+            "*DENSITY",
+            f"{m.density * 1e-12:.12e}",
+            f"*SOLID SECTION,ELSET={part},MATERIAL=M{part}",
+        ]
     return "\n".join(lines) + "\n"
 
 
@@ -293,8 +329,19 @@ def test_the_t_specimen_in_calculix(tmp_path):
     free = np.setdiff1d(np.arange(mesh.unknowns), (3 * fixed[:, None] + np.arange(3)).ravel())
     ours = lowest_modes(K[free][:, free], M[free][:, free], 8, shift_frequency=20.0).frequencies
     text = calculix_model(made, materials) + calculix.spring2(found.deck)
-    text += "\n".join(["*BOUNDARY", *(f"{mesh.numbers[n]},1,3" for n in fixed), "*STEP", "*FREQUENCY,SOLVER=ARPACK",
-                       "8", "*END STEP"]) + "\n"  # fmt: skip
+    text += (
+        "\n".join(
+            [
+                "*BOUNDARY",
+                *(f"{mesh.numbers[n]},1,3" for n in fixed),
+                "*STEP",
+                "*FREQUENCY,SOLVER=ARPACK",
+                "8",
+                "*END STEP",
+            ]
+        )
+        + "\n"
+    )
     ccx.run(tmp_path, text)
     assert ours == pytest.approx(np.sort(ccx.frequencies(tmp_path))[:8], rel=1e-6)
 
@@ -355,16 +402,30 @@ def test_the_pressure_of_the_preload_in_calculix(tmp_path):
     text = calculix_model(made, dict.fromkeys(mesh.parts, faying.CATALOGUE["45 steel"]))
     text += calculix.contact(found.deck).replace(",".join(FACES), "p0_right,p1_left")
     near = np.concatenate([found.pairs.first, found.pairs.second])
-    lines = ["*NSET,NSET=BOTH", *(f"{n[i]}," for i in near), "*BOUNDARY", f"{n[corner[0]]},1,3", f"{n[corner[1]]},1,1",
-             f"{n[corner[1]]},3,3", f"{n[corner[2]]},1,1", "*STEP,NLGEOM,INC=500", "*STATIC", "0.1,1.", "*CLOAD",
-             *(f"{n[i // 3]},{i % 3 + 1},{f:.12e}" for i, f in enumerate(load) if f),
-             "*NODE PRINT,NSET=BOTH,FREQUENCY=1000", "U", "*END STEP"]  # fmt: skip
+    lines = [
+        "*NSET,NSET=BOTH",
+        *(f"{n[i]}," for i in near),
+        "*BOUNDARY",
+        f"{n[corner[0]]},1,3",
+        f"{n[corner[1]]},1,1",
+        f"{n[corner[1]]},3,3",
+        f"{n[corner[2]]},1,1",
+        "*STEP,NLGEOM,INC=500",
+        "*STATIC",
+        "0.1,1.",
+        "*CLOAD",
+        *(f"{n[i // 3]},{i % 3 + 1},{f:.12e}" for i, f in enumerate(load) if f),
+        "*NODE PRINT,NSET=BOTH,FREQUENCY=1000",
+        "U",
+        "*END STEP",
+    ]
     ccx.run(tmp_path, text + "\n".join(lines) + "\n")
     last = (tmp_path / "job.dat").read_text().split("displacements")[-1]
     moved = {int(w[0]): float(w[1]) * 1e-3 for w in map(str.split, last.splitlines()[1:]) if len(w) == 4}
-    closing = np.array([moved[int(n[a])] - moved[int(n[b])]
-                        for a, b in zip(found.pairs.first, found.pairs.second, strict=True)])  # fmt: skip
-    theirs, _ = structure.joints[0].seat.pressure(closing)
+    closing = np.array(
+        [moved[int(n[a])] - moved[int(n[b])] for a, b in zip(found.pairs.first, found.pairs.second, strict=True)]
+    )
+    theirs, _ = structure.joints[0].law.pressure(closing)
     area = found.pairs.area
     assert area @ theirs == pytest.approx(3000, rel=5e-3)
     miss = np.sqrt(area @ (theirs - ours) ** 2 / (area @ ours**2))

@@ -7,24 +7,44 @@ from typing import Any
 
 import click
 
-COLUMNS = {"R": "m", "h_a": "m", "displacement": "m", "force": "N", "E": "Pa", "substrate_E": "Pa", "yield_strength": "Pa",
-           "substrate_yield_strength": "Pa", "nu": "", "hardening": "", "elements": ""}  # fmt: skip
+COLUMNS = {
+    "R": "m",
+    "h_a": "m",
+    "displacement": "m",
+    "force": "N",
+    "E": "Pa",
+    "substrate_E": "Pa",
+    "yield_strength": "Pa",
+    "substrate_yield_strength": "Pa",
+    "nu": "",
+    "hardening": "",
+    "elements": "",
+}
 NEEDED = ("R", "h_a")
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.option("--R", "R", metavar="LENGTH", help='Radius of the cap, for example "15 um".')
 @click.option("--h-a", "h_a", metavar="LENGTH", help="Height of the cap; R makes half a sphere.")
-@click.option("--displacement", multiple=True, metavar="LENGTH",
-              help="Of the plane from first touch; repeat for turning points, 0 at the end unloads.")  # fmt: skip
+@click.option(
+    "--displacement",
+    multiple=True,
+    metavar="LENGTH",
+    help="Of the plane from first touch; repeat for turning points, 0 at the end unloads.",
+)
 @click.option("--force", multiple=True, metavar="FORCE", help="Of the plane, in place of the displacement.")
 @click.option("--material", default="45 steel", show_default=True, help="Cap and substrate: a name of the catalogue.")
 @click.option("--E", "E", metavar="STRESS", help="Young's modulus of the cap.")
 @click.option("--nu", type=float, help="Poisson's ratio of both.")
 @click.option("--yield-strength", metavar="STRESS", help="Of the cap, and of the substrate unless it has its own.")
 @click.option("--hardening", type=float, default=0.0, show_default=True, help="Tangent modulus over E.")
-@click.option("--substrate", type=click.Choice(["same", "rigid", "sliding"]), default="same", show_default=True,
-              help="Deformable; rigid and bonded; rigid and sliding (half of a sphere).")  # fmt: skip
+@click.option(
+    "--substrate",
+    type=click.Choice(["same", "rigid", "sliding"]),
+    default="same",
+    show_default=True,
+    help="Deformable; rigid and bonded; rigid and sliding (half of a sphere).",
+)
 @click.option("--substrate-E", "substrate_E", metavar="STRESS", help="Young's modulus of the substrate.")
 @click.option("--substrate-yield-strength", metavar="STRESS", help="Yield strength of the substrate.")
 @click.option("--layer-E", "layer_E", metavar="STRESS", help="Young's modulus of a layer under the cap.")
@@ -49,8 +69,8 @@ def command(
 
     Example: faying asperity --R "15 um" --h-a "100 nm" --displacement "10 nm" --E "100 GPa"
     """
+    from faying.asperity_fe.cases import solve_cases, write_netcdf
     from faying.errors import FayingError, InputError
-    from faying.fe.asperity.cases import solve_cases, write_netcdf
 
     if table_file:
         cases = [case_of({**options, **row}) for row in rows_of(table_file)]
@@ -67,8 +87,8 @@ def command(
     if len(cases) == 1 and isinstance(first, FayingError):
         raise first
     if plot:
-        from faying.plot.asperity import overview
-        from faying.plot.law import save
+        from faying.output.figures.asperity import overview
+        from faying.output.figures.law import save
 
         save(overview(cases[0], first), plot)
     document = [described(case, result) for case, result in zip(cases, results, strict=True)]
@@ -103,8 +123,8 @@ def rows_of(file: str) -> list[dict[str, str]]:
 
 def case_of(options: dict[str, Any]) -> Any:
     """Build one case from texts with units."""
+    from faying.asperity_fe.cases import AsperityCase
     from faying.errors import InputError
-    from faying.fe.asperity.cases import AsperityCase
     from faying.materials import CATALOGUE, RIGID, Material
     from faying.units import parse
 

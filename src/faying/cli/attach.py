@@ -15,29 +15,52 @@ SOLVERS = ("mapdl", "abaqus", "nastran", "calculix", "aster")
 @click.option("--face-b", required=True, metavar="NAME", help="The face it meets.")
 @click.option("--unit", required=True, help='Unit of the coordinates, such as "mm"; no mesh file says.')
 @click.option("--force-unit", default="N", show_default=True, help="Unit of force of the model.")
-@click.option("--law", required=True, type=click.Path(path_type=Path), metavar="STUDY.toml",
-              help="Study that gives surface, law and materials, and for --pressure solve the bolts.")  # fmt: skip
+@click.option(
+    "--law",
+    required=True,
+    type=click.Path(path_type=Path),
+    metavar="STUDY.toml",
+    help="Study that gives surface, law and materials, and for --pressure solve the bolts.",
+)
 @click.option(
     "--joint", metavar="NAME", help="Which of the study's joints; else the one with these faces, or the only one."
 )
-@click.option("--pressure", required=True, metavar="FILE|VALUE|solve",
-              help='CSV with the heading "node,pressure [MPa]", or "5 MPa", or solve.')  # fmt: skip
+@click.option(
+    "--pressure",
+    required=True,
+    metavar="FILE|VALUE|solve",
+    help='CSV with the heading "node,pressure [MPa]", or "5 MPa", or solve.',
+)
 @click.option("--preload", metavar="FORCE", help='With solve: which of the study\'s preloads, such as "8 kN".')
 @click.option(
     "--tolerance", metavar="LENGTH", help="How far apart the faces may lie (default: 1 % of the model's size)."
 )
-@click.option("--coupling", type=click.Choice(["auto", "nodes", "faces"]), default="auto", show_default=True,
-              help="Springs node by node, or per area between all nodes that share an overlap.")  # fmt: skip
+@click.option(
+    "--coupling",
+    type=click.Choice(["auto", "nodes", "faces"]),
+    default="auto",
+    show_default=True,
+    help="Springs node by node, or per area between all nodes that share an overlap.",
+)
 @click.option(
     "--frequency", metavar="FREQUENCY", help="Where viscous dampers c = eta k/omega stand for the loss factor."
 )
-@click.option("--damping", type=click.Choice(["loss", "paper"]), default="loss", show_default=True,
-              help="paper: the JK paper's dampers eta sqrt(M k), which depend on the mesh.")  # fmt: skip
+@click.option(
+    "--damping",
+    type=click.Choice(["loss", "paper"]),
+    default="loss",
+    show_default=True,
+    help="paper: the JK paper's dampers eta sqrt(M k), which depend on the mesh.",
+)
 @click.option("--to", "solver", type=click.Choice(SOLVERS), help="The solver to write for.")
 @click.option("--out", type=click.Path(path_type=Path), help="Folder of the decks (default: joint/ beside the model).")
 @click.option("--any-size", is_flag=True, help="Take a joint of any area.")
-@click.option("--matrices", type=click.Path(path_type=Path), metavar="FILE",
-              help="Stiffness and mass of the bare parts: job.sti of CalculiX, .mtx, DMIG; gives modes with the joint.")  # fmt: skip
+@click.option(
+    "--matrices",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Stiffness and mass of the bare parts: job.sti of CalculiX, .mtx, DMIG; gives modes with the joint.",
+)
 @click.option("--mass", type=click.Path(path_type=Path), help="With a .mtx: the mass, another.")
 @click.option("--dofs", type=click.Path(path_type=Path), help='With a .mtx: "node direction" of each row.')
 @click.option("--stiffness-unit", metavar="UNIT", help='Of the matrices, such as "N/mm".')
@@ -74,8 +97,8 @@ def command(
     MODEL: .inp of Abaqus or CalculiX, .bdf, .msh, .cdb.
     """
     from faying import units
+    from faying.decks.write import write
     from faying.errors import InputError
-    from faying.export.write import write
     from faying.study import Study
     from faying.study.attach import attach
     from faying.study.bare import modes_with_joint
@@ -86,20 +109,38 @@ def command(
     if at is not None and at <= 0:
         raise InputError(f'--frequency "{frequency}" must be above 0')
     reach = None if tolerance is None else units.parse(tolerance, "m", name="--tolerance")
-    made = attach(model, (face_a, face_b), unit=unit, study=Study.read(law), pressure=pressure, joint=joint,
-                  preload=preload, tolerance=reach, coupling=coupling, frequency=at, damping=damping,
-                  force_unit=force_unit, any_size=any_size)  # fmt: skip
+    made = attach(
+        model,
+        (face_a, face_b),
+        unit=unit,
+        study=Study.read(law),
+        pressure=pressure,
+        joint=joint,
+        preload=preload,
+        tolerance=reach,
+        coupling=coupling,
+        frequency=at,
+        damping=damping,
+        force_unit=force_unit,
+        any_size=any_size,
+    )
     document = made.to_dict()
     files: list[Path] = []
     lines = [*made.deck.facts, f"{len(made.pairs)} pairs of nodes"]
     if matrices is not None:
-        found, rigid = modes_with_joint(made, matrices, stiffness_unit=stiffness_unit, mass_unit=mass_unit, mass=mass,
-                                        dofs=dofs, count=count)  # fmt: skip
-        document["modes"] = {"frequencies [Hz]": found.frequencies.tolist(), "rigid": rigid,
-                             "loss_factors": found.loss_factors.tolist()}  # fmt: skip
+        found, rigid = modes_with_joint(
+            made, matrices, stiffness_unit=stiffness_unit, mass_unit=mass_unit, mass=mass, dofs=dofs, count=count
+        )
+        document["modes"] = {
+            "frequencies [Hz]": found.frequencies.tolist(),
+            "rigid": rigid,
+            "loss_factors": found.loss_factors.tolist(),
+        }
         lines += ["", f"{'mode':>6}{'f [Hz]':>14}{'loss factor':>14}"]
-        lines += [f"{i:>6}{f:>14.4f}{eta:>14.3e}"
-                  for i, (f, eta) in enumerate(zip(found.frequencies, found.loss_factors, strict=True), 1)]  # fmt: skip
+        lines += [
+            f"{i:>6}{f:>14.4f}{eta:>14.3e}"
+            for i, (f, eta) in enumerate(zip(found.frequencies, found.loss_factors, strict=True), 1)
+        ]
     if solver is not None:
         files = write(made.deck, solver, out or model.parent / "joint")
         document["files"] = [str(file) for file in files]

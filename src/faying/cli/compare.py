@@ -1,147 +1,107 @@
-"""`faying law --models`: several laws of one scan in one table and on one plot, with the factor between them."""
+"""`faying compare RESULT.nc TEST.uff`: a hammer test beside the result of a study."""
 
 import json
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import click
 
 
-def show(
-    surface: tuple[Any, Any],
-    pair: Any,
-    names: list[str] | None,
-    pressures: Any,
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("result", type=click.Path(path_type=Path))
+@click.argument("test", type=click.Path(path_type=Path))
+@click.option("--load", help='Preload of the result to compare with, for example "8 kN". Default: the greatest.')
+@click.option(
+    "--points", type=click.Path(path_type=Path), help="CSV table of the test's positions: point,x [mm],y [mm],z [mm]."
+)
+@click.option(
+    "--frame",
+    type=click.Path(path_type=Path),
+    help="The same table for three points or more, where they lie in the model; turns and shifts the test.",
+)
+@click.option("--length-unit", help='Unit of the positions in TEST, where it states none, for example "mm".')
+@click.option("--tolerance", help='Greatest distance of point and node, for example "5 mm". Default: 2 % of the model.')
+@click.option(
+    "--direction", type=click.Choice(["x", "y", "z"]), help="Direction of the test, where the file states none."
+)
+@click.option(
+    "--quantity",
+    type=click.Choice(["receptance", "mobility", "accelerance"]),
+    help="What the FRFs are, where the file is silent.",
+)
+@click.option(
+    "--least-mac",
+    type=click.FloatRange(0, 1, min_open=True),
+    default=0.5,
+    show_default=True,
+    help="MAC that a pair must have.",
+)
+@click.option(
+    "--greatest-shift",
+    type=click.FloatRange(0, min_open=True),
+    default=0.3,
+    show_default=True,
+    help="Difference of frequency that a pair may have, relative to the test.",
+)
+@click.option("--out", type=click.Path(path_type=Path), help="Folder for the table, the figures and the report.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
+def command(
+    result: Path,
+    test: Path,
+    load: str | None,
+    points: Path | None,
+    frame: Path | None,
+    length_unit: str | None,
+    tolerance: str | None,
+    direction: str | None,
+    quantity: str | None,
+    least_mac: float,
+    greatest_shift: float,
+    out: Path | None,
     as_json: bool,
-    csv_file: str | None,
-    plot: str | None,
-    contact_map: str | None = None,
 ) -> None:
-    """Compare the laws and print, write and draw the outcome."""
-    from faying.contact.compare import compare, laws_of_surface
-    from faying.files import whole
+    """Set the hammer test in TEST (a universal file) beside RESULT (result.nc of `faying run`).
 
-    inputs, scan = surface
-    made, left_out = laws_of_surface(inputs, pair, names=names, scan=scan)
-    if contact_map:
-        draw_contact(made, float(pressures[-1]), contact_map)
-    with progress_bar(made) as made:
-        comparison = compare(made, pressures, left_out)
-    if csv_file:
-        whole(Path(csv_file), lambda path: path.write_text(csv(comparison)))
-    if plot:
-        from faying.plot.law import curves, save
-
-        save(curves(comparison.responses), plot)
-    click.echo(
-        json.dumps(document(inputs, comparison), indent=2, allow_nan=False) if as_json else table(inputs, comparison)
-    )
-
-
-def draw_contact(laws: dict[str, Any], pressure: float, path: str) -> None:
-    """Write the picture of where the scan touches at a pressure [Pa]; InputError unless one law is solved on the scan."""
-    from faying.contact.halfspace import HalfSpace
+    The mode shapes of TEST are taken where it holds some; otherwise they are identified from its FRFs.
+    """
+    from faying import units
     from faying.errors import InputError
-    from faying.plot.contact_map import contact_figure
-    from faying.plot.law import save
+    from faying.measured.compare import compare_modes
+    from faying.measured.model import read_model_modes
+    from faying.measured.tested import read_test
+    from faying.output import report_measured, table
 
-    solved = [law for law in laws.values() if isinstance(law, HalfSpace)]
-    if not solved:
-        raise InputError("--contact-map shows the numerical contact: put halfspace among --models")
-    save(contact_figure(solved[0].contact_at(pressure)), path)
-
-
-@contextmanager
-def progress_bar(laws: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """The laws, those that are solved on the scan with a bar on the terminal that follows their loads."""
-    from faying.contact.halfspace import HalfSpace
-
-    slow = [name for name, law in laws.items() if isinstance(law, HalfSpace)]
-    if not slow:
-        yield laws
+    model = read_model_modes(result, load=units.parse(load, "N", name="--load") if load else None)
+    reach = units.parse(tolerance, "m", name="--tolerance") if tolerance else None
+    tested = read_test(test, points=points, length_unit=length_unit, direction=direction, quantity=quantity)
+    if tested.identified:
+        click.echo(f"{test}: no mode shapes; modes are identified from its FRFs", err=True)
+    comparison = compare_modes(
+        tested.modes,
+        model,
+        transform=tested.transform(frame) if frame else None,
+        tolerance=reach,
+        frf=tested.frf,
+        least_mac=least_mac,
+        greatest_shift=greatest_shift,
+    )
+    files: list[Path] = []
+    if out:
+        click.echo("figures and report", err=True)
+        try:
+            out.mkdir(parents=True, exist_ok=True)
+        except OSError as fault:
+            raise InputError(f"cannot make the folder {out}: {fault.strerror}; give another with --out") from None
+        files = report_measured.write(comparison, out)
+    for line in tested.notes:
+        click.echo(f"note: {line}", err=True)
+    if as_json:
+        click.echo(json.dumps(comparison.to_dict() | {"files": [str(f) for f in files]}, indent=2, allow_nan=False))
         return
-    loads = sum(laws[name].points for name in slow)
-    with click.progressbar(length=loads, label="contact of the scan", file=sys.stderr) as bar:
-        yield {n: law.with_(progress=lambda *_: bar.update(1)) if n in slow else law for n, law in laws.items()}
-
-
-def clean(values: Any) -> list[float | None]:
-    """Return a row for JSON, None in place of NaN."""
-    return [float(v) if v == v else None for v in values]
-
-
-def document(inputs: Any, comparison: Any) -> dict[str, Any]:
-    """Everything that the command knows, as a tree for JSON; SI."""
-    quantities = ("area", "k_n", "k_t")
-    return {
-        "surface": vars(inputs),
-        "pressure": comparison.pressure.tolist(),
-        "laws": {
-            name: {n: clean(v) for n, v in r.quantities().items()}
-            | {"valid": r.valid.tolist(), "reasons": {k: m.tolist() for k, m in r.reasons.items() if m.any()}}
-            for name, r in comparison.responses.items()
-        },
-        "largest over smallest": {q: clean(comparison.spread(q)) for q in quantities},
-        "left out": dict(comparison.left_out),
-    }
-
-
-def table(inputs: Any, comparison: Any) -> str:
-    """Format area and k_n of every law at a few pressures, and the factor between the laws."""
-    import numpy as np
-
-    from faying.units import show as unit
-
-    shown = np.unique(np.linspace(0, comparison.pressure.size - 1, min(7, comparison.pressure.size)).astype(int))
-    lines = [
-        f"D {inputs.D:.4g}, G {unit(inputs.G, 'm')}, rms height {unit(inputs.h_rms, 'm')}, rms gradient "
-        f"{inputs.slope:.4g}, summits {inputs.summit_density * 1e-6:.4g} per mm2 of radius "
-        f"{unit(inputs.summit_radius, 'm')} and deviation {unit(inputs.summit_deviation, 'm')}",
-    ]
-    for quantity, title, scale in (("area", "real area / nominal area", 1.0), ("k_n", "k_n [MPa/um]", 1e-12)):
-        laws = {n: r for n, r in comparison.responses.items() if quantity in r.quantities()}
-        lines += ["", title, f"  {'p [MPa]':<12}" + "".join(f"{comparison.pressure[i] * 1e-6:>11.4g}" for i in shown)]
-        for name, response in laws.items():
-            cells = []
-            for i in shown:
-                value = response.quantities()[quantity][i] * scale
-                text = "-" if np.isnan(value) else f"{value:.4g}"
-                cells.append(f"{text + ('' if response.valid[i] else '*'):>11}")
-            lines.append(f"  {name:<12}" + "".join(cells))
-        spread = comparison.spread(quantity)
-        lines.append(f"  {'max / min':<12}" + "".join(f"{spread[i]:>11.4g}" for i in shown))
-    lines += ["", "* the model stands outside its ground (`faying models`); - outside what it covers"]
-    for name, response in comparison.responses.items():
-        lines += [f"  {name}: {reason}" for reason in told(response)]
-    without = [n for n, r in comparison.responses.items() if r.k_n is None]
-    if without:
-        lines.append(f"without a stiffness of their own: {', '.join(without)}")
-    lines += [f"left out: {name}: {why}" for name, why in comparison.left_out.items()]
-    return "\n".join(lines)
-
-
-def told(response: Any) -> list[str]:
-    """Return why a response leaves its ground, with the pressures from and to; coverage is shown by - already."""
-    from faying.units import show as unit
-
-    lines = []
-    for reason, mask in response.reasons.items():
-        if mask.any() and not reason.startswith("pressure "):
-            p = response.pressure[mask]
-            lines.append(f"{reason}, at {unit(float(p.min()), 'Pa')} to {unit(float(p.max()), 'Pa')}")
-    return lines
-
-
-def csv(comparison: Any) -> str:
-    """Return one row per law and pressure, SI, with units in the head."""
-    names = ("area", "k_n", "k_t", "loss_n", "loss_t")
-    units = {"area": "-", "k_n": "Pa/m", "k_t": "Pa/m", "loss_n": "-", "loss_t": "-"}
-    rows = ["law,pressure [Pa]," + ",".join(f"{n} [{units[n]}]" for n in names) + ",valid"]
-    for law, r in comparison.responses.items():
-        for i, p in enumerate(comparison.pressure.tolist()):
-            cells = [repr(float(r.quantities()[n][i])) if n in r.quantities() else "" for n in names]
-            rows.append(",".join([law, repr(p), *cells, str(bool(r.valid[i])).lower()]))
-    return "\n".join(rows) + "\n"
+    click.echo(
+        f"{model.title} at {model.load / 1e3:g} kN; {len(comparison.point_map.nodes)} points of the test found a node\n"
+    )
+    click.echo(table.text(comparison.rows()))
+    for line in comparison.notes:
+        click.echo(f"note: {line}")
+    if files:
+        click.echo(f"\nwritten to {out}: {', '.join(f.name for f in files)}")

@@ -6,8 +6,17 @@ from typing import Any
 
 import click
 
-UNITS = {"pressure": "Pa", "area": "", "k_n": "Pa/m", "k_t": "Pa/m", "loss_n": "", "loss_t": "", "energy_n": "J/m^2",
-         "energy_t": "J/m^2", "k_load": "Pa/m"}  # fmt: skip
+UNITS = {
+    "pressure": "Pa",
+    "area": "",
+    "k_n": "Pa/m",
+    "k_t": "Pa/m",
+    "loss_n": "",
+    "loss_t": "",
+    "energy_n": "J/m^2",
+    "energy_t": "J/m^2",
+    "k_load": "Pa/m",
+}
 # what the table shows: heading and factor from SI
 SHOWN = {
     "pressure": ("p [MPa]", 1e-6),
@@ -24,8 +33,13 @@ SHOWN = {
 @click.option("--D", "D", type=float, help="Fractal dimension of the surface, 2 to 3.")
 @click.option("--G", "G", metavar="LENGTH", help='Fractal roughness, for example "1.53e-10 m".')
 @click.option("--scan-area", metavar="AREA", help='Area that the scan covers, for example "16 mm^2".')
-@click.option("--set", "settings", multiple=True, metavar="NAME=VALUE",
-              help='Any parameter of the model, for example --set cutoff=0.01 or --set "sigma=0.8 um".')  # fmt: skip
+@click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help='Any parameter of the model, for example --set cutoff=0.01 or --set "sigma=0.8 um".',
+)
 @click.option("--material", default=None, help='Of the rough body, from the catalogue, for example "45 steel".')
 @click.option("--against", default="rigid", show_default=True, help='"rigid", "same", or a name of the catalogue.')
 @click.option("--E", "E", metavar="STRESS", help="Young's modulus, in place of or over --material.")
@@ -33,16 +47,24 @@ SHOWN = {
 @click.option("--hardness", metavar="STRESS", help="Hardness.")
 @click.option("--yield-strength", metavar="STRESS", help="Yield strength; hardness is 2.8 times it where not given.")
 @click.option("--friction", type=float, help="Static friction coefficient.")
-@click.option("--pressure", default="0.1 MPa:50 MPa", show_default=True, metavar="FROM:TO[:POINTS]",
-              help="Nominal pressures, spaced logarithmically; or one pressure.")  # fmt: skip
+@click.option(
+    "--pressure",
+    default="0.1 MPa:50 MPa",
+    show_default=True,
+    metavar="FROM:TO[:POINTS]",
+    help="Nominal pressures, spaced logarithmically; or one pressure.",
+)
 @click.option("--scan", type=click.Path(), help="A scan: D, G, moments and area come from it.")
 @click.option("--xy-unit", help='Unit of x and y where the scan states none, for example "mm".')
 @click.option("--z-unit", help='Unit of the heights where the scan states none, for example "um".')
 @click.option("--method", default="psd", show_default=True, help="Estimator of D and G: psd, structure or moments.")
 @click.option("--models", metavar="LIST", help='Several laws of the scan, for example "jk,gw,gw-ke,persson".')
 @click.option("--all-models", is_flag=True, help="All laws that take their inputs from a scan.")
-@click.option("--contact-map", type=click.Path(dir_okay=False),
-              help="Picture of where the scan touches at the last pressure; with halfspace among --models.")  # fmt: skip
+@click.option(
+    "--contact-map",
+    type=click.Path(dir_okay=False),
+    help="Picture of where the scan touches at the last pressure; with halfspace among --models.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 @click.option("--csv", "csv_file", type=click.Path(dir_okay=False), help="Write all columns to a CSV file.")
 @click.option("--plot", type=click.Path(dir_okay=False), help="Write a figure (png, pdf, svg).")
@@ -70,13 +92,12 @@ def command(
     cls = find_law(model)
     pair = pair_of(options, against)
     if models or all_models:
-        from faying.cli.compare import show
+        from faying.cli.law_table import show
 
         if scan is None or settings:
             raise InputError("--models and --all-models take every input from a scan: give --scan FILE and no --set")
         names = None if all_models else [name for name in (models or "").split(",") if name.strip()]
-        show(surface_of(scan, options), pair, names, pressures_of(pressure), as_json, csv_file, plot,
-             contact_map)  # fmt: skip
+        show(surface_of(scan, options), pair, names, pressures_of(pressure), as_json, csv_file, plot, contact_map)
         return
     if contact_map:
         raise InputError("--contact-map goes with --scan and halfspace among --models")
@@ -92,7 +113,7 @@ def command(
     if csv_file:
         write_csv(csv_file, law, response)
     if plot:
-        from faying.plot.law import curves, save
+        from faying.output.figures.law import curves, save
 
         save(curves({law.name: response}), plot)
     click.echo(json.dumps(document(law, response), indent=2, allow_nan=False) if as_json else table(law, response))
@@ -284,11 +305,11 @@ def table(law: Any, response: Any) -> str:
 
 def write_csv(path: str, law: Any, response: Any) -> None:
     """Write every column with its unit, and whether the law stands on its ground."""
-    from faying.files import whole
+    from faying.files import write_atomically
 
     quantities = response.quantities()
     head = [f"{name} [{UNITS[name] or '-'}]" for name in quantities]
     rows = zip(*(value.tolist() for value in quantities.values()), response.valid.tolist(), strict=True)
     body = "\n".join(",".join(repr(v) if isinstance(v, float) else str(v).lower() for v in row) for row in rows)
     text = f"# {law.name}, {law.source}\n" + ",".join([*head, "valid"]) + "\n" + body + "\n"
-    whole(Path(path), lambda temporary: temporary.write_text(text))
+    write_atomically(Path(path), lambda temporary: temporary.write_text(text))

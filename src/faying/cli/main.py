@@ -10,7 +10,7 @@ import click
 COMMANDS = {
     "asperity": ("asperity", "Press one asperity by finite elements: force, area, stresses."),
     "attach": ("attach", "Lay a joint on a model of another solver, and write it in its words."),
-    "compare": ("compare_test", "Set a hammer test beside the result of a study: MAC, pairs, FRFs."),
+    "compare": ("compare", "Set a hammer test beside the result of a study: MAC, pairs, FRFs."),
     "init": ("init", "Write a commented study file to start from."),
     "law": ("law", "Curves of a contact law: area, stiffness and loss against pressure."),
     "models": ("models", "List the contact models with their sources, inputs and ranges."),
@@ -18,7 +18,7 @@ COMMANDS = {
     "run": ("run", "Run a study: from the surface and the preload to the modes."),
     "sweep": ("sweep", "Many laws, surfaces and preloads on one structure, solved once."),
     "surface": ("surface", "Roughness, fractal dimension D and roughness G of a scan."),
-    "test": ("hammer", "Identify the modes of a hammer test from its FRFs."),
+    "test": ("test", "Identify the modes of a hammer test from its FRFs."),
 }
 
 

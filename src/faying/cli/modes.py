@@ -9,16 +9,23 @@ import click
 
 @click.command()
 @click.argument("study", required=False, type=click.Path(path_type=Path))
-@click.option("--stiffness", type=click.Path(path_type=Path),
-              help="In place of a study: .mtx, .npz, .sti of CalculiX, or DMIG of Nastran.")  # fmt: skip
+@click.option(
+    "--stiffness",
+    type=click.Path(path_type=Path),
+    help="In place of a study: .mtx, .npz, .sti of CalculiX, or DMIG of Nastran.",
+)
 @click.option("--mass", type=click.Path(path_type=Path), help="Beside --stiffness, where that file does not hold it.")
 @click.option("--stiffness-unit", default="N/m", show_default=True, help="Of the entries of the stiffness.")
 @click.option("--mass-unit", default="kg", show_default=True, help="Of the entries of the mass.")
 @click.option("--count", type=click.IntRange(1), default=20, show_default=True, help="Modes, rigid motions among them.")
 @click.option("--shift", metavar="FREQUENCY", help='Of the shift of the spectrum, for example "100 Hz" [found].')
 @click.option("--slepc", is_flag=True, help="Solve with SLEPc and MUMPS over the processes of mpiexec.")
-@click.option("--export", type=click.Path(path_type=Path), metavar="DIR",
-              help="Write stiffness.npz, mass.npz and dofs.txt and solve nothing.")  # fmt: skip
+@click.option(
+    "--export",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Write stiffness.npz, mass.npz and dofs.txt and solve nothing.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def command(
     study: Path | None,
@@ -70,9 +77,14 @@ def _here(given: Any, count: int, shift: float) -> dict[str, Any]:
     from faying.fe.modes import lowest_modes
 
     modes = lowest_modes(given.stiffness, given.mass, count, shift_frequency=shift)
-    return {"source": given.source, "unknowns": int(given.mass.shape[0]), "solver": modes.factorisation.name,
-            "factor_memory": {"unit": "B", "value": modes.factorisation.memory}, "processes": 1,
-            "frequencies": {"unit": "Hz", "values": modes.frequencies.tolist()}}  # fmt: skip
+    return {
+        "source": given.source,
+        "unknowns": int(given.mass.shape[0]),
+        "solver": modes.factorisation.name,
+        "factor_memory": {"unit": "B", "value": modes.factorisation.memory},
+        "processes": 1,
+        "frequencies": {"unit": "Hz", "values": modes.frequencies.tolist()},
+    }
 
 
 def _by_slepc(given: Any, count: int, shift: float) -> dict[str, Any] | None:
@@ -82,9 +94,11 @@ def _by_slepc(given: Any, count: int, shift: float) -> dict[str, Any] | None:
     try:
         frequencies, facts = slepc_worker.lowest(given.stiffness.tocsr(), given.mass.tocsr(), count, shift)
     except ImportError as fault:
-        raise InputError(f"--slepc needs petsc4py and slepc4py in this Python ({fault}); install them, or write the matrices with "
-                         f"--export DIR and run them where they are: mpiexec -n 4 python3 {slepc_worker.__file__} "
-                         f"DIR/stiffness.npz DIR/mass.npz --count {count} --shift {shift:.6g}") from None  # fmt: skip
+        raise InputError(
+            f"--slepc needs petsc4py and slepc4py in this Python ({fault}); install them, or write the matrices with "
+            f"--export DIR and run them where they are: mpiexec -n 4 python3 {slepc_worker.__file__} "
+            f"DIR/stiffness.npz DIR/mass.npz --count {count} --shift {shift:.6g}"
+        ) from None
     except RuntimeError as fault:
         raise NotConverged(f"SLEPc: {fault}; ask for fewer modes, or give --shift nearer to the first") from None
     if facts.pop("rank"):

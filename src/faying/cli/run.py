@@ -19,8 +19,8 @@ import click
 @click.option("--uff", is_flag=True, help="Write modes and frequency responses as universal files, too (.uff).")
 def command(study: Path, out: Path | None, as_json: bool, no_files: bool, uff: bool) -> None:
     """Run STUDY: surface, contact law, preload, modes; write NetCDF, CSV, figures and a report."""
-    from faying import report, table
     from faying.errors import InputError
+    from faying.output import report, table
     from faying.study import Study, run, universal
 
     plan = Study.read(study)
@@ -45,12 +45,18 @@ def command(study: Path, out: Path | None, as_json: bool, no_files: bool, uff: b
     if as_json:
         click.echo(json.dumps(result.to_dict() | {"files": [str(f) for f in files]}, indent=2))
         return
-    click.echo(f"{result.title}: {result.unknowns:,} unknowns, {result.solver} ({result.factor_memory / 1e9:.2g} GB), "
-               f"{result.damping} loss in the joints\n")  # fmt: skip
+    click.echo(
+        f"{result.title}: {result.unknowns:,} unknowns, {result.solver} ({result.factor_memory / 1e9:.2g} GB), "
+        f"{result.damping} loss in the joints\n"
+    )
     at = "" if result.hammer is None else f" at {result.hammer.model.load / 1e3:g} kN"
-    for name, rows in (("modes", table.modes(result)), ("joints", table.joints(result)),
-                       (f"bolts, tightened in the order {', '.join(result.tightening)}", table.bolts(result)),
-                       ("comparison with the test", table.comparison(result)), (f"hammer test{at}", table.hammer(result))):  # fmt: skip
+    for name, rows in (
+        ("modes", table.modes(result)),
+        ("joints", table.joints(result)),
+        (f"bolts, tightened in the order {', '.join(result.tightening)}", table.bolts(result)),
+        ("comparison with the test", table.comparison(result)),
+        (f"hammer test{at}", table.hammer(result)),
+    ):
         if rows:
             click.echo(f"{name}\n{table.text(rows)}\n")
     for line in (*result.warnings, *(() if result.hammer is None else result.hammer.notes)):

@@ -52,7 +52,7 @@ def command(
 
         document["cross_check"] = [vars(o) for o in cross_check(scan, file, xy_unit, z_unit)]
     if plot:
-        from faying.plot.surface import overview
+        from faying.output.figures.surface import overview
 
         overview(scan, ready, fits, plot)
     click.echo(json.dumps(document, indent=2, allow_nan=False) if as_json else table(document))

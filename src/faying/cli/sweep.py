@@ -9,9 +9,15 @@ import click
 
 @click.command()
 @click.argument("study", type=click.Path(path_type=Path))
-@click.option("--set", "settings", multiple=True, required=True, metavar="KEY=VALUES",
-              help="What varies: surface.D=2.2:2.6:40, bolt.preload='1 kN:20 kN:30', surface.G='1e-12 m:1e-10 m:9:log', "
-                   "law.model=jk,gw. Several give all combinations.")  # fmt: skip
+@click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    required=True,
+    metavar="KEY=VALUES",
+    help="What varies: surface.D=2.2:2.6:40, bolt.preload='1 kN:20 kN:30', surface.G='1e-12 m:1e-10 m:9:log', "
+    "law.model=jk,gw. Several give all combinations.",
+)
 @click.option(
     "--out", type=click.Path(path_type=Path), help="NetCDF file (default: results/sweep.nc beside the study)."
 )
@@ -35,7 +41,7 @@ def command(
     What is done is kept beside the output; the same command goes on after an interruption.
     """
     from faying.errors import InputError
-    from faying.plot import sweep as drawing
+    from faying.output.figures import sweep as drawing
     from faying.study import Study
     from faying.study.axes import axis_of
     from faying.study.sweep import sweep
@@ -64,8 +70,10 @@ def command(
     if as_json:
         click.echo(json.dumps(summary, indent=2))
         return
-    click.echo(f"{done.title}: {summary['points']} points, {summary['answered']} with an answer; {done.unknowns:,} unknowns, "
-               f"bases of {done.basis[0]} and {done.basis[1]} vectors")  # fmt: skip
+    click.echo(
+        f"{done.title}: {summary['points']} points, {summary['answered']} with an answer; {done.unknowns:,} unknowns, "
+        f"bases of {done.basis[0]} and {done.basis[1]} vectors"
+    )
     for axis in axes:
         click.echo(f"  {axis.read()}")
     span = summary["frequency_range"]

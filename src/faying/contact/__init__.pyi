@@ -2,7 +2,7 @@
 from . import asperity
 from .compare import Comparison, compare, laws_of_surface
 from .greenwood_williamson import GreenwoodWilliamson
-from .halfspace import HalfSpace, HalfSpaceContact, solve_half_space
+from .half_space import HalfSpace
 from .inputs import SurfaceInputs
 from .jackson_streator import JacksonStreator
 from .jk import JK
@@ -22,7 +22,6 @@ __all__ = [
     "ContactLaw",
     "GreenwoodWilliamson",
     "HalfSpace",
-    "HalfSpaceContact",
     "JacksonStreator",
     "MajumdarBhushan",
     "MoragEtsion",
@@ -39,5 +38,4 @@ __all__ = [
     "find_law",
     "laws",
     "laws_of_surface",
-    "solve_half_space",
 ]

@@ -9,9 +9,10 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.islands import Array, Islands
+from faying.contact.islands import Islands
 from faying.contact.law import ContactLaw, Parameter, Response, checked, require
 from faying.materials import ContactPair
+from faying.typing import Array
 
 PARAMETERS = {
     "D": Parameter("", "fractal dimension of the surface", "between 2 and 3"),

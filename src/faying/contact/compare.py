@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.inputs import SurfaceInputs
-from faying.contact.law import Array, ContactLaw, Response, checked
+from faying.contact.law import ContactLaw, Response, checked
 from faying.contact.registry import find_law, laws
 from faying.errors import FayingError
 from faying.materials import ContactPair
+from faying.typing import Array
 
 # the asperities that published models put into Greenwood and Williamson's sum
 ASPERITIES = {

@@ -8,11 +8,12 @@ from typing import ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.asperity.base import Array, AsperityModel, summed_model
+from faying.contact.asperity.base import AsperityModel, summed_model
 from faying.contact.inputs import SurfaceInputs
 from faying.contact.law import ContactLaw, Parameter, Response, require
 from faying.errors import InputError
 from faying.materials import ContactPair
+from faying.typing import Array
 
 # what is summed: heights to this many standard deviations, with this many points on each panel
 HIGHEST, NODES = 8.5, 10
@@ -60,8 +61,9 @@ class GreenwoodWilliamson(ContactLaw):
     @classmethod
     def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> "GreenwoodWilliamson":
         """Return the law of a measured surface, from its spectral moments (McCool 1986)."""
-        return cls(density=surface.summit_density, radius=surface.summit_radius, sigma=surface.summit_deviation,
-                   pair=pair)  # fmt: skip
+        return cls(
+            density=surface.summit_density, radius=surface.summit_radius, sigma=surface.summit_deviation, pair=pair
+        )
 
     @cached_property
     def _asperity(self) -> AsperityModel:

@@ -91,8 +91,18 @@ class SurfaceInputs:
         variance = G ** (2 * D - 4) * log(gamma) * length ** (6 - 2 * D) / 2
         q = 2 * pi / length
         m0, gradient, fourth = (float(np.sum(variance * q**k)) for k in (0, 2, 4))
-        return cls(D=D, G=G, scan_area=scan_area, m0=m0, m2=gradient / 2, m4=3 / 8 * fourth, slope=sqrt(gradient),
-                   h_rms=sqrt(m0), shortest=shortest, gamma=gamma)  # fmt: skip
+        return cls(
+            D=D,
+            G=G,
+            scan_area=scan_area,
+            m0=m0,
+            m2=gradient / 2,
+            m4=3 / 8 * fourth,
+            slope=sqrt(gradient),
+            h_rms=sqrt(m0),
+            shortest=shortest,
+            gamma=gamma,
+        )
 
     @property
     def alpha(self) -> float:

@@ -10,11 +10,10 @@ from functools import cache
 from math import e, exp, log
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from faying.errors import InputError
-
-Array = NDArray[np.float64]
+from faying.typing import Array
 
 
 def power_integral(exponent: float, lower: ArrayLike, upper: ArrayLike) -> Array:

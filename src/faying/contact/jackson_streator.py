@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.inputs import SurfaceInputs
-from faying.contact.law import Array, ContactLaw, Parameter, Response, checked, require
+from faying.contact.law import ContactLaw, Parameter, Response, checked, require
 from faying.materials import ContactPair
+from faying.typing import Array
 
 
 def sinusoid_area(load: ArrayLike) -> Array:
@@ -70,8 +71,14 @@ class JacksonStreator(ContactLaw):
     @classmethod
     def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> "JacksonStreator":
         """Return the law of a measured surface: its D and G down to the wavelength that the scan resolves."""
-        return cls(D=surface.D, G=surface.G, shortest=surface.shortest, pair=pair, scan_area=surface.scan_area,
-                   gamma=surface.gamma)  # fmt: skip
+        return cls(
+            D=surface.D,
+            G=surface.G,
+            shortest=surface.shortest,
+            pair=pair,
+            scan_area=surface.scan_area,
+            gamma=surface.gamma,
+        )
 
     @cached_property
     def layers(self) -> tuple[Array, Array]:

@@ -34,7 +34,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.inputs import SurfaceInputs
-from faying.contact.islands import Array, Islands
+from faying.contact.islands import Islands
 from faying.contact.law import ContactLaw, Parameter, Response, checked, require
 from faying.contact.substrate import (
     MOST_RATIO,
@@ -46,6 +46,7 @@ from faying.contact.substrate import (
     substrate_share,
 )
 from faying.materials import ContactPair
+from faying.typing import Array
 
 QUANTITIES = ("force", "area", "k_n", "k_t", "energy_n", "energy_t")
 SOFTNESS = {"force": 2, "area": 2, "k_n": 0, "k_t": 0, "energy_n": 4, "energy_t": 4}  # power of the compliance
@@ -308,8 +309,14 @@ class JK(ContactLaw):
         KH = self.pair.hardness_coefficient * self.pair.hardness
         P_c, A_c, root = 2 / 3 * KH * pi * R * d1c, pi * R * d1c, np.sqrt(R * d1c)
         G_star = self.pair.G_star
-        units = {"force": P_c, "area": A_c, "k_n": P_c / d1c, "k_t": 8 * G_star * root,
-                 "energy_n": P_c * d1c, "energy_t": 3 * pi * P_c**2 / (8 * G_star * root)}  # fmt: skip
+        units = {
+            "force": P_c,
+            "area": A_c,
+            "k_n": P_c / d1c,
+            "k_t": 8 * G_star * root,
+            "energy_n": P_c * d1c,
+            "energy_t": 3 * pi * P_c**2 / (8 * G_star * root),
+        }
         out: dict[str, list[Array]] = {}
         for quantity in wanted:
             out[quantity] = []

@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.inputs import SurfaceInputs
-from faying.contact.response import Array, Mask, Response
+from faying.contact.response import Response
 from faying.contact.table import PressureTable
 from faying.errors import InputError, NotConverged
 from faying.materials import ContactPair
+from faying.typing import Array
 
-__all__ = ["Array", "ContactLaw", "Mask", "Parameter", "Response", "checked", "require"]
+__all__ = ["ContactLaw", "Parameter", "Response", "checked", "require"]
 
 TABLE_POINTS = 500
 # from this many pressures on, at_pressure reads the checked table unless asked to be exact
@@ -41,8 +42,10 @@ def checked(values: ArrayLike, *, name: str, unit: str, zero: bool) -> Array:
     """Return values as floats; InputError where one is NaN, infinite, negative, or zero unless `zero` allows it."""
     array = np.asarray(values, dtype=float)
     if not np.all(np.isfinite(array)):
-        raise InputError(f"{name}: {np.count_nonzero(~np.isfinite(array))} of {array.size} values are NaN or infinite; "
-                         f"give finite numbers in {unit}")  # fmt: skip
+        raise InputError(
+            f"{name}: {np.count_nonzero(~np.isfinite(array))} of {array.size} values are NaN or infinite; "
+            f"give finite numbers in {unit}"
+        )
     if np.any(array < 0) or (not zero and np.any(array == 0)):
         raise InputError(
             f"{name}: least value {array.min():.6g} {unit}; it must be {'0 or more' if zero else 'positive'}"
@@ -104,8 +107,10 @@ class ContactLaw(ABC):
         u = np.linspace(0.0, 1.0, TABLE_POINTS)
         log_p = np.log(self._pressure_at(self._from_parameter(u)))
         if not np.all(np.isfinite(log_p)) or np.any(np.diff(log_p) <= 0):
-            raise NotConverged(f"{self.name}: pressure does not grow with closure over {self.closure_range}; "
-                               "the parameters leave the ground of the model")  # fmt: skip
+            raise NotConverged(
+                f"{self.name}: pressure does not grow with closure over {self.closure_range}; "
+                "the parameters leave the ground of the model"
+            )
         return u, log_p
 
     @property
@@ -168,8 +173,12 @@ class ContactLaw(ABC):
         )
         # the ends of the grid are exact roots up to rounding: give the bracket that much room
         low, high = u[cell], u[cell + 1]
-        root = find_root(miss, (low - 1e-13, high + 1e-13), args=(target,),
-                         tolerances={"xatol": 1e-16, "xrtol": 1e-15, "fatol": 1e-14, "frtol": 0.0})  # fmt: skip
+        root = find_root(
+            miss,
+            (low - 1e-13, high + 1e-13),
+            args=(target,),
+            tolerances={"xatol": 1e-16, "xrtol": 1e-15, "fatol": 1e-14, "frtol": 0.0},
+        )
         if not np.all(root.success | (np.abs(root.f_x) < 1e-11)):
             worst = float(np.nanmax(np.abs(root.f_x)))
             raise NotConverged(f"{self.name}: inversion for pressure stopped {worst:.1e} short (relative)")

@@ -8,10 +8,11 @@ from typing import Any, ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.asperity.base import Array, AsperityModel, summed_model
+from faying.contact.asperity.base import AsperityModel, summed_model
 from faying.contact.law import ContactLaw, Parameter, Response, checked, require
 from faying.errors import InputError
 from faying.materials import ContactPair
+from faying.typing import Array
 
 FIRST, REACH = 1e-3, 2.0  # closures covered, in spans of the gaps from the first touch
 KNOTS, HINGES = 2000, 5000  # closures at which the sum is taken; pieces of the asperity's curve
@@ -57,8 +58,10 @@ class MeasuredHeights(ContactLaw):
         need = partial(require, self.name)
         g = checked(self.gaps, name="gaps", unit="m", zero=True)
         c = checked(self.chance, name="chance of the gaps", unit="1/m", zero=True)
-        need(g.ndim == 1 and g.size >= 2 and g.shape == c.shape,
-             f"gaps of shape {g.shape} and chance of shape {c.shape}; give two rows of one length, 2 or more")  # fmt: skip
+        need(
+            g.ndim == 1 and g.size >= 2 and g.shape == c.shape,
+            f"gaps of shape {g.shape} and chance of shape {c.shape}; give two rows of one length, 2 or more",
+        )
         need(bool(np.all(np.diff(g) > 0)), "gaps do not rise; sort the table and drop repetitions")
         need(bool(np.trapezoid(c, g) > 0), "the chance of every gap is 0")
         for name in ("density", "radius"):
@@ -74,8 +77,11 @@ class MeasuredHeights(ContactLaw):
         cls = summed_model(self.asperity, self.name)
         if self.tangent_ratio is None:
             return cls(R=self.radius, pair=self.pair)
-        require(self.name, cls.__name__ == "Ghaednia",
-                f"tangent_ratio belongs to asperity = 'Ghaednia', not {self.asperity!r}; leave it out")  # fmt: skip
+        require(
+            self.name,
+            cls.__name__ == "Ghaednia",
+            f"tangent_ratio belongs to asperity = 'Ghaednia', not {self.asperity!r}; leave it out",
+        )
         return cls(R=self.radius, pair=self.pair, tangent_ratio=self.tangent_ratio)  # type: ignore[call-arg]
 
     @cached_property

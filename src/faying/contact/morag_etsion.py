@@ -56,8 +56,13 @@ class MoragEtsion(ContactLaw):
     @classmethod
     def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> "MoragEtsion":
         """Return the law of a measured surface; the wavelength is the side of the scan."""
-        return cls(D=surface.D, G=surface.G_majumdar_bhushan, wavelength=surface.scan_area**0.5, pair=pair,
-                   scan_area=surface.scan_area)  # fmt: skip
+        return cls(
+            D=surface.D,
+            G=surface.G_majumdar_bhushan,
+            wavelength=surface.scan_area**0.5,
+            pair=pair,
+            scan_area=surface.scan_area,
+        )
 
     @property
     def R(self) -> float:

@@ -5,10 +5,8 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from faying.typing import Array, Mask
 
 
 @dataclass(frozen=True, kw_only=True)

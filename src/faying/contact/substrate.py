@@ -12,10 +12,11 @@ times that of its own material.
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from faying.contact.islands import Array, Islands
+from faying.contact.islands import Islands
 from faying.errors import InputError
+from faying.typing import Array, Mask
 
 SHAPE = 1.06  # 1 - cos(pi r/(2 r_a)) ~ 1.06 (r/r_a)^2, eq. (9)
 PANEL = np.log(1e3)  # longest panel of a quadrature in ln x
@@ -147,7 +148,7 @@ class MixedIslands(Islands):
             low, high = np.where(below, middle, low), np.where(below, high, middle)
         return np.asarray((low + high) / 2)
 
-    def ground(self, slope: Array) -> dict[str, NDArray[np.bool_]]:
+    def ground(self, slope: Array) -> dict[str, Mask]:
         """Say where caps of h_a/r_a = slope lie outside those that were computed; empty where Ea = Eb."""
         if self.modulus_ratio == 1:
             return {}

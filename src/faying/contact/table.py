@@ -11,7 +11,8 @@ from math import ceil, log
 import numpy as np
 from numpy.typing import NDArray
 
-from faying.contact.response import Array, Response
+from faying.contact.response import Response
+from faying.typing import Array
 
 STEP = 0.01  # width of a cell in ln(pressure)
 DECADES = 12  # below the greatest pressure; lighter loads are inverted one by one

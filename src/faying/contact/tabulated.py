@@ -11,8 +11,9 @@ from typing import Any, ClassVar, Self, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.law import Array, ContactLaw, Parameter, Response, checked, require
+from faying.contact.law import ContactLaw, Parameter, Response, checked, require
 from faying.errors import InputError, ReadError
+from faying.typing import Array
 
 FORM = "a table looks like: pressure [MPa],k_n [MPa/um] and under it rows such as 1,40"
 EXAMPLES = {"Pa": "MPa", "Pa/m": "MPa/um", "J/m^2": "J/m^2"}
@@ -130,8 +131,10 @@ class TabulatedLaw(ContactLaw):
         p = checked(pressure, name="pressure", unit="Pa", zero=False)
         first, last = self.closure_range
         if p.size and (p.min() < first * (1 - 1e-9) or p.max() > last * (1 + 1e-9)):
-            raise InputError(f"{self.origin}: the table covers {first:.4g} to {last:.4g} Pa; asked were {p.min():.4g} "
-                             f"to {p.max():.4g} Pa")  # fmt: skip
+            raise InputError(
+                f"{self.origin}: the table covers {first:.4g} to {last:.4g} Pa; asked were {p.min():.4g} "
+                f"to {p.max():.4g} Pa"
+            )
         x = np.log(np.clip(p, first, last))
         values = {n: np.exp(c(x)) if positive else np.asarray(c(x)) for n, (positive, c) in self._curves.items()}
         reasons = {}
@@ -182,8 +185,10 @@ def read_columns(path: Path) -> dict[str, Array]:
         )
     for (number, _), above, row in zip(body[1:], rows, rows[1:], strict=False):
         if not row["pressure"] > above["pressure"]:
-            raise ReadError(f"{path}, line {number}: the pressure {row['pressure']:g} does not rise above {above['pressure']:g}, "
-                            "that of the row before; sort the rows and drop repetitions")  # fmt: skip
+            raise ReadError(
+                f"{path}, line {number}: the pressure {row['pressure']:g} does not rise above {above['pressure']:g}, "
+                "that of the row before; sort the rows and drop repetitions"
+            )
     return {name: factor * np.array([row[name] for row in rows]) for name, factor in columns if name != PASSED_OVER}
 
 

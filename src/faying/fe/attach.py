@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.elements import Array
 from faying.fe.faces import sampled
 from faying.fe.sides import Blocks
+from faying.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,8 +55,10 @@ def mean_motion(points: Array, blocks: Blocks, at: Array, ring: Ring | None = No
     area = gram[0, 0]
     if area <= 0:
         assert ring is not None
-        raise InputError(f"a ring of {ring.outer * 2e3:.4g} mm outer diameter meets nothing of its face; check the point on "
-                         "the axis, the diameters and the unit, or refine the mesh there")  # fmt: skip
+        raise InputError(
+            f"a ring of {ring.outer * 2e3:.4g} mm outer diameter meets nothing of its face; check the point on "
+            "the axis, the diameters and the unit, or refine the mesh there"
+        )
     size = np.sqrt(max(np.trace(gram[3:, 3:]) / area, 1e-300))
     scale = np.diag([1, 1, 1, 1 / size, 1 / size, 1 / size])
     if np.linalg.cond(scale @ gram @ scale) > 1e10:

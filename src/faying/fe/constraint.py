@@ -4,8 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.fe.mesh import Array
-from faying.fe.sides import Index
+from faying.typing import Array, Index
 
 
 def hold(matrix: Any, held: Index, diagonal: float | None = None) -> Any:

@@ -10,14 +10,11 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import NotConverged
-from faying.fe.mesh import Array
 from faying.fe.modes import Modes
-from faying.fe.sides import Index
+from faying.typing import Array, Complex, Index
 
-Complex = NDArray[np.complex128]
 ROUNDS = 25  # enrichments after which the loss must be so great that nothing here applies
 
 
@@ -95,8 +92,10 @@ def damped_modes(
             )
         if not span.add(solved / np.sqrt(np.tile(size, 2)), least=0.01 * tolerance):
             break
-    raise NotConverged(f"complex modes: the estimated error stays at {error.max():.1e} (tolerance {tolerance:.0e}); the loss "
-                       "of the joint may be too great for modes to mean anything")  # fmt: skip
+    raise NotConverged(
+        f"complex modes: the estimated error stays at {error.max():.1e} (tolerance {tolerance:.0e}); the loss "
+        "of the joint may be too great for modes to mean anything"
+    )
 
 
 def _frequency(squared: Complex, root: Complex, kind: str) -> Array:
@@ -113,8 +112,10 @@ def followers(overlap: Complex) -> Index:
     Each real mode, in turn, takes the one left that overlaps it most. Raises NotConverged where there are too few.
     """
     if overlap.shape[1] < len(overlap):
-        raise NotConverged(f"complex modes: only {overlap.shape[1]} of {len(overlap)} modes oscillate; the dampers are so "
-                           "strong that the others only creep back")  # fmt: skip
+        raise NotConverged(
+            f"complex modes: only {overlap.shape[1]} of {len(overlap)} modes oscillate; the dampers are so "
+            "strong that the others only creep back"
+        )
     picked: list[int] = []
     for row in np.abs(overlap):
         picked.append(next(int(i) for i in np.argsort(-row) if int(i) not in picked))

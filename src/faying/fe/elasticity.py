@@ -8,8 +8,9 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.elements import SOLIDS, reference
 from faying.fe.incompatible import condensed_stiffness
-from faying.fe.mesh import MASS_RULE, STIFFNESS_RULE, Array, Mesh
-from faying.fe.sides import Blocks, Index
+from faying.fe.mesh import MASS_RULE, STIFFNESS_RULE, Mesh
+from faying.fe.sides import Blocks
+from faying.typing import Array, Index
 
 CHUNK = 400_000  # pairs of nodes at a time: keeps the blocks in cache and bounds the memory
 

@@ -11,9 +11,8 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from faying.typing import Array
 
 _SQUARE = ((-1, -1), (1, -1), (1, 1), (-1, 1))
 _TRIANGLE = ((0, 0), (1, 0), (0, 1))
@@ -84,8 +83,15 @@ def _kind(shape: str, order: int) -> Kind:
         (*side, *(middle[frozenset((a, b))] for a, b in zip(side, side[1:] + side[:1], strict=True) if middle))
         for side in _SIDES[shape]
     )
-    return Kind(name=f"{shape}{len(nodes)}", shape=shape, dimension=corners.shape[1], corners=len(corners), nodes=nodes,
-                exponents=_exponents(shape, order), sides=sides)  # fmt: skip
+    return Kind(
+        name=f"{shape}{len(nodes)}",
+        shape=shape,
+        dimension=corners.shape[1],
+        corners=len(corners),
+        nodes=nodes,
+        exponents=_exponents(shape, order),
+        sides=sides,
+    )
 
 
 KINDS = {kind.name: kind for kind in (_kind(shape, order) for shape in _CORNERS for order in (1, 2))}

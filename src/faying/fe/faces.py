@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from faying.fe.elements import FACES, Array, reference
-from faying.fe.sides import Blocks, Index
+from faying.fe.elements import FACES, reference
+from faying.fe.sides import Blocks
+from faying.typing import Array, Index
 
 # exact for products of two shape functions on straight elements
 FACE_DEGREE = {"tri3": 2, "quad4": 3, "tri6": 4, "quad8": 5}

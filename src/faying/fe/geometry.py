@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError, ReadError
 from faying.fe.mesh import CORNERS, EDGES, Mesh, split_at_joints
+from faying.typing import Array, Index
 
 # netgen numbers the middle nodes by these edges; VTK, and so we, by those of EDGES
 _NETGEN_EDGES = {"tet10": ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)), "tri6": ((1, 2), (0, 2), (0, 1))}
@@ -77,8 +77,10 @@ def mesh_step(
     glued = Glue(solids) if len(solids) > 1 else shape
     parts = list(glued.solids)
     if len(parts) != len(solids):
-        raise InputError(f"{path.name}: the parts {', '.join(names)} run into each other: gluing makes {len(parts)} solids of them; "
-                         "parts may touch, not overlap")  # fmt: skip
+        raise InputError(
+            f"{path.name}: the parts {', '.join(names)} run into each other: gluing makes {len(parts)} solids of them; "
+            "parts may touch, not overlap"
+        )
     for face in glued.faces:
         face.name = ""
     listed = list(glued.faces)
@@ -101,7 +103,7 @@ def mesh_step(
     return _collect(mesh, [solid.name for solid in parts], labels, source=path.name)
 
 
-def _signature(face: Any) -> NDArray[np.float64]:
+def _signature(face: Any) -> Array:
     """Return the centre and the root of the area of a face [mm]: what tells faces apart before and after gluing."""
     centre = face.center
     return np.array([centre.x, centre.y, centre.z, face.mass**0.5])
@@ -160,8 +162,10 @@ def _label_pieces(
                 labels[number].append((mark.name, mark.part))
                 area += listed[number].mass
         if not np.isclose(area, mark.face.mass, rtol=1e-4):
-            raise InputError(f"face {mark.name!r} of part {mark.part!r} ({mark.face.mass:.6g} mm2) comes out as {area:.6g} mm2 where the "
-                             "parts touch; do they overlap? Else split it in the CAD program where they meet")  # fmt: skip
+            raise InputError(
+                f"face {mark.name!r} of part {mark.part!r} ({mark.face.mass:.6g} mm2) comes out as {area:.6g} mm2 where the "
+                "parts touch; do they overlap? Else split it in the CAD program where they meet"
+            )
 
 
 def _collect(mesh: Any, parts: list[str], labels: Labels, *, source: str) -> Mesh:
@@ -179,7 +183,7 @@ def _collect(mesh: Any, parts: list[str], labels: Labels, *, source: str) -> Mes
     tris = mesh.Elements2D().NumPy()
     face_of = tris["index"].astype(np.int64)
     names = mesh.GetRegionNames(dim=2)
-    triangles: dict[str, NDArray[np.int64]] = {}
+    triangles: dict[str, Index] = {}
     owner: dict[str, int] = {}
     face_part: dict[str, str] = {}
     for number in range(1, len(names) + 1):
@@ -193,11 +197,16 @@ def _collect(mesh: Any, parts: list[str], labels: Labels, *, source: str) -> Mes
     blocks = {name: new_cells[domain == i] for i, name in enumerate(parts)}
     for label, tri in faces.items():
         faces[label] = _outward(new_points, tri, blocks[face_part[label]])
-    return Mesh(points=new_points, parts={name: (cells,) for name, cells in blocks.items()},
-                faces={name: (tri,) for name, tri in faces.items()}, face_part=face_part, source=source)  # fmt: skip
+    return Mesh(
+        points=new_points,
+        parts={name: (cells,) for name, cells in blocks.items()},
+        faces={name: (tri,) for name, tri in faces.items()},
+        face_part=face_part,
+        source=source,
+    )
 
 
-def _outward(points: Any, tri: NDArray[np.int64], cells: NDArray[np.int64]) -> NDArray[np.int64]:
+def _outward(points: Any, tri: Index, cells: Index) -> Index:
     """Turn triangles so that their normals leave the part: the fourth corner of the element lies behind."""
     faces = np.sort(cells[:, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]].reshape(-1, 3), axis=1)
     opposite = cells[:, [3, 2, 1, 0]].reshape(-1)

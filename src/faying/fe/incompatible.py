@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from faying.fe.elements import Array, reference
-from faying.fe.sides import Index
+from faying.fe.elements import reference
+from faying.typing import Array, Index
 
 
 def condensed_stiffness(

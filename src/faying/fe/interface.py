@@ -9,9 +9,10 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.elements import FACES, reference, shape_at
 from faying.fe.faces import FACE_DEGREE, surface_frame
-from faying.fe.mesh import Array, Mesh
+from faying.fe.mesh import Mesh
 from faying.fe.overlap import overlap
-from faying.fe.sides import Blocks, Index, padded
+from faying.fe.sides import Blocks, padded
+from faying.typing import Array, Index
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,9 +158,11 @@ def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> 
 
         apart = cKDTree(mesh.points[mesh.face_nodes(second)]).query(mesh.points[mesh.face_nodes(first)])[0]
         nearest = float(apart.min())
-        raise InputError(f"faces {first!r} and {second!r} do not touch: they are {nearest * 1e3:.4g} mm apart at the "
-                         f"nearest and the joint reaches {reach * 1e3:.4g} mm; move a part, or check the unit of the "
-                         "geometry")  # fmt: skip
+        raise InputError(
+            f"faces {first!r} and {second!r} do not touch: they are {nearest * 1e3:.4g} mm apart at the "
+            f"nearest and the joint reaches {reach * 1e3:.4g} mm; move a part, or check the unit of the "
+            "geometry"
+        )
     return found
 
 
@@ -182,8 +185,10 @@ def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Inte
     # shape functions of both sides agree point by point, up to their order
     if not np.allclose(np.sort(first_values[hit], axis=1), np.sort(second_values[hit], axis=1), atol=1e-6):
         return None
-    counts = np.repeat([len(reference(FACES[f.shape[1]].name, FACE_DEGREE[FACES[f.shape[1]].name])[1]) for f in faces_a],
-                       [len(f) for f in faces_a])  # fmt: skip
+    counts = np.repeat(
+        [len(reference(FACES[f.shape[1]].name, FACE_DEGREE[FACES[f.shape[1]].name])[1]) for f in faces_a],
+        [len(f) for f in faces_a],
+    )
     share = np.add.reduceat(hit, np.concatenate([[0], np.cumsum(counts)[:-1]])) / counts
     if not np.all((share == 0) | (share == 1)):  # an edge of the second face runs through an element face of the first
         return None

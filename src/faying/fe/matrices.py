@@ -9,7 +9,7 @@ from faying import units
 from faying.errors import InputError, ReadError
 from faying.fe.formats.nastran import cards, number
 from faying.fe.mesh import Mesh
-from faying.fe.sides import Index
+from faying.typing import Index
 
 SYMMETRIC = 1e-8  # largest difference from the transpose, relative to the largest entry
 
@@ -105,8 +105,10 @@ def arranged(matrices: Matrices, mesh: Mesh) -> tuple[Any, Any]:
     lost = [(int(node), int(axis)) for node, axis in wanted if (int(node), int(axis)) not in place]
     if lost or len(dofs) != len(wanted):
         what = f"node {lost[0][0]} direction {lost[0][1]} of the mesh is missing" if lost else "the matrices hold more"
-        raise InputError(f"the matrices have {len(dofs)} unknowns and the mesh {len(wanted)}: {what}; export both from one model, "
-                         "without supports")  # fmt: skip
+        raise InputError(
+            f"the matrices have {len(dofs)} unknowns and the mesh {len(wanted)}: {what}; export both from one model, "
+            "without supports"
+        )
     order = np.array([place[int(node), int(axis)] for node, axis in wanted])
     return K[order][:, order].tocsr(), M[order][:, order].tocsr()
 
@@ -209,15 +211,19 @@ def _dmig(path: Path, names: tuple[str, str]) -> Matrices:
 def _check(name: str, K: Any, M: Any, dofs: Index) -> None:
     for what, A in (("stiffness", K), ("mass", M)):
         if A.shape != (len(dofs), len(dofs)):
-            raise InputError(f"{name}: the {what} matrix is {A.shape[0]} x {A.shape[1]} for {len(dofs)} unknowns; all must be of "
-                             "one model")  # fmt: skip
+            raise InputError(
+                f"{name}: the {what} matrix is {A.shape[0]} x {A.shape[1]} for {len(dofs)} unknowns; all must be of "
+                "one model"
+            )
         if not np.all(np.isfinite(A.data)):
             raise InputError(f"{name}: the {what} matrix holds numbers that are not finite")
         differ = abs(A - A.T)
         if A.nnz and differ.max() > SYMMETRIC * abs(A).max():
             i = int(np.argmax(differ.max(axis=1).toarray().ravel()))
-            raise InputError(f"{name}: the {what} matrix is not symmetric ({differ.max() / abs(A).max():.1e} of its largest entry, "
-                             f"at node {dofs[i, 0]} direction {dofs[i, 1]}); export it without contact, friction or rotors")  # fmt: skip
+            raise InputError(
+                f"{name}: the {what} matrix is not symmetric ({differ.max() / abs(A).max():.1e} of its largest entry, "
+                f"at node {dofs[i, 0]} direction {dofs[i, 1]}); export it without contact, friction or rotors"
+            )
     pairs, count = np.unique(dofs, axis=0, return_counts=True)
     if np.any(count > 1):
         node, axis = pairs[count > 1][0]
@@ -226,7 +232,9 @@ def _check(name: str, K: Any, M: Any, dofs: Index) -> None:
         bad = values <= 0 if what == "stiffness" else values < 0
         if np.any(bad):
             node, axis = dofs[bad][0]
-            raise InputError(f"{name}: {np.count_nonzero(bad)} unknowns have no positive {what}, node {node} direction {axis} for "
-                             "one, so that the matrix is singular; leave such nodes out of the export")  # fmt: skip
+            raise InputError(
+                f"{name}: {np.count_nonzero(bad)} unknowns have no positive {what}, node {node} direction {axis} for "
+                "one, so that the matrix is singular; leave such nodes out of the export"
+            )
     if M.nnz == 0 or M.diagonal().sum() <= 0:
         raise InputError(f"{name}: the mass matrix is zero; give the material a density")

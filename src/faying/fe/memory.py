@@ -43,12 +43,16 @@ def check(needed: float, unknowns: int, solver: str) -> None:
     free = available()
     if free is None or needed <= free:
         return
-    advice = ["a coarser mesh (memory grows as the power 4/3 of the unknowns)", "faying modes --slepc under mpiexec, which "
-              "spreads the matrices over processes and machines"]  # fmt: skip
+    advice = [
+        "a coarser mesh (memory grows as the power 4/3 of the unknowns)",
+        "faying modes --slepc under mpiexec, which spreads the matrices over processes and machines",
+    ]
     if solver != "PARDISO":
         advice.insert(0, "PARDISO, which needs less (pip install 'faying[pardiso]')")
-    raise InputError(f"{solver} needs {needed / GB:.3g} GB to factorise {unknowns:,} unknowns and {free / GB:.3g} GB are free; "
-                     f"choose {', or '.join(advice)}; or set FAYING_MEMORY to the GB that may be taken")  # fmt: skip
+    raise InputError(
+        f"{solver} needs {needed / GB:.3g} GB to factorise {unknowns:,} unknowns and {free / GB:.3g} GB are free; "
+        f"choose {', or '.join(advice)}; or set FAYING_MEMORY to the GB that may be taken"
+    )
 
 
 def _machine() -> float | None:

@@ -5,15 +5,12 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.fe.elements import FACES, KINDS, SOLIDS, reference
 from faying.fe.sides import Blocks as Blocks
-from faying.fe.sides import Index as Index
 from faying.fe.sides import nodes_of
-
-Array = NDArray[np.float64]
+from faying.typing import Array, Index
 
 # the rule for the stiffness of each kind: degree, and degree along the axis of a wedge; those of CalculiX, but for
 # wedge6, to which CalculiX gives two points and so a motion that costs nothing
@@ -59,14 +56,17 @@ class Mesh:
         if not self.parts:
             raise InputError("the mesh has no parts; a structure needs at least one solid")
         for name, kinds in (("parts", SOLIDS), ("faces", FACES)):
-            wrapped = {label: _blocks(blocks, f"{name[:-1]} {label!r}", kinds)
-                       for label, blocks in getattr(self, name).items()}  # fmt: skip
+            wrapped = {
+                label: _blocks(blocks, f"{name[:-1]} {label!r}", kinds) for label, blocks in getattr(self, name).items()
+            }
             object.__setattr__(self, name, wrapped)
         if not np.all(np.isfinite(self.points)):
             raise InputError(f"the mesh has {np.count_nonzero(~np.isfinite(self.points))} coordinates that are NaN")
         if self.node_numbers is not None and len(np.unique(self.node_numbers)) != len(self.points):
-            raise InputError(f"{len(self.points)} nodes have {len(np.unique(self.node_numbers))} different numbers; each "
-                             "node needs one of its own")  # fmt: skip
+            raise InputError(
+                f"{len(self.points)} nodes have {len(np.unique(self.node_numbers))} different numbers; each "
+                "node needs one of its own"
+            )
         used = np.zeros(len(self.points), dtype=int)
         for name, blocks in self.parts.items():
             here = nodes_of(blocks)
@@ -75,8 +75,9 @@ class Mesh:
             used[here] = 1
             wrong = sum(int(np.count_nonzero(least_jacobian(self.points, cells) <= 0)) for cells in blocks)
             if wrong:
-                raise InputError(f"part {name!r}: {wrong} elements have no or negative volume; "
-                                 "repair the mesh or its node order")  # fmt: skip
+                raise InputError(
+                    f"part {name!r}: {wrong} elements have no or negative volume; repair the mesh or its node order"
+                )
         if not np.all(used):
             raise InputError(f"{np.count_nonzero(used == 0)} nodes belong to no element")
 
@@ -121,8 +122,10 @@ def _blocks(given: Index | Blocks, what: str, kinds: Mapping[int, object]) -> Bl
     blocks = (given,) if isinstance(given, np.ndarray) else tuple(given)
     for block in blocks:
         if block.ndim != 2 or (len(block) and block.shape[1] not in kinds):
-            raise InputError(f"{what} has an array of shape {block.shape}; rows of {', '.join(map(str, sorted(kinds)))} "
-                             "nodes are known")  # fmt: skip
+            raise InputError(
+                f"{what} has an array of shape {block.shape}; rows of {', '.join(map(str, sorted(kinds)))} "
+                "nodes are known"
+            )
     if not sum(len(block) for block in blocks):
         raise InputError(f"{what} has no elements")
     return tuple(np.asarray(block, dtype=np.int64) for block in blocks if len(block))
@@ -154,7 +157,7 @@ def face_kind(faces: Index) -> str:
 def split_at_joints(
     points: Array,
     cells: Index,
-    part_of_cell: NDArray[np.int64],
+    part_of_cell: Index,
     triangles: Mapping[str, Index],
     triangle_part: Mapping[str, int],
 ) -> tuple[Array, Index, dict[str, Index]]:

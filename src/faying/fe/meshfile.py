@@ -8,13 +8,22 @@ import numpy as np
 
 from faying import units
 from faying.errors import InputError, ReadError
-from faying.fe.elements import FACES, SOLIDS, Array
+from faying.fe.elements import FACES, SOLIDS
 from faying.fe.formats.raw import RawMesh
 from faying.fe.mesh import Mesh, least_jacobian
-from faying.fe.sides import Blocks, Index, nodes_of, side_key, skin
+from faying.fe.sides import Blocks, nodes_of, side_key, skin
+from faying.typing import Array, Index
 
-FORMATS = {".inp": "abaqus", ".bdf": "nastran", ".nas": "nastran", ".dat": "nastran", ".msh": "gmsh", ".cdb": "ansys",
-           ".vtk": "vtk", ".vtu": "vtk"}  # fmt: skip
+FORMATS = {
+    ".inp": "abaqus",
+    ".bdf": "nastran",
+    ".nas": "nastran",
+    ".dat": "nastran",
+    ".msh": "gmsh",
+    ".cdb": "ansys",
+    ".vtk": "vtk",
+    ".vtu": "vtk",
+}
 SMALLEST, LARGEST = 1e-3, 100.0  # sizes of a bolted structure [m] beyond which the unit is doubted
 CLOSE = 1e-7  # of the part's size: nodes nearer than this coincide
 
@@ -67,8 +76,10 @@ class _Builder:
         points = self.raw.points * self.scale
         size = float(np.linalg.norm(np.ptp(points, axis=0)))
         if not SMALLEST <= size <= LARGEST:
-            raise InputError(f"{self.name}: in {self.unit} the structure is {size:.3g} m long; is that its unit? Sizes from "
-                             f"{SMALLEST * 1e3:g} mm to {LARGEST:g} m are taken")  # fmt: skip
+            raise InputError(
+                f"{self.name}: in {self.unit} the structure is {size:.3g} m long; is that its unit? Sizes from "
+                f"{SMALLEST * 1e3:g} mm to {LARGEST:g} m are taken"
+            )
         cells = self._cells()
         numbers = np.concatenate([n for n, _ in self.raw.elements.values()])
         self._check(points, cells)
@@ -92,8 +103,10 @@ class _Builder:
         place = np.minimum(np.searchsorted(ranked, numbers), len(ranked) - 1)
         lost = ranked[place] != numbers
         if np.any(lost):
-            raise ReadError(f"{self.name}: {what} names node {np.asarray(numbers)[lost][0]}, which the file does not hold; "
-                            "is the file whole?")  # fmt: skip
+            raise ReadError(
+                f"{self.name}: {what} names node {np.asarray(numbers)[lost][0]}, which the file does not hold; "
+                "is the file whole?"
+            )
         return order[place]
 
     def _cells(self) -> list[Index]:
@@ -114,8 +127,10 @@ class _Builder:
         for (numbers, _), block in zip(self.raw.elements.values(), cells, strict=True):
             wrong = numbers[least_jacobian(points, block) <= 0]
             if len(wrong):
-                raise InputError(f"{self.name}: {len(wrong)} elements have no or negative volume: {_some(wrong)}; repair the "
-                                 "mesh or its node order")  # fmt: skip
+                raise InputError(
+                    f"{self.name}: {len(wrong)} elements have no or negative volume: {_some(wrong)}; repair the "
+                    "mesh or its node order"
+                )
         used = np.zeros(len(points), dtype=bool)
         for block in cells:
             used[block] = True
@@ -133,19 +148,26 @@ class _Builder:
             chosen = dict(wanted) if isinstance(wanted, Mapping) else {name: name for name in wanted}
             for part, name in chosen.items():
                 if name not in sets:
-                    raise InputError(f"{self.name}: part {part!r} names the element set {name!r}; the file holds "
-                                     f"{', '.join(map(repr, sets)) or 'none'}")  # fmt: skip
+                    raise InputError(
+                        f"{self.name}: part {part!r} names the element set {name!r}; the file holds "
+                        f"{', '.join(map(repr, sets)) or 'none'}"
+                    )
             divided = _dividing(numbers, {part: sets[name] for part, name in chosen.items()})
             if divided is None:
-                raise InputError(f"{self.name}: the element sets {', '.join(chosen.values())} do not divide the elements; each "
-                                 "must belong to one of them")  # fmt: skip
+                raise InputError(
+                    f"{self.name}: the element sets {', '.join(chosen.values())} do not divide the elements; each "
+                    "must belong to one of them"
+                )
             return list(chosen), divided
         piece = _pieces(cells, len(self.raw.numbers))
         bodies: Mapping[str, Index] = self.raw.bodies
         owner = _dividing(numbers, bodies)
         if owner is None or len(bodies) == 1:
-            subsets = {name: some for name, some in self.raw.element_sets.items()
-                       if 0 < np.isin(numbers, some).sum() < len(numbers)}  # fmt: skip
+            subsets = {
+                name: some
+                for name, some in self.raw.element_sets.items()
+                if 0 < np.isin(numbers, some).sum() < len(numbers)
+            }
             divided = _dividing(numbers, subsets)
             if divided is not None:
                 bodies, owner = subsets, divided
@@ -195,8 +217,10 @@ class _Builder:
             place = np.minimum(np.searchsorted(numbers[order], pairs[:, 0]), len(numbers) - 1)
             at = order[place]
             if np.any(numbers[at] != pairs[:, 0]):
-                raise ReadError(f"{self.name}: the surface {label!r} names element {pairs[numbers[at] != pairs[:, 0], 0][0]}, "
-                                "which is no solid of the file")  # fmt: skip
+                raise ReadError(
+                    f"{self.name}: the surface {label!r} names element {pairs[numbers[at] != pairs[:, 0], 0][0]}, "
+                    "which is no solid of the file"
+                )
             key, whole = self._side_keys(label, at, pairs[:, 1], cells)
             if len(key):
                 self._by_key(label, key, skins, found)
@@ -227,8 +251,10 @@ class _Builder:
                         kept.append(side_key(block[rows][:, places], n))
             count = len(SOLIDS[block.shape[1]].sides)
             if np.any(sides[mine] >= count):
-                raise ReadError(f"{self.name}: the surface {label!r} names side S{sides[mine].max() + 1} of an element that has "
-                                f"{count}")  # fmt: skip
+                raise ReadError(
+                    f"{self.name}: the surface {label!r} names side S{sides[mine].max() + 1} of an element that has "
+                    f"{count}"
+                )
             start += len(block)
         empty = np.zeros(0, dtype=np.int64)
         return np.concatenate([empty, *named]), np.concatenate([empty, *whole])
@@ -243,8 +269,10 @@ class _Builder:
                 found.setdefault(label, {})[part] = here
                 hit |= np.isin(key, np.concatenate([side_key(faces, n) for faces in here]))
         if not hit.all():
-            raise InputError(f"{self.name}: {np.count_nonzero(~hit)} of the {len(key)} element faces of {label!r} are no outer "
-                             "side of a solid")  # fmt: skip
+            raise InputError(
+                f"{self.name}: {np.count_nonzero(~hit)} of the {len(key)} element faces of {label!r} are no outer "
+                "side of a solid"
+            )
 
     def _split(
         self, points: Array, blocks: dict[str, Blocks], faces: dict[str, Blocks], face_part: dict[str, str]
@@ -261,28 +289,34 @@ class _Builder:
             loose = key[np.isin(key % n, shared) & ~np.isin(key, np.concatenate(on) if on else [])]
             if len(loose):
                 near = list(blocks)[int(loose[0] // n)]
-                raise InputError(f"{self.name}: part {near!r} shares {len(loose)} nodes with other parts outside of any named face "
-                                 f"(node {self.raw.numbers[loose[0] % n]} is one); name the faces of the joint on both sides, or make "
-                                 "one part of them")  # fmt: skip
+                raise InputError(
+                    f"{self.name}: part {near!r} shares {len(loose)} nodes with other parts outside of any named face "
+                    f"(node {self.raw.numbers[loose[0] % n]} is one); name the faces of the joint on both sides, or make "
+                    "one part of them"
+                )
         old = key % n
         numbers = self.raw.numbers[old].copy()
         again = np.ones(len(key), dtype=bool)
         again[np.unique(old, return_index=True)[1]] = False
         numbers[again] = self.raw.numbers.max() + 1 + np.arange(np.count_nonzero(again))
-        made = {part: tuple(np.searchsorted(key, i * n + block) for block in some)
-                for i, (part, some) in enumerate(blocks.items())}  # fmt: skip
+        made = {
+            part: tuple(np.searchsorted(key, i * n + block) for block in some)
+            for i, (part, some) in enumerate(blocks.items())
+        }
         new_points = points[old]
         for part, some in made.items():
             self._unmerged(new_points, nodes_of(some), numbers, part)
         return Mesh(
             points=new_points,
             parts=made,
-            faces={name: tuple(np.searchsorted(key, place[face_part[name]] * n + f) for f in some)
-                   for name, some in faces.items()},
+            faces={
+                name: tuple(np.searchsorted(key, place[face_part[name]] * n + f) for f in some)
+                for name, some in faces.items()
+            },
             face_part=face_part,
             source=self.name,
             node_numbers=numbers,
-        )  # fmt: skip
+        )
 
     def _unmerged(self, points: Array, nodes: Index, numbers: Index, part: str) -> None:
         from scipy.spatial import cKDTree
@@ -292,8 +326,10 @@ class _Builder:
         pairs = cKDTree(where).query_pairs(reach, output_type="ndarray")
         if len(pairs):
             a, b = numbers[nodes[pairs[0]]]
-            raise InputError(f"{self.name}: {len(pairs)} pairs of nodes of part {part!r} coincide ({a} and {b}, for one), so that "
-                             "its elements do not hang together there; merge the nodes, or make two parts and a joint")  # fmt: skip
+            raise InputError(
+                f"{self.name}: {len(pairs)} pairs of nodes of part {part!r} coincide ({a} and {b}, for one), so that "
+                "its elements do not hang together there; merge the nodes, or make two parts and a joint"
+            )
 
 
 def _some(numbers: Index) -> str:

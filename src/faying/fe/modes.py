@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError, NotConverged
-from faying.fe.mesh import Array
 from faying.fe.solve import Factorisation, factorise
+from faying.typing import Array
 
 SEED = 20240611
 WIDTH = 8  # of a block of vectors: a factor is read once for all of them
@@ -110,8 +110,10 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[A
                 return _krylov(factor, mass, count, 2 * width)
             return values, np.asarray(basis @ vectors)
         basis = np.concatenate([basis, last], axis=1)
-    raise NotConverged(f"{np.count_nonzero(converged)} of {count} modes have converged after {basis.shape[1]} steps; ask for "
-                       "fewer, or raise modes.shift_frequency towards the first mode")  # fmt: skip
+    raise NotConverged(
+        f"{np.count_nonzero(converged)} of {count} modes have converged after {basis.shape[1]} steps; ask for "
+        "fewer, or raise modes.shift_frequency towards the first mode"
+    )
 
 
 def _orthonormal(new: Array, mass: Any) -> tuple[Array, Array, Array]:

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from faying.fe.elements import FACES, Array, reference
-from faying.fe.sides import Blocks, Index
+from faying.fe.elements import FACES, reference
+from faying.fe.sides import Blocks
+from faying.typing import Array, Index
 
 # convex pieces of an element face whose edges are curved, between corners and middle nodes
 _PIECES = {

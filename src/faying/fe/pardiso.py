@@ -6,12 +6,11 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError, NotConverged
 from faying.fe.memory import check
+from faying.typing import Array
 
-Array = NDArray[np.float64]
 ANALYSE, FACTORISE, SOLVE, FORGET = 11, 22, 33, -1
 BLOCK = 3  # unknowns of a node
 FILLED = 0.7  # least share of entries in the blocks for which blocks are worth it
@@ -114,14 +113,28 @@ class Pardiso:
         nothing, fault = np.zeros(1), ctypes.c_int32(0)
         columns = 1 if b is None or b.ndim == 1 else b.shape[1]
         _library()(
-            place(self._state), number(1), number(1), number(POSITIVE), number(phase), number(self._size // self._block),
-            place(self._values), place(self._starts), place(self._columns), place(np.zeros(1, dtype=np.int32)),
-            number(columns), place(self._iparm), number(0), place(nothing if b is None else b),
-            place(nothing if x is None else x), ctypes.byref(fault),
-        )  # fmt: skip
+            place(self._state),
+            number(1),
+            number(1),
+            number(POSITIVE),
+            number(phase),
+            number(self._size // self._block),
+            place(self._values),
+            place(self._starts),
+            place(self._columns),
+            place(np.zeros(1, dtype=np.int32)),
+            number(columns),
+            place(self._iparm),
+            number(0),
+            place(nothing if b is None else b),
+            place(nothing if x is None else x),
+            ctypes.byref(fault),
+        )
         if fault.value == -2:
-            raise InputError(f"PARDISO ran out of memory on {self._size:,} unknowns; take a coarser mesh, or faying modes "
-                             "--slepc under mpiexec")  # fmt: skip
+            raise InputError(
+                f"PARDISO ran out of memory on {self._size:,} unknowns; take a coarser mesh, or faying modes "
+                "--slepc under mpiexec"
+            )
         if fault.value in SINGULAR:
             raise NotConverged(
                 "PARDISO could not factorise the matrix: it is not positive definite; is a part held by nothing?"

@@ -4,14 +4,11 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.fe.damped import DampedModes
-from faying.fe.mesh import Array
 from faying.fe.modes import Modes
-
-Complex = NDArray[np.complex128]
+from faying.typing import Array, Complex
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,11 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from faying.fe.elements import FACES, SOLIDS, Array
+from faying.fe.elements import FACES, SOLIDS
+from faying.typing import Array, Index, Mask
 
-Index = NDArray[np.int64]
 Blocks = tuple[Index, ...]
 
 
@@ -45,7 +44,7 @@ def skin(blocks: Blocks, nodes: int) -> Blocks:
     return tuple(faces for faces in outer if len(faces))
 
 
-def sides_like(faces: Index, blocks: Blocks, nodes: int) -> tuple[Index, NDArray[np.bool_]]:
+def sides_like(faces: Index, blocks: Blocks, nodes: int) -> tuple[Index, Mask]:
     """The outer sides with the corners of the given faces, normals outwards, and which of the faces have one."""
     outer = [side for side in skin(blocks, nodes) if side.shape[1] == faces.shape[1]]
     if not outer:
@@ -68,8 +67,9 @@ def sides_on(chosen: Index, blocks: Blocks, nodes: int) -> Blocks:
 
 def triangles_of(blocks: Blocks) -> Index:
     """Triangles between the corners of faces (t, 3), for pictures."""
-    out = [faces[:, corners] for faces in blocks
-           for corners in ([0, 1, 2], [0, 2, 3])[: FACES[faces.shape[1]].corners - 2]]  # fmt: skip
+    out = [
+        faces[:, corners] for faces in blocks for corners in ([0, 1, 2], [0, 2, 3])[: FACES[faces.shape[1]].corners - 2]
+    ]
     return np.concatenate(out)
 
 

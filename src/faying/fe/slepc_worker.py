@@ -79,8 +79,12 @@ def lowest(stiffness: Any, mass: Any, count: int, shift_frequency: float) -> tup
         M.mult(x, Mx)
         values.append(x.dot(Kx) / x.dot(Mx))
     frequencies = np.sqrt(np.abs(np.sort(values))) / (2 * np.pi)
-    return frequencies, {"processes": world.getSize(), "rank": world.getRank(), "solver": "SLEPc Krylov-Schur, MUMPS",
-                         "unknowns": int(stiffness.shape[0])}  # fmt: skip
+    return frequencies, {
+        "processes": world.getSize(),
+        "rank": world.getRank(),
+        "solver": "SLEPc Krylov-Schur, MUMPS",
+        "unknowns": int(stiffness.shape[0]),
+    }
 
 
 def _spread(PETSc: Any, matrix: Any) -> Any:
@@ -91,8 +95,11 @@ def _spread(PETSc: Any, matrix: Any) -> Any:
     begin, end = n * rank // size, n * (rank + 1) // size
     low, high = matrix.indptr[begin], matrix.indptr[end]
     rows = (matrix.indptr[begin : end + 1] - low).astype(PETSc.IntType)
-    made = PETSc.Mat().createAIJ(size=((end - begin, n), (end - begin, n)), comm=world,
-                                 csr=(rows, matrix.indices[low:high].astype(PETSc.IntType), matrix.data[low:high]))  # fmt: skip
+    made = PETSc.Mat().createAIJ(
+        size=((end - begin, n), (end - begin, n)),
+        comm=world,
+        csr=(rows, matrix.indices[low:high].astype(PETSc.IntType), matrix.data[low:high]),
+    )
     made.assemble()
     return made
 

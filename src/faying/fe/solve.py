@@ -6,13 +6,11 @@ from functools import cache
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError, NotConverged
 from faying.fe.memory import FILL_MINIMUM_DEGREE, check, guessed
 from faying.fe.pardiso import Pardiso
-
-Array = NDArray[np.float64]
+from faying.typing import Array
 
 
 class Factorisation(Protocol):
@@ -47,8 +45,10 @@ class _Mumps:
             raise NotConverged(f"MUMPS could not factorise the matrix ({fault}); is a part held by nothing?") from None
         negative = self._context.mumps_instance.infog[12]
         if negative > 0:
-            raise NotConverged(f"MUMPS finds {negative} negative pivots, so the matrix is not positive definite; is a part held by "
-                               "nothing?")  # fmt: skip
+            raise NotConverged(
+                f"MUMPS finds {negative} negative pivots, so the matrix is not positive definite; is a part held by "
+                "nothing?"
+            )
 
     def again(self, matrix: Any) -> "_Mumps":
         return _Mumps(matrix)
@@ -97,8 +97,9 @@ class _SuperLU:
         self.memory = guessed(matrix.shape[0], fill=FILL_MINIMUM_DEGREE, per_entry=2 * 10)
         check(self.memory, matrix.shape[0], self.name)
         try:
-            self._factor = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
-                                options={"SymmetricMode": True})  # fmt: skip
+            self._factor = splu(
+                matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+            )
         except RuntimeError as fault:
             raise NotConverged(
                 f"SuperLU could not factorise the matrix ({fault}); is a part held by nothing?"
@@ -142,8 +143,10 @@ def chosen(name: str | None = None) -> str:
     if asked is None:
         return have[0]
     if asked not in have:
-        raise InputError(f"solver {asked!r} is not here; use one of {', '.join(have)}, or install it "
-                         "(pardiso: pip install 'faying[pardiso]')")  # fmt: skip
+        raise InputError(
+            f"solver {asked!r} is not here; use one of {', '.join(have)}, or install it "
+            "(pardiso: pip install 'faying[pardiso]')"
+        )
     return asked
 
 

@@ -4,15 +4,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.fe.attach import mean_motion
 from faying.fe.faces import face_centre, sampled
 from faying.fe.mesh import Mesh
-from faying.fe.sides import Index
+from faying.typing import Index
 
-Array = NDArray[np.float64]
 AXES: dict[str, int] = {"x": 0, "y": 1, "z": 2}
 NEAR = 0.02  # of the structure's size: farther from any node than this, a point of the study is taken for a mistake
 

@@ -6,16 +6,15 @@ from math import pi
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.fe.attach import Ring, mean_motion
 from faying.fe.elasticity import Solid
 from faying.fe.faces import face_centre
 from faying.fe.mesh import Mesh
+from faying.typing import Array
 from faying.units import show
 
-Array = NDArray[np.float64]
 # proportions of hexagon heads and nuts, of the thread's diameter: width across flats, heights (ISO 4014, ISO 4032)
 ACROSS_FLATS, HEAD_HEIGHT, NUT_HEIGHT = 1.5, 0.64, 0.85
 HEXAGON = 3**0.5 / 2  # area of a hexagon over the square of its width across flats
@@ -43,8 +42,10 @@ def torque_to_preload(
             raise InputError(f"nut_factor = {nut_factor:g}: it lies between 0.02 and 1, about 0.2 for dry steel")
         return torque / (nut_factor * diameter)
     if pitch is None or thread_friction is None or head_friction is None:
-        raise InputError("a torque gives no preload by itself; add nut_factor (about 0.2 for dry steel), or pitch, "
-                         "thread_friction and head_friction")  # fmt: skip
+        raise InputError(
+            "a torque gives no preload by itself; add nut_factor (about 0.2 for dry steel), or pitch, "
+            "thread_friction and head_friction"
+        )
     flank = (diameter - 0.6495 * pitch) / 2 * thread_friction / np.cos(np.pi / 6)
     return float(torque / (pitch / (2 * pi) + flank + 0.65 * diameter * head_friction))
 
@@ -108,8 +109,10 @@ class Bolt:
         """Return the bolt in its place. Raises InputError where its faces do not look away from each other, or no axis joins them."""
         first, second = self.faces
         if mesh.face_part[first] == mesh.face_part[second] and self.diameter is None:
-            raise InputError(f"the bolt's faces {first!r} and {second!r} are both on part {mesh.face_part[first]!r}; a bolt "
-                             "pulls two parts together")  # fmt: skip
+            raise InputError(
+                f"the bolt's faces {first!r} and {second!r} are both on part {mesh.face_part[first]!r}; a bolt "
+                "pulls two parts together"
+            )
         centre_a, normal_a, _ = face_centre(mesh.points, mesh.face(first))
         centre_b, normal_b, _ = face_centre(mesh.points, mesh.face(second))
         if self.at is not None:  # along the normal of the first seat, through the point given
@@ -122,12 +125,16 @@ class Bolt:
         if length < 1e-6 * mesh.size or normal_a @ axis > -0.5 * length or normal_b @ axis < 0.5 * length:
             apart = min(-normal_a @ axis, normal_b @ axis)
             if normal_a @ normal_b < -0.5 and apart > 1e-6 * mesh.size:
-                raise InputError(f"the bolt's faces {first!r} and {second!r} look away from each other, but no axis joins their "
-                                 f"centres, which lie {show(float(np.linalg.norm(axis - (axis @ normal_a) * normal_a)), 'm')} "
-                                 "aside of each other; give at (a point on the bolt's axis) and seat (the ring that head and nut "
-                                 "press on)")  # fmt: skip
-            raise InputError(f"the bolt's faces {first!r} and {second!r} do not look away from each other; name the two seats "
-                             "that head and nut press on")  # fmt: skip
+                raise InputError(
+                    f"the bolt's faces {first!r} and {second!r} look away from each other, but no axis joins their "
+                    f"centres, which lie {show(float(np.linalg.norm(axis - (axis @ normal_a) * normal_a)), 'm')} "
+                    "aside of each other; give at (a point on the bolt's axis) and seat (the ring that head and nut "
+                    "press on)"
+                )
+            raise InputError(
+                f"the bolt's faces {first!r} and {second!r} do not look away from each other; name the two seats "
+                "that head and nut press on"
+            )
         rings: list[Ring | None] = [None, None]
         seat = self.seat
         if seat is None and self.washers:

@@ -4,13 +4,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.fe.interface import Interface
 from faying.files import read_numbers
-
-Array = NDArray[np.float64]
+from faying.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,13 +4,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.fe.interface import Interface
-from faying.fe.sides import Index
+from faying.typing import Array, Index, Mask
 
-Array = NDArray[np.float64]
 ROUNDING = 1e-9  # of the largest entry of a block: below it a coupling between axes is rounding
 
 
@@ -31,7 +29,7 @@ class NodePairs:
     loss: Array
     area: Array
     pressure: Array
-    across: NDArray[np.bool_]
+    across: Mask
     unknowns: int
     lumped: bool
 
@@ -50,8 +48,10 @@ class NodePairs:
             rows.append(np.broadcast_to(i[:, :, None], block.shape).ravel())
             columns.append(np.broadcast_to(j[:, None, :], block.shape).ravel())
             values.append(sign * block.ravel())
-        return coo_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
-                         shape=(self.unknowns, self.unknowns)).tocsr()  # fmt: skip
+        return coo_array(
+            (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
+            shape=(self.unknowns, self.unknowns),
+        ).tocsr()
 
     def own(self, blocks: Array) -> Array:
         """Blocks (p, 3, 3) along the normal and the two tangents of each pair (p, 3).
@@ -62,8 +62,10 @@ class NodePairs:
         along = np.einsum("pii->pi", turned).copy()
         rest = np.abs(turned - along[:, :, None] * np.eye(3)).max() if len(turned) else 0.0
         if rest > ROUNDING * max(float(np.abs(turned).max()), 1e-300):
-            raise InputError("the springs of a curved face do not act along one normal; take them node by node "
-                             "(coupling nodes), or a form that couples all directions: matrix27, matrix, dmig, celas2")  # fmt: skip
+            raise InputError(
+                "the springs of a curved face do not act along one normal; take them node by node "
+                "(coupling nodes), or a form that couples all directions: matrix27, matrix, dmig, celas2"
+            )
         return np.asarray(along)
 
     def totals(self) -> tuple[float, float]:

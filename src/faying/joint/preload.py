@@ -12,17 +12,17 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.constraint import hold
 from faying.fe.interface import Interface
-from faying.fe.sides import Index
 from faying.fe.solve import Factorisation, factorise
-from faying.joint.balance import Array, Balance, Grip
-from faying.joint.seat import Seat
+from faying.joint.equilibrium import Equilibrium, StickSlip
+from faying.joint.joint_law import JointLaw
+from faying.typing import Array, Index
 
 AGED = 40  # conjugate-gradient steps after which a new factorisation is cheaper: one step costs a fiftieth of it
 
 FLAT = 1e-9  # curvature over that of the factor below which a direction costs no energy
 
 
-class Assembly(Balance):
+class PreloadProblem(Equilibrium):
     """Parts with joints between them, ready for one load after another (each starts from the last).
 
     held: unknowns that supports fix; rigid (unknowns, r): rigid motions that nothing resists, r = 0 where supports do.
@@ -33,7 +33,7 @@ class Assembly(Balance):
         stiffness: Any,
         mass: Any,
         rigid: Array,
-        joints: Sequence[tuple[Interface, Seat]],
+        joints: Sequence[tuple[Interface, JointLaw]],
         *,
         shift_frequency: float,
         solver: str | None = None,
@@ -51,20 +51,22 @@ class Assembly(Balance):
         scale = float(np.linalg.norm(load))
         net = float(np.linalg.norm(self._rigid.T @ load)) if self._rigid.size else 0.0
         if net > 1e-9 * scale:
-            raise InputError(f"the bolt forces do not balance ({net / scale:.1e} of the load is left over); each bolt must "
-                             "pull between two faces of different parts that face each other")  # fmt: skip
+            raise InputError(
+                f"the bolt forces do not balance ({net / scale:.1e} of the load is left over); each bolt must "
+                "pull between two faces of different parts that face each other"
+            )
 
     def _start(self, load: Array) -> Array:
         """Begin with every joint at the mean pressure that the load would give it."""
         total = float(np.abs(load).sum()) / 4
         springs = self.stiffness + self.mass_shift
         push = load.copy()
-        for joint, seat in self.joints:
-            mean = np.clip(total / joint.area, 10 * seat.least_pressure, 0.5 * seat.law.greatest_pressure)
-            k_n, k_t = (np.full(len(joint.weights), float(k)) for k in seat.stiffness(np.asarray(mean)))
+        for joint, law in self.joints:
+            mean = np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure)
+            k_n, k_t = (np.full(len(joint.weights), float(k)) for k in law.stiffness(np.asarray(mean)))
             springs = springs + joint.springs(k_n, k_t)
             # a spring that is tangent to p(closing) at the mean pressure, in place of the curve
-            offset = mean - k_n * (seat.closing(float(mean)) + joint.gap)
+            offset = mean - k_n * (law.closing(float(mean)) + joint.gap)
             push = push + joint.forces(np.asarray(offset), np.zeros((len(joint.weights), 2)))
         self._factorise(springs)
         assert self.factor is not None
@@ -83,7 +85,7 @@ class Assembly(Balance):
             force[self.held] = 0.0
         return force
 
-    def _direction(self, u: Array, force: Array, grips: list[Grip], accuracy: float) -> tuple[Array, int]:
+    def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> tuple[Array, int]:
         tangents = self._tangents(u, grips)
 
         def product(x: Array) -> Array:

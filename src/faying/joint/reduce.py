@@ -1,6 +1,6 @@
 """Makes the small bases of a structure of which only the joints change.
 
-Preload, roughness and contact model act on the faying faces alone, so one factorisation serves every variant. The basis
+PreloadState, roughness and contact model act on the faying faces alone, so one factorisation serves every variant. The basis
 of each problem (equilibrium, vibration) starts from a reference state and is enriched by what that factorisation makes
 of the residual of a variant, until the residual says that the variant is solved. The estimate of the error is that of
 the residual in the energy norm of the reference. What the variants trained on need of the basis for vibration is kept,
@@ -17,13 +17,13 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.fe.constraint import hold
 from faying.fe.modes import lowest_modes
-from faying.fe.sides import Index
 from faying.fe.solve import Factorisation
-from faying.joint.balance import Array, Grip, Preload
-from faying.joint.held import check_motions, held_preload
-from faying.joint.reduced import Complex, Densities, ReducedModel, Variant, densities
-from faying.joint.seat import Seat
+from faying.joint.equilibrium import PreloadState, StickSlip
+from faying.joint.joint_law import JointLaw
+from faying.joint.reduced import Densities, ReducedModel, Variant, densities
 from faying.joint.structure import Structure
+from faying.joint.support_check import check_motions, held_preload
+from faying.typing import Array, Complex, Index
 
 FEW_STEPS = 60  # enrichments of one variant after which something else must be wrong
 EXTRA_MODES = 25  # real modes of the reference beyond those wanted: they speed the enrichment of the highest ones
@@ -31,14 +31,14 @@ EXTRA_MODES = 25  # real modes of the reference beyond those wanted: they speed 
 STATIC_SHARE = 15.0
 
 
-def _pressed(traces: Sequence[Any], seats: Sequence[Seat], found: Preload) -> float:
+def _pressed(traces: Sequence[Any], laws: Sequence[JointLaw], found: PreloadState) -> float:
     """Root of the energy [sqrt(J)], twice, of the joints' normal springs under their pressures.
 
     What the parts and a bolt's shank store beside it says nothing of how exact the pressures are.
     """
     total = 0.0
-    for trace, seat, p in zip(traces, seats, found.pressures, strict=True):
-        k_n = np.where(p > 0, seat.stiffness(p)[0], 1.0)
+    for trace, law, p in zip(traces, laws, found.pressures, strict=True):
+        k_n = np.where(p > 0, law.stiffness(p)[0], 1.0)
         total += float(trace.weights @ (p**2 / k_n))
     return float(np.sqrt(total))
 
@@ -161,7 +161,7 @@ class Reduction:
     def of(
         cls,
         structure: Structure,
-        seats: Sequence[Seat],
+        laws: Sequence[JointLaw],
         forces: Array,
         *,
         count: int,
@@ -170,10 +170,10 @@ class Reduction:
     ) -> Self:
         """Solve one variant of a structure in full, its bolts pulled at once, and start from that.
 
-        seats: the law of each joint; forces [N] (bolts,); count: elastic modes wanted. Raises InputError where a part is held by
+        laws: the law of each joint; forces [N] (bolts,); count: elastic modes wanted. Raises InputError where a part is held by
         nothing.
         """
-        joints = tuple(replace(joint, seat=seat) for joint, seat in zip(structure.joints, seats, strict=True))
+        joints = tuple(replace(joint, law=law) for joint, law in zip(structure.joints, laws, strict=True))
         structure = replace(structure, joints=joints).sharing(structure)
         found = held_preload(structure, structure.assembly(solver=solver), [float(f) for f in forces])
         shift = shift_frequency or structure.shift_frequency
@@ -205,31 +205,32 @@ class Reduction:
         model.dynamic_stiffness, model.dynamic_mass = self.dynamic.small
         model.dynamic_relative = self.dynamic.relative
 
-    def _static_residual(self, seats: Sequence[Seat], forces: Array, found: Preload) -> Array:
+    def _static_residual(self, laws: Sequence[JointLaw], forces: Array, found: PreloadState) -> Array:
         u = self.static.vectors @ found.displacement
         residual = self.loads @ forces - self.stiffness_static @ u
-        for trace, seat, friction, p, relative in zip(
-            self.traces, seats, self.model.friction, found.pressures, self.static.relative, strict=True
+        for trace, law, friction, p, relative in zip(
+            self.traces, laws, self.model.friction, found.pressures, self.static.relative, strict=True
         ):
             slip = (relative @ found.displacement).reshape(-1, 3)[:, 1:]
-            grip = Grip(k_t=seat.stiffness(p)[1], limit=None if friction is None else friction * p,
-                        anchor=np.zeros_like(slip))  # fmt: skip
+            grip = StickSlip(
+                k_t=law.stiffness(p)[1], limit=None if friction is None else friction * p, anchor=np.zeros_like(slip)
+            )
             local = np.concatenate([-p[:, None], grip.shear(slip)], axis=1) * trace.weights[:, None]
             residual = residual - trace.relative.T @ local.ravel()
         residual[self.held] = 0.0
         return np.asarray(residual)
 
-    def static_error(self, seats: Sequence[Seat], forces: Array, found: Preload) -> tuple[float, Array]:
+    def static_error(self, laws: Sequence[JointLaw], forces: Array, found: PreloadState) -> tuple[float, Array]:
         """Error of an equilibrium in energy, over that of the joints' normal springs [-], and what would mend it (n,)."""
-        residual = self._static_residual(seats, forces, found)
+        residual = self._static_residual(laws, forces, found)
         answer = self.factor.solve(residual)
-        return float(np.sqrt(np.maximum(residual @ answer, 0.0)) / _pressed(self.traces, seats, found)), answer
+        return float(np.sqrt(np.maximum(residual @ answer, 0.0)) / _pressed(self.traces, laws, found)), answer
 
-    def train_static(self, seats: Sequence[Seat], forces: Array, tolerance: float) -> int:
+    def train_static(self, laws: Sequence[JointLaw], forces: Array, tolerance: float) -> int:
         """Enrich until the equilibrium of a variant is right to `tolerance` in energy; return the vectors added."""
         added, error = 0, np.inf
         for _ in range(FEW_STEPS):
-            error, mend = self.static_error(seats, forces, self.model.equilibrium(seats, forces))
+            error, mend = self.static_error(laws, forces, self.model.equilibrium(laws, forces))
             if error < tolerance:
                 return added
             added += self.static.add(mend[:, None])
@@ -279,11 +280,11 @@ class Reduction:
             f"reduction: {FEW_STEPS} enrichments do not bring a mode to {tolerance:.0e}; ask for fewer modes"
         )
 
-    def train(self, seats: Sequence[Seat], forces: Array, *, tolerance: float) -> int:
+    def train(self, laws: Sequence[JointLaw], forces: Array, *, tolerance: float) -> int:
         """Make the bases fit one variant; tolerance: relative error of a frequency. Returns the vectors added."""
-        static = self.train_static(seats, forces, STATIC_SHARE * tolerance)
-        found = self.model.equilibrium(seats, forces)
-        springs = densities(seats, found.pressures)
+        static = self.train_static(laws, forces, STATIC_SHARE * tolerance)
+        found = self.model.equilibrium(laws, forces)
+        springs = densities(laws, found.pressures)
         dynamic = self.train_dynamic(springs, 2 * tolerance)
         self._seen.append(springs)
         return static + dynamic
@@ -306,6 +307,6 @@ class Reduction:
         self.model.coarse = max(int(np.count_nonzero(share > 30 * tolerance)), self.model.count)
         self._refresh()
 
-    def evaluate(self, seats: Sequence[Seat], forces: Array) -> Variant:
+    def evaluate(self, laws: Sequence[JointLaw], forces: Array) -> Variant:
         """Modes under one law per joint and one force per bolt [N] (b,); see `ReducedModel.evaluate`."""
-        return self.model.evaluate(seats, forces)
+        return self.model.evaluate(laws, forces)

@@ -7,21 +7,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError, NotConverged
 from faying.fe.damped import followers
-from faying.joint.balance import Array, Balance, Grip, Preload
-from faying.joint.seat import Seat
+from faying.joint.equilibrium import Equilibrium, PreloadState, StickSlip
+from faying.joint.joint_law import JointLaw
+from faying.typing import Array, Complex
 
-Complex = NDArray[np.complex128]
 BALANCED = 1e-8  # imbalance at which the pressure is right to far more digits than a sweep gives
 BLOCK = 36  # real modes beyond those wanted that meet them exactly under the loss
 SLIGHT = 1e-6  # relative error of an eigenvalue up to which first order is enough for the higher modes
 
 
 @dataclass(frozen=True, kw_only=True)
-class SmallTrace:
+class ReducedMotion:
     """Relative motion at the points of a joint from coefficients of a basis: relative (3q, m), dense."""
 
     weights: Array
@@ -50,15 +49,15 @@ class Variant:
     frequencies: Array
     loss_factors: Array
     estimate: Array
-    preload: Preload
+    preload: PreloadState
 
 
-def densities(seats: Sequence[Seat], pressures: Sequence[Array]) -> list[Densities]:
+def densities(laws: Sequence[JointLaw], pressures: Sequence[Array]) -> list[Densities]:
     """Springs per area of all joints at given pressures [Pa], one array for each joint."""
     out = []
-    for seat, p in zip(seats, pressures, strict=True):
-        k_n, k_t = seat.stiffness(p)
-        loss_n, loss_t = seat.loss(p)
+    for law, p in zip(laws, pressures, strict=True):
+        k_n, k_t = law.stiffness(p)
+        loss_n, loss_t = law.loss(p)
         out.append(Densities(k_n=k_n, k_t=k_t, c_n=k_n * loss_n, c_t=k_t * loss_t))
     return out
 
@@ -101,25 +100,25 @@ def _sprung(relative: Array, springs: Array) -> Array:
     return np.asarray(lower + np.tril(lower, -1).T)
 
 
-class SmallBalance(Balance):
+class ReducedEquilibrium(Equilibrium):
     """Equilibrium in a basis: dense Newton."""
 
     def _start(self, load: Array) -> Array:
         """Every joint at one common pressure, by springs tangent to p(closing) there."""
         matrix, push = self.stiffness.copy(), load.copy()
-        for trace, seat in self.joints:
-            middle = 10 * np.sqrt(seat.least_pressure * seat.law.greatest_pressure)
-            mean = float(np.clip(middle, 10 * seat.least_pressure, 0.5 * seat.law.greatest_pressure))
-            k_n, k_t = (float(k) for k in seat.stiffness(np.asarray(mean)))
+        for trace, law in self.joints:
+            middle = 10 * np.sqrt(law.least_pressure * law.model.greatest_pressure)
+            mean = float(np.clip(middle, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure))
+            k_n, k_t = (float(k) for k in law.stiffness(np.asarray(mean)))
             share = trace.weights[:, None] * np.array([k_n, k_t, k_t])
             matrix = matrix + trace.relative.T @ (share.reshape(-1, 1) * trace.relative)
-            offset = mean - k_n * (seat.closing(mean) + trace.gap)
+            offset = mean - k_n * (law.closing(mean) + trace.gap)
             local = np.zeros((len(offset), 3))
             local[:, 0] = offset * trace.weights
             push = push + trace.relative.T @ local.ravel()
         return np.asarray(np.linalg.solve(matrix, push))
 
-    def _direction(self, u: Array, force: Array, grips: list[Grip], accuracy: float) -> tuple[Array, int]:
+    def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> tuple[Array, int]:
         from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
         matrix = self.stiffness.copy()
@@ -161,13 +160,13 @@ class ReducedModel:
     coarse: int
     last: Array | None = None
 
-    def equilibrium(self, seats: Sequence[Seat], forces: Array) -> Preload:
-        """Preload in the basis under bolt forces [N] (b,), started from the last one that was found."""
+    def equilibrium(self, laws: Sequence[JointLaw], forces: Array) -> PreloadState:
+        """PreloadState in the basis under bolt forces [N] (b,), started from the last one that was found."""
         joints = [
-            (SmallTrace(weights=w, gap=gap, relative=relative), seat)
-            for w, gap, relative, seat in zip(self.weights, self.gaps, self.static_relative, seats, strict=True)
+            (ReducedMotion(weights=w, gap=gap, relative=relative), law)
+            for w, gap, relative, law in zip(self.weights, self.gaps, self.static_relative, laws, strict=True)
         ]
-        balance = SmallBalance(self.static_stiffness, joints, friction=self.friction)
+        balance = ReducedEquilibrium(self.static_stiffness, joints, friction=self.friction)
         load = self.static_loads @ forces
         if self.last is not None:
             balance.last = np.concatenate([self.last, np.zeros(len(load) - len(self.last))])
@@ -202,11 +201,15 @@ class ReducedModel:
                 target += _sprung(relative, weights[:, None] * np.stack([n, t, t], axis=1))
         return real, imaginary
 
-    def evaluate(self, seats: Sequence[Seat], forces: Array) -> Variant:
+    def evaluate(self, laws: Sequence[JointLaw], forces: Array) -> Variant:
         """Modes under one law per joint and one force per bolt [N] (b,). Raises InputError for forces that fit no bolt."""
         if np.shape(forces) != (self.static_loads.shape[1],):
             raise InputError(f"{np.size(forces)} bolt forces for {self.static_loads.shape[1]} bolts; give one for each")
-        found = self.equilibrium(seats, np.asarray(forces, dtype=float))
-        values, _, estimate = self.modes(densities(seats, found.pressures))
-        return Variant(frequencies=np.sqrt(values.real) / (2 * np.pi), loss_factors=values.imag / values.real,
-                       estimate=estimate, preload=found)  # fmt: skip
+        found = self.equilibrium(laws, np.asarray(forces, dtype=float))
+        values, _, estimate = self.modes(densities(laws, found.pressures))
+        return Variant(
+            frequencies=np.sqrt(values.real) / (2 * np.pi),
+            loss_factors=values.imag / values.real,
+            estimate=estimate,
+            preload=found,
+        )

@@ -6,14 +6,12 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.fe.faces import face_centre
 from faying.fe.mesh import Mesh
-from faying.fe.sides import Index
+from faying.typing import Array, Index
 
-Array = NDArray[np.float64]
 MOST = 6000  # unknowns of the layer that is drawn in: its dense block takes .3 GB then
 
 
@@ -41,31 +39,41 @@ class SolidBolt:
         part = self.part
         for face in self.faces:
             if mesh.face_part[face] != part:
-                raise InputError(f"bolt {self.name!r} is the part {part!r}, but its face {face!r} is on {mesh.face_part[face]!r}; name "
-                                 "the faces under its own head and nut")  # fmt: skip
+                raise InputError(
+                    f"bolt {self.name!r} is the part {part!r}, but its face {face!r} is on {mesh.face_part[face]!r}; name "
+                    "the faces under its own head and nut"
+                )
         centre, normal, _ = face_centre(mesh.points, mesh.face(head))
         end, _, _ = face_centre(mesh.points, mesh.face(nut))
         axis = end - centre
         length = float(np.linalg.norm(axis))
         if length < 1e-6 * mesh.size or normal @ axis < 0.5 * length:
-            raise InputError(f"bolt {self.name!r}: its face {head!r} does not look towards {nut!r}; name first the face under "
-                             "the head, then the one under the nut or round the thread")  # fmt: skip
+            raise InputError(
+                f"bolt {self.name!r}: its face {head!r} does not look towards {nut!r}; name first the face under "
+                "the head, then the one under the nut or round the thread"
+            )
         axis = axis / length
         place = (centre + end) / 2 if self.at is None else np.array(self.at)
         before, behind = ((mesh.points[mesh.face_nodes(face)] - place) @ axis for face in self.faces)
         if before.max() > 0 or behind.min() <= 0:
-            raise InputError(f"bolt {self.name!r}: the plane through {_mm(place)} mm across its axis does not part {head!r} from "
-                             f"{nut!r}; give a point between them as `at`")  # fmt: skip
+            raise InputError(
+                f"bolt {self.name!r}: the plane through {_mm(place)} mm across its axis does not part {head!r} from "
+                f"{nut!r}; give a point between them as `at`"
+            )
         nodes = mesh.part_nodes(part)
         beyond = nodes[(mesh.points[nodes] - place) @ axis > 0]
         layer = _across(mesh, part, beyond)
         met = [f for f in joined if mesh.face_part.get(f) == part and np.isin(mesh.face_nodes(f), layer).any()]
         if met:
-            raise InputError(f"bolt {self.name!r}: the plane through {_mm(place)} mm in which it is drawn in meets its face {met[0]!r}, "
-                             "which is in a joint; give a point of the bare shank as `at`, or a finer mesh")  # fmt: skip
+            raise InputError(
+                f"bolt {self.name!r}: the plane through {_mm(place)} mm in which it is drawn in meets its face {met[0]!r}, "
+                "which is in a joint; give a point of the bare shank as `at`, or a finer mesh"
+            )
         if 3 * len(layer) > MOST:
-            raise InputError(f"bolt {self.name!r}: the elements in the plane across its shank have {3 * len(layer):,} unknowns, which all "
-                             f"couple while it is pulled ({MOST:,} at most); mesh the shank more coarsely, or give a beam")  # fmt: skip
+            raise InputError(
+                f"bolt {self.name!r}: the elements in the plane across its shank have {3 * len(layer):,} unknowns, which all "
+                f"couple while it is pulled ({MOST:,} at most); mesh the shank more coarsely, or give a beam"
+            )
         drawn = np.zeros((len(mesh.points), 3))
         drawn[beyond] = axis
         pull = np.zeros_like(drawn)  # nothing but rounding outside the layer, where the motion is rigid

@@ -6,21 +6,19 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.fe.constraint import free_motions, hold
 from faying.fe.elasticity import Solid, assemble, rigid_motions
 from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
-from faying.fe.sides import Index, skin, triangles_of
+from faying.fe.sides import skin, triangles_of
 from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt, FittedBolt
-from faying.joint.preload import Assembly
-from faying.joint.seat import Seat
+from faying.joint.joint_law import JointLaw
+from faying.joint.preload import PreloadProblem
 from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
-
-Array = NDArray[np.float64]
+from faying.typing import Array, Index
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,15 +31,17 @@ class Joint:
     name: str
     faces: tuple[str, str]
     interface: Interface
-    seat: Seat
+    law: JointLaw
     per_node: bool = False
     scan_area: float | None = None
     friction: float | None = None
 
     def __post_init__(self) -> None:
         if self.friction is not None and not 0 <= self.friction < 10:
-            raise InputError(f"joint {self.name!r}: friction {self.friction:g} is no coefficient of friction; give one such as "
-                             "0.2, or leave it out for a joint that sticks")  # fmt: skip
+            raise InputError(
+                f"joint {self.name!r}: friction {self.friction:g} is no coefficient of friction; give one such as "
+                "0.2, or leave it out for a joint that sticks"
+            )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,8 +103,10 @@ class Structure:
         for bolt in solid:
             apart = [face for face in bolt.faces if face not in faces]
             if apart:
-                raise InputError(f"bolt {bolt.name!r}: its face {apart[0]!r} is in no joint; add a [[joint]] of it and the seat that it "
-                                 "presses")  # fmt: skip
+                raise InputError(
+                    f"bolt {bolt.name!r}: its face {apart[0]!r} is in no joint; add a [[joint]] of it and the seat that it "
+                    "presses"
+                )
         loose = [part for part in self.mesh.parts if part not in held]
         if loose and len(self.mesh.parts) > 1:
             raise InputError(f"part {', '.join(loose)} has no joint; add a [[joint]] that holds it, or leave it out")
@@ -183,11 +185,19 @@ class Structure:
         """Nodal forces [N] (unknowns,) of a bolt that pulls the two faces towards each other with 1 N."""
         return Bolt(name="bolt", faces=(first, second)).fitted(self.mesh).load
 
-    def assembly(self, *, solver: str | None = None) -> Assembly:
+    def assembly(self, *, solver: str | None = None) -> PreloadProblem:
         """Return the preload problem of this structure."""
-        pairs = [(joint.interface, joint.seat) for joint in self.joints]
-        return Assembly(self.standing, self.matrices[1], self.rigid, pairs, shift_frequency=self.shift_frequency,
-                        solver=solver, friction=[joint.friction for joint in self.joints], held=self.held)  # fmt: skip
+        pairs = [(joint.interface, joint.law) for joint in self.joints]
+        return PreloadProblem(
+            self.standing,
+            self.matrices[1],
+            self.rigid,
+            pairs,
+            shift_frequency=self.shift_frequency,
+            solver=solver,
+            friction=[joint.friction for joint in self.joints],
+            held=self.held,
+        )
 
     def joined(self, springs: Sequence[Springs], *, viscous: bool = False) -> tuple[Any, Any]:
         """Stiffness [N/m] with the springs of all joints, and their loss; held unknowns cleared.
@@ -212,8 +222,8 @@ class Structure:
                 area = joint.scan_area or 1.0
                 pressure, interface = forces / area, nodes
                 per_area = area / nodes.weights
-            k_n, k_t = joint.seat.stiffness(pressure)
-            loss_n, loss_t = joint.seat.loss(pressure)
+            k_n, k_t = joint.law.stiffness(pressure)
+            loss_n, loss_t = joint.law.loss(pressure)
             out.append(
                 Springs(interface=interface, k_n=k_n * per_area, k_t=k_t * per_area, loss_n=loss_n, loss_t=loss_t)
             )
@@ -223,7 +233,7 @@ class Structure:
         """Return the map that grows the faces of every joint together; see `tie`."""
         return tie(self.mesh, [joint.faces for joint in self.joints])
 
-    def outline(self) -> tuple[NDArray[np.int64], Index]:
+    def outline(self) -> tuple[Index, Index]:
         """Nodes of the outer surface and triangles between them (t, 3), for pictures."""
         outer = triangles_of(skin(self.mesh.blocks, len(self.mesh.points)))
         nodes, triangles = np.unique(outer, return_inverse=True)

@@ -4,25 +4,24 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
-from faying.joint.balance import Preload
-from faying.joint.preload import Assembly
+from faying.joint.equilibrium import PreloadState
+from faying.joint.preload import PreloadProblem
 from faying.joint.structure import Structure
+from faying.typing import Array
 
-Array = NDArray[np.float64]
 SNUG = 0.01  # of its force, in a solid bolt that is yet to be tightened: without any, it would fall out
 
 
 def tighten(
     structure: Structure,
-    assembly: Assembly,
+    assembly: PreloadProblem,
     forces: Sequence[float],
     *,
     order: Sequence[int] | None = None,
     report: Callable[[str], None] | None = None,
-) -> Preload:
+) -> PreloadState:
     """Find the preload of a structure whose bolts are brought to `forces` [N], one for each bolt.
 
     order: indices of the bolts, in the order of tightening, any of them more than once; None pulls all at once, so that
@@ -43,10 +42,12 @@ def tighten(
         )
     soft = [bolt.bolt.name for bolt in bolts if bolt.stiffness is None]
     if soft:
-        raise InputError(f"bolts {', '.join(soft)} have no shank, so tightening others cannot change them; give diameter and "
-                         "material, or leave out the order")  # fmt: skip
+        raise InputError(
+            f"bolts {', '.join(soft)} have no shank, so tightening others cannot change them; give diameter and "
+            "material, or leave out the order"
+        )
     tight: dict[int, tuple[float, Array]] = {}  # force and displacement when the bolt was let go
-    found: Preload | None = None
+    found: PreloadState | None = None
     standing = structure.standing
     try:
         for turn in order:

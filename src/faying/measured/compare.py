@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.measured.frf import FRF, Dof
 from faying.measured.mac import frac, mac
@@ -14,8 +13,8 @@ from faying.measured.mapping import PointMap, Transform, map_points
 from faying.measured.model import ModelModes
 from faying.measured.modes import ModeSet
 from faying.measured.pairing import pair_modes
+from faying.typing import Array, Complex, Index, Mask
 
-Array = NDArray[np.float64]
 ALIKE = 0.9
 
 
@@ -33,15 +32,15 @@ class ModalComparison:
     test: ModeSet
     model: ModelModes
     dofs: tuple[Dof, ...]
-    nodes: NDArray[np.int64]
+    nodes: Index
     axes: Array
     mac: Array
-    pairs: NDArray[np.int64]
+    pairs: Index
     point_map: PointMap
     frf: FRF | None = None
-    predicted: NDArray[np.complex128] | None = None
+    predicted: Complex | None = None
     frac: Array | None = None
-    full: NDArray[np.bool_] | None = None
+    full: Mask | None = None
     notes: tuple[str, ...] = ()
 
     @property
@@ -88,17 +87,39 @@ class ModalComparison:
                     ]
                 )
                 continue
-            out.append([str(t + 1), f"{f:.2f}", str(m + 1), f"{self.model.frequencies[m]:.2f}",
-                        f"{100 * (self.model.frequencies[m] / f - 1):+.2f}", f"{self.mac[t, m]:.3f}", f"{loss:.2e}", interval,
-                        f"{self.model.loss_factors[m]:.2e}"])  # fmt: skip
+            out.append(
+                [
+                    str(t + 1),
+                    f"{f:.2f}",
+                    str(m + 1),
+                    f"{self.model.frequencies[m]:.2f}",
+                    f"{100 * (self.model.frequencies[m] / f - 1):+.2f}",
+                    f"{self.mac[t, m]:.3f}",
+                    f"{loss:.2e}",
+                    interval,
+                    f"{self.model.loss_factors[m]:.2e}",
+                ]
+            )
         return out
 
     def csv_text(self) -> str:
         """The pairs as CSV, SI, units in the heading; a mode of the test without partner has empty cells."""
         out = io.StringIO()
         table = csv.writer(out, lineterminator="\n")
-        table.writerow(["test mode", "test frequency [Hz]", "test loss factor [-]", "loss low [-]", "loss high [-]", "model mode",
-                        "model frequency [Hz]", "model loss factor [-]", "frequency difference [-]", "MAC [-]"])  # fmt: skip
+        table.writerow(
+            [
+                "test mode",
+                "test frequency [Hz]",
+                "test loss factor [-]",
+                "loss low [-]",
+                "loss high [-]",
+                "model mode",
+                "model frequency [Hz]",
+                "model loss factor [-]",
+                "frequency difference [-]",
+                "MAC [-]",
+            ]
+        )
         partner = {int(t): int(m) for t, m in self.pairs}
         for t, (f, loss) in enumerate(zip(self.test.frequencies, self.test.loss_factors, strict=True)):
             span = ["", ""] if self.test.loss_interval is None else [f"{v:.8g}" for v in self.test.loss_interval[t]]
@@ -118,25 +139,44 @@ class ModalComparison:
     def to_dict(self) -> dict[str, Any]:
         """Everything but maps and FRFs, ready for JSON."""
         return {
-            "test": {"source": self.test.source, "frequencies": self.test.frequencies.tolist(),
-                     "loss_factors": self.test.loss_factors.tolist(),
-                     "loss_interval": None if self.test.loss_interval is None else self.test.loss_interval.tolist()},
-            "model": {"source": self.model.source, "title": self.model.title, "preload": self.model.load,
-                      "frequencies": self.model.frequencies.tolist(), "loss_factors": self.model.loss_factors.tolist()},
+            "test": {
+                "source": self.test.source,
+                "frequencies": self.test.frequencies.tolist(),
+                "loss_factors": self.test.loss_factors.tolist(),
+                "loss_interval": None if self.test.loss_interval is None else self.test.loss_interval.tolist(),
+            },
+            "model": {
+                "source": self.model.source,
+                "title": self.model.title,
+                "preload": self.model.load,
+                "frequencies": self.model.frequencies.tolist(),
+                "loss_factors": self.model.loss_factors.tolist(),
+            },
             "mac": self.mac.tolist(),
-            "pairs": [{"test": int(t), "model": int(m), "frequency_difference": float(d), "mac": float(self.mac[t, m])}
-                      for (t, m), d in zip(self.pairs, self.frequency_difference, strict=True)],
-            "points": {"nodes": {str(k): v for k, v in self.point_map.nodes.items()},
-                       "distance": {str(k): v for k, v in self.point_map.distance.items()},
-                       "without_partner": {str(k): v for k, v in self.point_map.missing.items()},
-                       "tolerance": self.point_map.tolerance},
-            "frac": None if self.frac is None or self.frf is None else [
-                {"output": str(self.frf.outputs[o]), "input": str(self.frf.inputs[i]), "frac": float(self.frac[o, i]),
-                 "model": "full response" if self.full is not None and self.full[o, i] else "elastic modes"}
-                for o, i in self.frf.measured],
+            "pairs": [
+                {"test": int(t), "model": int(m), "frequency_difference": float(d), "mac": float(self.mac[t, m])}
+                for (t, m), d in zip(self.pairs, self.frequency_difference, strict=True)
+            ],
+            "points": {
+                "nodes": {str(k): v for k, v in self.point_map.nodes.items()},
+                "distance": {str(k): v for k, v in self.point_map.distance.items()},
+                "without_partner": {str(k): v for k, v in self.point_map.missing.items()},
+                "tolerance": self.point_map.tolerance,
+            },
+            "frac": None
+            if self.frac is None or self.frf is None
+            else [
+                {
+                    "output": str(self.frf.outputs[o]),
+                    "input": str(self.frf.inputs[i]),
+                    "frac": float(self.frac[o, i]),
+                    "model": "full response" if self.full is not None and self.full[o, i] else "elastic modes",
+                }
+                for o, i in self.frf.measured
+            ],
             "units": "SI: Hz, m, N; loss factors, MAC and FRAC without unit; modes count from 0",
             "notes": list(self.notes),
-        }  # fmt: skip
+        }
 
 
 def compare_modes(
@@ -160,8 +200,9 @@ def compare_modes(
     notes = []
     if test.positions and nowhere:
         notes.append(f"points {', '.join(map(str, nowhere))} have modes but no position; they are left out")
-    points = map_points({p: x for p, x in test.positions.items() if p in known}, model.points, transform=transform,
-                        tolerance=tolerance)  # fmt: skip
+    points = map_points(
+        {p: x for p, x in test.positions.items() if p in known}, model.points, transform=transform, tolerance=tolerance
+    )
     if points.missing:
         far = ", ".join(f"{p} ({d * 1e3:.3g} mm away)" for p, d in points.missing.items())
         notes.append(f"points without a node within {points.tolerance * 1e3:.3g} mm, left out: {far}")
@@ -173,11 +214,24 @@ def compare_modes(
     pairs = pair_modes(table, test.frequencies, model.frequencies, least_mac=least_mac, greatest_shift=greatest_shift)
     notes += _alike(theirs, pairs, len(used))
     shared, predicted, full, score = (None, None, None, None) if frf is None else _overlay(frf, model, points, notes)
-    return ModalComparison(test=test, model=model, dofs=used, nodes=nodes, axes=axes, mac=table, pairs=pairs, point_map=points,
-                           frf=shared, predicted=predicted, full=full, frac=score, notes=tuple(notes))  # fmt: skip
+    return ModalComparison(
+        test=test,
+        model=model,
+        dofs=used,
+        nodes=nodes,
+        axes=axes,
+        mac=table,
+        pairs=pairs,
+        point_map=points,
+        frf=shared,
+        predicted=predicted,
+        full=full,
+        frac=score,
+        notes=tuple(notes),
+    )
 
 
-def _alike(shapes: Array, pairs: NDArray[np.int64], count: int) -> list[str]:
+def _alike(shapes: Array, pairs: Index, count: int) -> list[str]:
     """Say which of the paired model modes the points of the test cannot tell from another."""
     own = mac(shapes, shapes)
     words = []
@@ -185,14 +239,16 @@ def _alike(shapes: Array, pairs: NDArray[np.int64], count: int) -> list[str]:
         same = [k for k in np.flatnonzero(own[m] > ALIKE) if k != m]
         if same:
             others = ", ".join(str(k + 1) for k in same)
-            words.append(f"at the {count} degrees of freedom of the test, model mode {m + 1} looks like {others} (MAC above {ALIKE}); "
-                         "the pair rests on frequency")  # fmt: skip
+            words.append(
+                f"at the {count} degrees of freedom of the test, model mode {m + 1} looks like {others} (MAC above {ALIKE}); "
+                "the pair rests on frequency"
+            )
     return words
 
 
 def _overlay(
     frf: FRF, model: ModelModes, points: PointMap, notes: list[str]
-) -> tuple[FRF | None, NDArray[np.complex128] | None, NDArray[np.bool_] | None, Array | None]:
+) -> tuple[FRF | None, Complex | None, Mask | None, Array | None]:
     """The FRFs between mapped degrees of freedom, the model's, which of these are its full response, and their FRAC."""
     o = [k for k, d in enumerate(frf.outputs) if d.point in points.nodes]
     i = [k for k, d in enumerate(frf.inputs) if d.point in points.nodes]
@@ -200,10 +256,19 @@ def _overlay(
         notes.append("no FRF lies between points that found a node; FRFs are not compared")
         return None, None, None, None
     outputs, inputs = tuple(frf.outputs[k] for k in o), tuple(frf.inputs[k] for k in i)
-    shared = FRF(frequency=frf.frequency, values=frf.values[np.ix_(o, i)], outputs=outputs, inputs=inputs, quantity=frf.quantity,
-                 positions=frf.positions, source=frf.source)  # fmt: skip
-    places = [(np.array([points.nodes[d.point] for d in side]), points.transform.directions([d.axis() for d in side]))
-              for side in (outputs, inputs)]  # fmt: skip
+    shared = FRF(
+        frequency=frf.frequency,
+        values=frf.values[np.ix_(o, i)],
+        outputs=outputs,
+        inputs=inputs,
+        quantity=frf.quantity,
+        positions=frf.positions,
+        source=frf.source,
+    )
+    places = [
+        (np.array([points.nodes[d.point] for d in side]), points.transform.directions([d.axis() for d in side]))
+        for side in (outputs, inputs)
+    ]
     predicted = model.frf(shared.frequency, places[0], places[1], shared.quantity)
     known = model.full_frf(shared.frequency, places[0], places[1], shared.quantity)
     full = np.isfinite(known).sum(axis=2) >= 2
@@ -216,9 +281,7 @@ def _overlay(
     return shared, predicted, full, score
 
 
-def _kind_of_response(
-    frf: FRF, predicted: NDArray[np.complex128], full: NDArray[np.bool_], model: ModelModes
-) -> list[str]:
+def _kind_of_response(frf: FRF, predicted: Complex, full: Mask, model: ModelModes) -> list[str]:
     """Say which of the model's FRFs are its full response, and where that ends."""
     measured = frf.measured
     count = sum(bool(full[pair]) for pair in measured)

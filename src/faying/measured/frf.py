@@ -5,12 +5,10 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
+from faying.typing import Array, Complex
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Position = tuple[float, float, float]
 
 # how often the displacement is differentiated in time
@@ -84,8 +82,10 @@ class FRF:
         frequency, values = np.array(self.frequency, float), np.array(self.values, complex)
         shape = (len(self.outputs), len(self.inputs), frequency.size)
         if frequency.ndim != 1 or values.shape != shape:
-            raise InputError(f"values have the shape {values.shape}; {len(self.outputs)} outputs, {len(self.inputs)} inputs and "
-                             f"{frequency.size} frequencies need {shape}")  # fmt: skip
+            raise InputError(
+                f"values have the shape {values.shape}; {len(self.outputs)} outputs, {len(self.inputs)} inputs and "
+                f"{frequency.size} frequencies need {shape}"
+            )
         if frequency.size < 2 or not np.all(np.diff(frequency) > 0) or not frequency[0] >= 0:
             raise InputError("the frequencies of an FRF must be two or more, not negative, and rise")
         measured = np.isfinite(values)
@@ -143,7 +143,9 @@ class FRF:
         """Only the lines from low to high [Hz]. InputError where fewer than two are left."""
         keep = (self.frequency >= low) & (self.frequency <= high)
         if keep.sum() < 2:
-            raise InputError(f"no two lines between {low:g} and {high:g} Hz; the FRFs reach from {self.frequency[0]:g} to "
-                             f"{self.frequency[-1]:g} Hz")  # fmt: skip
+            raise InputError(
+                f"no two lines between {low:g} and {high:g} Hz; the FRFs reach from {self.frequency[0]:g} to "
+                f"{self.frequency[-1]:g} Hz"
+            )
         coherence = None if self.coherence is None else self.coherence[:, :, keep]
         return replace(self, frequency=self.frequency[keep], values=self.values[:, :, keep], coherence=coherence)

@@ -3,16 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.measured.frf import FRF, Dof
 from faying.measured.lsfd import refine, residues
 from faying.measured.modes import ModeSet
 from faying.measured.poles import Poles, Rule, poles_by_order, tracks
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from faying.typing import Array, Complex
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,12 +4,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.measured.frf import QUANTITIES
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from faying.typing import Array, Complex
 
 
 def basis(poles: Complex, frequency: Array, quantity: str) -> Complex:

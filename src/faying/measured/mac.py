@@ -3,11 +3,9 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
-
-Array = NDArray[np.float64]
+from faying.typing import Array
 
 
 def mac(a: Any, b: Any) -> Array:

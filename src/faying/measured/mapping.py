@@ -8,13 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError, ReadError
 from faying.measured.frf import Position
+from faying.typing import Array
 from faying.units import scale
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,8 +26,10 @@ class Transform:
     def __post_init__(self) -> None:
         r = np.asarray(self.rotation, float)
         if r.shape != (3, 3) or not np.allclose(r @ r.T, np.eye(3), atol=1e-6) or np.linalg.det(r) < 0:
-            raise InputError(f"rotation {r.tolist()} is no rotation: rows of length 1, at right angles, right-handed; scale and "
-                             "mirror nothing")  # fmt: skip
+            raise InputError(
+                f"rotation {r.tolist()} is no rotation: rows of length 1, at right angles, right-handed; scale and "
+                "mirror nothing"
+            )
 
     def points(self, positions: Any) -> Array:
         """Positions (..., 3) of the test in the frame of the model."""
@@ -65,9 +65,11 @@ def fit_transform(test: Any, model: Any) -> Transform:
     rms = float(np.sqrt(np.mean(np.sum((a @ rotation.T + shift - b) ** 2, axis=1))))
     ratio = np.linalg.norm(b0) / np.linalg.norm(a0)
     if rms > 0.1 * np.linalg.norm(b0) / np.sqrt(len(b)):
-        raise InputError(f"no rigid motion carries the test's points onto the model's: {rms * 1e3:.3g} mm remain and the sizes "
-                         f"stand as 1 to {ratio:.4g}. Check the pairs, the unit of length, and that neither frame is "
-                         "left-handed")  # fmt: skip
+        raise InputError(
+            f"no rigid motion carries the test's points onto the model's: {rms * 1e3:.3g} mm remain and the sizes "
+            f"stand as 1 to {ratio:.4g}. Check the pairs, the unit of length, and that neither frame is "
+            "left-handed"
+        )
     return Transform(rotation=rotation, shift=shift, rms=rms)
 
 

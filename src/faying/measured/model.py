@@ -4,14 +4,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError, ReadError
 from faying.measured.frf import QUANTITIES
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
+from faying.typing import Array, Complex, Index
 
 SAME_DIRECTION = 0.9998  # cosine of a degree
 
@@ -48,7 +44,7 @@ class ModelModes:
     loss_factors: Array
     shapes: Array
     points: Array
-    triangles: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
+    triangles: Index = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
     load: float = 0.0
     title: str = ""
     source: str = ""
@@ -144,13 +140,17 @@ def read_model_modes(path: str | Path, *, load: float | None = None) -> ModelMod
         raise ReadError(f"{file}: no such file; write one with: faying run STUDY.toml")
     try:
         with netcdf_file(file, "r", mmap=False) as nc:
-            data = {name: np.array(nc.variables[name][:], float)
-                    for name in ("loads", "frequencies", "loss_factors", "outline", "shapes", "triangles")}  # fmt: skip
+            data = {
+                name: np.array(nc.variables[name][:], float)
+                for name in ("loads", "frequencies", "loss_factors", "outline", "shapes", "triangles")
+            }
             response = {name: np.array(nc.variables[name][:], float) for name in RESPONSE if name in nc.variables}
             title = nc.title.decode("utf-8", errors="replace") if isinstance(nc.title, bytes) else str(nc.title)
     except (TypeError, ValueError, KeyError, AttributeError, OSError, IndexError) as fault:
-        raise ReadError(f"{file}: no result of Faying, or damaged ({type(fault).__name__}: {fault}); write one with: faying run "
-                        "STUDY.toml") from None  # fmt: skip
+        raise ReadError(
+            f"{file}: no result of Faying, or damaged ({type(fault).__name__}: {fault}); write one with: faying run "
+            "STUDY.toml"
+        ) from None
     loads = data["loads"]
     index = len(loads) - 1 if load is None else int(np.argmin(np.abs(loads - load)))
     if load is not None and abs(loads[index] - load) > 1e-3 * abs(loads[index]):
@@ -170,8 +170,15 @@ def read_model_modes(path: str | Path, *, load: float | None = None) -> ModelMod
     )
 
 
-RESPONSE = ("response_frequencies", "receptance_real", "receptance_imaginary", "output_points", "output_directions",
-            "input_points", "input_directions")  # fmt: skip
+RESPONSE = (
+    "response_frequencies",
+    "receptance_real",
+    "receptance_imaginary",
+    "output_points",
+    "output_directions",
+    "input_points",
+    "input_directions",
+)
 
 
 def _full(data: dict[str, Array], load: int) -> FullResponse:

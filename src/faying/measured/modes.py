@@ -5,13 +5,10 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.measured.frf import Dof, Position, dofs
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from faying.typing import Array, Complex, Index
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +28,7 @@ class ModeSet:
     positions: Mapping[int, Position] = field(default_factory=dict)
     frequency_interval: Array | None = None
     loss_interval: Array | None = None
-    found_in: NDArray[np.int64] | None = None
+    found_in: Index | None = None
     notes: tuple[tuple[str, ...], ...] = ()
     lines: tuple[tuple[int, int], ...] = ()
     source: str = ""

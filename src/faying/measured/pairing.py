@@ -3,14 +3,14 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
+from faying.typing import Index
 
 
 def pair_modes(
     mac: Any, test: Any, model: Any, *, least_mac: float = 0.5, greatest_shift: float = 0.3, weight: float = 0.2
-) -> NDArray[np.int64]:
+) -> Index:
     """Pairs (k, 2) of indices (test, model), in the order of the test.
 
     mac (t, m); test, model: frequencies [Hz] (t,), (m,). A pair is allowed where MAC is at least least_mac and the
@@ -19,8 +19,10 @@ def pair_modes(
     look alike at the points of the test. Raises InputError for limits that cannot be.
     """
     if not (0 < least_mac <= 1 and greatest_shift > 0 and 0 <= weight < least_mac):
-        raise InputError(f"least_mac = {least_mac}, greatest_shift = {greatest_shift}, weight = {weight}: give 0 < least_mac <= 1, a "
-                         "positive shift and a weight from 0 to below least_mac")  # fmt: skip
+        raise InputError(
+            f"least_mac = {least_mac}, greatest_shift = {greatest_shift}, weight = {weight}: give 0 < least_mac <= 1, a "
+            "positive shift and a weight from 0 to below least_mac"
+        )
     from scipy.optimize import linear_sum_assignment
 
     mac = np.asarray(mac, float)

@@ -5,15 +5,12 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.measured.frf import FRF
 from faying.measured.lsfd import compressed, residues
 from faying.measured.mac import mac
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from faying.typing import Array, Complex, Index
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,8 +40,10 @@ class Rule:
 
     def __post_init__(self) -> None:
         if not 1 <= self.orders <= self.highest_order:
-            raise InputError(f"orders = {self.orders} of highest_order = {self.highest_order}: a mode must be able to reach "
-                             "the number of orders asked of it; lower orders or raise highest_order")  # fmt: skip
+            raise InputError(
+                f"orders = {self.orders} of highest_order = {self.highest_order}: a mode must be able to reach "
+                "the number of orders asked of it; lower orders or raise highest_order"
+            )
         if not (
             self.frequency > 0 and self.damping > 0 and 0 <= self.mac < 1 and self.gap >= 1 and self.highest_damping > 0
         ):
@@ -55,10 +54,10 @@ class Rule:
 class Poles:
     """Poles of all orders in one row: order (p,), frequency [Hz], damping ratio [-], track (p,): the mode, or -1."""
 
-    order: NDArray[np.int64]
+    order: Index
     frequency: Array
     damping: Array
-    track: NDArray[np.int64]
+    track: Index
 
 
 def poles_by_order(frf: FRF, highest_order: int) -> list[Complex]:
@@ -70,13 +69,17 @@ def poles_by_order(frf: FRF, highest_order: int) -> list[Complex]:
     step = frf.step
     first = frf.frequency[0] / step
     if abs(first - round(first)) > 0.01:
-        raise InputError(f"the first line, {frf.frequency[0]:g} Hz, is no multiple of the spacing {step:g} Hz; interpolate the "
-                         "FRFs to lines at multiples of the spacing")  # fmt: skip
+        raise InputError(
+            f"the first line, {frf.frequency[0]:g} Hz, is no multiple of the spacing {step:g} Hz; interpolate the "
+            "FRFs to lines at multiples of the spacing"
+        )
     lines = round(first)
     rows = compressed(frf.rows(), 2 * highest_order)
     if len(rows[0]) < 4 * highest_order:
-        raise InputError(f"{len(rows[0])} lines are too few for order {highest_order}; widen the band or take an order of at most "
-                         f"{len(rows[0]) // 4}")  # fmt: skip
+        raise InputError(
+            f"{len(rows[0])} lines are too few for order {highest_order}; widen the band or take an order of at most "
+            f"{len(rows[0]) // 4}"
+        )
     # zeros below the band and one more line above, which the library cuts off again
     rows = np.concatenate([np.zeros((len(rows), lines)), rows, rows[:, -1:]], axis=1)
     frequency = np.arange(rows.shape[1]) * step
@@ -84,8 +87,14 @@ def poles_by_order(frf: FRF, highest_order: int) -> list[Complex]:
         warnings.simplefilter("ignore")
         from sdypy import EMA
 
-        model: Any = EMA.Model(rows / np.abs(rows).max(), frequency, lower=max(lines, 1) * step, upper=frequency[-1],
-                               pol_order_high=highest_order, frf_form=frf.quantity)  # fmt: skip
+        model: Any = EMA.Model(
+            rows / np.abs(rows).max(),
+            frequency,
+            lower=max(lines, 1) * step,
+            upper=frequency[-1],
+            pol_order_high=highest_order,
+            frf_form=frf.quantity,
+        )
         try:
             model.get_poles(method="lscf", show_progress=False)
         except np.linalg.LinAlgError as fault:
@@ -132,10 +141,14 @@ def tracks(frf: FRF, by_order: list[Complex], rule: Rule) -> tuple[Poles, list[C
     for k, track in enumerate(good):
         number[track] = k
     return (
-        Poles(order=np.array([o for o, _ in table], dtype=np.int64), frequency=np.abs(poles) / (2 * np.pi),
-              damping=-poles.real / np.maximum(np.abs(poles), 1e-300), track=number),
+        Poles(
+            order=np.array([o for o, _ in table], dtype=np.int64),
+            frequency=np.abs(poles) / (2 * np.pi),
+            damping=-poles.real / np.maximum(np.abs(poles), 1e-300),
+            track=number,
+        ),
         [poles[track] for track in good],
-    )  # fmt: skip
+    )
 
 
 def _distance(poles: Complex, shapes: Complex, ends: list[tuple[complex, Complex, int]], rule: Rule) -> Array:

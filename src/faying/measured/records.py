@@ -3,12 +3,10 @@
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.measured.frf import FRF, Dof
-
-Array = NDArray[np.float64]
+from faying.typing import Array
 
 
 def frf_from_records(

@@ -26,8 +26,10 @@ class Tested:
         there = read_points(frame)
         unknown = [str(p) for p in there if p not in self.modes.positions]
         if unknown:
-            raise InputError(f"{frame}: the test has no position of point {', '.join(unknown)}; it has those of "
-                             f"{', '.join(map(str, self.modes.positions)) or 'none'}")  # fmt: skip
+            raise InputError(
+                f"{frame}: the test has no position of point {', '.join(unknown)}; it has those of "
+                f"{', '.join(map(str, self.modes.positions)) or 'none'}"
+            )
         return fit_transform([self.modes.positions[p] for p in there], list(there.values()))
 
 

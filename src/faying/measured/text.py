@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError, ReadError
 from faying.measured.frf import FRF, Dof
+from faying.typing import Array, Complex
 
 
 def read_frf_text(
@@ -22,8 +22,8 @@ def read_frf_text(
     blanks, with or without a line of names. Raises ReadError where a line is neither, InputError where files do not fit
     together or the step is missing.
     """
-    frequency: NDArray[np.float64] | None = None
-    rows: list[NDArray[np.complex128]] = []
+    frequency: Array | None = None
+    rows: list[Complex] = []
     for name in files:
         path = Path(name)
         own, values = _read(path, frequency_step)
@@ -43,7 +43,7 @@ def read_frf_text(
     )
 
 
-def _read(path: Path, step: float | None) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+def _read(path: Path, step: float | None) -> tuple[Array, Complex]:
     try:
         text = path.read_text(encoding="utf-8-sig", errors="replace")
     except OSError as fault:
@@ -55,8 +55,10 @@ def _read(path: Path, step: float | None) -> tuple[NDArray[np.float64], NDArray[
         raise ReadError(f"{path}: no FRF in it; expected a complex number on each line, or frequency, real, imaginary")
     if "j" in lines[0] or "i" in lines[0]:
         if step is None or not step > 0:
-            raise InputError(f'{path}: the file states no frequencies; give their step, for example frequency_step=1.0 [Hz] or '
-                             '--frequency-step "1 Hz"')  # fmt: skip
+            raise InputError(
+                f"{path}: the file states no frequencies; give their step, for example frequency_step=1.0 [Hz] or "
+                '--frequency-step "1 Hz"'
+            )
         values = [_number(complex, path, line.replace("i", "j").replace(" ", "").strip("()")) for line in lines]
         return np.arange(len(values), dtype=float) * step, np.array([values], dtype=np.complex128)
     table = [[_number(float, path, cell) for cell in re.split(r"[,;\s]+", line)] for line in lines]
@@ -73,5 +75,6 @@ def _number(kind: Any, path: Path, text: str) -> Any:
     try:
         return kind(text)
     except ValueError:
-        raise ReadError(f"{path}: {text!r} is no number; expected a complex number on each line, or frequency, real, "
-                        "imaginary") from None  # fmt: skip
+        raise ReadError(
+            f"{path}: {text!r} is no number; expected a complex number on each line, or frequency, real, imaginary"
+        ) from None

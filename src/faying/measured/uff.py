@@ -18,12 +18,25 @@ from faying.errors import InputError, ReadError
 from faying.measured.frf import FRF, Dof, Position
 from faying.measured.modes import ModeSet
 from faying.measured.uff_units import FileUnits, frf_scale
+from faying.typing import Array
 from faying.units import scale
 
-Array = NDArray[np.float64]
-KINDS = {0: "general", 1: "time response", 2: "auto spectrum", 3: "cross spectrum", 4: "FRF", 5: "transmissibility",
-         6: "coherence", 7: "auto correlation", 8: "cross correlation", 9: "power spectral density",
-         10: "energy spectral density", 12: "spectrum", 13: "cumulative distribution", 22: "impulse response"}  # fmt: skip
+KINDS = {
+    0: "general",
+    1: "time response",
+    2: "auto spectrum",
+    3: "cross spectrum",
+    4: "FRF",
+    5: "transmissibility",
+    6: "coherence",
+    7: "auto correlation",
+    8: "cross correlation",
+    9: "power spectral density",
+    10: "energy spectral density",
+    12: "spectrum",
+    13: "cumulative distribution",
+    22: "impulse response",
+}
 DIRECTION_CODES = {0: "", 1: "x", 2: "y", 3: "z", 4: "rx", 5: "ry", 6: "rz"}
 
 
@@ -95,9 +108,17 @@ class UniversalFile:
         values = np.full((len(outputs), len(inputs), len(found[0].x)), np.nan + 0j)
         for (o, i), (_, data) in pairs.items():
             values[outputs.index(o), inputs.index(i)] = data
-        return FRF(frequency=found[0].x, values=values, outputs=outputs, inputs=inputs, quantity=kinds.pop(),
-                   coherence=self._coherence(outputs, inputs, values.shape), positions=self.positions, source=self.source,
-                   warnings=tuple(dict.fromkeys(notes)))  # fmt: skip
+        return FRF(
+            frequency=found[0].x,
+            values=values,
+            outputs=outputs,
+            inputs=inputs,
+            quantity=kinds.pop(),
+            coherence=self._coherence(outputs, inputs, values.shape),
+            positions=self.positions,
+            source=self.source,
+            warnings=tuple(dict.fromkeys(notes)),
+        )
 
     def _coherence(self, outputs: tuple[Dof, ...], inputs: tuple[Dof, ...], shape: tuple[int, ...]) -> Array | None:
         out = np.full(shape, np.nan)
@@ -113,8 +134,10 @@ class UniversalFile:
             return dof
         axis = dof.axis() @ turn
         if np.abs(axis).max() < 1 - 1e-6:
-            raise ReadError(f"{self.source}: the directions of point {dof.point} are turned against the axes of the file "
-                            "(data set 2420); export the FRFs in global directions")  # fmt: skip
+            raise ReadError(
+                f"{self.source}: the directions of point {dof.point} are turned against the axes of the file "
+                "(data set 2420); export the FRFs in global directions"
+            )
         k = int(np.abs(axis).argmax())
         return Dof(dof.point, ("-" if axis[k] < 0 else "") + "xyz"[k])
 
@@ -171,8 +194,12 @@ def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFi
             f"{file}: the file states its units ({units.words.strip() or 'data set 164'}); leave out length_unit"
         )
     metre = scale(length_unit, "m", name="length_unit") if length_unit else 1 / units.length if units else 1.0
-    systems = {label: np.asarray(matrix) for s in sets if s["type"] == 2420
-               for label, matrix in zip(s["CS_sys_labels"], s["CS_matrices"], strict=True)}  # fmt: skip
+    systems = {
+        label: np.asarray(matrix)
+        for s in sets
+        if s["type"] == 2420
+        for label, matrix in zip(s["CS_sys_labels"], s["CS_matrices"], strict=True)
+    }
     kinds = {
         label: kind
         for s in sets
@@ -249,8 +276,10 @@ def _function(data: dict[str, Any], where: str) -> Function:
     x, values = np.asarray(data["x"], float), np.asarray(data["data"])
     count = data["num_pts"]
     if len(values) < count:
-        raise ReadError(f"{where}: {len(values)} of the {count} values that its header announces; the file is damaged or was cut "
-                        "short, export it again")  # fmt: skip
+        raise ReadError(
+            f"{where}: {len(values)} of the {count} values that its header announces; the file is damaged or was cut "
+            "short, export it again"
+        )
     if not np.all(np.isfinite(values[:count])):
         raise ReadError(f"{where}: it holds NaN; measure or export that function again")
     return Function(
@@ -273,8 +302,10 @@ def _shape(data: dict[str, Any], where: str) -> dict[str, Any]:
     points = np.asarray(data["node_nums"], int)
     parts = [np.asarray(data[r]) for r in ("r1", "r2", "r3")]
     if any(len(p) != len(points) for p in parts):
-        raise ReadError(f"{where}: {len(points)} points but {[len(p) for p in parts]} values in x, y, z; export translations in three "
-                        "directions")  # fmt: skip
+        raise ReadError(
+            f"{where}: {len(points)} points but {[len(p) for p in parts]} values in x, y, z; export translations in three "
+            "directions"
+        )
     if kind == 2:
         frequency, loss = data["freq"], 2 * data["modal_damp_vis"] or data["modal_damp_his"]
     else:

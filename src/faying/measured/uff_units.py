@@ -29,8 +29,10 @@ class FileUnits:
             return None
         units = cls(length=found[0]["length"], force=found[0]["force"], words=found[0]["units_description"])
         if not (units.length > 0 and units.force > 0):
-            raise ReadError(f"{where}: data set 164 gives the factors {units.length} and {units.force}; they must be positive. "
-                            "Export the file again with its units")  # fmt: skip
+            raise ReadError(
+                f"{where}: data set 164 gives the factors {units.length} and {units.force}; they must be positive. "
+                "Export the file again with its units"
+            )
         return units
 
 
@@ -63,8 +65,10 @@ def frf_scale(
     top, bottom = data["ordinate_axis_units_lab"], data["orddenom_axis_units_lab"]
     named = quantity or MOTION.get(data["ordinate_spec_data_type"])
     if data["orddenom_spec_data_type"] not in (0, 1, FORCE) and quantity is None:
-        raise ReadError(f"{where}: a function relative to something that is no force (type {data['orddenom_spec_data_type']}); "
-                        'leave it out, or say what it is, for example quantity="accelerance"')  # fmt: skip
+        raise ReadError(
+            f"{where}: a function relative to something that is no force (type {data['orddenom_spec_data_type']}); "
+            'leave it out, or say what it is, for example quantity="accelerance"'
+        )
     for name in [named] if named else list(DIMENSIONS):
         whole = _factor(top, DIMENSIONS[name] + "/N")
         if whole is not None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.files import whole
+from faying.files import write_atomically
 from faying.measured.frf import FRF, Dof, Position
 from faying.measured.modes import ModeSet
 
@@ -29,9 +29,17 @@ def write_uff(path: str | Path, *contents: ModeSet | FRF, title: str = "Faying")
         raise InputError("nothing to write; give modes or FRFs")
     sets: list[dict[str, Any]] = [
         {"type": 151, "model_name": title[:80], "description": "NONE", "db_app": "Faying", "program": "Faying"},
-        {"type": 164, "units_code": 1, "units_description": "SI: Meter (newton)", "temp_mode": 2, "length": 1.0, "force": 1.0,
-         "temp": 1.0, "temp_offset": 273.15},
-    ]  # fmt: skip
+        {
+            "type": 164,
+            "units_code": 1,
+            "units_description": "SI: Meter (newton)",
+            "temp_mode": 2,
+            "length": 1.0,
+            "force": 1.0,
+            "temp": 1.0,
+            "temp_offset": 273.15,
+        },
+    ]
     positions: dict[int, Position] = {}
     for content in contents:
         positions |= dict(content.positions)
@@ -43,15 +51,23 @@ def write_uff(path: str | Path, *contents: ModeSet | FRF, title: str = "Faying")
     def write(temporary: Path) -> None:
         pyuff.UFF(str(temporary)).write_sets(sets, mode="overwrite")
 
-    return whole(Path(path), write)
+    return write_atomically(Path(path), write)
 
 
 def _nodes(positions: Mapping[int, Position]) -> dict[str, Any]:
     labels = sorted(positions)
     xyz = np.array([positions[label] for label in labels], float)
     zero = np.zeros(len(labels), dtype=int)
-    return {"type": 2411, "node_nums": labels, "def_cs": zero, "disp_cs": zero, "color": zero + 1,
-            "x": xyz[:, 0], "y": xyz[:, 1], "z": xyz[:, 2]}  # fmt: skip
+    return {
+        "type": 2411,
+        "node_nums": labels,
+        "def_cs": zero,
+        "disp_cs": zero,
+        "color": zero + 1,
+        "x": xyz[:, 0],
+        "y": xyz[:, 1],
+        "z": xyz[:, 2],
+    }
 
 
 def _split(dof: Dof) -> tuple[float, str]:
@@ -74,9 +90,20 @@ def _shapes(modes: ModeSet) -> list[dict[str, Any]]:
     for k, (f, loss) in enumerate(zip(modes.frequencies, modes.loss_factors, strict=True)):
         motion = values[k].real if real else values[k]
         data: dict[str, Any] = {
-            "type": 55, "model_type": 1, "id1": f"mode {k + 1}", **_intervals(modes, k), "analysis_type": 2 if real else 3, "data_ch": 2, "spec_data_type": 8,
-            "load_case": 1, "mode_n": k + 1, "node_nums": points, "r1": motion[:, 0], "r2": motion[:, 1], "r3": motion[:, 2],
-        }  # fmt: skip
+            "type": 55,
+            "model_type": 1,
+            "id1": f"mode {k + 1}",
+            **_intervals(modes, k),
+            "analysis_type": 2 if real else 3,
+            "data_ch": 2,
+            "spec_data_type": 8,
+            "load_case": 1,
+            "mode_n": k + 1,
+            "node_nums": points,
+            "r1": motion[:, 0],
+            "r2": motion[:, 1],
+            "r3": motion[:, 2],
+        }
         if real:
             data |= {"freq": f, "modal_m": 0.0, "modal_damp_vis": loss / 2, "modal_damp_his": 0.0}
         else:
@@ -102,13 +129,26 @@ def _functions(frf: FRF) -> list[dict[str, Any]]:
     out = []
     for o, i in frf.measured:
         common = {
-            "type": 58, "id1": f"{frf.outputs[o]} / {frf.inputs[i]}", **_place("rsp", frf.outputs[o]), **_place("ref", frf.inputs[i]),
-            "abscissa_spacing": int(even), "abscissa_spec_data_type": 18, "abscissa_axis_units_lab": "Hz", "x": frf.frequency,
-        }  # fmt: skip
-        out.append(common | {
-            "func_type": 4, "data": frf.values[o, i], "ordinate_spec_data_type": kind, "ordinate_axis_units_lab": unit,
-            "orddenom_spec_data_type": 13, "orddenom_axis_units_lab": "N",
-        })  # fmt: skip
+            "type": 58,
+            "id1": f"{frf.outputs[o]} / {frf.inputs[i]}",
+            **_place("rsp", frf.outputs[o]),
+            **_place("ref", frf.inputs[i]),
+            "abscissa_spacing": int(even),
+            "abscissa_spec_data_type": 18,
+            "abscissa_axis_units_lab": "Hz",
+            "x": frf.frequency,
+        }
+        out.append(
+            common
+            | {
+                "func_type": 4,
+                "data": frf.values[o, i],
+                "ordinate_spec_data_type": kind,
+                "ordinate_axis_units_lab": unit,
+                "orddenom_spec_data_type": 13,
+                "orddenom_axis_units_lab": "N",
+            }
+        )
         if frf.coherence is not None and np.all(np.isfinite(frf.coherence[o, i])):
             out.append(common | {"func_type": 6, "data": frf.coherence[o, i], "orddenom_spec_data_type": 0})
     return out

@@ -8,11 +8,11 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.fe.matrices import read_pair
-from faying.fe.sides import Index
-from faying.files import whole
-from faying.joint.held import held_preload
+from faying.files import write_atomically
+from faying.joint.support_check import held_preload
 from faying.study.build import build_all, checked_mesh
 from faying.study.schema import Study
+from faying.typing import Index
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,8 +38,14 @@ class Assembled:
         stiffness, _ = structure.joined(structure.springs(found.pressures))
         numbers = structure.mesh.numbers
         dofs = np.column_stack([np.repeat(numbers, 3), np.tile([1, 2, 3], len(numbers))])
-        return cls(stiffness=stiffness, mass=structure.vibrating[1], dofs=dofs, still=structure.rigid.shape[1],
-                   shift_frequency=study.shift_frequency or structure.shift_frequency, source=study.title)  # fmt: skip
+        return cls(
+            stiffness=stiffness,
+            mass=structure.vibrating[1],
+            dofs=dofs,
+            still=structure.rigid.shape[1],
+            shift_frequency=study.shift_frequency or structure.shift_frequency,
+            source=study.title,
+        )
 
     @classmethod
     def of_files(cls, stiffness: Path, mass: Path | None, *, stiffness_unit: str, mass_unit: str) -> "Assembled":
@@ -62,9 +68,11 @@ class Assembled:
                 with temporary.open("wb") as file:  # a file, since save_npz adds .npz to names
                     save_npz(file, csr_matrix(matrix), compressed=False)
 
-            out.append(whole(folder / f"{name}.npz", fill))
+            out.append(write_atomically(folder / f"{name}.npz", fill))
         text = "\n".join(f"{node}.{axis}" for node, axis in self.dofs) + "\n"
-        out.append(whole(folder / "dofs.txt", lambda temporary: temporary.write_text(text, encoding="ascii")))
+        out.append(
+            write_atomically(folder / "dofs.txt", lambda temporary: temporary.write_text(text, encoding="ascii"))
+        )
         return out
 
 

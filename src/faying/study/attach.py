@@ -6,17 +6,16 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying import units
+from faying.decks.deck import Contact, JointDeck
+from faying.decks.system import System
 from faying.errors import InputError
-from faying.export.deck import Contact, JointDeck
-from faying.export.system import System
 from faying.fe.faces import face_centre
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
+from faying.joint.joint_law import JointLaw
 from faying.joint.pairs import NodePairs, consistent, lumped
-from faying.joint.seat import Seat
 from faying.materials import RIGID, ContactPair, Material
 from faying.study.build import build_all, checked_mesh, surfaces_of
 from faying.study.connections import JointSpec
@@ -24,8 +23,8 @@ from faying.study.geometry import GeometrySpec
 from faying.study.pressure import read_pressure
 from faying.study.schema import Study
 from faying.study.surface import law_of
+from faying.typing import Array
 
-Array = NDArray[np.float64]
 SMALLEST, LARGEST = 1e-7, 10.0  # areas of a joint [m2] beyond which the unit is doubted
 TOUCHING = 1e-6  # of the structure's size: a gap above it is told
 UNKNOWN_FRICTION = 0.2
@@ -89,8 +88,11 @@ def attach(
     spec = _joint(study, faces, joint)
     solving = str(pressure) == "solve"
     if solving:
-        moved = replace(study, geometry=GeometrySpec(mesh=file, unit=unit, sets=study.geometry.sets),
-                        joints=tuple(replace(j, faces=faces, reach=tolerance) if j is spec else j for j in study.joints))  # fmt: skip
+        moved = replace(
+            study,
+            geometry=GeometrySpec(mesh=file, unit=unit, sets=study.geometry.sets),
+            joints=tuple(replace(j, faces=faces, reach=tolerance) if j is spec else j for j in study.joints),
+        )
         mesh = checked_mesh(moved)
     else:
         from faying.fe.meshfile import read_mesh
@@ -100,15 +102,17 @@ def attach(
     materials = _materials(study, mesh, faces)
     notes = _apart(mesh, faces, interface)
     if solving:
-        seat, at_points, said = _solved(moved, mesh, faces, preload)
+        law, at_points, said = _solved(moved, mesh, faces, preload)
     else:
-        seat = _seat(study, spec, mesh, faces, materials)
+        law = _joint_law(study, spec, mesh, faces, materials)
         at_points, said = read_pressure(pressure, mesh, faces, interface)
-    pairs, used = _pairs(interface, seat, at_points, coupling)
+    pairs, used = _pairs(interface, law, at_points, coupling)
     if coupling == "auto" and not pairs.lumped:
-        notes.append("the meshes of the faces do not match: springs per area, exact, between all nodes that share an overlap; "
-                     "some of them are negative")  # fmt: skip
-    flags = _flags(seat, used, pairs.area if pairs.lumped else interface.weights)
+        notes.append(
+            "the meshes of the faces do not match: springs per area, exact, between all nodes that share an overlap; "
+            "some of them are negative"
+        )
+    flags = _flags(law, used, pairs.area if pairs.lumped else interface.weights)
     system = System(unit, force_unit)
     viscous = None
     if damping == "paper":
@@ -123,7 +127,7 @@ def attach(
     facts = (
         f"Joint of {faces[0]} and {faces[1]} in {file.name}, written by Faying {version('faying')}",
         system.describe(),
-        f"law: {seat.law.name}, {getattr(seat.law, 'source', 'no source')}",
+        f"law: {law.model.name}, {getattr(law.model, 'source', 'no source')}",
         f"pressure: {said}; least {used.min() * system.pressure:.6g}, mean {mean * system.pressure:.6g}, "
         f"greatest {used.max() * system.pressure:.6g} {force_unit}/{unit}2",
         f"area {interface.area * system.metre**2:.8g} {unit}2; sum of normal springs {k_n * system.stiffness:.8g}, of tangential springs "
@@ -143,7 +147,7 @@ def attach(
         paper=damping == "paper",
         frequency=frequency,
         first_element=_first_free(file),
-        contact=_contact(seat, spec, float(used.max()), mean),
+        contact=_contact(law, spec, float(used.max()), mean),
     )
     return Attachment(deck=deck, interface=interface, materials=materials, notes=tuple(dict.fromkeys([*notes, *flags])))
 
@@ -161,12 +165,16 @@ def _joint(study: Study, faces: tuple[str, str], name: str | None) -> JointSpec:
 def _interface(mesh: Mesh, faces: tuple[str, str], tolerance: float | None, any_size: bool, unit: str) -> Interface:
     normals = [face_centre(mesh.points, mesh.face(name))[1] for name in faces]
     if mesh.face_part[faces[0]] != mesh.face_part[faces[1]] and float(normals[0] @ normals[1]) > 0.5:
-        raise InputError(f"faces {faces[0]!r} and {faces[1]!r} are turned the same way (normals {_vector(normals[0])} and "
-                         f"{_vector(normals[1])}); a joint needs two that face each other: was the opposite side meant?")  # fmt: skip
+        raise InputError(
+            f"faces {faces[0]!r} and {faces[1]!r} are turned the same way (normals {_vector(normals[0])} and "
+            f"{_vector(normals[1])}); a joint needs two that face each other: was the opposite side meant?"
+        )
     interface = join(mesh, *faces, reach=tolerance)
     if not any_size and not SMALLEST <= interface.area <= LARGEST:
-        raise InputError(f"in {unit} the joint has {interface.area:.3g} m2; is that the unit of the model? Areas from "
-                         f"{SMALLEST * 1e6:g} mm2 to {LARGEST:g} m2 are taken; if it is right, add --any-size")  # fmt: skip
+        raise InputError(
+            f"in {unit} the joint has {interface.area:.3g} m2; is that the unit of the model? Areas from "
+            f"{SMALLEST * 1e6:g} mm2 to {LARGEST:g} m2 are taken; if it is right, add --any-size"
+        )
     return interface
 
 
@@ -177,8 +185,10 @@ def _vector(v: Array) -> str:
 def _apart(mesh: Mesh, faces: tuple[str, str], interface: Interface) -> list[str]:
     """What finds no partner, and how far the faces are apart."""
     notes = []
-    for name, nodes, values in ((faces[0], interface.first_nodes, interface.first_values),
-                                (faces[1], interface.second_nodes, interface.second_values)):  # fmt: skip
+    for name, nodes, values in (
+        (faces[0], interface.first_nodes, interface.first_values),
+        (faces[1], interface.second_nodes, interface.second_values),
+    ):
         every = mesh.face_nodes(name)
         lost = mesh.numbers[np.setdiff1d(every, nodes[values != 0])]
         if len(lost):
@@ -186,8 +196,10 @@ def _apart(mesh: Mesh, faces: tuple[str, str], interface: Interface) -> list[str
             notes.append(f"{len(lost)} of {len(every)} nodes of {name!r} have no partner within the tolerance: {some}")
     gap = float(np.abs(interface.gap).max())
     if gap > TOUCHING * mesh.size:
-        notes.append(f"the faces lie up to {gap * 1e3:.3g} mm apart: springs between nodes that do not coincide resist a "
-                     "rotation of the whole model")  # fmt: skip
+        notes.append(
+            f"the faces lie up to {gap * 1e3:.3g} mm apart: springs between nodes that do not coincide resist a "
+            "rotation of the whole model"
+        )
     return notes
 
 
@@ -201,22 +213,26 @@ def _materials(study: Study, mesh: Mesh, faces: tuple[str, str]) -> dict[str, Ma
         elif len(used) == 1:
             out[part] = study.materials[next(iter(used))]
         else:
-            raise InputError(f"[part] of the study says nothing of {part!r}, which the model holds, and uses several materials; "
-                             f"add [part.{part}]")  # fmt: skip
+            raise InputError(
+                f"[part] of the study says nothing of {part!r}, which the model holds, and uses several materials; "
+                f"add [part.{part}]"
+            )
     return out
 
 
-def _seat(study: Study, spec: JointSpec, mesh: Mesh, faces: tuple[str, str], materials: Mapping[str, Material]) -> Seat:
+def _joint_law(
+    study: Study, spec: JointSpec, mesh: Mesh, faces: tuple[str, str], materials: Mapping[str, Material]
+) -> JointLaw:
     surface = surfaces_of(replace(study, joints=(spec,)))[0]
     rough, other = (materials[mesh.face_part[face]] for face in faces)
     law = spec.law or study.law
     pair = ContactPair(rough, RIGID if law.counterbody == "rigid" else other)
-    return Seat(law=law_of(law, surface, pair), tangential=spec.tangential, nu=rough.nu)
+    return JointLaw(model=law_of(law, surface, pair), tangential=spec.tangential, nu=rough.nu)
 
 
-def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | None) -> tuple[Seat, Array, str]:
-    """Seat and pressure [Pa] at the points of the interface under the study's bolts."""
-    from faying.joint.held import held_preload
+def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | None) -> tuple[JointLaw, Array, str]:
+    """JointLaw and pressure [Pa] at the points of the interface under the study's bolts."""
+    from faying.joint.support_check import held_preload
 
     loads = study.bolts[0].preload
     number = 0
@@ -237,7 +253,7 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
     )
     place = next(i for i, joint in enumerate(structure.joints) if joint.faces == faces)
     return (
-        structure.joints[place].seat,
+        structure.joints[place].law,
         found.pressures[place],
         f"of the study's bolts at {units.show(loads[number], 'N')}",
     )
@@ -247,7 +263,7 @@ def _kilo(loads: tuple[float, ...]) -> str:
     return ", ".join(units.show(load, "N") for load in loads)
 
 
-def _pairs(interface: Interface, seat: Seat, pressure: Array, coupling: str) -> tuple[NodePairs, Array]:
+def _pairs(interface: Interface, law: JointLaw, pressure: Array, coupling: str) -> tuple[NodePairs, Array]:
     """Return the springs and the pressures [Pa] that they belong to."""
     if coupling != "faces":
         try:
@@ -257,22 +273,24 @@ def _pairs(interface: Interface, seat: Seat, pressure: Array, coupling: str) -> 
                 raise
         else:
             at_nodes = interface.to_nodes(nodes, pressure)
-            return lumped(nodes, (*seat.stiffness(at_nodes), *seat.loss(at_nodes)), at_nodes), at_nodes
-    return consistent(interface, (*seat.stiffness(pressure), *seat.loss(pressure))), pressure
+            return lumped(nodes, (*law.stiffness(at_nodes), *law.loss(at_nodes)), at_nodes), at_nodes
+    return consistent(interface, (*law.stiffness(pressure), *law.loss(pressure))), pressure
 
 
-def _flags(seat: Seat, pressure: Array, area: Array) -> list[str]:
+def _flags(law: JointLaw, pressure: Array, area: Array) -> list[str]:
     """Where the law has left its ground."""
     out = []
-    law, total = seat.law, float(area.sum())
-    beyond = pressure > law.greatest_pressure
+    model, total = law.model, float(area.sum())
+    beyond = pressure > model.greatest_pressure
     if np.any(beyond):
-        out.append(f"validity: on {float(area @ beyond) / total:.2%} of the joint the pressure exceeds the "
-                   f"{law.greatest_pressure / 1e6:.3g} MPa at which {law.name} ends; stiffness is held there")  # fmt: skip
-    for text, mask in getattr(seat.answer(pressure), "reasons", {}).items():
+        out.append(
+            f"validity: on {float(area @ beyond) / total:.2%} of the joint the pressure exceeds the "
+            f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends; stiffness is held there"
+        )
+    for text, mask in getattr(law.answer(pressure), "reasons", {}).items():
         share = float(area @ mask) / total
         if share > 0:
-            out.append(f"validity: {law.name} is outside its ground on {share:.0%} of the joint: {text}")
+            out.append(f"validity: {model.name} is outside its ground on {share:.0%} of the joint: {text}")
     if not np.any(pressure > 0):
         out.append("validity: the joint carries no pressure, so it has no stiffness")
     return out
@@ -297,15 +315,15 @@ def _paper_dampers(pairs: NodePairs, mesh: Mesh, materials: Mapping[str, Materia
     return np.asarray(np.einsum("pik,pi,pil->pkl", pairs.frames, c, pairs.frames))
 
 
-def _contact(seat: Seat, spec: JointSpec, greatest: float, mean: float) -> Contact | None:
+def _contact(law: JointLaw, spec: JointSpec, greatest: float, mean: float) -> Contact | None:
     """Sample the law from a ten-thousandth of the end of the table, three times the greatest pressure."""
-    if mean <= seat.least_pressure or spec.gap_map is not None:
+    if mean <= law.least_pressure or spec.gap_map is not None:
         return None
-    end = min(seat.law.greatest_pressure, 3 * greatest)
-    pressure = np.geomspace(max(1e-4 * end, seat.least_pressure), end, 199)
-    closing = np.array([seat.closing(float(p)) for p in pressure])
-    (k_n,), (k_t,) = seat.stiffness(np.array([mean]))
-    (loss_n,), _ = seat.loss(np.array([mean]))
+    end = min(law.model.greatest_pressure, 3 * greatest)
+    pressure = np.geomspace(max(1e-4 * end, law.least_pressure), end, 199)
+    closing = np.array([law.closing(float(p)) for p in pressure])
+    (k_n,), (k_t,) = law.stiffness(np.array([mean]))
+    (loss_n,), _ = law.loss(np.array([mean]))
     return Contact(
         closing=closing,
         pressure=pressure,

@@ -5,7 +5,6 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying import units
 from faying.contact.compare import law_class
@@ -14,8 +13,8 @@ from faying.errors import InputError
 from faying.study.contact import JK_NUMBERS, LawSpec, own_numbers
 from faying.study.schema import Study
 from faying.study.surface import Surface
+from faying.typing import Array
 
-Array = NDArray[np.float64]
 # what a sweep may vary, with its SI unit ("" for a plain number): all of it acts on the joints alone
 NUMBERS = {"surface.D": "", "surface.G": "m", "surface.scan_area": "m^2", "bolt.preload": "N", "joint.friction": ""}
 TEXTS = ("law.model", "law.counterbody")
@@ -51,8 +50,9 @@ def axis_of(text: str) -> Axis:
     key, found, given = text.partition("=")
     key = key.strip()
     if not found or not given.strip():
-        raise InputError(f'--set {text}: give key=first:last:count, for example surface.D=2.2:2.6:40 or '
-                         'bolt.preload="1 kN:20 kN:30"')  # fmt: skip
+        raise InputError(
+            f'--set {text}: give key=first:last:count, for example surface.D=2.2:2.6:40 or bolt.preload="1 kN:20 kN:30"'
+        )
     if key in TEXTS:
         return Axis(key=key, unit="", values=tuple(word.strip() for word in given.split(",")))
     parts = key.split(".")
@@ -60,8 +60,10 @@ def axis_of(text: str) -> Axis:
     unit = known_units.get("bolt.preload" if parts[0] == "bolt" and parts[-1] == "preload" and len(parts) == 3 else key)
     if unit is None:
         known = ", ".join((*NUMBERS, "bolt.NAME.preload", "law.NAME (a parameter of the law)", *TEXTS))
-        raise InputError(f"--set {key}: a sweep varies what acts on the joints alone, which is {known}; anything else changes "
-                         "the parts, and takes a study of its own")  # fmt: skip
+        raise InputError(
+            f"--set {key}: a sweep varies what acts on the joints alone, which is {known}; anything else changes "
+            "the parts, and takes a study of its own"
+        )
     words = given.split(":")
     if len(words) in (3, 4):
         if not words[2].strip().isdigit() or int(words[2]) < 2 or words[3:] not in ([], ["log"]):
@@ -143,8 +145,10 @@ class Grid:
                 raise InputError(f"--set {key}: every joint has a law of its own; a sweep varies the study's [law]")
             law = self.study.law
             if key in TEXTS[:1] and not law.needs_surface:
-                raise InputError(f'--set {key}: [law] gives "{law.model}" in full; other laws would lack their surface. Vary them on a '
-                                 "study with [surface]")  # fmt: skip
+                raise InputError(
+                    f'--set {key}: [law] gives "{law.model}" in full; other laws would lack their surface. Vary them on a '
+                    "study with [surface]"
+                )
             if parts[0] == "law" and key not in TEXTS and "law.model" not in keys and parts[1] not in _law_takes(law):
                 raise InputError(
                     f'--set {key}: the law "{law.model}" takes {", ".join(_law_takes(law)) or "no numbers"}'

@@ -39,8 +39,10 @@ def modes_with_joint(
     energy = np.einsum("ij,ij->j", rigid, K @ rigid)
     still = int(np.count_nonzero(energy < STILL * np.einsum("ij,i,ij->j", rigid, K.diagonal(), rigid)))
     if still not in (0, 6):
-        raise InputError(f"the matrices leave {still} of the six rigid motions free; take them from the model without supports, or "
-                         "held in all directions")  # fmt: skip
+        raise InputError(
+            f"the matrices leave {still} of the six rigid motions free; take them from the model without supports, or "
+            "held in all directions"
+        )
     speeds = [(m.E / (m.density or np.inf)) ** 0.5 for m in attachment.materials.values()]
     shift = 0.02 * max(speeds) / mesh.size
     found = lowest_modes(K, M, count + still + SPARE, shift_frequency=shift, solver=solver)

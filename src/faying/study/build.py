@@ -10,7 +10,7 @@ from faying.fe.mesh import Mesh
 from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt, Washer
 from faying.joint.gap_map import read_gap_map
-from faying.joint.seat import Seat
+from faying.joint.joint_law import JointLaw
 from faying.joint.solid_bolt import SolidBolt
 from faying.joint.structure import Joint, Structure
 from faying.materials import RIGID, ContactPair, Material
@@ -61,17 +61,26 @@ def checked_mesh(study: Study) -> Mesh:
         for name in mesh.parts
         if name not in study.parts
     ]
-    faults += [f"part {name!r} is not in {spec.file.name}; it holds {', '.join(mesh.parts)}" for name in study.parts
-               if name not in mesh.parts]  # fmt: skip
+    faults += [
+        f"part {name!r} is not in {spec.file.name}; it holds {', '.join(mesh.parts)}"
+        for name in study.parts
+        if name not in mesh.parts
+    ]
     known = ", ".join(sorted(mesh.faces))
-    faults += [f"bolt {bolt.name!r} is the part {bolt.part!r}, which is not in {spec.file.name}; it holds {', '.join(mesh.parts)}"
-               for bolt in study.bolts if bolt.part is not None and bolt.part not in mesh.parts]  # fmt: skip
+    faults += [
+        f"bolt {bolt.name!r} is the part {bolt.part!r}, which is not in {spec.file.name}; it holds {', '.join(mesh.parts)}"
+        for bolt in study.bolts
+        if bolt.part is not None and bolt.part not in mesh.parts
+    ]
     named = [("joint", item.name, face) for item in study.joints for face in item.faces]
     named += [("bolt", item.name, face) for item in study.bolts for face in item.faces]
     named += [("support", support.face, support.face) for support in study.supports]
     named += [("mass", mass.face, mass.face) for mass in study.masses if mass.face is not None]
-    faults += [f"{what} {name!r} names the face {face!r}, which does not exist; the faces are {known}"
-               for what, name, face in named if face not in mesh.faces]  # fmt: skip
+    faults += [
+        f"{what} {name!r} names the face {face!r}, which does not exist; the faces are {known}"
+        for what, name, face in named
+        if face not in mesh.faces
+    ]
     if faults:
         raise InputError("the study does not fit its geometry:\n" + "\n".join(f"  - {line}" for line in faults))
     return mesh
@@ -86,8 +95,8 @@ def build_all(study: Study, *, mesh: Mesh | None = None, surfaces: tuple[Surface
     for joint, surface in zip(study.joints, surfaces, strict=True):
         rough, other = (materials[mesh.face_part[face]] for face in joint.faces)
         spec = joint.law or study.law
-        law = law_of(spec, surface, ContactPair(rough, RIGID if spec.counterbody == "rigid" else other))
-        laws.append(law)
+        model = law_of(spec, surface, ContactPair(rough, RIGID if spec.counterbody == "rigid" else other))
+        laws.append(model)
         interface = join(mesh, *joint.faces, reach=joint.reach)
         if joint.gap_map is not None:
             interface = _gap(joint.gap_map, interface)
@@ -96,7 +105,7 @@ def build_all(study: Study, *, mesh: Mesh | None = None, surfaces: tuple[Surface
                 name=joint.name,
                 faces=joint.faces,
                 interface=interface,
-                seat=Seat(law=law, tangential=joint.tangential, nu=rough.nu),
+                law=JointLaw(model=model, tangential=joint.tangential, nu=rough.nu),
                 per_node=joint.springs == "per-node",
                 scan_area=surface.scan_area or None,
                 friction=joint.friction,
@@ -114,8 +123,10 @@ def build_all(study: Study, *, mesh: Mesh | None = None, surfaces: tuple[Surface
 
 
 def _gap(spec: GapSpec, interface: Interface) -> Interface:
-    xy, gap = (units.scale(unit, "m", name=name)
-               for unit, name in ((spec.xy_unit, "gap.xy_unit"), (spec.gap_unit, "gap.gap_unit")))  # fmt: skip
+    xy, gap = (
+        units.scale(unit, "m", name=name)
+        for unit, name in ((spec.xy_unit, "gap.xy_unit"), (spec.gap_unit, "gap.gap_unit"))
+    )
     made = read_gap_map(spec.file, xy_unit=xy, gap_unit=gap, origin=spec.origin, x_axis=spec.x_axis, y_axis=spec.y_axis)
     return made.on(interface)
 

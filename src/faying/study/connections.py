@@ -154,8 +154,10 @@ def bolt_spec(table: Table, index: int) -> BoltSpec:
     forces = table.take("preload", lambda v, name: _rising(v, name, "N", "12 kN"), None)
     torques = table.take("torque", lambda v, name: _rising(v, name, "N m", "20 N m"), None)
     if part is not None and diameter is not None and "torque" not in table.data:
-        table.faults.add(f"{table.where}.diameter goes only with torque here, since the part {part!r} has a shank of its own; leave "
-                         "it out")  # fmt: skip
+        table.faults.add(
+            f"{table.where}.diameter goes only with torque here, since the part {part!r} has a shank of its own; leave "
+            "it out"
+        )
     factor = table.number("nut_factor", None)
     pitch = table.quantity("pitch", "m", None)
     frictions = table.number("thread_friction", None), table.number("head_friction", None)
@@ -168,9 +170,16 @@ def bolt_spec(table: Table, index: int) -> BoltSpec:
             if diameter is None:
                 raise InputError("a torque gives a preload only with the thread's diameter; add diameter")
             forces = tuple(
-                torque_to_preload(t, diameter, nut_factor=factor, pitch=pitch, thread_friction=frictions[0],
-                                  head_friction=frictions[1]) for t in torques
-            )  # fmt: skip
+                torque_to_preload(
+                    t,
+                    diameter,
+                    nut_factor=factor,
+                    pitch=pitch,
+                    thread_friction=frictions[0],
+                    head_friction=frictions[1],
+                )
+                for t in torques
+            )
         except InputError as fault:
             table.faults.add(f"{table.where}: {fault}")
     washers = tuple(_washer(t) for t in table.tables("washer"))
@@ -192,8 +201,12 @@ def bolt_spec(table: Table, index: int) -> BoltSpec:
 
 
 def _washer(table: Table) -> WasherSpec:
-    spec = WasherSpec(outer=table.quantity("outer", "m"), inner=table.quantity("inner", "m"),
-                      thickness=table.quantity("thickness", "m"), material=table.text("material"))  # fmt: skip
+    spec = WasherSpec(
+        outer=table.quantity("outer", "m"),
+        inner=table.quantity("inner", "m"),
+        thickness=table.quantity("thickness", "m"),
+        material=table.text("material"),
+    )
     table.close()
     return spec
 
@@ -207,8 +220,10 @@ def _rising(value: Any, name: str, unit: str, example: str) -> tuple[float, ...]
         if load <= 0:
             raise InputError(f'{name} = "{text}": a preload pulls the joint together and must be positive')
     if any(b <= a or isclose(a, b) for a, b in pairwise(loads)):
-        raise InputError(f"{name} = {value!r}: preloads must rise, since the law is one of loading; the joint remembers "
-                         "the greatest load it has seen")  # fmt: skip
+        raise InputError(
+            f"{name} = {value!r}: preloads must rise, since the law is one of loading; the joint remembers "
+            "the greatest load it has seen"
+        )
     return tuple(loads)
 
 
@@ -220,16 +235,23 @@ def support_spec(table: Table) -> SupportSpec:
             raise InputError(f'{name} = {value!r} should be some of "x", "y", "z" in a list')
         return tuple(value)
 
-    spec = SupportSpec(face=table.text("face"), directions=table.take("directions", axes, ("x", "y", "z")),
-                       stiffness=table.quantity("stiffness", "Pa/m", None))  # fmt: skip
+    spec = SupportSpec(
+        face=table.text("face"),
+        directions=table.take("directions", axes, ("x", "y", "z")),
+        stiffness=table.quantity("stiffness", "Pa/m", None),
+    )
     table.close()
     return spec
 
 
 def mass_spec(table: Table) -> MassSpec:
     """Read one [[mass]]."""
-    spec = MassSpec(mass=table.quantity("mass", "kg"), face=table.text("face", None),
-                    point=table.take("point", point, None), offset=table.take("offset", point, (0.0, 0.0, 0.0)))  # fmt: skip
+    spec = MassSpec(
+        mass=table.quantity("mass", "kg"),
+        face=table.text("face", None),
+        point=table.take("point", point, None),
+        offset=table.take("offset", point, (0.0, 0.0, 0.0)),
+    )
     if (spec.face is None) == (spec.point is None):
         table.faults.add(f"{table.where}: a mass sits on a face or at a point; give one of the two")
     table.close()

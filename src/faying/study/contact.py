@@ -98,8 +98,12 @@ def law_spec(table: Table, folder: Path) -> LawSpec:
         options = _jk_options(table)
         lacking = MISSING_SURFACE
     elif _plain(model) in ("gwmeasured", "measuredheights"):
-        heights = HeightsSpec(file=table.take("gaps", existing_path(folder)), unit=table.text("gaps_unit"),
-                              density=table.quantity("density", "1/m^2"), radius=table.quantity("radius", "m"))  # fmt: skip
+        heights = HeightsSpec(
+            file=table.take("gaps", existing_path(folder)),
+            unit=table.text("gaps_unit"),
+            density=table.quantity("density", "1/m^2"),
+            radius=table.quantity("radius", "m"),
+        )
         if (asperity := table.text("asperity", None)) is not None:
             options["asperity"] = asperity
         if (ratio := table.number("tangent_ratio", None)) is not None:
@@ -107,8 +111,10 @@ def law_spec(table: Table, folder: Path) -> LawSpec:
     elif _plain(model) in ("table", "tabulatedlaw"):
         path = table.take("file", _table_file(folder))
     elif _plain(model) == "persson":
-        table.faults.add(f'{table.where}.model = "{model}" cannot carry a joint by itself: its stiffness grows in proportion to '
-                         "pressure from zero, so the faces never meet; take another law here, and this one with `faying law`")  # fmt: skip
+        table.faults.add(
+            f'{table.where}.model = "{model}" cannot carry a joint by itself: its stiffness grows in proportion to '
+            "pressure from zero, so the faces never meet; take another law here, and this one with `faying law`"
+        )
         return LawSpec(model=model)
     else:
         options, own, lacking = _own_options(table, model)

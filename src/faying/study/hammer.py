@@ -15,8 +15,8 @@ from faying.measured.tested import Tested, read_test
 from faying.result import Result
 from faying.study.response import Solved
 from faying.study.test import HammerSpec
+from faying.typing import Array, Index
 
-Array = NDArray[np.float64]
 Places = tuple[NDArray[Any], Array]
 
 
@@ -31,8 +31,13 @@ class Hammer:
     @classmethod
     def read(cls, spec: HammerSpec) -> "Hammer":
         """Read the file, identify where it holds FRFs alone, fit the frame. Raises ReadError and InputError."""
-        tested = read_test(spec.file, points=spec.points, length_unit=spec.length_unit, direction=spec.direction,
-                           quantity=spec.quantity)  # fmt: skip
+        tested = read_test(
+            spec.file,
+            points=spec.points,
+            length_unit=spec.length_unit,
+            direction=spec.direction,
+            quantity=spec.quantity,
+        )
         if spec.source:
             tested = replace(tested, modes=replace(tested.modes, source=spec.source))
         return cls(spec=spec, tested=tested, transform=tested.transform(spec.frame) if spec.frame else None)
@@ -59,7 +64,7 @@ class Hammer:
         return solved.at_test(lines, outputs, inputs)
 
     @staticmethod
-    def _places(side: tuple[Dof, ...], points: PointMap, nodes: NDArray[np.int64]) -> Places:
+    def _places(side: tuple[Dof, ...], points: PointMap, nodes: Index) -> Places:
         used = [d for d in side if d.point in points.nodes]
         at = np.array([nodes[points.nodes[d.point]] for d in used], dtype=np.int64)
         return at, points.transform.directions(np.array([d.axis() for d in used]).reshape(-1, 3))
@@ -68,11 +73,24 @@ class Hammer:
         """The comparison at the preload of the test."""
         load = self.spec.load
         model = ModelModes(
-            frequencies=result.frequencies[load], loss_factors=result.loss_factors[load], shapes=result.shapes[load],
-            points=result.outline, triangles=result.triangles, load=float(result.loads[load]), title=result.title,
-            source="this study", full=full,
-        )  # fmt: skip
-        found = compare_modes(self.tested.modes, model, transform=self.transform, tolerance=self.spec.tolerance, frf=self.tested.frf,
-                              least_mac=self.spec.least_mac, greatest_shift=self.spec.greatest_shift)  # fmt: skip
+            frequencies=result.frequencies[load],
+            loss_factors=result.loss_factors[load],
+            shapes=result.shapes[load],
+            points=result.outline,
+            triangles=result.triangles,
+            load=float(result.loads[load]),
+            title=result.title,
+            source="this study",
+            full=full,
+        )
+        found = compare_modes(
+            self.tested.modes,
+            model,
+            transform=self.transform,
+            tolerance=self.spec.tolerance,
+            frf=self.tested.frf,
+            least_mac=self.spec.least_mac,
+            greatest_shift=self.spec.greatest_shift,
+        )
         first = ("the test's modes are identified from its FRFs",) if self.tested.identified else ()
         return replace(found, notes=(*first, *self.tested.notes, *found.notes))

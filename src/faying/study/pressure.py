@@ -3,14 +3,13 @@
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying import units
 from faying.errors import InputError, ReadError
 from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
+from faying.typing import Array, Index
 
-Array = NDArray[np.float64]
 HEAD = "node,pressure [MPa]"
 
 
@@ -31,8 +30,10 @@ def read_pressure(given: str | Path, mesh: Mesh, faces: tuple[str, str], interfa
     numbers, values = _table(file)
     at = dict(zip(numbers.tolist(), values.tolist(), strict=True))
     missing = []
-    for name, nodes, shapes in ((faces[0], interface.first_nodes, interface.first_values),
-                                (faces[1], interface.second_nodes, interface.second_values)):  # fmt: skip
+    for name, nodes, shapes in (
+        (faces[0], interface.first_nodes, interface.first_values),
+        (faces[1], interface.second_nodes, interface.second_values),
+    ):
         needed = np.unique(nodes[shapes != 0])
         lost = [int(mesh.numbers[i]) for i in needed if int(mesh.numbers[i]) not in at]
         if not lost:
@@ -44,7 +45,7 @@ def read_pressure(given: str | Path, mesh: Mesh, faces: tuple[str, str], interfa
     raise InputError(f"{file} must give the pressure at every node of one face; it lacks {' and '.join(missing)}")
 
 
-def _table(file: Path) -> tuple[NDArray[np.int64], Array]:
+def _table(file: Path) -> tuple[Index, Array]:
     try:
         lines = [line.strip() for line in file.read_text(encoding="utf-8").splitlines()]
     except (OSError, UnicodeDecodeError) as fault:
@@ -68,8 +69,10 @@ def _table(file: Path) -> tuple[NDArray[np.int64], Array]:
     if not numbers or not np.all(np.isfinite(values)):
         raise ReadError(f"{file} holds no pressures, or some that are not numbers")
     if min(values) < -1e-9 * max(map(abs, values)):
-        raise InputError(f"{file}: {sum(v < 0 for v in values)} pressures are negative; pressure presses the faces together and "
-                         "counts as positive: change the sign of the column, and write 0 where the joint is open")  # fmt: skip
+        raise InputError(
+            f"{file}: {sum(v < 0 for v in values)} pressures are negative; pressure presses the faces together and "
+            "counts as positive: change the sign of the column, and write 0 where the joint is open"
+        )
     if len(set(numbers)) < len(numbers):
         raise InputError(f"{file} gives some nodes twice; give each once")
     return np.array(numbers), np.maximum(values, 0.0)

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.fe.constraint import hold
 from faying.fe.damped import DampedModes
@@ -15,8 +14,8 @@ from faying.joint.structure import Structure
 from faying.measured.model import FullResponse
 from faying.result import Receptance
 from faying.study.schema import Study
+from faying.typing import Array
 
-Array = NDArray[np.float64]
 POOR = 0.02  # residual beyond which a note is due
 
 
@@ -45,8 +44,13 @@ class Solved:
             for side in (spec.inputs, spec.outputs)
         )
         found = self._at(np.linspace(spec.first, spec.last, spec.points), outputs, inputs)
-        return Receptance(frequencies=found.frequencies, values=found.receptance, inputs=spec.inputs, outputs=spec.outputs,
-                          error=float(found.error.max())), poor(found.checked, found.error, "of the study")  # fmt: skip
+        return Receptance(
+            frequencies=found.frequencies,
+            values=found.receptance,
+            inputs=spec.inputs,
+            outputs=spec.outputs,
+            error=float(found.error.max()),
+        ), poor(found.checked, found.error, "of the study")
 
     def at_test(
         self, frequencies: Array, outputs: tuple[Array, Array], inputs: tuple[Array, Array]
@@ -70,11 +74,19 @@ class Solved:
         spec = self.study.response
         eta = 0.0 if spec is None else spec.structural_loss
         return frequency_response(
-            self.modes, self.damped, self.stiffness, self.mass, self.loss, forces=self._columns(*inputs),
-            outputs=self._columns(*outputs), frequencies=frequencies, rigid=self.structure.rigid.shape[1], kind=self.study.damping,
+            self.modes,
+            self.damped,
+            self.stiffness,
+            self.mass,
+            self.loss,
+            forces=self._columns(*inputs),
+            outputs=self._columns(*outputs),
+            frequencies=frequencies,
+            rigid=self.structure.rigid.shape[1],
+            kind=self.study.damping,
             structural_loss=eta,
             parts=hold(self.structure.matrices[0], self.structure.held, 0.0) if eta else None,
-        )  # fmt: skip
+        )
 
     def _columns(self, nodes: Array, axes: Array) -> Array:
         """Unit forces (unknowns, k) at nodes along axes; nothing where a support holds."""
@@ -90,5 +102,7 @@ def poor(frequencies: Array, error: Array, which: str) -> list[str]:
     worst = int(np.argmax(error))
     if error[worst] <= POOR:
         return []
-    return [f"the frequency response {which} leaves a residual of {error[worst]:.1%} at {frequencies[worst]:g} Hz, where modes beyond "
-            "those computed count; raise modes.count, or end at a lower frequency"]  # fmt: skip
+    return [
+        f"the frequency response {which} leaves a residual of {error[worst]:.1%} at {frequencies[worst]:g} Hz, where modes beyond "
+        "those computed count; raise modes.count, or end at a lower frequency"
+    ]

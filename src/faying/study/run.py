@@ -5,16 +5,15 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.contact.law import ContactLaw
 from faying.fe.constraint import hold
 from faying.fe.damped import DampedModes, damped_modes
 from faying.fe.modes import Modes, lowest_modes
 from faying.fe.solve import chosen
-from faying.joint.balance import Preload
-from faying.joint.held import STILL, check_motions, held_preload, open_joints
+from faying.joint.equilibrium import PreloadState
 from faying.joint.structure import Springs, Structure, tie
+from faying.joint.support_check import STILL, check_motions, held_preload, open_joints
 from faying.measured.model import FullResponse
 from faying.result import Comparison, Receptance, Result
 from faying.study.build import build_all, checked_mesh, surfaces_of
@@ -22,8 +21,8 @@ from faying.study.hammer import Hammer
 from faying.study.response import Solved
 from faying.study.schema import Study
 from faying.study.surface import Surface, law_facts
+from faying.typing import Array, Complex
 
-Array = NDArray[np.float64]
 Report = Callable[[str], None]
 SPARE_MODES = 6  # beyond those asked for, so that the basis of the complex modes does not end at the last of them
 SIZES = 3e-3, 30.0  # m: a structure smaller or larger than these is told, for its unit may be wrong
@@ -59,7 +58,7 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     shift = study.shift_frequency or structure.shift_frequency
     still = structure.rigid.shape[1]
     count = still + study.mode_count + SPARE_MODES
-    preloads: list[Preload] = []
+    preloads: list[PreloadState] = []
     per_load: list[tuple[Springs, ...]] = []
     modes: list[Modes] = []
     damped: list[DampedModes] = []
@@ -74,8 +73,9 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         found = lowest_modes(stiffness, M, count, shift_frequency=shift, solver=study.solver)
         check_motions(structure, found)
         complex_modes = damped_modes(found, stiffness, M, loss, rigid=still, count=study.mode_count, kind=study.damping)
-        solved = Solved(study=study, structure=structure, modes=found, damped=complex_modes, stiffness=stiffness, mass=M,
-                        loss=loss)  # fmt: skip
+        solved = Solved(
+            study=study, structure=structure, modes=found, damped=complex_modes, stiffness=stiffness, mass=M, loss=loss
+        )
         if study.response is not None:
             tell(f"frequency response at {load / 1e3:g} kN")
             answer, said = solved.response()
@@ -105,8 +105,10 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
             f"a rigid-body motion comes out at {rigid.max():.2g} Hz instead of 0: the solution has lost digits"
         )
     if study.damping == "viscous":
-        notes.append("the dampers are those of the JK paper, c = eta sqrt(M k) point by point: their sum grows with the square "
-                     "root of the number of points, so loss factors depend on the mesh")  # fmt: skip
+        notes.append(
+            "the dampers are those of the JK paper, c = eta sqrt(M k) point by point: their sum grows with the square "
+            "root of the number of points, so loss factors depend on the mesh"
+        )
     k_n, k_t = _maps(structure, preloads)
     result = Result(
         title=study.title,
@@ -149,7 +151,7 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     return replace(result, hammer=hammer.beside(result, full))
 
 
-def _mac(first: NDArray[np.complex128], other: NDArray[np.complex128]) -> Array:
+def _mac(first: Complex, other: Complex) -> Array:
     """Modal assurance criterion [-] (m, m) of two sets of modes (unknowns, m) (Allemang 2003, eq. 4)."""
     sizes = [np.einsum("im,im->m", a.conj(), a).real for a in (first, other)]
     return np.asarray(np.abs(first.conj().T @ other) ** 2 / np.outer(*sizes))
@@ -175,43 +177,45 @@ def _tied(structure: Structure, count: int, shift: float, solver: str | None, no
     return lowest_modes(K, M, count, shift_frequency=shift, solver=solver)
 
 
-def _flags(structure: Structure, preload: Preload, load: float) -> list[str]:
+def _flags(structure: Structure, preload: PreloadState, load: float) -> list[str]:
     """Say where the law has left its ground, with the share of the joint's area."""
     out = [
         f"{name}, {load / 1e3:g} kN: no contact is left; the joint carries nothing"
         for name in open_joints(structure, preload.pressures)
     ]
     for joint, pressure in zip(structure.joints, preload.pressures, strict=True):
-        end = joint.seat.law.greatest_pressure
+        end = joint.law.model.greatest_pressure
         if np.any(pressure > end):
             share = float(joint.interface.weights @ (pressure > end) / joint.interface.area)
             out.append(
                 f"{joint.name}, {load / 1e3:g} kN: on {share:.2%} of the joint the pressure exceeds the {end / 1e6:.3g} MPa at "
-                f"which {joint.seat.law.name} ends with this surface; stiffness is held there"
+                f"which {joint.law.model.name} ends with this surface; stiffness is held there"
             )
-        answer = joint.seat.answer(pressure)
+        answer = joint.law.answer(pressure)
         reasons = getattr(answer, "reasons", {})
         if answer.loss_n is None and answer.loss_t is None:
-            out.append(f"{joint.name}: {joint.seat.law.name} defines no loss; the joint damps nothing")
+            out.append(f"{joint.name}: {joint.law.model.name} defines no loss; the joint damps nothing")
         for text, mask in reasons.items():
             share = float(joint.interface.weights @ mask / joint.interface.area)
             if share > 0:
-                out.append(f"{joint.name}, {load / 1e3:g} kN: {joint.seat.law.name} is outside its ground on {share:.0%} of "
-                           f"the joint: {text}")  # fmt: skip
+                out.append(
+                    f"{joint.name}, {load / 1e3:g} kN: {joint.law.model.name} is outside its ground on {share:.0%} of "
+                    f"the joint: {text}"
+                )
     return out
 
 
-def _maps(structure: Structure, preloads: list[Preload]) -> tuple[Array, Array]:
+def _maps(structure: Structure, preloads: list[PreloadState]) -> tuple[Array, Array]:
     """k_n and k_t per area at the points of all joints (load, point)."""
     pairs = [
-        [joint.seat.stiffness(p) for joint, p in zip(structure.joints, preload.pressures, strict=True)]
+        [joint.law.stiffness(p) for joint, p in zip(structure.joints, preload.pressures, strict=True)]
         for preload in preloads
     ]
     k_n, k_t = (np.stack([np.concatenate([pair[k] for pair in row]) for row in pairs]) for k in (0, 1))
     return k_n, k_t
 
 
-def _convergence(preload: Preload, springs: tuple[Springs, ...]) -> dict[str, float]:
+def _convergence(preload: PreloadState, springs: tuple[Springs, ...]) -> dict[str, float]:
     totals = [s.total() for s in springs]
     return {
         "imbalance": preload.imbalance,
@@ -238,8 +242,10 @@ def _compare(
         motion = np.abs(found[:, here] @ axis).max(axis=1)
         seen = np.flatnonzero(motion >= test.threshold * motion.max())
         if len(seen) < measured.shape[1]:
-            notes.append(f"the test lists {measured.shape[1]} modes but only {len(seen)} of those computed move at its points; "
-                         "raise modes.count")  # fmt: skip
+            notes.append(
+                f"the test lists {measured.shape[1]} modes but only {len(seen)} of those computed move at its points; "
+                "raise modes.count"
+            )
             return None
         paired[row] = seen[: measured.shape[1]]
         predicted[row] = frequencies[row, paired[row]]

@@ -116,9 +116,27 @@ class Study:
         test, hammer = read_test(top, folder, max((b.preload for b in bolts if b.preload), key=len, default=()))
         top.close()
         faults.raise_if_any(where)
-        return cls(title=title, folder=folder, materials=materials, geometry=geometry, parts=parts, surface=surface,
-                   law=law, joints=joints, bolts=bolts, supports=supports, masses=masses, mode_count=mode_count, damping=damping, order=order, response=response, solver=solver, shift_frequency=shift,
-                   test=test, hammer=hammer)  # fmt: skip
+        return cls(
+            title=title,
+            folder=folder,
+            materials=materials,
+            geometry=geometry,
+            parts=parts,
+            surface=surface,
+            law=law,
+            joints=joints,
+            bolts=bolts,
+            supports=supports,
+            masses=masses,
+            mode_count=mode_count,
+            damping=damping,
+            order=order,
+            response=response,
+            solver=solver,
+            shift_frequency=shift,
+            test=test,
+            hammer=hammer,
+        )
 
 
 def _materials(top: Table) -> dict[str, Material]:
@@ -209,7 +227,13 @@ def _response(top: Table) -> ResponseSpec | None:
             pairs.append((one.take("point", point), one.take("direction", direction)))
             one.close()
         sides.append(tuple(pairs))
-    spec = ResponseSpec(inputs=sides[0], outputs=sides[1], first=first, last=last, points=table.count("points", 1000),
-                        structural_loss=table.number("structural_loss", 0.0))  # fmt: skip
+    spec = ResponseSpec(
+        inputs=sides[0],
+        outputs=sides[1],
+        first=first,
+        last=last,
+        points=table.count("points", 1000),
+        structural_loss=table.number("structural_loss", 0.0),
+    )
     table.close()
     return spec

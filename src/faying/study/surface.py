@@ -7,7 +7,7 @@ from faying import units
 from faying.contact.compare import ASPERITIES, law_class, laws_of_surface
 from faying.contact.inputs import SurfaceInputs
 from faying.contact.jk import JK
-from faying.contact.law import Array, ContactLaw
+from faying.contact.law import ContactLaw
 from faying.contact.measured_heights import MeasuredHeights
 from faying.contact.tabulated import TabulatedLaw
 from faying.errors import InputError
@@ -18,6 +18,7 @@ from faying.surface.form import prepared
 from faying.surface.fractal import fit_fractal
 from faying.surface.read import read_scan
 from faying.surface.scan import Scan
+from faying.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,8 +78,14 @@ def law_of(spec: LawSpec, surface: Surface, pair: ContactPair) -> ContactLaw:
     """Return the law of a study; any but JK that is not given in full takes its inputs from the scan, so needs one."""
     if spec.heights is not None:
         gaps, chance = _heights(spec.heights)
-        return MeasuredHeights(gaps=gaps, chance=chance, density=spec.heights.density, radius=spec.heights.radius,
-                               pair=pair, **spec.options)  # fmt: skip
+        return MeasuredHeights(
+            gaps=gaps,
+            chance=chance,
+            density=spec.heights.density,
+            radius=spec.heights.radius,
+            pair=pair,
+            **spec.options,
+        )
     if spec.table is not None:
         return TabulatedLaw.from_csv(spec.table)
     if spec.model.lower() == "jk":
@@ -117,6 +124,10 @@ def law_facts(law: ContactLaw) -> dict[str, Any]:
     }
     facts: dict[str, Any] = {"name": law.name, **own, "greatest_pressure [Pa]": law.greatest_pressure}
     if isinstance(law, JK):
-        facts |= {"E_star [Pa]": law.pair.E_star, "G_star [Pa]": law.pair.G_star, "hardness [Pa]": law.pair.hardness,
-                  "limits [m2]": list(law.limits)}  # fmt: skip
+        facts |= {
+            "E_star [Pa]": law.pair.E_star,
+            "G_star [Pa]": law.pair.G_star,
+            "hardness [Pa]": law.pair.hardness,
+            "limits [m2]": list(law.limits),
+        }
     return facts

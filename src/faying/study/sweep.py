@@ -9,12 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import FayingError, InputError
+from faying.joint.joint_law import JointLaw
 from faying.joint.reduce import STATIC_SHARE, Reduction
 from faying.joint.reduced import ReducedModel, densities
-from faying.joint.seat import Seat
 from faying.joint.structure import Structure
 from faying.materials import RIGID, ContactPair, Material
 from faying.study.axes import Axis, Grid
@@ -22,8 +21,8 @@ from faying.study.build import build_all, checked_mesh, surfaces_of
 from faying.study.schema import Study
 from faying.study.surface import law_of
 from faying.study.sweep_files import Store, Sweep
+from faying.typing import Array
 
-Array = NDArray[np.float64]
 CORNERS, RANDOM, CHECKS = 16, 8, 5  # variants trained on, and those that are looked at afterwards
 CHUNK = 25  # evaluations between two writings to disk
 # the estimate is that of a basis a hundred times coarser; beyond this multiple of the tolerance a point is trained on
@@ -40,15 +39,15 @@ class Recipe:
     grid: Grid
     pairs: tuple[tuple[Material, Material], ...]
     # laws made lately, with their tables: along an axis of preload they stay the same
-    _lately: dict[tuple[Any, ...], Seat] = field(default_factory=dict, repr=False, compare=False)
+    _lately: dict[tuple[Any, ...], JointLaw] = field(default_factory=dict, repr=False, compare=False)
 
     def __getstate__(self) -> dict[str, Any]:
         return {"grid": self.grid, "pairs": self.pairs, "_lately": {}}
 
-    def seats(self, index: int) -> tuple[list[Seat], Array, list[float | None]]:
+    def laws(self, index: int) -> tuple[list[JointLaw], Array, list[float | None]]:
         """Law of each joint, force of each bolt [N] and friction of each joint at one point of the grid."""
         point = self.grid.point(index)
-        seats = []
+        laws = []
         for number, (joint, surface) in enumerate(zip(point.study.joints, point.surfaces, strict=True)):
             spec = joint.law or point.study.law
             key = (number, repr(spec), surface.D, surface.G, surface.scan_area)
@@ -57,9 +56,9 @@ class Recipe:
                 law = law_of(spec, surface, ContactPair(rough, RIGID if spec.counterbody == "rigid" else other))
                 if len(self._lately) >= LATELY:
                     self._lately.pop(next(iter(self._lately)))
-                self._lately[key] = Seat(law=law, tangential=joint.tangential, nu=rough.nu)
-            seats.append(self._lately[key])
-        return seats, point.forces, [joint.friction for joint in point.study.joints]
+                self._lately[key] = JointLaw(model=law, tangential=joint.tangential, nu=rough.nu)
+            laws.append(self._lately[key])
+        return laws, point.forces, [joint.friction for joint in point.study.joints]
 
 
 def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dict[str, Array]:
@@ -68,19 +67,30 @@ def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dic
     weights = np.concatenate(model.weights)
     for index in indices:
         nothing = np.full(model.count, np.nan)
-        row: dict[str, Any] = {"frequencies": nothing, "loss_factors": nothing, "estimate": np.nan,
-                               "greatest_pressure": np.nan, "open_share": np.nan, "beyond_share": np.nan}  # fmt: skip
+        row: dict[str, Any] = {
+            "frequencies": nothing,
+            "loss_factors": nothing,
+            "estimate": np.nan,
+            "greatest_pressure": np.nan,
+            "open_share": np.nan,
+            "beyond_share": np.nan,
+        }
         reason = ""
         try:
-            seats, forces, model.friction = recipe.seats(index)
-            found = model.evaluate(seats, forces)
+            laws, forces, model.friction = recipe.laws(index)
+            found = model.evaluate(laws, forces)
             p = np.concatenate(found.preload.pressures)
-            end = np.concatenate([np.full(len(q), s.law.greatest_pressure) for q, s in zip(found.preload.pressures, seats,
-                                                                                           strict=True)])  # fmt: skip
+            end = np.concatenate(
+                [np.full(len(q), s.model.greatest_pressure) for q, s in zip(found.preload.pressures, laws, strict=True)]
+            )
             touching = float(weights @ (p > 0))
             beyond = float(weights @ (p > end)) / touching if touching else 0.0
-            row |= {"estimate": found.estimate.max(), "greatest_pressure": p.max(), "beyond_share": beyond,
-                    "open_share": 1 - touching / weights.sum()}  # fmt: skip
+            row |= {
+                "estimate": found.estimate.max(),
+                "greatest_pressure": p.max(),
+                "beyond_share": beyond,
+                "open_share": 1 - touching / weights.sum(),
+            }
             if beyond > BEYOND:
                 reason = f"more than {BEYOND:.0%} of the contact is pressed beyond the end of the law"
             else:
@@ -163,8 +173,9 @@ def sweep(
 class _Trainer:
     """Makes the bases when they are first needed, and enriches them at points of the grid."""
 
-    def __init__(self, study: Study, structure: Structure, recipe: Recipe, tolerance: float,
-                 tell: Callable[[str, int], None]) -> None:  # fmt: skip
+    def __init__(
+        self, study: Study, structure: Structure, recipe: Recipe, tolerance: float, tell: Callable[[str, int], None]
+    ) -> None:
         self.study, self.structure, self.recipe, self.tolerance, self.tell = study, structure, recipe, tolerance, tell
         self.reduction: Reduction | None = None
 
@@ -191,9 +202,15 @@ class _Trainer:
         for index in dict.fromkeys(points):
             self.tell("reference solution", 0)
             try:
-                seats, forces, _ = self.recipe.seats(index)
-                return Reduction.of(self.structure, seats, forces, count=self.study.mode_count,
-                                    shift_frequency=self.study.shift_frequency, solver=self.study.solver)  # fmt: skip
+                laws, forces, _ = self.recipe.laws(index)
+                return Reduction.of(
+                    self.structure,
+                    laws,
+                    forces,
+                    count=self.study.mode_count,
+                    shift_frequency=self.study.shift_frequency,
+                    solver=self.study.solver,
+                )
             except FayingError as met:
                 fault = fault or met
         assert fault is not None
@@ -204,8 +221,8 @@ class _Trainer:
         for number, index in enumerate(points):
             self.tell(f"{what} {number + 1}", 0)
             try:
-                seats, forces, reduction.model.friction = self.recipe.seats(index)
-                reduction.train(seats, forces, tolerance=self.tolerance)
+                laws, forces, reduction.model.friction = self.recipe.laws(index)
+                reduction.train(laws, forces, tolerance=self.tolerance)
             except FayingError as met:  # a point without an answer is reported when it is evaluated
                 fault = met
                 reduction.model.last = None
@@ -218,10 +235,10 @@ class _Trainer:
         for index in points:
             self.tell("check", 0)
             try:
-                seats, forces, reduction.model.friction = self.recipe.seats(index)
-                found = reduction.model.equilibrium(seats, forces)
-                error, _ = reduction.modal_error(densities(seats, found.pressures))
-                balance, _ = reduction.static_error(seats, forces, found)
+                laws, forces, reduction.model.friction = self.recipe.laws(index)
+                found = reduction.model.equilibrium(laws, forces)
+                error, _ = reduction.modal_error(densities(laws, found.pressures))
+                balance, _ = reduction.static_error(laws, forces, found)
             except FayingError:
                 reduction.model.last = None
                 continue

@@ -8,14 +8,12 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
-from faying.files import whole
+from faying.files import write_atomically
 from faying.joint.reduced import ReducedModel
 from faying.study.axes import Axis, Grid
-
-Array = NDArray[np.float64]
+from faying.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,8 +64,13 @@ class Store:
     """The folder OUT.part beside the output: the reduced model and every chunk that is done."""
 
     COLUMNS: ClassVar[tuple[str, ...]] = (
-        "frequencies", "loss_factors", "estimate", "greatest_pressure", "open_share", "beyond_share",
-    )  # fmt: skip
+        "frequencies",
+        "loss_factors",
+        "estimate",
+        "greatest_pressure",
+        "open_share",
+        "beyond_share",
+    )
 
     def __init__(self, out: Path, fingerprint: str, size: int, count: int) -> None:
         if out.suffix != ".nc":
@@ -88,8 +91,10 @@ class Store:
             except (OSError, ValueError, KeyError):
                 known = None
             if known != fingerprint:
-                raise InputError(f"{self.folder} is what another sweep has left, or another version of this study; remove it, "
-                                 "or choose another output with --out")  # fmt: skip
+                raise InputError(
+                    f"{self.folder} is what another sweep has left, or another version of this study; remove it, "
+                    "or choose another output with --out"
+                )
             for file in sorted(self.folder.glob("chunk-*.npz")):
                 with np.load(file) as chunk:
                     self._take(chunk["indices"], {name: chunk[name] for name in (*self.COLUMNS, "reasons")})
@@ -99,7 +104,7 @@ class Store:
             except OSError as fault:
                 raise InputError(f"cannot make {self.folder}: {fault.strerror}; choose another output") from None
             text = json.dumps({"fingerprint": fingerprint, "points": size})
-            whole(label, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+            write_atomically(label, lambda temporary: temporary.write_text(text, encoding="utf-8"))
         self.number = len(list(self.folder.glob("chunk-*.npz")))
 
     def forget(self) -> None:
@@ -152,11 +157,16 @@ class Store:
         shaped = {name: self.rows[name].reshape(*grid.shape, *self.rows[name].shape[1:]) for name in self.COLUMNS}
         texts, counts = np.unique(self.reasons[self.reasons != ""].astype(str), return_counts=True)
         done = Sweep(
-            title=title, axes=grid.axes, reasons=dict(zip(texts.tolist(), counts.tolist(), strict=True)),
-            tolerance=tolerance, unknowns=unknowns, basis=(len(model.static_stiffness), len(model.dynamic_mass)),
-            path=self.out, **shaped,
-        )  # fmt: skip
-        whole(self.out, lambda temporary: _netcdf(done, temporary))
+            title=title,
+            axes=grid.axes,
+            reasons=dict(zip(texts.tolist(), counts.tolist(), strict=True)),
+            tolerance=tolerance,
+            unknowns=unknowns,
+            basis=(len(model.static_stiffness), len(model.dynamic_mass)),
+            path=self.out,
+            **shaped,
+        )
+        write_atomically(self.out, lambda temporary: _netcdf(done, temporary))
         shutil.rmtree(self.folder)
         return done
 
@@ -166,7 +176,7 @@ def _save(path: Path, arrays: dict[str, Any]) -> None:
         with temporary.open("wb") as file:  # a file, since savez adds .npz to names
             np.savez(file, **arrays)
 
-    whole(path, write)
+    write_atomically(path, write)
 
 
 UNITS = {"frequencies": "Hz", "greatest_pressure": "Pa"}

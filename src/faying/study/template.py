@@ -4,7 +4,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from faying.errors import InputError
-from faying.files import whole
+from faying.files import write_atomically
 
 TEXT = """# A Faying study. Quantities are text with a unit; plain numbers have no dimension.
 # Run it with: faying run {name}
@@ -132,7 +132,10 @@ def write(study: Path, *, force: bool = False) -> list[Path]:
             raise InputError(
                 f"{path} exists already, with other content; name another file, or replace it with --force"
             )
-    return [step if kept else whole(step, blocks), whole(study, lambda path: path.write_text(text, encoding="utf-8"))]
+    return [
+        step if kept else write_atomically(step, blocks),
+        write_atomically(study, lambda path: path.write_text(text, encoding="utf-8")),
+    ]
 
 
 def _solids(step: Path | None) -> list[str]:

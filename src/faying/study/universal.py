@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.measured.frf import FRF, Dof
@@ -12,8 +11,8 @@ from faying.measured.modes import ModeSet
 from faying.measured.uff_write import write_uff
 from faying.result import Receptance, Result
 from faying.study.schema import ResponseSpec
+from faying.typing import Array
 
-Array = NDArray[np.float64]
 MOST_POINTS = 400
 TEST_FILES = ("test_modes.uff", "test_frf.uff")
 
@@ -69,8 +68,14 @@ def _at_test(result: Result, folder: Path) -> list[Path]:
         lines = np.isfinite(beside.predicted[pairs]).all(axis=0)
         if lines.sum() >= 2:
             values = np.where(pairs[:, :, None], beside.predicted, np.nan)[:, :, lines]
-            of_model = FRF(frequency=frf.frequency[lines], values=values, outputs=frf.outputs, inputs=frf.inputs,
-                           quantity=frf.quantity, positions=positions)  # fmt: skip
+            of_model = FRF(
+                frequency=frf.frequency[lines],
+                values=values,
+                outputs=frf.outputs,
+                inputs=frf.inputs,
+                quantity=frf.quantity,
+                positions=positions,
+            )
             made.append(write_uff(folder / TEST_FILES[1], of_model, title=title))
     return made
 
@@ -78,8 +83,13 @@ def _at_test(result: Result, folder: Path) -> list[Path]:
 def _modes(frequencies: Array, losses: Array, shapes: Array, positions: Mapping[int, tuple[float, ...]]) -> ModeSet:
     """Shapes (m, p, 3) at the points of `positions`, in their order."""
     dofs = tuple(Dof(label, axis) for label in positions for axis in "xyz")
-    return ModeSet(frequencies=frequencies, loss_factors=losses, shapes=shapes.reshape(len(shapes), -1).astype(complex), dofs=dofs,
-                   positions=positions)  # type: ignore[arg-type]  # fmt: skip
+    return ModeSet(
+        frequencies=frequencies,
+        loss_factors=losses,
+        shapes=shapes.reshape(len(shapes), -1).astype(complex),
+        dofs=dofs,
+        positions=positions,  # type: ignore[arg-type]
+    )
 
 
 def _labels(response: Receptance | None) -> dict[tuple[float, ...], int]:
@@ -95,8 +105,14 @@ def _frf(response: Receptance, labels: dict[tuple[float, ...], int]) -> FRF:
         for k, (point, axis) in enumerate(side):
             known.setdefault(Dof(labels[tuple(point)], _name(axis) or ""), k)
     values = response.values[:, list(rows.values())][:, :, list(columns.values())].transpose(1, 2, 0)
-    receptance = FRF(frequency=response.frequencies, values=values, outputs=tuple(rows), inputs=tuple(columns), quantity="receptance",
-                     positions={k: p for p, k in labels.items()})  # type: ignore[misc]  # fmt: skip
+    receptance = FRF(
+        frequency=response.frequencies,
+        values=values,
+        outputs=tuple(rows),
+        inputs=tuple(columns),
+        quantity="receptance",
+        positions={k: p for p, k in labels.items()},  # type: ignore[misc]
+    )
     return receptance.to("accelerance")
 
 

@@ -11,9 +11,10 @@ from faying.surface.estimate import clean_spectrum, with_intervals
 from faying.surface.form import Prepared, prepared
 from faying.surface.fractal import FractalFit, result
 from faying.surface.powerlaw import estimate_from, fit, fit_band, smearing, supported_band
-from faying.surface.scan import Array, Scan
+from faying.surface.scan import Scan
 from faying.surface.spectrum import Spectrum
 from faying.surface.summits import summits
+from faying.typing import Array
 
 
 @final
@@ -85,8 +86,14 @@ def combine(
         law, notes = fit_band(joint, low, high)
     except NotConverged as fault:
         raise InputError(f"the scans share too few wavelengths ({fault})") from fault
-    estimate = with_intervals(*estimate_from(law), law.pivot, c, band=(1 / float(law.used[-1]), 1 / float(law.used[0])),
-                              misfit=law.misfit, notes=notes)  # fmt: skip
+    estimate = with_intervals(
+        *estimate_from(law),
+        law.pivot,
+        c,
+        band=(1 / float(law.used[-1]), 1 / float(law.used[0])),
+        misfit=law.misfit,
+        notes=notes,
+    )
     parts = [summits(r) for r in (ready_a, ready_b)]
     m0, m2, m4 = (sum(getattr(p, name) for p in parts) for name in ("m0", "m2", "m4"))
     length = max(min(scan_a.size), min(scan_b.size))

@@ -14,8 +14,9 @@ from faying.surface.form import Prepared
 from faying.surface.lines import find_lines
 from faying.surface.moments import invert_ratio
 from faying.surface.powerlaw import PowerLaw, estimate_from, fit_band, smearing, supported_band
-from faying.surface.scan import Array, Profile, Scan
+from faying.surface.scan import Profile, Scan
 from faying.surface.spectrum import Spectrum, binned, periodogram
+from faying.typing import Array
 
 Z95 = 1.959963984540054  # two-sided 95 % point of the normal distribution
 Limits = tuple[float, float] | None

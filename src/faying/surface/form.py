@@ -4,12 +4,11 @@ from dataclasses import dataclass
 from typing import Any, TypeVar, cast, final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
-from faying.surface.scan import Array, Profile, Scan, usable
+from faying.surface.scan import Profile, Scan, usable
+from faying.typing import Array, Mask
 
-Mask = NDArray[np.bool_]
 Lines = TypeVar("Lines", bound=Scan | Profile)
 
 SPIKE = 12.0  # how many robust standard deviations above its neighbours' median makes a point a spike

@@ -17,7 +17,7 @@ from typing import Any, final
 import numpy as np
 
 from faying.errors import InputError
-from faying.surface.scan import Array
+from faying.typing import Array
 
 GAMMA = 1.5  # the ratio of the series' frequencies that the network was trained for
 WEIGHTS = Path(__file__).with_name("fpenn.npz")

@@ -8,8 +8,9 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.surface.form import prepared
-from faying.surface.scan import Array, Profile, Scan
+from faying.surface.scan import Profile, Scan
 from faying.surface.spectrum import periodogram
+from faying.typing import Array
 
 
 @final
@@ -78,8 +79,11 @@ def sections(scan: Scan, angle: float, count: int = 32) -> list[Profile]:
         where = np.array([line[1] / scan.spacing[1], line[0] / scan.spacing[0]])
         z: Array = map_coordinates(scan.heights, where, order=1, mode="nearest")
         note = f"section at {np.degrees(angle):.1f} deg"
-        out.append(Profile(heights=z, spacing=step, source=scan.source, instrument=scan.instrument,
-                           history=(*scan.history, note)))  # fmt: skip
+        out.append(
+            Profile(
+                heights=z, spacing=step, source=scan.source, instrument=scan.instrument, history=(*scan.history, note)
+            )
+        )
     if not out:
         raise InputError(f"{scan.source}: no line of 16 points at {np.degrees(angle):.1f} deg fits into the scan")
     return out

@@ -1,9 +1,9 @@
 """Peaks of a spectrum that belong to tool marks, not to the random part of the surface."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from faying.surface.scan import Array, Scan
+from faying.surface.scan import Scan
+from faying.typing import Array, Mask
 
 THRESHOLD = 40.0  # a coefficient this many times its surroundings' mean; chance reaches 20 now and then
 REACH = 5  # surroundings: coefficients up to this many steps away each way
@@ -11,7 +11,7 @@ MOST = 20000  # more candidates than this are an uneven spectrum, not lines
 LARGEST = 0.25  # share of the rings of frequency that tool marks may rule
 
 
-def find_lines(scan: Scan, power: Array, frequency: Array) -> NDArray[np.bool_]:
+def find_lines(scan: Scan, power: Array, frequency: Array) -> Mask:
     """Mark the coefficients of a periodogram (half-plane, as from `spectrum.periodogram`) that lie on sharp peaks.
 
     The periodogram is divided by the median over each ring of frequency; a coefficient is on a peak where it is 40

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from faying.errors import InputError
 from faying.surface.convention import G_from_density, prefactor
-from faying.surface.scan import Array
+from faying.typing import Array
 
 # Ds is looked for in this range; the power law has no finite variance per octave outside (1, 2)
 LOWEST_DS, HIGHEST_DS = 0.5, 2.5

@@ -13,8 +13,8 @@ from typing import final
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.surface.scan import Array
 from faying.surface.spectrum import Spectrum
+from faying.typing import Array
 
 LINES = 8.0  # misfit and
 GAPS = 0.8  # rms of ln(density) about a parabola above which a spectrum is taken as one of separate lines

@@ -15,9 +15,10 @@ import numpy as np
 from faying.errors import FayingError, InputError, NotConverged
 from faying.surface.convention import cut_factor, structure_coefficient
 from faying.surface.estimate import Z95, Estimate, Limits, with_intervals
-from faying.surface.form import Mask, Prepared
-from faying.surface.scan import Array, Profile, Scan
+from faying.surface.form import Prepared
+from faying.surface.scan import Profile, Scan
 from faying.surface.spectrum import structure_function
+from faying.typing import Array, Mask
 
 Part = tuple[Array, Mask]
 # heights, known points, spacings in the order of the axes, smallest and largest size [m] -> D, ln B

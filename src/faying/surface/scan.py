@@ -5,11 +5,9 @@ from math import isfinite
 from typing import Any, Self, final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError
-
-Array = NDArray[np.float64]
+from faying.typing import Array
 
 
 @final

@@ -11,8 +11,9 @@ from faying.surface.estimate import Z95, with_intervals
 from faying.surface.form import prepared
 from faying.surface.fractal import FractalFit, fit_fractal, result
 from faying.surface.lay import find_lay
-from faying.surface.scan import Array, Profile, Scan
+from faying.surface.scan import Profile, Scan
 from faying.surface.synthesize import spectral, with_missing, with_noise
+from faying.typing import Array
 
 LARGEST = 1024  # points a side of the synthetic surfaces; larger scans are tested at this size
 

@@ -5,7 +5,8 @@ from math import atan2
 import numpy as np
 
 from faying.errors import InputError, NotConverged
-from faying.surface.scan import Array, Scan
+from faying.surface.scan import Scan
+from faying.typing import Array
 
 SAMPLE = 40000  # points that the shape is fitted to, evenly chosen
 

@@ -10,9 +10,9 @@ from math import pi
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from faying.surface.scan import Array, Profile, Scan
+from faying.surface.scan import Profile, Scan
+from faying.typing import Array, Mask
 
 # Hann window: sum of the squared correlations between neighbouring Fourier coefficients, per axis (1 + 2 (4/9 + 1/36))
 HANN_CORRELATION = 1 + 2 * (4 / 9 + 1 / 36)
@@ -61,7 +61,7 @@ def _hann(count: int) -> Array:
     return 0.5 - 0.5 * np.cos(2 * pi * (np.arange(count) + 0.5) / count)
 
 
-def spectrum(scan: Scan | Profile, *, ratio: float = 1.06, exclude: NDArray[np.bool_] | None = None) -> Spectrum:
+def spectrum(scan: Scan | Profile, *, ratio: float = 1.06, exclude: Mask | None = None) -> Spectrum:
     """Return the Hann-windowed power spectrum of levelled heights without missing points, averaged over directions.
 
     Bins are two Fourier steps wide at least and grow by `ratio`. `exclude` is a mask over the half-plane of Fourier
@@ -103,7 +103,7 @@ def binned(
     axes: tuple[Array, ...],
     *,
     ratio: float = 1.06,
-    exclude: NDArray[np.bool_] | None = None,
+    exclude: Mask | None = None,
 ) -> Spectrum:
     """Average a periodogram over directions and in bins of frequency; see `spectrum`."""
     sizes = (scan.length,) if isinstance(scan, Profile) else scan.size
@@ -176,7 +176,7 @@ def _products(z: Array, known: Array, shape: tuple[int, ...]) -> tuple[Array, Ar
 
 
 def structure_function(
-    scan: Scan | Profile, *, known: NDArray[np.bool_] | None = None, longest: float = 0.125, ratio: float = 1.12
+    scan: Scan | Profile, *, known: Mask | None = None, longest: float = 0.125, ratio: float = 1.12
 ) -> Structure:
     """Return the structure function for lags from one point to `longest` times the shortest side.
 

@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike
 from faying.errors import InputError
 from faying.surface.filters import gaussian_lowpass
 from faying.surface.form import Prepared, prepared
-from faying.surface.scan import Array, Scan
+from faying.surface.scan import Scan
+from faying.typing import Array
 
 
 @final

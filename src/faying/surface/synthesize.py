@@ -6,7 +6,8 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.surface.convention import G_from_Rq, check_dimension, density, prefactor
-from faying.surface.scan import Array, Profile, Scan
+from faying.surface.scan import Profile, Scan
+from faying.typing import Array
 
 
 def _grid(

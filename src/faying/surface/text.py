@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from faying.errors import ReadError
-from faying.surface.scan import Array, Profile, Scan
+from faying.surface.scan import Profile, Scan
+from faying.typing import Array
 
 SUFFIXES = (".csv", ".txt", ".xyz", ".dat", ".asc")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$")

@@ -91,8 +91,12 @@ def test_hertz_limit(name: str) -> None:
 
 
 def materials() -> st.SearchStrategy[ContactPair]:
-    return st.builds(lambda E, nu, share: ContactPair(Material(name="m", E=E, nu=nu, yield_strength=share * E), RIGID),
-                     st.floats(1e9, 6e11), st.floats(0, 0.5), st.floats(5e-4, 0.01))  # fmt: skip
+    return st.builds(
+        lambda E, nu, share: ContactPair(Material(name="m", E=E, nu=nu, yield_strength=share * E), RIGID),
+        st.floats(1e9, 6e11),
+        st.floats(0, 0.5),
+        st.floats(5e-4, 0.01),
+    )
 
 
 @pytest.mark.parametrize("name", ALL)
@@ -148,9 +152,14 @@ def test_lin_lin_and_consistent_jk_never_jump(nu: float, share: float) -> None:
 
 # relative jumps of force at the borders, as the docstrings state them
 JUMPS = {
-    "Hertz": (), "ChangEtsionBogy": (0.5,), "KogutEtsion": (0.03, 0.0168, 0.0788), "JacksonGreen": (0.0047,),
-    "Ghaednia": (0.0044,), "ZhaoMaiettaChang": (0.0, 0.0), "LinLin": (0.0, 0.0),
-}  # fmt: skip
+    "Hertz": (),
+    "ChangEtsionBogy": (0.5,),
+    "KogutEtsion": (0.03, 0.0168, 0.0788),
+    "JacksonGreen": (0.0047,),
+    "Ghaednia": (0.0044,),
+    "ZhaoMaiettaChang": (0.0, 0.0),
+    "LinLin": (0.0, 0.0),
+}
 
 
 @pytest.mark.parametrize("name", JUMPS)
@@ -218,16 +227,21 @@ def test_shapes_and_refusals(name: str) -> None:
             build(name, R=bad)
 
 
-@pytest.mark.parametrize(("make", "message"), [
-    (lambda: asperity.JacksonGreen(R=R, pair=PAIR, hardness="other"), '"exponential" or "cosine"'),
-    (lambda: asperity.Ghaednia(R=R, pair=PAIR, tangent_ratio=1.0), "up to below 1"),
-    (lambda: asperity.JK(R=R, pair=PAIR, height=0.0), "height = 0.0; it must be positive"),
-    (lambda: asperity.JK(R=R, pair=PAIR, closure="other"), '"consistent" or "printed"'),
-    (lambda: asperity.ZX(R=R, pair=PAIR, D=2.0, height=1e-7), "between 2 and 3"),
-    (lambda: asperity.ZX(R=R, pair=PAIR, D=2.4, height=0.0), "height = 0.0 m; it must be positive"),
-    (lambda: asperity.KogutEtsion(R=R, pair=ContactPair(Material(name="m", E=1e9, nu=0.3), RIGID)).at(1e-9),
-     "neither hardness nor yield_strength"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: asperity.JacksonGreen(R=R, pair=PAIR, hardness="other"), '"exponential" or "cosine"'),
+        (lambda: asperity.Ghaednia(R=R, pair=PAIR, tangent_ratio=1.0), "up to below 1"),
+        (lambda: asperity.JK(R=R, pair=PAIR, height=0.0), "height = 0.0; it must be positive"),
+        (lambda: asperity.JK(R=R, pair=PAIR, closure="other"), '"consistent" or "printed"'),
+        (lambda: asperity.ZX(R=R, pair=PAIR, D=2.0, height=1e-7), "between 2 and 3"),
+        (lambda: asperity.ZX(R=R, pair=PAIR, D=2.4, height=0.0), "height = 0.0 m; it must be positive"),
+        (
+            lambda: asperity.KogutEtsion(R=R, pair=ContactPair(Material(name="m", E=1e9, nu=0.3), RIGID)).at(1e-9),
+            "neither hardness nor yield_strength",
+        ),
+    ],
+)
 def test_options_out_of_range_are_refused(make: object, message: str) -> None:
     with pytest.raises(InputError, match=message):
         make()  # type: ignore[operator]
@@ -236,7 +250,8 @@ def test_options_out_of_range_are_refused(make: object, message: str) -> None:
 def test_hertz_needs_no_hardness() -> None:
     pair = ContactPair(Material(name="m", E=1e9, nu=0.3), RIGID)
     assert float(asperity.Hertz(R=R, pair=pair).at(1e-9).force) == pytest.approx(
-        4 / 3 * 1e9 / 0.91 * sqrt(R) * 1e-9**1.5, rel=1e-12)  # fmt: skip
+        4 / 3 * 1e9 / 0.91 * sqrt(R) * 1e-9**1.5, rel=1e-12
+    )
 
 
 def test_zx_goes_from_plastic_to_elastic() -> None:

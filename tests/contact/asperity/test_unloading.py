@@ -23,7 +23,7 @@ from faying.contact.asperity import (
     load_index,
     mixed_modulus,
     roughness_of_cap,
-)  # fmt: skip
+)
 
 PAIR = ContactPair(Material(name="m", E=100e9, nu=0.3, yield_strength=355e6), RIGID)
 R = 15e-6
@@ -111,20 +111,23 @@ def test_mixed_compliances() -> None:
     assert float(king_modulus(2.0, 1.0, 0.7, 1.5)) == pytest.approx(float(mixed_modulus(2.0, 1.0, 1 - np.exp(-1.05))))
 
 
-@pytest.mark.parametrize(("make", "message"), [
-    (lambda: mixed_modulus(0.0, 1.0, 0.5), "both must be positive"),
-    (lambda: mixed_modulus(1.0, 1.0, 1.5), "between 0 and 1"),
-    (lambda: king_modulus(1.0, 1.0, -1.0), "0 or more"),
-    (lambda: gao_modulus(1.0, 1.0, -1.0), "0 or more"),
-    (lambda: gao_modulus(1.0, 1.0, 1.0, nu=0.7), r"nu in \(-1, 0.5\]"),
-    (lambda: roughness_of_cap(1e-5, 1e-7, D=3.1), "between 2 and 3"),
-    (lambda: roughness_of_cap(0.0, 1e-7, D=2.4), "both must be positive"),
-    (lambda: roughness_of_cap(1e-5, 1e-7, D=2.4, gamma=1.0), "above 1"),
-    (lambda: dimension_of_cap(1e-5, 1e-7, G=0.0), "it must be positive"),
-    (lambda: dimension_of_cap(1e-5, 1e-7, G=1e-2), "outside 2 to 3"),
-    (lambda: cap_of_fractal(3.1, 1e-9, 1e-6), "between 2 and 3"),
-    (lambda: cap_of_fractal(2.4, 1e-9, 0.0), "positive lengths"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: mixed_modulus(0.0, 1.0, 0.5), "both must be positive"),
+        (lambda: mixed_modulus(1.0, 1.0, 1.5), "between 0 and 1"),
+        (lambda: king_modulus(1.0, 1.0, -1.0), "0 or more"),
+        (lambda: gao_modulus(1.0, 1.0, -1.0), "0 or more"),
+        (lambda: gao_modulus(1.0, 1.0, 1.0, nu=0.7), r"nu in \(-1, 0.5\]"),
+        (lambda: roughness_of_cap(1e-5, 1e-7, D=3.1), "between 2 and 3"),
+        (lambda: roughness_of_cap(0.0, 1e-7, D=2.4), "both must be positive"),
+        (lambda: roughness_of_cap(1e-5, 1e-7, D=2.4, gamma=1.0), "above 1"),
+        (lambda: dimension_of_cap(1e-5, 1e-7, G=0.0), "it must be positive"),
+        (lambda: dimension_of_cap(1e-5, 1e-7, G=1e-2), "outside 2 to 3"),
+        (lambda: cap_of_fractal(3.1, 1e-9, 1e-6), "between 2 and 3"),
+        (lambda: cap_of_fractal(2.4, 1e-9, 0.0), "positive lengths"),
+    ],
+)
 def test_layers_and_caps_refuse_what_lies_outside(make: object, message: str) -> None:
     with pytest.raises(InputError, match=message):
         make()  # type: ignore[operator]

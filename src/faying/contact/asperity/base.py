@@ -10,13 +10,13 @@ from pkgutil import iter_modules
 from typing import ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from faying.contact.law import checked
 from faying.errors import InputError
 from faying.materials import ContactPair
+from faying.typing import Array
 
-Array = NDArray[np.float64]
 Term = tuple[float, float]  # coefficient and power of x
 
 

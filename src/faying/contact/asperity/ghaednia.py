@@ -6,9 +6,10 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from faying.contact.asperity.base import Array, Curve
+from faying.contact.asperity.base import Curve
 from faying.contact.asperity.jackson_green import ELASTIC_END, JacksonGreenBase
 from faying.errors import InputError
+from faying.typing import Array
 
 
 @final

@@ -6,8 +6,9 @@ from typing import ClassVar, Literal, final
 
 import numpy as np
 
-from faying.contact.asperity.base import Array, AsperityModel, Curve
+from faying.contact.asperity.base import AsperityModel, Curve
 from faying.errors import InputError
+from faying.typing import Array
 
 ELASTIC_END = 1.9
 

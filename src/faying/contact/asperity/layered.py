@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.asperity.base import Array
 from faying.errors import InputError
+from faying.typing import Array
 
 
 def _need(layer: float, substrate: float) -> None:

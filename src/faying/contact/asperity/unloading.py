@@ -9,9 +9,10 @@ from typing import ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.asperity.base import Array, AsperityModel, AsperityResponse
+from faying.contact.asperity.base import AsperityModel, AsperityResponse
 from faying.contact.law import checked
 from faying.errors import InputError
+from faying.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)

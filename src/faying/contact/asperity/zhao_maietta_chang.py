@@ -6,7 +6,8 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from faying.contact.asperity.base import Array, AsperityModel, Curve
+from faying.contact.asperity.base import AsperityModel, Curve
+from faying.typing import Array
 
 YIELD_SHARE = 0.4  # mean pressure at first yield over hardness
 

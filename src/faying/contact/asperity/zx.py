@@ -6,10 +6,11 @@ from typing import ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.asperity.base import Array, AsperityModel, AsperityResponse, Curve
+from faying.contact.asperity.base import AsperityModel, AsperityResponse, Curve
 from faying.contact.asperity.lin_lin import LinLin
 from faying.contact.law import checked
 from faying.errors import InputError
+from faying.typing import Array
 
 
 @final

@@ -12,7 +12,7 @@ import numpy as np
 
 from faying.errors import ReadError
 from faying.fe.formats.raw import RawMesh, index
-from faying.fe.sides import Index
+from faying.typing import Index
 
 _SOLID = {"C3D4": "tet4", "C3D10": "tet10", "C3D8": "hex8", "C3D20": "hex20", "C3D6": "wedge6", "C3D15": "wedge15"}
 _SHEET = re.compile(r"^(?:S|STRI|CPS|CPE|M3D|SFM3D|R3D)(\d+)")
@@ -102,8 +102,10 @@ def read(path: Path) -> RawMesh:
         elif block.keyword == "INSTANCE" and in_assembly:
             name, part = options.get("NAME", ""), options.get("PART", "")
             if part not in parts:
-                raise ReadError(f"{block.where}: instance {name!r} of the part {part!r}, which the file does not hold; "
-                                f"it holds {', '.join(parts) or 'none'}")  # fmt: skip
+                raise ReadError(
+                    f"{block.where}: instance {name!r} of the part {part!r}, which the file does not hold; "
+                    f"it holds {', '.join(parts) or 'none'}"
+                )
             scope = instances[name] = _placed(parts[part], block)
         else:
             _take(block, scope)
@@ -134,8 +136,11 @@ def _take(block: Block, scope: Scope) -> None:
             rows = [[w.strip() for w in line.split(",")] for line in block.lines]
             if kind_of == "NODE":
                 for row in rows:
-                    _set(Block("NSET", {"INSTANCE": options.get("INSTANCE", "")}, [row[0]], block.where),
-                         scope.node_sets, name)  # fmt: skip
+                    _set(
+                        Block("NSET", {"INSTANCE": options.get("INSTANCE", "")}, [row[0]], block.where),
+                        scope.node_sets,
+                        name,
+                    )
             else:
                 scope.surfaces.setdefault(name, []).extend((row[0], (row[1:] or [""])[0].upper()) for row in rows)
         elif block.keyword == "SOLID SECTION" and "ELSET" in options:
@@ -143,8 +148,9 @@ def _take(block: Block, scope: Scope) -> None:
     except ReadError:
         raise
     except (ValueError, IndexError) as fault:
-        raise ReadError(f"{block.where}: *{block.keyword} holds something that is not a number ({fault}); is the file "
-                        "whole?") from None  # fmt: skip
+        raise ReadError(
+            f"{block.where}: *{block.keyword} holds something that is not a number ({fault}); is the file whole?"
+        ) from None
 
 
 def _add(sets: dict[str, list[Index]], name: str, numbers: Index) -> None:
@@ -162,8 +168,10 @@ def _elements(block: Block, scope: Scope) -> None:
     elif kind in _LINE:
         count = _LINE[kind]
     else:
-        raise ReadError(f"{block.where}: elements of type {kind or 'none'} are not known; known are "
-                        f"{', '.join(_SOLID)} with their variants, and triangles and quadrangles as faces")  # fmt: skip
+        raise ReadError(
+            f"{block.where}: elements of type {kind or 'none'} are not known; known are "
+            f"{', '.join(_SOLID)} with their variants, and triangles and quadrangles as faces"
+        )
     words = block.numbers()
     if len(words) % (count + 1):
         raise ReadError(
@@ -221,11 +229,16 @@ def _placed(part: Scope, block: Block) -> Scope:
         axis = (end - start) / np.linalg.norm(end - start)
         points = Rotation.from_rotvec(np.deg2rad(angle) * axis).apply(points - start) + start
     nodes = {number: tuple(map(float, x)) for number, x in zip(part.nodes, points, strict=True)}
-    return Scope(nodes=nodes, elements={k: list(v) for k, v in part.elements.items()},
-                 sheets={k: list(v) for k, v in part.sheets.items()}, extra=list(part.extra),
-                 element_sets={k: list(v) for k, v in part.element_sets.items()},
-                 node_sets={k: list(v) for k, v in part.node_sets.items()},
-                 surfaces={k: list(v) for k, v in part.surfaces.items()}, sections=list(part.sections))  # fmt: skip
+    return Scope(
+        nodes=nodes,
+        elements={k: list(v) for k, v in part.elements.items()},
+        sheets={k: list(v) for k, v in part.sheets.items()},
+        extra=list(part.extra),
+        element_sets={k: list(v) for k, v in part.element_sets.items()},
+        node_sets={k: list(v) for k, v in part.node_sets.items()},
+        surfaces={k: list(v) for k, v in part.surfaces.items()},
+        sections=list(part.sections),
+    )
 
 
 def _merge(top: Scope, scopes: dict[str, Scope]) -> None:
@@ -272,8 +285,10 @@ def _merge(top: Scope, scopes: dict[str, Scope]) -> None:
 
 def _raw(path: Path, top: Scope, instances: tuple[str, ...]) -> RawMesh:
     if not top.nodes or not top.elements:
-        raise ReadError(f"{path} holds {len(top.nodes)} nodes and {len(top.elements)} kinds of solid elements; write nodes "
-                        "and elements of the model into it")  # fmt: skip
+        raise ReadError(
+            f"{path} holds {len(top.nodes)} nodes and {len(top.elements)} kinds of solid elements; write nodes "
+            "and elements of the model into it"
+        )
     element_sets = {
         name: np.unique(np.concatenate(some)) for name, some in top.element_sets.items() if "\0" not in name
     }
@@ -305,12 +320,14 @@ def _raw(path: Path, top: Scope, instances: tuple[str, ...]) -> RawMesh:
     return RawMesh(
         numbers=index(top.nodes),
         points=np.array(list(top.nodes.values())),
-        elements={kind: (np.concatenate([n for n, _ in rows]), np.concatenate([c for _, c in rows]))
-                  for kind, rows in top.elements.items()},
+        elements={
+            kind: (np.concatenate([n for n, _ in rows]), np.concatenate([c for _, c in rows]))
+            for kind, rows in top.elements.items()
+        },
         bodies={name: upper[name.upper()] for name in wanted},
         element_sets={name: some for name, some in element_sets.items() if name.upper() not in helpers},
         node_sets=node_sets,
         side_sets=side_sets,
         face_elements={name: tuple(rows) for name, rows in top.sheets.items()},
         extra=np.concatenate(top.extra) if top.extra else np.zeros(0, dtype=np.int64),
-    )  # fmt: skip
+    )

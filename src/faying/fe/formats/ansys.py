@@ -48,13 +48,23 @@ def read(path: Path) -> RawMesh:
     except ReadError:
         raise
     except (ValueError, IndexError, KeyError) as fault:
-        raise ReadError(f"{path.name}, line {min(k, len(lines)) + 1}: cannot be read ({fault}); is the archive whole and "
-                        "in blocked format (CDWRITE)?") from None  # fmt: skip
+        raise ReadError(
+            f"{path.name}, line {min(k, len(lines)) + 1}: cannot be read ({fault}); is the archive whole and "
+            "in blocked format (CDWRITE)?"
+        ) from None
     if not numbers or not rows:
-        raise ReadError(f"{path} holds {len(numbers)} nodes in NBLOCK and {sum(map(len, rows.values()))} solids in EBLOCK; "
-                        "write the archive with CDWRITE,DB in blocked format")  # fmt: skip
-    return RawMesh(numbers=index(numbers), points=np.array(points), elements=gathered(rows), element_sets=sets["ELEM"],
-                   node_sets=sets["NODE"], extra=index(extra))  # fmt: skip
+        raise ReadError(
+            f"{path} holds {len(numbers)} nodes in NBLOCK and {sum(map(len, rows.values()))} solids in EBLOCK; "
+            "write the archive with CDWRITE,DB in blocked format"
+        )
+    return RawMesh(
+        numbers=index(numbers),
+        points=np.array(points),
+        elements=gathered(rows),
+        element_sets=sets["ELEM"],
+        node_sets=sets["NODE"],
+        extra=index(extra),
+    )
 
 
 def _widths(form: str) -> tuple[int, int, int]:

@@ -13,14 +13,21 @@ from faying.fe.formats.raw import RawMesh, face_blocks, from_edges, gathered, in
 _KINDS = {4: ("tet4", 4), 5: ("hex8", 8), 6: ("wedge6", 6), 11: ("tet10", 10), 17: ("hex20", 20), 18: ("wedge15", 15)}
 _FACES = {2: 3, 3: 4, 9: 6, 16: 8}
 _PASSED = {1: 2, 8: 3, 15: 1}
-_UNKNOWN = {7: "pyramids", 10: "quadrangles of 9 nodes", 12: "bricks of 27 nodes", 13: "wedges of 18 nodes",
-            14: "pyramids", 19: "pyramids"}  # fmt: skip
+_UNKNOWN = {
+    7: "pyramids",
+    10: "quadrangles of 9 nodes",
+    12: "bricks of 27 nodes",
+    13: "wedges of 18 nodes",
+    14: "pyramids",
+    19: "pyramids",
+}
 _ORDER = {
     "tet10": from_edges("tet10", ((0, 1), (1, 2), (0, 2), (0, 3), (2, 3), (1, 3))),
-    "hex20": from_edges("hex20", ((0, 1), (0, 3), (0, 4), (1, 2), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 7), (5, 6),
-                                  (6, 7))),
+    "hex20": from_edges(
+        "hex20", ((0, 1), (0, 3), (0, 4), (1, 2), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 7), (5, 6), (6, 7))
+    ),
     "wedge15": from_edges("wedge15", ((0, 1), (0, 2), (0, 3), (1, 2), (1, 4), (2, 5), (3, 4), (3, 5), (4, 5))),
-}  # fmt: skip
+}
 
 
 class _Words:
@@ -104,9 +111,14 @@ def read(path: Path) -> RawMesh:
                 faces.setdefault(names.get((2, tag), f"face{tag}"), []).append(held)
     if not solids:
         raise ReadError(f"{path} holds no solid elements; mesh the volumes (gmsh -3) and save them all")
-    return RawMesh(numbers=numbers, points=points, elements=gathered(solids),
-                   bodies={name: index(dict.fromkeys(some)) for name, some in bodies.items()},
-                   face_elements={name: face_blocks(some) for name, some in faces.items()}, extra=index(extra))  # fmt: skip
+    return RawMesh(
+        numbers=numbers,
+        points=points,
+        elements=gathered(solids),
+        bodies={name: index(dict.fromkeys(some)) for name, some in bodies.items()},
+        face_elements={name: face_blocks(some) for name, some in faces.items()},
+        extra=index(extra),
+    )
 
 
 def _nodes_22(words: _Words) -> tuple[np.ndarray, np.ndarray]:
@@ -151,8 +163,10 @@ def _count(code: int) -> int:
     if code in _FACES or code in _PASSED:
         return (_FACES | _PASSED)[code]
     what = _UNKNOWN.get(code, f"elements of Gmsh's type {code}")
-    raise ReadError(f"{what} are not known; mesh with tetrahedra, wedges or bricks, of second order without nodes in the "
-                    "middle of faces (Mesh.SecondOrderIncomplete = 1)")  # fmt: skip
+    raise ReadError(
+        f"{what} are not known; mesh with tetrahedra, wedges or bricks, of second order without nodes in the "
+        "middle of faces (Mesh.SecondOrderIncomplete = 1)"
+    )
 
 
 def _elements_22(words: _Words) -> list[tuple[int, int, list[int], list[int]]]:

@@ -87,8 +87,10 @@ def read(path: Path) -> RawMesh:
         try:
             if name == "GRID":
                 if fields[1] not in ("", "0"):
-                    raise ReadError(f"{where}: GRID {fields[0]} is given in coordinate system {fields[1]}; write the mesh in "
-                                    "the basic system")  # fmt: skip
+                    raise ReadError(
+                        f"{where}: GRID {fields[0]} is given in coordinate system {fields[1]}; write the mesh in "
+                        "the basic system"
+                    )
                 x, y, z = (number(word) if word else 0.0 for word in fields[2:5])
                 nodes[int(fields[0])] = (x, y, z)
             elif name in _COUNTS:

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from faying.errors import ReadError
-from faying.fe.elements import KINDS, SOLIDS, Array
-from faying.fe.sides import Index
+from faying.fe.elements import KINDS, SOLIDS
+from faying.typing import Array, Index
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,15 +38,20 @@ def index(values: Iterable[object]) -> Index:
 
 def gathered(rows: Mapping[str, list[tuple[int, list[int]]]]) -> dict[str, tuple[Index, Index]]:
     """Turn kind -> [(number, nodes)] into the arrays of RawMesh.elements."""
-    return {kind: (index(number for number, _ in some), np.array([nodes for _, nodes in some], dtype=np.int64))
-            for kind, some in rows.items() if some}  # fmt: skip
+    return {
+        kind: (index(number for number, _ in some), np.array([nodes for _, nodes in some], dtype=np.int64))
+        for kind, some in rows.items()
+        if some
+    }
 
 
 def face_blocks(rows: Iterable[list[int]]) -> tuple[Index, ...]:
     """Faces of mixed kinds as one array per kind."""
     some = list(rows)
-    return tuple(np.array([row for row in some if len(row) == count], dtype=np.int64)
-                 for count in sorted({len(row) for row in some}))  # fmt: skip
+    return tuple(
+        np.array([row for row in some if len(row) == count], dtype=np.int64)
+        for count in sorted({len(row) for row in some})
+    )
 
 
 def undoubled(nodes: list[int], what: str) -> tuple[str, list[int]]:

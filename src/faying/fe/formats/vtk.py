@@ -7,8 +7,14 @@ import numpy as np
 from faying.errors import InputError, ReadError
 from faying.fe.formats.raw import RawMesh, index
 
-_KINDS = {"tetra": "tet4", "tetra10": "tet10", "hexahedron": "hex8", "hexahedron20": "hex20", "wedge": "wedge6",
-          "wedge15": "wedge15"}  # fmt: skip
+_KINDS = {
+    "tetra": "tet4",
+    "tetra10": "tet10",
+    "hexahedron": "hex8",
+    "hexahedron20": "hex20",
+    "wedge": "wedge6",
+    "wedge15": "wedge15",
+}
 _FACES = {"triangle", "triangle6", "quad", "quad8"}
 _PASSED = {"vertex", "line", "line3", "polyline"}
 _ARRAYS = ("part", "body", "region", "domain", "material", "gmsh:physical", "CellEntityIds", "PartId", "MaterialId")
@@ -69,8 +75,11 @@ def read(path: Path) -> RawMesh:
 
 def _array(cell_data: dict[str, list[np.ndarray]]) -> list[np.ndarray] | None:
     """The cell array that tells parts and faces: one with a usual name, else the only one of whole numbers."""
-    whole = {name: data for name, data in cell_data.items()
-             if all(np.issubdtype(np.asarray(d).dtype, np.integer) for d in data)}  # fmt: skip
+    whole = {
+        name: data
+        for name, data in cell_data.items()
+        if all(np.issubdtype(np.asarray(d).dtype, np.integer) for d in data)
+    }
     for name in _ARRAYS:
         if name in whole:
             return whole[name]

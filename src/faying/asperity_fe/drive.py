@@ -1,0 +1,369 @@
+"""Press one asperity: geometry and materials in, history of force and area out."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import isfinite, pi, sqrt
+from typing import Literal
+
+import numpy as np
+
+from faying.asperity_fe.body import State
+from faying.asperity_fe.equilibrium import Equilibrium
+from faying.asperity_fe.model import Model, build, expected_radius
+from faying.errors import InputError, NotConverged
+from faying.materials import RIGID, ContactPair, Material
+from faying.typing import Array, Index
+
+FORCE_TOLERANCE = 1e-4  # of the largest force asked for
+BISECTIONS = 6  # a step that does not converge is halved this often before the run gives up
+
+
+@dataclass(frozen=True, kw_only=True)
+class History:
+    """What the plane felt, step by step: displacement [m], force [N], area and its bounds [m2], pressure [Pa] (steps,);
+    area_bounds is (steps, 2); yielding [m3] the volume that flowed in the step; iterations those of each step."""
+
+    displacement: Array
+    force: Array
+    area: Array
+    area_bounds: Array
+    yielding: Array
+    iterations: Index
+
+    @property
+    def pressure(self) -> Array:
+        """Mean pressure [Pa]; 0 without contact."""
+        return np.where(self.area > 0, self.force / np.where(self.area > 0, self.area, 1.0), 0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Field:
+    """The asperity at the last step: nodes (n, 2) before the load and their displacement (n, 2) [m], radius and height;
+    quads (m, 4); body (m,): 0 cap, 1 layer, 2 substrate; stress (m, 4) [Pa]: rr, zz, hoop, rz; equivalent plastic
+    strain (m,)."""
+
+    nodes: Array
+    displacement: Array
+    quads: Index
+    body: Index
+    stress: Array
+    plastic_strain: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class AsperityResult:
+    """Result of `solve_asperity`; force, area, pressure and area_bounds are those of the last step.
+
+    residual [m]: the displacement at which the plane lost contact, where the history ends unloaded; elsewhere None.
+    """
+
+    history: History
+    field: Field
+    residual: float | None
+    unknowns: int
+    factorisations: int
+
+    @property
+    def force(self) -> float:
+        """Normal force [N]."""
+        return float(self.history.force[-1])
+
+    @property
+    def area(self) -> float:
+        """Contact area [m2] on the deformed surface, its edge placed between nodes."""
+        return float(self.history.area[-1])
+
+    @property
+    def pressure(self) -> float:
+        """Mean contact pressure [Pa]."""
+        return float(self.history.pressure[-1])
+
+    @property
+    def area_bounds(self) -> tuple[float, float]:
+        """Areas [m2] of the circles between which the mesh places the edge of the contact."""
+        low, high = self.history.area_bounds[-1]
+        return float(low), float(high)
+
+
+def solve_asperity(
+    *,
+    R: float,
+    h_a: float,
+    cap: Material,
+    substrate: Material,
+    displacement: float | Sequence[float] | None = None,
+    force: float | Sequence[float] | None = None,
+    layer: Material | None = None,
+    layer_thickness: float = 0.0,
+    hardening: float = 0.0,
+    foot: Literal["bonded", "sliding"] = "bonded",
+    elements: int = 40,
+    steps: int | None = None,
+    domain: float | None = None,
+    solver: str | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> AsperityResult:
+    """Press a spherical cap on a substrate with a smooth rigid plane, by axisymmetric elastic-plastic finite elements.
+
+    R, h_a: radius and height of the cap [m], 0 < h_a <= R; its base has the radius sqrt(2 R h_a - h_a^2). cap,
+    substrate: Material; one without a yield strength stays elastic; substrate RIGID holds the base of the cap, bonded
+    or sliding (`foot`): h_a = R on a sliding rigid foot is half of a sphere between two planes. displacement: of the
+    plane from first touch [m], one value or the turning points of a history (a smaller value after a larger one
+    unloads; 0 unloads until contact is lost); or force: of the plane [N] in place of it, in the same way. layer, layer_thickness: a third material under the cap [m]. hardening:
+    tangent modulus over E, 0 <= hardening < 1. elements: over the contact radius. steps: load steps for the largest
+    displacement (1.5 a contact element where not given). domain: radius and depth of the substrate [m] (40 radii of
+    the cap's base); its foot keeps its height, its wall its radius. solver: name of the factorisation.
+
+    Small strains and linear geometry inside the body; the contact is closed on the plane's true height. Returns
+    AsperityResult. Raises InputError for impossible geometry and NotConverged with the step, the place and the steps
+    done (attribute `result`). Source of the setting: Zhang et al. 2024, doi:10.3390/fractalfract8100611, section 2.4.
+    """
+    if (displacement is None) == (force is None):
+        raise InputError("give displacement or force, one of them")
+    _check_shape(R, h_a, layer, layer_thickness, hardening, elements, steps, domain, cap)
+    targets = _turning_points(displacement if force is None else force, "displacement" if force is None else "force")
+    top = max(targets)
+    if force is None and top > h_a:
+        raise InputError(f"displacement {top} m is more than the height of the cap, {h_a} m; stay at or below h_a")
+    soft = [m for m in (cap, substrate, layer) if m is not None and m.hardness is not None and not m.is_rigid]
+    weakest = min(soft, key=lambda m: m.hardness or np.inf) if soft else None
+    pair = ContactPair(cap, RIGID)
+    K = 0.454 + 0.41 * (weakest or cap).nu
+    hardness = weakest.hardness if weakest else None
+    if force is None:
+        radius = expected_radius(R, h_a, top, pair.E_star, hardness, K)
+    else:
+        radius = max((0.75 * top * R / pair.E_star) ** (1 / 3), sqrt(top / (pi * hardness)) if hardness else 0.0)
+        top = radius**2 / (1.5 * R)  # between Hertz's a^2/R and the truncated sphere's a^2/(2R)
+        if top > h_a:
+            raise InputError(
+                f"force {max(targets)} N would press the cap by about {top:.3g} m, more than its height {h_a} m"
+            )
+    if force is None and not substrate.is_rigid:
+        radius /= sqrt(1 + 0.75 * cap.E / substrate.E * sqrt(top / h_a))  # what the substrate gives way
+    base = sqrt(2 * R * h_a - h_a**2)
+    model = build(
+        R=R,
+        h_a=h_a,
+        materials=(cap, layer or cap, cap if substrate.is_rigid else substrate),
+        hardening=(hardening,) * 3,
+        rigid=substrate.is_rigid,
+        sliding=foot == "sliding",
+        contact_radius=radius,
+        elements=elements,
+        domain=domain or 40 * base,
+        layer_thickness=layer_thickness if layer else 0.0,
+        solver=solver,
+    )
+    run = _Run(model, steps or round(1.5 * elements), targets, progress)
+    return run.result() if force is None else run.to_forces(sqrt(top))
+
+
+class _Run:
+    """One history being driven; every step is kept as it is found."""
+
+    def __init__(
+        self, model: Model, steps: int, targets: list[float], progress: Callable[[float], None] | None
+    ) -> None:
+        self.model, self.steps, self.targets, self.progress = model, steps, targets, progress
+        self.state: State = model.body.virgin
+        self.at: Equilibrium | None = None
+        self.rows: list[tuple[float, float, float, float, float, float, int]] = []
+        self.residual: float | None = None
+        self.factorisations = 0
+
+    def result(self) -> AsperityResult:
+        """Go to displacements, one after the other."""
+        goals = _path(self.targets, self.steps)
+        goal = 0.0
+        try:
+            for number, (start, goal) in enumerate(zip([0.0, *goals[:-1]], goals, strict=True)):
+                if self.residual is not None and goal < start:
+                    continue  # the plane has left the asperity already
+                self.residual = None
+                self._go(start, goal, BISECTIONS)
+                if self.progress is not None:
+                    self.progress((number + 1) / len(goals))
+        except NotConverged as fault:
+            raise self._stopped(fault, goal) from None
+        return self._gathered()
+
+    def to_forces(self, root: float) -> AsperityResult:
+        """Go to forces: steps of even length in the root of the displacement, the last one shortened to the force."""
+        here, now = 0.0, 0.0
+        stride = root / self.steps
+        scale = max(self.targets)
+        goal = 0.0
+        try:
+            for number, target in enumerate(self.targets):
+                way = 1.0 if target > now else -1.0
+                while abs(now - target) > FORCE_TOLERANCE * scale:
+                    goal = max(sqrt(here) + way * stride, 0.0) ** 2
+                    if goal > self.model.h_a:
+                        raise NotConverged(
+                            f"force {target} N is not reached while the cap is being pressed down to its base"
+                        )
+                    force = self._try(goal)
+                    if way * (force - target) > FORCE_TOLERANCE * scale:
+                        goal, force = self._between(here, now, goal, force, target, FORCE_TOLERANCE * scale)
+                    self._step(goal)
+                    here, now = goal, force
+                    if target == 0 and self.residual is not None:
+                        break
+                if self.progress is not None:
+                    self.progress((number + 1) / len(self.targets))
+        except NotConverged as fault:
+            raise self._stopped(fault, goal) from None
+        return self._gathered()
+
+    def _try(self, displacement: float) -> float:
+        return self.model.contact(self.model.press(displacement, self.at, self.state)).force
+
+    def _between(
+        self, low: float, f_low: float, high: float, f_high: float, target: float, tolerance: float
+    ) -> tuple[float, float]:
+        """Displacement in one step from here that gives the force `target`, by regula falsi (Illinois), and the force."""
+        a, fa, b, fb = low, f_low - target, high, f_high - target
+        middle, f = b, fb
+        for _ in range(40):
+            middle = (a * fb - b * fa) / (fb - fa)
+            f = self._try(middle) - target
+            if abs(f) <= tolerance:
+                break
+            if f * fb < 0:
+                a, fa = b, fb
+            else:
+                fa *= 0.5
+            b, fb = middle, f
+        return middle, f + target
+
+    def _stopped(self, fault: NotConverged, goal: float) -> NotConverged:
+        done = self.rows[-1][0] if self.rows else 0.0
+        stop = NotConverged(f"between displacements {done:.6g} and {goal:.6g} m: {fault}")
+        stop.result = self._gathered() if self.rows else None  # type: ignore[attr-defined]
+        return stop
+
+    def _go(self, start: float, goal: float, halvings: int) -> None:
+        try:
+            self._step(goal)
+        except NotConverged:
+            if not halvings:
+                raise
+            middle = 0.5 * (start + goal)
+            self._go(start, middle, halvings - 1)
+            self._go(middle, goal, halvings - 1)
+
+    def _step(self, displacement: float) -> None:
+        while True:
+            found = self.model.press(displacement, self.at, self.state)
+            if self.model.utilisation(found) <= 1 or self.model.far is None:
+                break
+            if self.at is None:
+                raise NotConverged("the first step yields outside the fine part of the mesh; take more steps")
+            self.factorisations += self.model.factors.factorisations
+            self.model, self.at, self.state = self.model.grown(self.at, self.state)
+        returned = found.balance.returned
+        self.state = State(plastic=returned.plastic, hardened=returned.hardened)
+        self.at = found
+        contact = self.model.contact(found)
+        low, high = contact.bounds
+        volume = float(self.model.body.quads.weight.reshape(-1)[returned.yielding].sum())
+        self.rows.append(
+            (
+                displacement,
+                contact.force,
+                pi * contact.radius**2,
+                pi * low**2,
+                pi * high**2,
+                volume,
+                found.iterations,
+            )
+        )
+        if contact.force <= 1e-9 * max(row[1] for row in self.rows):
+            moved = self.model.body.spread(found.unknowns)[self.model.body.surface, 1]
+            highest = float(np.max(self.model.mesh.nodes[self.model.body.surface, 1] + moved))
+            self.residual = self.model.h_a - highest
+
+    def _gathered(self) -> AsperityResult:
+        assert self.at is not None
+        displacement, force, area, low, high, volume, iterations = np.array(self.rows, float).T
+        stress, plastic = self.model.stress_of(self.at)
+        mesh = self.model.mesh
+        return AsperityResult(
+            history=History(
+                displacement=displacement,
+                force=force,
+                area=area,
+                area_bounds=np.stack([low, high], axis=-1),
+                yielding=volume,
+                iterations=iterations.astype(np.int64),
+            ),
+            field=Field(
+                nodes=mesh.nodes,
+                displacement=self.model.displacement_of(self.at),
+                quads=mesh.quads,
+                body=mesh.body,
+                stress=stress,
+                plastic_strain=plastic,
+            ),
+            residual=self.residual,
+            unknowns=self.model.body.size,
+            factorisations=self.factorisations + self.model.factors.factorisations,
+        )
+
+
+def _path(targets: list[float], steps: int) -> list[float]:
+    """Displacements to stop at: even in the contact radius, so in the root of the displacement, up and down."""
+    top = sqrt(max(targets))
+    goals: list[float] = []
+    here = 0.0
+    for target in targets:
+        there = sqrt(target)
+        count = max(1, round(steps * abs(there - here) / top))
+        goals += [float(v) ** 2 for v in np.linspace(here, there, count + 1)[1:-1]] + [target]
+        here = there
+    return goals
+
+
+def _turning_points(given: float | Sequence[float] | None, name: str) -> list[float]:
+    """Return the turning points of a history of displacements or forces, after refusing those that make no sense."""
+    targets = [float(v) for v in np.atleast_1d(np.asarray(given, float))]
+    if not targets or not all(isfinite(v) and v >= 0 for v in targets) or targets[0] <= 0:
+        raise InputError(f"{name} = {given}; give one positive value, or several, none below 0")
+    if any(a == b for a, b in pairwise(targets)):
+        raise InputError(f"{name} = {given}; two turning points in a row are equal: leave one out")
+    return targets
+
+
+def _check_shape(
+    R: float,
+    h_a: float,
+    layer: Material | None,
+    layer_thickness: float,
+    hardening: float,
+    elements: int,
+    steps: int | None,
+    domain: float | None,
+    cap: Material,
+) -> None:
+    """Refuse what cannot be meshed."""
+    if not (isfinite(R) and R > 0):
+        raise InputError(f"R = {R} m; the radius of the cap must be positive, for example 15e-6")
+    if not (isfinite(h_a) and 0 < h_a <= R):
+        raise InputError(f"h_a = {h_a} m with R = {R} m; the height must be above 0 and at most R (a half sphere)")
+    if cap.is_rigid:
+        raise InputError("the cap is rigid; it must be deformable, only the substrate may be RIGID")
+    if (layer is None) != (layer_thickness == 0) or layer_thickness < 0:
+        raise InputError(
+            f"layer {layer.name if layer else None!r} with layer_thickness = {layer_thickness} m; give both, or neither"
+        )
+    if not 0 <= hardening < 1:
+        raise InputError(f"hardening = {hardening}; the tangent modulus over E must lie in [0, 1)")
+    if elements < 4 or (steps is not None and steps < 1):
+        raise InputError(f"elements = {elements}, steps = {steps}; at least 4 elements and 1 step are needed")
+    base = sqrt(2 * R * h_a - h_a**2)
+    if domain is not None and not (isfinite(domain) and domain > 2 * base and domain > 2 * layer_thickness):
+        raise InputError(
+            f"domain = {domain} m; it must be more than twice the cap's base radius {base:.4g} m and the layer"
+        )

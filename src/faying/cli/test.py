@@ -1,0 +1,190 @@
+"""`faying test FILE...`: modes of a hammer test out of its FRFs."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+
+TEXT = (".txt", ".csv", ".dat", ".asc")
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option(
+    "--quantity",
+    type=click.Choice(["receptance", "mobility", "accelerance"]),
+    help="What was measured, where the file does not say it (text files never do).",
+)
+@click.option(
+    "--frequency-step",
+    metavar="TEXT",
+    help='Spacing of the lines of text files that hold values alone, for example "1 Hz".',
+)
+@click.option(
+    "--direction", type=click.Choice(["x", "y", "z"]), help="Direction of the test, where the file states none."
+)
+@click.option("--length-unit", help='Unit of the positions, where the file states none, for example "mm".')
+@click.option(
+    "--points", type=click.Path(path_type=Path), help="CSV table of the positions: point,x [mm],y [mm],z [mm]."
+)
+@click.option("--band", metavar="LOW:HIGH", help='Lines to use, for example "20 Hz:800 Hz". Default: all above 0 Hz.')
+@click.option(
+    "--order", type=click.IntRange(2, 200), help="Highest order of the poles. Default: 80, or an eighth of the lines."
+)
+@click.option(
+    "--stays",
+    type=click.IntRange(1, 200),
+    help="Orders over which a pole must stay to be a mode. Default: a fifth of them.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
+@click.option(
+    "--plot", type=click.Path(dir_okay=False), help="Write the stabilisation diagram and a fitted FRF (png, pdf, svg)."
+)
+@click.option(
+    "--out", type=click.Path(dir_okay=False, path_type=Path), help="Write modes and FRFs as a universal file."
+)
+def command(
+    files: tuple[Path, ...],
+    quantity: str | None,
+    frequency_step: str | None,
+    direction: str | None,
+    length_unit: str | None,
+    points: Path | None,
+    band: str | None,
+    order: int | None,
+    stays: int | None,
+    as_json: bool,
+    plot: str | None,
+    out: Path | None,
+) -> None:
+    """Identify the modes of a hammer test from the FRFs in FILES: one universal file, or text files of one FRF each."""
+    from faying.measured.identify import identify_modes
+    from faying.measured.poles import Rule
+    from faying.measured.uff_write import write_uff
+
+    limits = _band(band)
+    frf = read_frf(files, quantity, frequency_step, direction, length_unit, points)
+    low, high = limits or (0.0, float("inf"))
+    lines = int(((frf.frequency > 0) & (frf.frequency >= low) & (frf.frequency <= high)).sum())
+    rule = Rule.fitting(lines, highest_order=order, orders=stays)
+    click.echo(f"{len(frf.measured)} FRFs, {lines} lines: poles up to order {rule.highest_order}", err=True)
+    found = identify_modes(frf, band=limits, rule=rule)
+    if plot:
+        draw(found, plot)
+    if out:
+        write_uff(out, found.modes, frf)
+    for line in frf.warnings:
+        click.echo(f"note: {line}", err=True)
+    click.echo(json.dumps(document(found), indent=2, allow_nan=False) if as_json else table(found))
+
+
+def read_frf(
+    files: tuple[Path, ...],
+    quantity: str | None,
+    frequency_step: str | None,
+    direction: str | None,
+    length_unit: str | None,
+    points: Path | None,
+) -> Any:
+    """The FRFs of universal or text files, with the user's words where the files say nothing."""
+    from dataclasses import replace
+
+    from faying import units
+    from faying.errors import InputError
+    from faying.measured.mapping import read_points
+    from faying.measured.text import read_frf_text
+    from faying.measured.uff import read_uff
+
+    if all(file.suffix.lower() in TEXT for file in files):
+        if quantity is None:
+            raise InputError(
+                "text files do not say what was measured; give --quantity receptance, mobility or accelerance"
+            )
+        step = units.parse(frequency_step, "Hz", name="--frequency-step") if frequency_step else None
+        frf = read_frf_text(files, quantity=quantity, frequency_step=step, direction=direction or "")
+    elif len(files) > 1:
+        raise InputError(
+            "give one universal file, or text files (.txt, .csv) of one FRF each; several tests are several runs"
+        )
+    else:
+        frf = read_uff(files[0], length_unit=length_unit).frf(quantity=quantity)
+    if points:
+        frf = replace(frf, positions=read_points(points))
+    return frf.directed(direction) if direction else frf
+
+
+def _band(text: str | None) -> tuple[float, float] | None:
+    from faying import units
+    from faying.errors import InputError
+
+    if text is None:
+        return None
+    parts = text.split(":")
+    if len(parts) != 2:
+        raise InputError(f'--band "{text}": give two frequencies, for example "20 Hz:800 Hz"')
+    low, high = (units.parse(part, "Hz", name="--band") for part in parts)
+    return low, high
+
+
+def table(found: Any) -> str:
+    """Format the modes for the terminal."""
+    modes = found.modes
+    rows = [["mode", "frequency [Hz]", "95 % interval", "loss factor", "95 % interval", "orders"]]
+    for k in range(len(modes.frequencies)):
+        f, z = modes.frequency_interval[k], modes.loss_interval[k]
+        rows.append(
+            [
+                str(k + 1),
+                f"{modes.frequencies[k]:.2f}",
+                f"{f[0]:.3f} .. {f[1]:.3f}",
+                f"{modes.loss_factors[k]:.2e}",
+                f"{z[0]:.1e} .. {z[1]:.1e}",
+                f"{modes.found_in[k]} of {found.rule.highest_order}",
+            ]
+        )
+    widths = [max(len(row[c]) for row in rows) for c in range(len(rows[0]))]
+    lines = ["  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in rows]
+    lines += ["", f"the modes leave {found.misfit:.1%} of the FRFs (rms) unexplained"]
+    notes: dict[str, list[str]] = {}
+    for k, words in enumerate(modes.notes):
+        for word in words:
+            notes.setdefault(word, []).append(str(k + 1))
+    return "\n".join(lines + [f"note: mode {', '.join(which)}: {word}" for word, which in notes.items()])
+
+
+def document(found: Any) -> dict[str, Any]:
+    """Everything that the command knows, as a tree for JSON; SI."""
+    from dataclasses import asdict
+
+    modes = found.modes
+    return {
+        "source": modes.source,
+        "quantity": found.frf.quantity,
+        "frequencies": modes.frequencies.tolist(),
+        "frequency_interval": modes.frequency_interval.tolist(),
+        "loss_factors": modes.loss_factors.tolist(),
+        "loss_interval": modes.loss_interval.tolist(),
+        "orders": modes.found_in.tolist(),
+        "dofs": [str(d) for d in modes.dofs],
+        "shapes": {"real": modes.shapes.real.tolist(), "imaginary": modes.shapes.imag.tolist()},
+        "misfit": found.misfit,
+        "rule": asdict(found.rule),
+        "notes": [list(words) for words in modes.notes],
+        "warnings": list(found.frf.warnings),
+        "units": "SI: Hz; loss factors and shapes without unit; intervals of 95 %",
+    }
+
+
+def draw(found: Any, path: str) -> None:
+    """Write the stabilisation diagram over a fitted FRF."""
+    from matplotlib.figure import Figure
+
+    from faying.output.figures import measured
+    from faying.output.figures.law import save
+
+    fig = Figure(figsize=(9, 7.5), layout="constrained")
+    upper, lower = fig.subplots(2, 1)
+    measured.stabilisation(upper, found)
+    measured.frf_fit(lower, found)
+    save(fig, path)

@@ -1,0 +1,161 @@
+"""MAPDL: MATRIX27 for stiffness and dampers, COMBIN14, and the contact stiffness of CONTA174.
+
+MATRIX27 after the ANSYS element reference: directions UX UY UZ ROTX ROTY ROTZ of node I, then of J, in the nodal axes;
+C1 to C78 are the upper triangle row by row; KEYOPT(2) = 0 symmetric; KEYOPT(3) = 4 stiffness, 5 damping. R takes six
+constants, each RMORE six more. Not run in MAPDL: the archive is read back by mapdl-archive in the tests.
+"""
+
+import numpy as np
+
+from faying.decks.deck import JointDeck, grouped, real
+from faying.typing import Array
+
+TYPE = 9101  # of the stiffness; the next is that of the dampers
+ROW, COLUMN = np.triu_indices(12)
+
+
+def decks(deck: JointDeck) -> dict[str, str]:
+    """Files for /INPUT in /PREP7, by name; one of them, not all. The archive (.cdb) is for CDREAD,COMB."""
+    out = {"joint_matrix27.inp": matrix27(deck), "joint_matrix27.cdb": archive(deck)}
+    if deck.pairs.lumped:
+        out["joint_combin14.inp"] = combin14(deck)
+    if deck.contact is not None:
+        out["joint_contact.inp"] = contact(deck)
+    return out
+
+
+def constants(blocks: Array) -> Array:
+    """C1 to C78 (p, 78) of pairs with blocks (p, 3, 3)."""
+    whole = np.zeros((len(blocks), 12, 12))
+    for a, b, sign in ((0, 0, 1), (6, 6, 1), (0, 6, -1), (6, 0, -1)):
+        whole[:, a : a + 3, b : b + 3] = sign * blocks
+    return whole[:, ROW, COLUMN]
+
+
+def _sets(deck: JointDeck) -> list[tuple[int, Array, np.ndarray]]:
+    """(type, constants of each set, set of each pair) of stiffness and dampers."""
+    out = []
+    for kind, blocks in ((TYPE, deck.stiffness), (TYPE + 1, deck.dampers)):
+        if blocks is not None:
+            first, group = grouped(blocks)
+            out.append((kind, constants(blocks[first]), group))
+    return out
+
+
+def _said(deck: JointDeck) -> tuple[str, ...]:
+    solve = "solve with MODOPT,QRDAMP or MODOPT,DAMP: LANB leaves dampers out" if deck.dampers is not None else ""
+    return (
+        deck.damping_said(),
+        *([solve] if solve else []),
+        "nodes keep their axes along the global ones (no NROTAT); a face at an angle is in the full 3 x 3 blocks",
+    )
+
+
+def matrix27(deck: JointDeck) -> str:
+    """Write MATRIX27 elements as commands."""
+    lines = [*deck.header("!", *_said(deck)), "/PREP7"]
+    one, two = deck.ends
+    number, real_set = deck.first_element, deck.first_element
+    for kind, sets, group in _sets(deck):
+        lines += [f"ET,{kind},MATRIX27", f"KEYOPT,{kind},2,0", f"KEYOPT,{kind},3,{4 if kind == TYPE else 5}"]
+        for k, row in enumerate(sets):
+            words = ["0" if v == 0 else real(float(v), 17) for v in row]  # six in a line of 128 columns
+            lines.append(f"R,{real_set + k}," + ",".join(words[:6]))
+            lines += ["RMORE," + ",".join(words[j : j + 6]) for j in range(6, 78, 6)]
+        lines.append(f"TYPE,{kind}")
+        last = -1
+        for i in np.argsort(group, kind="stable"):
+            if group[i] != last:
+                last = group[i]
+                lines.append(f"REAL,{real_set + last}")
+            lines.append(f"EN,{number},{one[i]},{two[i]}")
+            number += 1
+        real_set += len(sets)
+    return "\n".join(lines) + "\n"
+
+
+def archive(deck: JointDeck) -> str:
+    """Write the same elements as an archive: ET, RLBLOCK and EBLOCK, for CDREAD,COMB after the model."""
+    lines = [*deck.header("!", *_said(deck)), "/PREP7"]
+    one, two = deck.ends
+    sets = _sets(deck)
+    for kind, _, _ in sets:
+        lines += [f"ET,{kind},27", f"KEYOPT,{kind},2,0", f"KEYOPT,{kind},3,{4 if kind == TYPE else 5}"]
+    count = sum(len(group) for *_, group in sets)
+    last = deck.first_element + count - 1
+    lines += [f"EBLOCK,19,SOLID,{last},{count}", "(19i10)"]
+    number, real_set = deck.first_element, deck.first_element
+    for kind, rows, group in sets:
+        for i, g in enumerate(group):
+            head = [1, kind, real_set + int(g), 1, 0, 0, 0, 0, 2, 0, number, int(one[i]), int(two[i])]
+            lines.append("".join(f"{w:10d}" for w in head))
+            number += 1
+        real_set += len(rows)
+    lines.append(f"{-1:10d}")
+    total = sum(len(rows) for _, rows, _ in sets)
+    lines += [f"RLBLOCK,{total},{deck.first_element + total - 1},78,7", "(2i8,6g16.9)", "(7g16.9)"]
+    real_set = deck.first_element
+    for _, rows, _ in sets:
+        for row in rows:
+            words = [f"{v:16.9E}" for v in row]
+            lines.append(f"{real_set:8d}{78:8d}" + "".join(words[:6]))
+            lines += ["".join(words[j : j + 7]) for j in range(6, 78, 7)]
+            real_set += 1
+    return "\n".join([*lines, "FINISH"]) + "\n"
+
+
+def combin14(deck: JointDeck) -> str:
+    """Write three COMBIN14 for each pair, along nodal axes that are turned into the face: X is the normal."""
+    k = deck.pairs.own(deck.stiffness)
+    c = np.zeros_like(k) if deck.dampers is None else deck.pairs.own(deck.dampers)
+    axes, frame = grouped(deck.axes)
+    lines = deck.header(
+        "!",
+        deck.damping_said(),
+        "NROTAT turns the axes of the nodes of both faces: supports and loads on them are then in those axes; "
+        "MATRIX27 leaves them alone",
+    )
+    lines.append("/PREP7")
+    one, two = deck.ends
+    for g, leader in enumerate(axes):
+        n, t1, _ = deck.axes[leader]
+        # LOCAL by three points: origin, a point on x, a point in the plane x y
+        lines += ["*GET,JKCS,ACTIVE,0,CSYS", "CSYS,0", "*GET,JKN,NODE,0,NUM,MAX"]
+        for j, at in enumerate((np.zeros(3), n, t1), 1):
+            lines.append(f"N,JKN+{j}," + ",".join(real(float(x), 20) for x in at))
+        lines += [f"CS,{TYPE + g},0,JKN+1,JKN+2,JKN+3", f"CSYS,{TYPE + g}"]
+        lines += [f"NROTAT,{node}" for i in np.flatnonzero(frame == g) for node in (one[i], two[i])]
+        lines += ["NDELE,JKN+1,JKN+3", "CSYS,JKCS"]
+    number, real_set = deck.first_element, deck.first_element
+    for axis in range(3):
+        kind = TYPE + axis
+        lines += [f"ET,{kind},COMBIN14", f"KEYOPT,{kind},2,{axis + 1}", f"TYPE,{kind}"]
+        values = np.column_stack([k[:, axis], c[:, axis]])
+        first, group = grouped(values / np.maximum(np.abs(values).max(axis=0), 1e-300))
+        for g, leader in enumerate(first):
+            lines += [f"R,{real_set}," + ",".join(real(float(v), 20) for v in values[leader]), f"REAL,{real_set}"]
+            for i in np.flatnonzero(group == g):
+                lines.append(f"EN,{number},{one[i]},{two[i]}")
+                number += 1
+            real_set += 1
+    return "\n".join(lines) + "\n"
+
+
+def contact(deck: JointDeck) -> str:
+    """Write the contact stiffness of one contact region as commands: k_n and k_t at its mean pressure."""
+    law = deck.contact
+    assert law is not None
+    scale = deck.system.density
+    lines = deck.header(
+        "!",
+        "commands for a contact region of CONTA174 in Workbench, where cid is its number; else set cid first",
+        "FKN and FKT below zero are absolute, force per length cubed; one value for the region: cut the face into regions to "
+        "follow the pressure",
+        f"k_n and k_t at the mean pressure {law.mean_pressure * deck.system.pressure:.6g}",
+    )
+    lines += [
+        "KEYOPT,cid,2,1",
+        f"RMODIF,cid,3,{real(-law.k_n * scale, 20)}",
+        f"RMODIF,cid,12,{real(-law.k_t * scale, 20)}",
+    ]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,46 @@
+"""All decks of one solver into a folder, whole or not at all, with the pairs as a table beside them."""
+
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+
+from faying.decks.deck import JointDeck
+from faying.errors import InputError
+from faying.files import write_atomically
+
+SOLVERS = ("mapdl", "abaqus", "nastran", "calculix", "aster")
+
+
+def write(deck: JointDeck, solver: str, folder: Path) -> list[Path]:
+    """Write the decks of `solver` and joint_pairs.csv (SI units). Raises InputError for a solver that is not known."""
+    if solver not in SOLVERS:
+        raise InputError(f"no exporter for {solver!r}; there are {', '.join(SOLVERS)}")
+    texts: dict[str, str] = import_module(f"faying.decks.{solver}").decks(deck)
+    texts["joint_pairs.csv"] = pairs_csv(deck)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as fault:
+        raise InputError(f"cannot make the folder {folder}: {fault.strerror}; give another with --out") from None
+    return [
+        write_atomically(folder / name, lambda temporary, text=text: temporary.write_text(text, encoding="utf-8"))  # type: ignore[misc]
+        for name, text in texts.items()
+    ]
+
+
+def pairs_csv(deck: JointDeck) -> str:
+    """Write the pairs: nodes, share of the area, pressure, k_n, k_t, loss factors, normal; SI units."""
+    pairs = deck.pairs
+    one, two = deck.ends
+    head = "node a,node b,x [m],y [m],z [m],area [m^2],pressure [Pa],k_n [N/m],k_t [N/m],loss_n,loss_t,nx,ny,nz"
+    along = np.einsum("pi,pij,pj->p", pairs.frames[:, 0], pairs.stiffness, pairs.frames[:, 0])
+    across = (np.einsum("pii->p", pairs.stiffness) - along) / 2
+    lost_n = np.einsum("pi,pij,pj->p", pairs.frames[:, 0], pairs.loss, pairs.frames[:, 0])
+    lost_t = (np.einsum("pii->p", pairs.loss) - lost_n) / 2
+    with np.errstate(invalid="ignore", divide="ignore"):
+        loss = np.nan_to_num(np.column_stack([lost_n / along, lost_t / across]))
+    table = np.column_stack(
+        [deck.mesh.points[pairs.first], pairs.area, pairs.pressure, along, across, loss, pairs.frames[:, 0]]
+    )
+    rows = (f"{a},{b}," + ",".join(f"{v:.10g}" for v in row) for a, b, row in zip(one, two, table, strict=True))
+    return "\n".join([*(f"# {fact}" for fact in deck.facts), head, *rows]) + "\n"

@@ -1,0 +1,353 @@
+"""Contact of a height map with a rigid plane, both taken as one elastic half-space, by `solve_half_space`."""
+
+from math import isfinite, isnan
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from faying.errors import InputError, NotConverged
+from faying.halfspace.bounded import Minimum, Progress, best_level, duality_gap, minimise
+from faying.halfspace.kernels import normal_kernel, transform_shape
+from faying.halfspace.solution import HalfSpaceContact
+from faying.typing import Array
+
+COARSEST = 48
+COARSE_TOLERANCE = 1e-3
+ROUNDING = 1e-12
+
+
+def solve_half_space(
+    heights: ArrayLike,
+    spacing: float | tuple[float, float],
+    *,
+    E_star: float,
+    pressure: float | None = None,
+    displacement: float | None = None,
+    hardness: float | None = None,
+    nu: float = 0.3,
+    periodic: bool = True,
+    tol: float = 1e-6,
+    start: HalfSpaceContact | None = None,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> HalfSpaceContact:
+    """Press a height map against a rigid plane and return the contact, with a certificate of its accuracy.
+
+    heights [m], shape (ny, nx), pointing towards the plane; spacing [m], one number or (dx, dy); E_star contact
+    modulus of the pair [Pa]; nu the Poisson's ratio used for tangential loads [-]. Give either pressure, the mean over
+    the map [Pa], or displacement, how far the plane comes down from first touch [m]. hardness [Pa]: no point carries
+    more (0 <= p <= H); None is elastic. periodic=False takes the map as a patch on an unbounded flat half-space that
+    nothing else loads. start: an earlier contact of the same map, to begin from. workers: threads of the transforms.
+    progress: called with (step, residual) on the finest map; whatever it raises, as KeyboardInterrupt does, leaves no
+    trace.
+
+    `tol` bounds `.residual`, the duality gap over load times rms height: an upper bound on the relative excess of
+    energy whatever the iteration did (see `bounded`). The discrete problem is that of Polonsky and Keer 1999
+    (doi:10.1016/S0043-1648(99)00113-1), with the upper bound of Almqvist et al. 2007
+    (doi:10.1016/j.jtribo.2007.01.014).
+
+    Raises InputError for maps that are not two-dimensional, hold missing points or do not fit into memory, for
+    non-positive moduli, for negative loads and loads at or beyond hardness; NotConverged where tol is not reached.
+    """
+    h, (dx, dy) = _checked_map(heights, spacing)
+    _check_numbers(E_star, nu, hardness, tol)
+    _check_memory(h.shape, periodic)
+    if (pressure is None) == (displacement is None):
+        raise InputError("give either pressure or displacement to solve_half_space, one of the two")
+    problem = _Problem(h, dx, dy, E_star, hardness, nu, periodic, tol, workers, progress)
+    if start is not None and start.heights.shape != h.shape:
+        raise InputError(
+            f"start: a contact of shape {start.heights.shape}, but the map has shape {h.shape}; "
+            "start from a contact of the same map"
+        )
+    first = None if start is None else start.traction / E_star
+    if displacement is not None:
+        return _at_displacement(problem, displacement, first)
+    assert pressure is not None
+    _check_pressure(pressure, hardness)
+    return problem.at(pressure / E_star, first)
+
+
+class _Problem:
+    """One map, scaled: lengths by dx, stresses by E*."""
+
+    def __init__(
+        self,
+        h: Array,
+        dx: float,
+        dy: float,
+        E_star: float,
+        hardness: float | None,
+        nu: float,
+        periodic: bool,
+        tol: float,
+        workers: int | None,
+        progress: Progress | None,
+    ) -> None:
+        self.heights, self.spacing, self.E_star, self.hardness, self.nu = h, (dx, dy), E_star, hardness, nu
+        self.periodic, self.tol, self.workers, self.progress = periodic, tol, workers, progress
+        self.top = float(h.max())
+        self.scaled = (h - self.top) / dx
+        self.rms = float(self.scaled.std())
+        self.limit = np.inf if hardness is None else hardness / E_star
+
+    def at(self, mean: float, start: Array | None) -> HalfSpaceContact:
+        if mean == 0:
+            return self._solution(None)
+        if start is not None and start.any():
+            start = start * (mean / start.mean())
+            return self._solution(
+                self._minimise(
+                    self.scaled, 1.0, self.spacing[1] / self.spacing[0], mean, start, self.tol, self.progress
+                )
+            )
+        return self._solution(self._nested(self.scaled, 1.0, self.spacing[1] / self.spacing[0], mean, True))
+
+    def _nested(self, h: Array, unit: float, aspect: float, mean: float, finest: bool) -> Minimum:
+        """Solve coarse maps first; each gives the next one's start."""
+        start = None
+        if min(h.shape) >= 2 * COARSEST:
+            small = _halved(h)
+            stretch = h.shape[1] / small.shape[1], h.shape[0] / small.shape[0]
+            try:
+                coarse = self._nested(
+                    small / stretch[0], unit * stretch[0], aspect * stretch[1] / stretch[0], mean, False
+                )
+                start = _spread(coarse.x.reshape(small.shape), h.shape)
+            except NotConverged:
+                start = None  # a coarse map only gives a start; do without
+        return self._minimise(
+            h,
+            unit,
+            aspect,
+            mean,
+            start,
+            self.tol if finest else max(self.tol, COARSE_TOLERANCE),
+            self.progress if finest else None,
+        )
+
+    def _minimise(
+        self,
+        h: Array,
+        unit: float,
+        aspect: float,
+        mean: float,
+        start: Array | None,
+        tol: float,
+        progress: Progress | None,
+    ) -> Minimum:
+        kernel = normal_kernel(h.shape, aspect, periodic=self.periodic, workers=self.workers)
+        # a smooth flat has no roughness to measure by: take what its own load does to one cell
+        scale = self.rms / unit if self.rms > 0 else mean
+        return minimise(
+            kernel,
+            h.ravel(),
+            lower=0.0,
+            upper=self.limit,
+            mean=mean,
+            scale=scale,
+            tol=tol,
+            start=None if start is None else start.ravel(),
+            progress=progress,
+        )
+
+    def _solution(self, found: Minimum | None) -> HalfSpaceContact:
+        length = self.spacing[0]
+        shape = self.heights.shape
+        traction, displacement = np.zeros(shape), np.zeros(shape)
+        plane, residual, steps, applications = self.top, 0.0, 0, 0
+        if found is not None:
+            # less than this is what the projection's rounding leaves, not contact
+            x = np.where(found.x > ROUNDING * found.x.mean(), found.x, 0.0)
+            traction = x.reshape(shape) * self.E_star
+            displacement = (found.gradient.reshape(shape) + self.scaled) * length
+            plane = self.top + found.level * length
+            residual, steps, applications = found.residual, found.steps, found.applications
+        return HalfSpaceContact(
+            heights=self.heights,
+            spacing=self.spacing,
+            E_star=self.E_star,
+            nu=self.nu,
+            hardness=self.hardness,
+            periodic=self.periodic,
+            traction=_frozen(traction),
+            displacement=_frozen(displacement),
+            plane=plane,
+            residual=residual,
+            iterations=steps,
+            applications=applications,
+            workers=self.workers,
+        )
+
+
+def certify(
+    heights: ArrayLike,
+    spacing: float | tuple[float, float],
+    traction: ArrayLike,
+    *,
+    E_star: float,
+    hardness: float | None = None,
+    periodic: bool = True,
+) -> float:
+    """Return the residual [-], as of `solve_half_space`, of any pressure map [Pa] (ny, nx), whoever made it.
+
+    Tractions outside 0 to hardness are cut to these bounds first. Raises InputError as `solve_half_space` does and for
+    a map of another shape or without any pressure.
+    """
+    h, (dx, dy) = _checked_map(heights, spacing)
+    _check_numbers(E_star, 0.3, hardness, 0.5)
+    limit = np.inf if hardness is None else hardness / E_star
+    x = np.clip(np.asarray(traction, dtype=np.float64) / E_star, 0.0, limit)
+    if x.shape != h.shape or not x.any():
+        raise InputError(f"traction of shape {x.shape}; give pressures above 0 on a map of shape {h.shape}")
+    kernel = normal_kernel((h.shape[0], h.shape[1]), dy / dx, periodic=periodic)
+    gradient = (kernel.apply(x[None])[0] - h / dx).ravel()
+    x = x.ravel()
+    gap = duality_gap(x, gradient, 0.0, limit, best_level(x, gradient, 0.0, limit))
+    return gap / float(x.sum() * h.std() / dx)
+
+
+def _at_displacement(problem: _Problem, displacement: float, start: Array | None) -> HalfSpaceContact:
+    """Find the pressure whose approach is the one asked for, by bracketing in ln(pressure)."""
+    from scipy.optimize import brentq
+
+    if isnan(displacement) or displacement < 0 or not isfinite(displacement):
+        raise InputError(f"displacement = {displacement} m; give 0 or more, counted from first touch")
+    if displacement == 0:
+        return problem.at(0.0, None)
+    deepest = problem.top - float(problem.heights.mean())
+    if problem.periodic and problem.hardness is None and displacement >= deepest:
+        raise InputError(
+            f"displacement {displacement:.4g} m closes every gap of this periodic map; its full contact comes "
+            f"at {deepest:.4g} m; give less, or give the pressure"
+        )
+    contacts: dict[float, HalfSpaceContact] = {}
+    last = start
+
+    def miss(log_p: float) -> float:
+        nonlocal last
+        contact = problem.at(float(np.exp(log_p)), last)
+        contacts.clear()
+        contacts[log_p] = contact
+        last = contact.traction / problem.E_star
+        return (contact.approach - displacement) / displacement
+
+    ceiling = np.log(problem.limit * (1 - 1e-9))
+    low = high = min(float(np.log(displacement / max(problem.heights.shape) / problem.spacing[0])), ceiling - 1)
+    below = above = miss(low)
+    while below > 0 and low > high - 100:
+        low -= 2
+        below = miss(low)
+    while above < 0:
+        if high >= ceiling:
+            raise InputError(
+                f"displacement {displacement:.4g} m lies beyond what the hardness {problem.hardness:.4g} Pa "
+                "resists: the whole map is at hardness; give less"
+            )
+        low, below = high, above
+        high = min(high + 2, ceiling)
+        above = miss(high)
+    root = low if below == 0 else high if above == 0 else float(brentq(miss, low, high, xtol=1e-10, rtol=1e-12))
+    if root not in contacts:
+        miss(root)
+    return contacts[root]
+
+
+def _checked_map(heights: ArrayLike, spacing: float | tuple[float, float]) -> tuple[Array, tuple[float, float]]:
+    h = np.array(heights, dtype=np.float64)
+    if h.ndim != 2 or min(h.shape) < 2:
+        raise InputError(f"heights of shape {h.shape}; give a map of rows and columns, at least 2 by 2")
+    bad = int(np.count_nonzero(~np.isfinite(h)))
+    if bad == h.size:
+        raise InputError("heights: every point is missing; there is nothing to press")
+    if bad:
+        raise InputError(
+            f"heights: {bad} of {h.size} points are NaN or infinite; fill the missing points of the scan "
+            "first, or cut out a part that is whole"
+        )
+    dx, dy = (spacing, spacing) if isinstance(spacing, (int, float)) else (float(spacing[0]), float(spacing[1]))
+    if not (isfinite(dx) and isfinite(dy) and dx > 0 and dy > 0):
+        raise InputError(f"spacing = {spacing}; give the distance between points in metres, for example 1e-6")
+    return _frozen(h), (float(dx), float(dy))
+
+
+def _check_numbers(E_star: float, nu: float, hardness: float | None, tol: float) -> None:
+    if not (isfinite(E_star) and E_star > 0):
+        raise InputError(f"E_star = {E_star} Pa; it must be positive, for example 110e9")
+    if not -1 < nu <= 0.5:
+        raise InputError(f"nu = {nu}; it must lie in (-1, 0.5], for example 0.3")
+    if hardness is not None and not (isfinite(hardness) and hardness > 0):
+        raise InputError(f"hardness = {hardness} Pa; it must be positive, or None for an elastic contact")
+    if not 0 < tol < 1:
+        raise InputError(f"tol = {tol}; it must lie between 0 and 1, for example 1e-6")
+
+
+def _check_pressure(pressure: float, hardness: float | None) -> None:
+    if not (isfinite(pressure) and pressure >= 0):
+        raise InputError(f"pressure = {pressure} Pa; give 0 or more")
+    if hardness is not None and pressure >= hardness:
+        raise InputError(
+            f"pressure {pressure:.4g} Pa is not below the hardness {hardness:.4g} Pa: the whole map would be "
+            "at hardness and flow; lower the load or check the units"
+        )
+
+
+def memory_needed(shape: tuple[int, int], *, periodic: bool) -> float:
+    """Bytes that a solution on a map of this shape takes at its peak."""
+    padded = transform_shape(shape, periodic=periodic)
+    return 8.0 * (22 * shape[0] * shape[1] + 5 * padded[0] * padded[1])
+
+
+def memory_free() -> float:
+    """Bytes that the machine can still give, infinite where it does not say."""
+    try:
+        with open("/proc/meminfo") as file:
+            for line in file:
+                if line.startswith("MemAvailable:"):
+                    return 1024.0 * float(line.split()[1])
+    except OSError:
+        pass
+    return np.inf
+
+
+def _check_memory(shape: tuple[int, ...], periodic: bool) -> None:
+    need, have = memory_needed((shape[0], shape[1]), periodic=periodic), memory_free()
+    if need > have:
+        raise InputError(
+            f"a map of {shape[0]} x {shape[1]} points needs about {need / 2**30:.1f} GiB and "
+            f"{have / 2**30:.1f} GiB are free; cut the map, take every second point"
+            f"{'' if periodic else ', or solve it as periodic (a quarter of the transform)'}"
+        )
+
+
+def halved_map(h: Array, spacing: tuple[float, float]) -> tuple[Array, tuple[float, float]]:
+    """The map on half as many points each way, with its spacing [m]."""
+    small = _halved(h)
+    return small, (spacing[0] * h.shape[1] / small.shape[1], spacing[1] * h.shape[0] / small.shape[0])
+
+
+def _halved(h: Array) -> Array:
+    """The map on half as many points: block means, interpolated where a side is odd."""
+    for axis in (0, 1):
+        n = h.shape[axis]
+        h = np.moveaxis(h, axis, 0)
+        if n % 2 == 0:
+            h = (h[::2] + h[1::2]) / 2
+        else:
+            at = (np.arange((n + 1) // 2) + 0.5) * (n / ((n + 1) // 2)) - 0.5
+            left = np.clip(at.astype(int), 0, n - 2)
+            part = np.clip(at - left, 0, 1).reshape(-1, *[1] * (h.ndim - 1))
+            h = h[left] * (1 - part) + h[left + 1] * part
+        h = np.moveaxis(h, 0, axis)
+    return h
+
+
+def _spread(x: Array, shape: tuple[int, ...]) -> Array:
+    """Every fine cell takes the value of the coarse cell that holds its middle."""
+    rows, columns = (((np.arange(n) + 0.5) * (m / n)).astype(int) for n, m in zip(shape, x.shape, strict=True))
+    return x[np.ix_(rows, columns)]
+
+
+def _frozen(a: Array) -> Array:
+    a.setflags(write=False)
+    return a

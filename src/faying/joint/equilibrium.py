@@ -1,0 +1,319 @@
+"""Equilibrium of elastic parts on a rough interface, by Newton with a line search.
+
+The rough surface is a normal compliance p(closing), so nothing is penalised: its tangent is the contact stiffness.
+Tangentially the joint sticks with the stiffness k_t of its pressure and, where a friction coefficient is given, slips at
+friction times pressure. With k_t and that limit held, equilibrium is the minimum of a convex energy; both then follow
+the pressure until nothing changes. How a Newton step is solved is left to those who build on this: with sparse matrices
+(`preload`) or in a small basis (`reduce`).
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from faying.errors import InputError, NotConverged
+from faying.joint.joint_law import JointLaw
+from faying.typing import Array, Mask
+
+BEYOND = 0.1  # share of the contact that may lie beyond the end of the law, at the rim of a hole say; it is flagged
+ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall further
+SETTLED = 1e-4  # imbalance below which k_t and the limit of friction are held
+
+
+class InterfaceMotion(Protocol):
+    """What the balance needs of a joint: relative motion at weighted points from any displacement vector."""
+
+    @property
+    def weights(self) -> Array:
+        """Areas [m2] (q,)."""
+
+    @property
+    def gap(self) -> Array:
+        """Distance of the faces before any load [m] (q,)."""
+
+    @property
+    def relative(self) -> Any:
+        """Operator (3q, unknowns): opening and two slips at each point."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PreloadState:
+    """Equilibrium under the bolts.
+
+    pressures [Pa], openings [m] and share of the slipping area [-], one per joint; displacement (unknowns,) [m];
+    imbalance, the residual force over the load [-]; Newton steps, conjugate-gradient steps, factorisations taken;
+    bolt_forces [N], those left when all bolts are tight.
+    """
+
+    pressures: tuple[Array, ...]
+    openings: tuple[Array, ...]
+    slipping: tuple[float, ...]
+    displacement: Array
+    imbalance: float
+    newton_steps: int
+    inner_steps: int
+    factorisations: int
+    bolt_forces: tuple[float, ...] = ()
+
+
+@dataclass
+class StickSlip:
+    """Tangential state of one joint while k_t (q,) [Pa/m] and the greatest shear (q,) [Pa] are held.
+
+    anchor (q, 2) [m]: the slip at which the shear traction is zero.
+    """
+
+    k_t: Array
+    limit: Array | None
+    anchor: Array
+
+    def shear(self, slip: Array) -> Array:
+        """Shear tractions [Pa] (q, 2)."""
+        stuck = self.k_t[:, None] * (slip - self.anchor)
+        if self.limit is None:
+            return stuck
+        size = np.linalg.norm(stuck, axis=1)
+        return np.asarray(stuck * np.minimum(1.0, self.limit / np.where(size > 0, size, 1.0))[:, None])
+
+    def sliding(self, slip: Array) -> Mask:
+        """Points (q,) where the traction has reached its limit."""
+        if self.limit is None:
+            return np.zeros(len(self.k_t), dtype=bool)
+        return np.asarray(np.linalg.norm(self.k_t[:, None] * (slip - self.anchor), axis=1) > self.limit)
+
+    def tangent(self, slip: Array) -> Array:
+        """Tangent (q, 2, 2) [Pa/m] of the shear traction: k_t where it sticks; across the motion only where it slides."""
+        full = self.k_t[:, None, None] * np.eye(2)
+        slides = self.sliding(slip)
+        if np.any(slides):
+            assert self.limit is not None
+            move = (slip - self.anchor)[slides]
+            size = np.linalg.norm(move, axis=1)
+            along = move / size[:, None]
+            across = np.eye(2) - along[:, :, None] * along[:, None, :]
+            full[slides] = (self.limit[slides] / size)[:, None, None] * across
+        return full
+
+
+class Equilibrium(ABC):
+    """Newton on equilibrium, for one load after another: each starts from the last."""
+
+    stiffness: Any
+    joints: list[tuple[Any, JointLaw]]
+
+    def __init__(
+        self, stiffness: Any, joints: Sequence[tuple[Any, JointLaw]], *, friction: Sequence[float | None] | None = None
+    ) -> None:
+        self.stiffness, self.joints = stiffness, list(joints)
+        self.friction = list(friction) if friction is not None else [None] * len(self.joints)
+        self.anchors = [np.zeros((len(trace.weights), 2)) for trace, _ in self.joints]
+        self.last: Array | None = None
+        self._known: tuple[Array, list[tuple[Array, Array, Array]]] | None = None
+        self.nearest: Array | None = None  # displacement nearest to balance in the last `solve`
+        self.factorisations = 0
+
+    @abstractmethod
+    def _start(self, load: Array) -> Array:
+        """Return a displacement to start from."""
+
+    @abstractmethod
+    def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> tuple[Array, int]:
+        """Return the Newton step for an out-of-balance force and how many inner steps it took."""
+
+    def _check_load(self, load: Array) -> None:
+        """Raise InputError where no equilibrium exists under this load; any load will do unless told otherwise."""
+        return
+
+    def _admissible(self, force: Array) -> Array:
+        """Remove from a force what nothing can answer: rounding along rigid motions, forces on held unknowns."""
+        return force
+
+    def solve(
+        self,
+        load: Array,
+        *,
+        tolerance: float = 1e-10,
+        steps: int = 60,
+        report: Callable[[str], None] | None = None,
+        beyond: float = BEYOND,
+    ) -> PreloadState:
+        """Find equilibrium under nodal forces `load` [N] (unknowns,).
+
+        tolerance: of the residual force relative to the load, or what rounding leaves of it where that is more; beyond: share of the contact that may be pressed beyond
+        the end of its law. Raises InputError when more is, or the load cannot balance, and NotConverged when Newton
+        stops short.
+        """
+        if not np.any(load):
+            raise InputError("no bolt pulls: the load is zero everywhere; give at least one bolt a preload")
+        self._check_load(load)
+        scale = float(np.linalg.norm(load))
+        u = self._start(load) if self.last is None else self.last
+        newton = inner = 0
+        least = np.inf
+        grips = self._grips(u)
+        while True:
+            force = self._out_of_balance(u, load, grips)
+            size = float(np.linalg.norm(force)) / scale
+            if size < least:
+                least, self.nearest = size, u
+            if size < max(tolerance, ROUNDED) and tolerance < (rounding := self._rounding(u) / scale):
+                tolerance = rounding
+            if size < tolerance:
+                fresh = self._grips(u)
+                change = max(_grip_change(new, old) for new, old in zip(fresh, grips, strict=True))
+                grips = fresh
+                size = float(np.linalg.norm(self._out_of_balance(u, load, grips))) / scale
+                if size < tolerance or change < 1e-12:
+                    break
+                continue
+            if newton >= steps:
+                raise NotConverged(
+                    f"preload: after {newton} Newton steps {size:.1e} of the load is out of balance "
+                    f"(tolerance {tolerance:.0e}); refine the mesh of the joint, or load it in steps"
+                )
+            # as exact as Newton's own convergence asks, and no more than the tolerance does
+            accuracy = max(min(1e-2, 0.1 * size), 0.3 * tolerance / size)
+            step, count = self._direction(u, force, grips, accuracy=accuracy)
+            length = self._line_search(u, step, load, grips)
+            u = u + length * step
+            if size > SETTLED:  # far off, k_t follows at once; near the end it is held so that Newton converges
+                grips = self._grips(u)
+            newton, inner = newton + 1, inner + count
+            if report:
+                report(f"Newton {newton}: imbalance {size:.1e}, {count} inner steps, step {length:.3g}")
+        self.last = u
+        slipping = []
+        for index, ((move, p, _), grip, (trace, _)) in enumerate(zip(self._state(u), grips, self.joints, strict=True)):
+            slides = grip.sliding(move[:, 1:])
+            slipping.append(float(trace.weights @ slides / trace.weights.sum()))
+            if np.any(slides):  # the shear that is left holds until the next load moves on
+                rest = grip.shear(move[:, 1:]) / np.where(grip.k_t > 0, grip.k_t, 1.0)[:, None]
+                self.anchors[index] = np.where(slides[:, None], move[:, 1:] - rest, self.anchors[index])
+            if grip.limit is not None:  # what moves while it is open starts without shear when it closes
+                self.anchors[index] = np.where((p > 0)[:, None], self.anchors[index], move[:, 1:])
+        openings, pressures = self.contact(u)
+        self._check_ends(pressures, beyond)
+        return PreloadState(
+            pressures=pressures,
+            openings=openings,
+            slipping=tuple(slipping),
+            displacement=u,
+            imbalance=size,
+            newton_steps=newton,
+            inner_steps=inner,
+            factorisations=self.factorisations,
+        )
+
+    def contact(self, u: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+        """Openings [m] and pressures [Pa] at the points of every joint under displacements [m] (unknowns,)."""
+        openings = tuple(self._move(trace, u)[:, 0] + trace.gap for trace, _ in self.joints)
+        return openings, tuple(law.pressure(-gap)[0] for gap, (_, law) in zip(openings, self.joints, strict=True))
+
+    def _check_ends(self, pressures: tuple[Array, ...], allowed: float) -> None:
+        for p, (trace, law) in zip(pressures, self.joints, strict=True):
+            end = law.model.greatest_pressure
+            touching = float(trace.weights[p > 0].sum())
+            beyond = float(trace.weights[p > end].sum()) / touching if touching > 0 else 0.0
+            if beyond > allowed:
+                raise InputError(
+                    f"the preload presses the joint to {p.max() / 1e6:.4g} MPa, and {beyond:.0%} of what is in contact to more "
+                    f"than {law.model.name} covers with this surface ({end / 1e6:.4g} MPa); lower the preload, widen the "
+                    "joint, or choose a law that reaches further"
+                )
+
+    def _rounding(self, u: Array) -> float:
+        """What rounding alone may leave of the elastic forces [N]: parts far stiffer than their joints lose digits in K u."""
+        return float(2 * np.finfo(float).eps * np.linalg.norm(abs(self.stiffness) @ np.abs(u)))
+
+    def _move(self, trace: InterfaceMotion, u: Array) -> Array:
+        return np.asarray(trace.relative @ u).reshape(-1, 3)
+
+    def _state(self, u: Array) -> list[tuple[Array, Array, Array]]:
+        """Relative motion (q, 3), pressure and k_n (q,) of each joint; asked for several times in a step, found once."""
+        if self._known is None or self._known[0] is not u:
+            moves = [self._move(trace, u) for trace, _ in self.joints]
+            found = [
+                (move, *law.pressure(-(move[:, 0] + trace.gap)))
+                for move, (trace, law) in zip(moves, self.joints, strict=True)
+            ]
+            self._known = u, found
+        return self._known[1]
+
+    def _grips(self, u: Array) -> list[StickSlip]:
+        grips = []
+        for (_, p, _), (_, law), friction, anchor in zip(
+            self._state(u), self.joints, self.friction, self.anchors, strict=True
+        ):
+            grips.append(
+                StickSlip(k_t=law.stiffness(p)[1], limit=None if friction is None else friction * p, anchor=anchor)
+            )
+        return grips
+
+    def _out_of_balance(self, u: Array, load: Array, grips: list[StickSlip]) -> Array:
+        force = load - self.stiffness @ u
+        for (move, p, _), (trace, _), grip in zip(self._state(u), self.joints, grips, strict=True):
+            local = np.concatenate([-p[:, None], grip.shear(move[:, 1:])], axis=1) * trace.weights[:, None]
+            force = force - trace.relative.T @ local.ravel()
+        return self._admissible(np.asarray(force))
+
+    def _tangents(self, u: Array, grips: list[StickSlip]) -> list[tuple[Any, Array, Array]]:
+        """For each joint: trace, normal stiffness (q,) and tangential tangent (q, 2, 2), both times the area."""
+        out = []
+        for (move, _, k_n), (trace, _), grip in zip(self._state(u), self.joints, grips, strict=True):
+            out.append((trace, trace.weights * k_n, trace.weights[:, None, None] * grip.tangent(move[:, 1:])))
+        return out
+
+    def _line_search(self, u: Array, step: Array, load: Array, grips: list[StickSlip]) -> float:
+        """Step length at which the slope of the energy has fallen to a fraction; the energy is convex along the line."""
+        stretch = self.stiffness @ step
+        linear = float(step @ (load - self.stiffness @ u))
+        quadratic = float(step @ stretch)
+        local = [self._move(trace, step) for trace, _ in self.joints]
+        here = self._state(u)
+
+        def slope(length: float) -> float:
+            total = length * quadratic - linear
+            for (trace, law), by, (move, p, _), grip in zip(self.joints, local, here, grips, strict=True):
+                if length:
+                    p, _ = law.pressure(-(trace.gap + move[:, 0] + length * by[:, 0]))
+                shear = grip.shear(move[:, 1:] + length * by[:, 1:])
+                work = -p * by[:, 0] + np.einsum("qi,qi->q", shear, by[:, 1:])
+                total += float(trace.weights @ work)
+            return total
+
+        start = slope(0.0)
+        if start >= 0:
+            apart = min(float(trace.gap.min()) for trace, _ in self.joints)
+            raise NotConverged(
+                "preload: the search direction does not lower the energy; a joint may be wholly open (before any load the "
+                f"nearest faces lie {apart * 1e6:.4g} um apart): put the faces on each other, or pull harder"
+            )
+        end = slope(1.0)
+        if abs(end) <= 0.5 * abs(start):
+            return 1.0
+        low, high = (0.0, 1.0) if end > 0 else (1.0, 2.0)
+        while end < 0 and high < 64:
+            end = slope(high)
+            low, high = (high, 2 * high) if end < 0 else (low, high)
+        for _ in range(40):
+            middle = (low + high) / 2
+            value = slope(middle)
+            if abs(value) <= 0.3 * abs(start):
+                return middle
+            low, high = (middle, high) if value < 0 else (low, middle)
+        return (low + high) / 2
+
+
+def _grip_change(new: StickSlip, old: StickSlip) -> float:
+    change = _relative_change(new.k_t, old.k_t)
+    if new.limit is not None and old.limit is not None:
+        change = max(change, _relative_change(new.limit, old.limit))
+    return change
+
+
+def _relative_change(new: Array, old: Array) -> float:
+    size = float(np.linalg.norm(new))
+    return float(np.linalg.norm(new - old)) / size if size > 0 else 0.0

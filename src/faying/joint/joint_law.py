@@ -1,0 +1,206 @@
+"""A contact law laid on a joint: pressure from closing, and stiffness and loss at every point from its pressure."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from faying.errors import InputError
+from faying.typing import Array, Mask
+
+FEW = 200  # pressures up to which a law is inverted exactly; more are read from the table between its points
+LEAST_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p(closing) goes on as a power
+
+
+class Law(Protocol):
+    """What a joint asks of a contact law."""
+
+    @property
+    def name(self) -> str:
+        """What the law is called."""
+
+    @property
+    def greatest_pressure(self) -> float:
+        """Where the law ends [Pa]."""
+
+    def at_pressure(self, pressure: ArrayLike, *, exact: bool | None = None) -> "Answer":
+        """Response at nominal pressures [Pa]; exact=False may read a checked table."""
+
+
+class Answer(Protocol):
+    """What a joint reads from the response of a law."""
+
+    @property
+    def k_n(self) -> Array | None:
+        """Normal stiffness [Pa/m]."""
+
+    @property
+    def k_t(self) -> Array | None:
+        """Tangential stiffness [Pa/m]."""
+
+    @property
+    def loss_n(self) -> Array | None:
+        """Loss factor of the normal motion [-]."""
+
+    @property
+    def loss_t(self) -> Array | None:
+        """Loss factor of the tangential motion [-]."""
+
+    @property
+    def valid(self) -> Mask:
+        """Where the law stands on its own ground."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointLaw:
+    """The law of one joint, with its pressure as a function of closing: w = integral of dp/k from 0 to p.
+
+    k is the law's k_load where it has one (asperities that yield close more on loading than they spring back), else k_n.
+
+    law; tangential: "law" takes its k_t, "mindlin" takes k_t = k_n 2(1-nu)/(2-nu) with the nu given (for laws that
+    define none); scale of stiffness [-], 1 unless a study of sensitivity asks otherwise. Raises InputError where the law
+    gives no k_n, or no k_t and tangential = "law".
+    """
+
+    model: Law
+    tangential: Literal["law", "mindlin"] = "law"
+    nu: float = 0.3
+    scale: float = 1.0
+    points: int = 2000
+
+    @property
+    def least_pressure(self) -> float:
+        """Below it the joint carries nothing that matters [Pa]: p(closing) and the stiffness go on as powers."""
+        return max(LEAST_PRESSURE, 1.001 * getattr(self.model, "least_pressure", 0.0))
+
+    @cached_property
+    def _grid(self) -> Array:
+        """Pressures [Pa] of the table, from the least to where the law ends."""
+        p = np.geomspace(self.least_pressure, self.model.greatest_pressure, self.points)
+        p[-1] = min(p[-1], self.model.greatest_pressure)
+        return np.asarray(p)
+
+    @cached_property
+    def _samples(self) -> tuple[Array, tuple[Array, Array], tuple[Array, Array]]:
+        """ln pressure, logarithms of k_n and k_t, and the two loss factors, on the grid."""
+        k_n, k_t = self._ask(self._grid)
+        with np.errstate(divide="ignore"):  # a law may have no tangential stiffness at its least pressure
+            stiffness = np.log(k_n), np.log(k_t)
+        return np.log(self._grid), stiffness, self._ask_loss(self._grid)
+
+    @cached_property
+    def _loading(self) -> Array:
+        """Slope of pressure over closing on loading [Pa/m] on the grid."""
+        slope = getattr(self.model.at_pressure(self._grid), "k_load", None)
+        return np.exp(self._samples[1][0]) if slope is None else self.scale * slope
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array, Array]:
+        """ln closing, ln pressure, and d ln p/d ln w, from the least pressure to where the law ends."""
+        p, k = self._grid, self._loading
+        slope = np.gradient(np.log(k), np.log(p))
+        if np.any(k <= 0) or slope[0] >= 1 - 1e-9:
+            raise InputError(
+                f"{self.model.name}: stiffness does not grow from zero slower than pressure; the faces would never meet"
+            )
+        # between two points k_n is a power of p, so that the integral of dp/k_n is exact there
+        power = 1 - np.diff(np.log(k)) / np.diff(np.log(p))
+        pieces = np.where(
+            np.abs(power) > 1e-9, (p[1:] / k[1:] - p[:-1] / k[:-1]) / power, p[:-1] / k[:-1] * np.diff(np.log(p))
+        )
+        first = p[0] / k[0] / (1 - slope[0])
+        w = first + np.concatenate([[0.0], np.cumsum(pieces)])
+        return np.log(w), np.log(p), k * w / p
+
+    @cached_property
+    def _curve(self) -> Any:
+        from scipy.interpolate import CubicHermiteSpline
+
+        log_w, log_p, slope = self._table
+        return CubicHermiteSpline(log_w, log_p, slope)
+
+    def _ask(self, pressure: Array) -> tuple[Array, Array]:
+        answer = self.model.at_pressure(pressure)
+        if answer.k_n is None:
+            raise InputError(f"{self.model.name} defines no normal stiffness; choose another law for the joint")
+        k_n = self.scale * answer.k_n
+        if self.tangential == "mindlin":
+            return k_n, k_n * 2 * (1 - self.nu) / (2 - self.nu)
+        if answer.k_t is None:
+            raise InputError(
+                f'{self.model.name} defines no tangential stiffness; set tangential = "mindlin" in the study'
+            )
+        return k_n, self.scale * answer.k_t
+
+    def answer(self, pressure: Array) -> Answer:
+        """What the law says at pressures [Pa]; beyond its ends, what it says there."""
+        return self.model.at_pressure(self._within(pressure), exact=False if np.size(pressure) > FEW else None)
+
+    def _within(self, pressure: Array) -> Array:
+        """Pressures brought within the law; 0 stays 0."""
+        return np.where(pressure > 0, np.clip(pressure, self.least_pressure, self.model.greatest_pressure), 0.0)
+
+    def stiffness(self, pressure: Array) -> tuple[Array, Array]:
+        """k_n and k_t [Pa/m] at pressures [Pa] of any shape; 0 where the pressure is 0, held beyond the end of the law."""
+        within = self._within(pressure)
+        if np.size(pressure) > FEW:
+            log_p, (log_n, log_t), _ = self._samples
+            x = np.log(np.where(within > 0, within, 1.0))
+            k_n, k_t = (np.where(within > 0, np.exp(np.interp(x, log_p, y)), 0.0) for y in (log_n, log_t))
+        else:
+            k_n, k_t = self._ask(within)
+        raised = within > pressure
+        if not np.any(raised):
+            return k_n, k_t
+        # below the table p is a power of w, so k_n a power of p with the exponent 1 - 1/(d ln p/d ln w)
+        fade = np.where(raised, pressure / np.where(raised, within, 1.0), 1.0) ** (1 - 1 / self._table[2][0])
+        return k_n * fade, k_t * fade
+
+    def loss(self, pressure: Array) -> tuple[Array, Array]:
+        """Loss factors normal and tangential [-]; 0 where the law defines none."""
+        within = self._within(pressure)
+        if np.size(pressure) <= FEW:
+            return self._ask_loss(within)
+        log_p, _, losses = self._samples
+        x = np.log(np.where(within > 0, within, 1.0))
+        n, t = (np.where(within > 0, np.interp(x, log_p, y), 0.0) for y in losses)
+        return n, t
+
+    def _ask_loss(self, pressure: Array) -> tuple[Array, Array]:
+        answer = self.model.at_pressure(pressure)
+        nothing = np.zeros(np.shape(pressure))
+        return (
+            nothing if answer.loss_n is None else answer.loss_n,
+            nothing if answer.loss_t is None else answer.loss_t,
+        )
+
+    def pressure(self, closing: Array) -> tuple[Array, Array]:
+        """Pressure [Pa] and its slope, the stiffness [Pa/m], at closings [m]; both 0 where the faces are apart.
+
+        Beyond the end of the law the curve goes on as a power, so that an iteration may pass through; whoever keeps a
+        result checks the pressure against `law.greatest_pressure`.
+        """
+        log_w, _, slope = self._table
+        shut = closing > 0
+        x = np.log(np.where(shut, closing, 1.0))
+        inside = np.clip(x, log_w[0], log_w[-1])
+        cell = np.clip(np.searchsorted(log_w, inside, side="right") - 1, 0, len(log_w) - 2)
+        cubic = self._curve.c[:, cell]
+        dx = inside - log_w[cell]
+        value = ((cubic[0] * dx + cubic[1]) * dx + cubic[2]) * dx + cubic[3]
+        steep = (3 * cubic[0] * dx + 2 * cubic[1]) * dx + cubic[2]
+        end = np.where(x > log_w[-1], slope[-1], slope[0])
+        beyond = x != inside
+        value = value + np.where(beyond, end * (x - inside), 0.0)
+        steep = np.where(beyond, end, steep)
+        p = np.where(shut, np.exp(value), 0.0)
+        return p, np.where(shut, p * steep / np.where(shut, closing, 1.0), 0.0)
+
+    def closing(self, pressure: float) -> float:
+        """Closing [m] at one pressure [Pa] between the least and the greatest of the law."""
+        from scipy.interpolate import CubicHermiteSpline
+
+        log_w, log_p, slope = self._table
+        return float(np.exp(CubicHermiteSpline(log_p, log_w, 1 / slope)(np.log(pressure))))

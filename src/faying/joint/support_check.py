@@ -1,0 +1,107 @@
+"""Whether every part of a structure is held: by contact after the preload, and against every motion in its modes."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from faying.errors import InputError, NotConverged
+from faying.fe.modes import Modes
+from faying.joint.equilibrium import PreloadState
+from faying.joint.preload import PreloadProblem
+from faying.joint.structure import Structure
+from faying.joint.tighten import tighten
+from faying.typing import Array
+
+STILL = 0.01  # of the shift: a frequency below it is that of a motion that nothing resists
+NOTHING = 1e-6  # of the greatest pressure
+
+
+def held_preload(
+    structure: Structure, assembly: PreloadProblem, forces: Sequence[float], order: Sequence[int] | None = None
+) -> PreloadState:
+    """`tighten`, and see that every part is held by what comes of it.
+
+    Raises InputError where a part is not, also in place of the NotConverged that this leads to, and what `tighten` raises.
+    """
+    try:
+        found = tighten(structure, assembly, forces, order=order)
+    except NotConverged:
+        if assembly.nearest is not None:
+            openings, pressures = assembly.contact(assembly.nearest)
+            check_contact(structure, pressures, openings)
+        raise
+    check_contact(structure, found.pressures, found.openings)
+    return found
+
+
+def open_joints(structure: Structure, pressures: Sequence[Array]) -> list[str]:
+    """Names of the joints that carry nothing, or next to nothing beside the others."""
+    least = NOTHING * max(float(p.max()) for p in pressures)
+    return [joint.name for joint, p in zip(structure.joints, pressures, strict=True) if p.max() <= least]
+
+
+def check_contact(structure: Structure, pressures: Sequence[Array], openings: Sequence[Array]) -> None:
+    """Raise InputError where parts are left that no contact, shank or support connects with the rest."""
+    owner = structure.mesh.face_part
+    group = {part: part for part in structure.mesh.parts}
+
+    def meet(first: str, second: str) -> None:
+        old, new = group[first], group[second]
+        for part, name in group.items():
+            if name == old:
+                group[part] = new
+
+    apart = set(open_joints(structure, pressures))
+    for joint in structure.joints:
+        if joint.name not in apart:
+            meet(*(owner[face] for face in joint.faces))
+    for bolt in structure.bolts:
+        if bolt.diameter is not None:
+            meet(*(owner[face] for face in bolt.faces))
+    ground = [owner[support.face] for support in structure.supports]
+    for part in ground[1:]:
+        meet(ground[0], part)
+    sizes = {name: sum(len(structure.mesh.part_nodes(p)) for p in group if group[p] == name) for name in group.values()}
+    main = group[ground[0]] if ground else max(sizes, key=lambda name: sizes[name])
+    loose = [part for part in group if group[part] != main]
+    if not loose:
+        return
+    nearest = {
+        joint.name: float(gap.min())
+        for joint, gap in zip(structure.joints, openings, strict=True)
+        if joint.name in apart and any(owner[face] in loose for face in joint.faces)
+    }
+    told = ", ".join(f"{name!r} ({gap * 1e6:.4g} um apart at the nearest)" for name, gap in nearest.items())
+    raise InputError(
+        f"part {', '.join(map(repr, loose))} is held by nothing under this preload: no contact is left at joint {told}; "
+        "pull the bolts harder, place them so that they press these faces, or check the gap map and its unit"
+    )
+
+
+def check_motions(structure: Structure, modes: Modes) -> None:
+    """Raise InputError where a part moves freely though neither its supports nor the want of any explain it."""
+    still = structure.rigid.shape[1]
+    free = np.flatnonzero(modes.frequencies < STILL * np.sqrt(modes.shift) / (2 * np.pi))
+    if len(free) <= still:
+        return
+    part = _mover(structure, modes.shapes[:, free])
+    raise InputError(
+        f"{len(free)} motions cost no energy and {still} of them are those of the whole: part {part!r} moves freely "
+        f"against the others (at {modes.frequencies[free].max():.2g} Hz). Its joints resist only some directions; give "
+        "the law a tangential stiffness, a joint more, or a support"
+    )
+
+
+def _mover(structure: Structure, shapes: Any) -> str:
+    """The smallest part that moves otherwise than as the whole does in a space of motions without energy."""
+    rigid = structure.rigid
+    mass = structure.matrices[1]
+    if rigid.shape[1]:
+        gram = rigid.T @ (mass @ rigid)
+        shapes = shapes - rigid @ np.linalg.solve(gram, rigid.T @ (mass @ shapes))
+    size = {}
+    for part in structure.mesh.parts:
+        rows = (3 * structure.mesh.part_nodes(part)[:, None] + np.arange(3)).ravel()
+        size[part] = float(np.sqrt((shapes[rows] ** 2).mean()))
+    return max(size, key=lambda name: size[name])

@@ -1,0 +1,95 @@
+"""Figures of a frequency response, and of the MAC between preloads."""
+
+from typing import Any
+
+import numpy as np
+
+from faying.result import Result
+
+
+def _curves(ax: Any, result: Result, output: int, input: int, of: Any) -> None:
+    for k, (load, one) in enumerate(zip(result.loads, result.response, strict=True)):
+        values = -((2 * np.pi * one.frequencies) ** 2) * one.values[:, output, input]
+        ax.plot(one.frequencies, of(values), color=f"C{k % 10}", lw=1.1, label=f"{load / 1e3:g} kN")
+    ax.set(xlabel="frequency [Hz]", xlim=(result.response[0].frequencies[0], result.response[0].frequencies[-1]))
+    ax.grid(alpha=0.3)
+
+
+def amplitude(ax: Any, result: Result, output: int = 0, input: int = 0) -> Any:
+    """Draw the size of the accelerance between an output and an input of the response, at every preload."""
+    _curves(ax, result, output, input, np.abs)
+    (at, along), (place, push) = result.response[0].outputs[output], result.response[0].inputs[input]
+    ax.set(yscale="log", ylabel="|accelerance| [m/s²/N]")
+    ax.set_title(f"{_words(at, along)} / {_words(place, push)}", fontsize=9)
+    ax.legend(fontsize=7)
+    return ax
+
+
+def phase(ax: Any, result: Result, output: int = 0, input: int = 0) -> Any:
+    """Draw the phase of the accelerance, -180 to 180 degrees, at every preload; broken where it wraps around."""
+
+    def angle(values: Any) -> Any:
+        degrees = np.degrees(np.angle(values))
+        return np.where(np.abs(np.diff(degrees, prepend=degrees[0])) > 180, np.nan, degrees)
+
+    _curves(ax, result, output, input, angle)
+    ax.set(ylabel="phase [deg]", ylim=(-190, 190), yticks=range(-180, 181, 90))
+    return ax
+
+
+def _words(point: Any, axis: Any) -> str:
+    """A degree of freedom in words: (40, 0, 15) mm along z."""
+    unit = np.array(axis) / np.linalg.norm(axis)
+    k = int(np.abs(unit).argmax())
+    name = (
+        ("-" if unit[k] < 0 else "") + "xyz"[k] if abs(unit[k]) > 0.9998 else f"({', '.join(f'{v:.2f}' for v in unit)})"
+    )
+    return f"({', '.join(f'{1e3 * v:.4g}' for v in point)}) mm along {name}"
+
+
+def responses(result: Result, most: int = 4) -> Any:
+    """Return a figure of the first pairs of output and input: amplitude, with the phase below it."""
+    from matplotlib.figure import Figure
+
+    pairs = list(np.ndindex(*result.response[0].values.shape[1:]))[:most]
+    fig = Figure(figsize=(8.0, 4.6 * len(pairs)), layout="constrained")
+    axes = fig.subplots(2 * len(pairs), 1, squeeze=False, height_ratios=[2, 1] * len(pairs))[:, 0]
+    for k, (o, i) in enumerate(pairs):
+        amplitude(axes[2 * k], result, o, i)
+        phase(axes[2 * k + 1], result, o, i)
+    return fig
+
+
+def mac_between_loads(ax: Any, result: Result, load: int = -1) -> Any:
+    """Draw the MAC of the modes at the first preload (rows) with those at another (columns)."""
+    table = result.mac[load]
+    image = ax.imshow(table, cmap="Blues", vmin=0, vmax=1, aspect="equal")
+    ax.figure.colorbar(image, ax=ax, label="MAC [-]", shrink=0.8)
+    for row, column in np.ndindex(table.shape):
+        if table[row, column] >= 0.005:
+            ax.text(
+                column,
+                row,
+                f"{table[row, column]:.2f}".removeprefix("0"),
+                ha="center",
+                va="center",
+                fontsize=6,
+                color="white" if table[row, column] > 0.6 else "0.3",
+            )
+    count = range(len(table))
+    ax.set_xticks(count, [str(k + 1) for k in count], fontsize=7)
+    ax.set_yticks(count, [str(k + 1) for k in count], fontsize=7)
+    ax.set(xlabel=f"mode at {result.loads[load] / 1e3:g} kN", ylabel=f"mode at {result.loads[0] / 1e3:g} kN")
+    return ax
+
+
+def macs(result: Result, most: int = 4) -> Any:
+    """Return a figure of the MAC between the first preload and the last of the others."""
+    from matplotlib.figure import Figure
+
+    loads = range(1, len(result.loads))[-most:]
+    size = 1.8 + 0.32 * len(result.tied)
+    fig = Figure(figsize=(size * len(loads), size * 0.85), layout="constrained")
+    for column, load in enumerate(loads):
+        mac_between_loads(fig.add_subplot(1, len(loads), column + 1), result, load)
+    return fig

@@ -1,0 +1,138 @@
+"""Figures of a bolted structure: pressure on the joint, frequencies against preload, mode shapes."""
+
+from typing import Any
+
+import numpy as np
+
+from faying.result import Result
+
+
+def pressure_map(ax: Any, result: Result, load: int = -1, joint: int = 0) -> Any:
+    """Draw the pressure [MPa] on one joint at one load, seen along its normal; open points stay pale."""
+    here = result.joint_of_point == joint
+    points, pressure = result.points[here], result.pressure[load][here] * 1e-6
+    centre = points - points.mean(axis=0)
+    _, _, axes = np.linalg.svd(centre, full_matrices=False)
+    # the two axes of the face, each turned so that its largest component is positive
+    axes = axes[:2] * np.sign(axes[:2][np.arange(2), np.abs(axes[:2]).argmax(axis=1)])[:, None]
+    x, y = (centre @ axes.T).T * 1e3
+    shut = pressure > 0
+    # each point covers its share of the face: markers of that area, a little larger so that no gaps show
+    per_mm = 330 / max(np.ptp(x), 1.4 * np.ptp(y))
+    size = 2.2 * result.weights[here] * 1e6 * per_mm**2
+    ax.scatter(x[~shut], y[~shut], s=size[~shut], color="0.9", linewidths=0)
+    dots = ax.scatter(x[shut], y[shut], c=pressure[shut], s=size[shut], cmap="viridis", linewidths=0, vmin=0)
+    ax.figure.colorbar(dots, ax=ax, label="pressure [MPa]", shrink=0.8)
+    share = float(result.weights[here][~shut].sum() / result.weights[here].sum())
+    ax.set(
+        aspect="equal",
+        xlabel="along the joint [mm]",
+        ylabel="across [mm]",
+        title=f"{result.joints[joint]}, {result.loads[load] / 1e3:g} kN: open on {share:.0%}",
+    )
+    return ax
+
+
+def frequencies(ax: Any, result: Result, modes: int = 8) -> Any:
+    """Draw frequency against preload, each mode relative to its tied value; free bounds lie far below and are listed."""
+    load = result.loads * 1e-3
+    count = min(modes, len(result.tied))
+    for mode in range(count):
+        ratio = result.frequencies[:, mode] / result.tied[mode]
+        ax.plot(
+            load,
+            ratio,
+            "o-",
+            color=f"C{mode % 10}",
+            ms=4,
+            lw=1.4,
+            label=f"{mode + 1}: {result.free[mode]:.0f} / {result.frequencies[-1, mode]:.0f} / {result.tied[mode]:.0f} Hz",
+        )
+    ax.axhline(1, color="k", lw=0.8, ls="--")
+    ax.set(
+        xlabel="preload per bolt [kN]",
+        ylabel="frequency / tied frequency [-]",
+        title="free / predicted at the last load / tied",
+    )
+    ax.legend(fontsize=7, loc="best")
+    ax.grid(alpha=0.3)
+    return ax
+
+
+def comparison(ax: Any, result: Result) -> Any:
+    """Draw the error of prediction and of the published model against the test, mode by mode."""
+    c = result.comparison
+    if c is None:
+        ax.text(0.5, 0.5, "no test in this study", ha="center", va="center")
+        return ax
+    modes = np.arange(1, c.frequencies.shape[1] + 1)
+    for row, load in enumerate(result.loads):
+        error = 100 * (c.predicted[row] / c.frequencies[row] - 1)
+        ax.plot(modes, error, "o-", color=f"C{row}", label=f"Faying, {load / 1e3:g} kN")
+        if c.published is not None:
+            theirs = 100 * (c.published[row] / c.frequencies[row] - 1)
+            ax.plot(modes, theirs, "x:", color=f"C{row}", label=f"{c.published_name}, {load / 1e3:g} kN")
+    ax.axhline(0, color="k", lw=0.8)
+    ax.set(xlabel="mode of the test", ylabel="error [% of the test]", xticks=modes)
+    ax.legend(fontsize=7)
+    ax.grid(alpha=0.3)
+    return ax
+
+
+def mode_shape(ax: Any, result: Result, mode: int, load: int = -1) -> Any:
+    """Draw one mode shape on 3-D axes, deformed, coloured by the size of its motion."""
+    from matplotlib import colormaps
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    shape = result.shapes[load, mode]
+    size = float(np.linalg.norm(np.ptp(result.outline, axis=0)))
+    motion = np.linalg.norm(shape, axis=1)
+    moved = (result.outline + 0.06 * size * shape / motion.max()) * 1e3
+    colour = motion[result.triangles].mean(axis=1) / motion.max()
+    surface = Poly3DCollection(
+        moved[result.triangles], facecolors=colormaps["viridis"](colour), edgecolors="none", linewidths=0
+    )
+    ax.add_collection3d(surface)
+    low, high = moved.min(axis=0), moved.max(axis=0)
+    ax.set_xlim(low[0], high[0])
+    ax.set_ylim(low[1], high[1])
+    ax.set_zlim(low[2], high[2])
+    ax.set_box_aspect(high - low)
+    ax.set_axis_off()
+    ax.view_init(elev=12, azim=-62)
+    ax.set_title(
+        f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz, loss {result.loss_factors[load, mode]:.1e}", fontsize=9
+    )
+    return ax
+
+
+def mode_shapes(result: Result, modes: int = 8, load: int = -1) -> Any:
+    """Return a figure of the first mode shapes."""
+    from matplotlib.figure import Figure
+
+    count = min(modes, len(result.tied))
+    columns = min(4, count)
+    rows = -(-count // columns)
+    fig = Figure(figsize=(2.6 * columns, 3.2 * rows), layout="constrained")
+    for mode in range(count):
+        mode_shape(fig.add_subplot(rows, columns, mode + 1, projection="3d"), result, mode, load)
+    return fig
+
+
+def law_curves(result: Result) -> Any:
+    """Return k_n, k_t of the joints' points against pressure, open points left out, at the greatest load."""
+    from matplotlib.figure import Figure
+
+    fig = Figure(figsize=(7.0, 4.2), layout="constrained")
+    ax = fig.add_subplot()
+    pressure = result.pressure[-1]
+    for joint, name in enumerate(result.joints):
+        here = (result.joint_of_point == joint) & (pressure > 1e-3 * pressure.max())
+        order = np.argsort(pressure[here])
+        p = pressure[here][order] * 1e-6
+        ax.plot(p, result.k_n[-1][here][order] * 1e-12, "-", color=f"C{joint}", label=f"{name}: k_n")
+        ax.plot(p, result.k_t[-1][here][order] * 1e-12, "--", color=f"C{joint}", label=f"{name}: k_t")
+    ax.set(xscale="log", yscale="log", xlabel="pressure [MPa]", ylabel="stiffness per area [MPa/um]")
+    ax.legend(fontsize=8)
+    ax.grid(alpha=0.3, which="both")
+    return fig

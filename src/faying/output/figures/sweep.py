@@ -1,0 +1,129 @@
+"""Figures of a sweep: frequencies along one axis, maps over two."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.study.axes import Axis
+from faying.study.sweep_files import Sweep
+
+MAPS = 4
+_PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"))
+
+
+def check(path: str | Path, axes: int) -> None:
+    """Raise InputError, before anything is computed, for a figure that cannot be drawn or written."""
+    file = Path(path)
+    if file.suffix.lower() not in (".svg", ".png", ".pdf"):
+        raise InputError(f"{file}: a figure is written as .svg, .png or .pdf; end the name in one of them")
+    if not file.parent.is_dir():
+        raise InputError(f"no folder {file.parent} to write {file.name} in; make it first")
+    if axes > 2:
+        raise InputError(
+            f"a figure shows one or two axes and the sweep has {axes}; leave out --plot, or hold some axes fixed"
+        )
+
+
+def _scale(axis: Axis) -> tuple[Any, str, bool]:
+    """Values to draw, the label with the unit, and whether they are spaced by a factor; texts count from 0."""
+    if not axis.numeric:
+        return np.arange(len(axis.values), dtype=float), axis.key, False
+    values = np.array(axis.values, dtype=float)
+    factor, unit = 1.0, axis.unit.replace("^2", "²")
+    if unit and not any(mark in axis.unit for mark in "^*"):
+        factor, prefix = next(((f, p) for f, p in _PREFIXES if np.abs(values).max() >= f * (1 - 1e-12)), _PREFIXES[-1])
+        unit = prefix + unit
+    spaced = len(values) > 2 and values.min() > 0
+    log = bool(spaced and np.ptp(np.diff(np.log(values))) < 1e-6 * abs(np.log(values[-1] / values[0])))
+    return values / factor, f"{axis.key} [{unit or '-'}]", log
+
+
+def _plain(axis: Any, values: Any) -> None:
+    """Ticks of a logarithmic axis as plain numbers; those between the tens only where there are few tens."""
+    from matplotlib.ticker import FuncFormatter, NullFormatter
+
+    plain = FuncFormatter(lambda value, _: f"{value:g}")
+    axis.set_major_formatter(plain)
+    axis.set_minor_formatter(plain if values.max() < 10 * values.min() else NullFormatter())
+
+
+def _ticks(axis: Axis, place: Any) -> None:
+    if not axis.numeric:
+        place(range(len(axis.values)), [str(v) for v in axis.values])
+
+
+def relative_change(ax: Any, sweep: Sweep) -> Any:
+    """Draw each mode's frequency along the one axis, relative to its first value that has an answer [%]."""
+    axis = sweep.axes[0]
+    x, label, log = _scale(axis)
+    for mode in range(sweep.frequencies.shape[-1]):
+        f = sweep.frequencies[..., mode].reshape(len(x), -1)[:, 0]
+        known = np.flatnonzero(np.isfinite(f))
+        if not len(known):
+            continue
+        first, last = f[known[0]], f[known[-1]]
+        ax.plot(
+            x,
+            100 * (f / first - 1),
+            marker=".",
+            color=f"C{mode % 10}",
+            ls=("-", "--")[mode // 10 % 2],
+            lw=1.3,
+            ms=3.5,
+            label=f"{mode + 1}: {first:.1f} to {last:.1f} Hz",
+        )
+    ax.set(xlabel=label, ylabel="change of frequency [%]")
+    if log:
+        ax.set_xscale("log")
+        _plain(ax.xaxis, x)
+    _ticks(axis, ax.set_xticks)
+    ax.legend(fontsize=7, loc="best", title="mode", title_fontsize=7)
+    ax.grid(alpha=0.3)
+    return ax
+
+
+def frequency_map(ax: Any, sweep: Sweep, mode: int = 0) -> Any:
+    """Draw one mode's frequency [Hz] over two axes; points without an answer stay grey."""
+    (x, across, x_log), (y, up, y_log) = (_scale(axis) for axis in sweep.axes[:2])
+    drawn = ax.pcolormesh(
+        *np.meshgrid(x, y), np.ma.masked_invalid(sweep.frequencies[..., mode].T), cmap="viridis", shading="nearest"
+    )
+    ax.set_facecolor("0.85")
+    ax.figure.colorbar(drawn, ax=ax, label="frequency [Hz]", shrink=0.9)
+    ax.set(xlabel=across, ylabel=up, title=f"mode {mode + 1}")
+    for values, log, scale, axis_of in ((x, x_log, ax.set_xscale, ax.xaxis), (y, y_log, ax.set_yscale, ax.yaxis)):
+        if log:
+            scale("log")
+            _plain(axis_of, values)
+    for axis, place in zip(sweep.axes, (ax.set_xticks, ax.set_yticks), strict=False):
+        _ticks(axis, place)
+    return ax
+
+
+def figure(sweep: Sweep) -> Any:
+    """Return the figure of a sweep: changes along one axis, or maps of modes 1 to 4 over two."""
+    from matplotlib.figure import Figure
+
+    if len(sweep.axes) == 1:
+        fig = Figure(figsize=(7.0, 4.4), layout="constrained")
+        relative_change(fig.add_subplot(), sweep)
+        return fig
+    count = min(MAPS, sweep.frequencies.shape[-1])
+    columns = min(2, count)
+    rows = -(-count // columns)
+    fig = Figure(figsize=(4.8 * columns, 3.7 * rows), layout="constrained")
+    for mode in range(count):
+        frequency_map(fig.add_subplot(rows, columns, mode + 1), sweep, mode)
+    return fig
+
+
+def save(sweep: Sweep, path: str | Path) -> Path:
+    """Write the figure of a sweep; the ending says svg, png or pdf. It appears whole or not at all."""
+    from faying.files import write_atomically
+
+    file = Path(path)
+    check(file, len(sweep.axes))
+    drawn = figure(sweep)
+    return write_atomically(file, lambda temporary: drawn.savefig(temporary, format=file.suffix[1:].lower(), dpi=150))

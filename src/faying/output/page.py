@@ -1,0 +1,58 @@
+"""What pages are made of: style, tables, pictures as text of HTML."""
+
+from html import escape
+from io import BytesIO, StringIO
+from pathlib import Path
+from typing import Any
+
+from faying.files import write_atomically
+from faying.output.table import Rows
+
+STYLE = """
+body{font:15px/1.5 system-ui,sans-serif;max-width:66rem;margin:2rem auto;padding:0 1rem;color:#1c2733}
+h1{font-size:1.5rem}h2{font-size:1.15rem;margin-top:2.2rem;border-bottom:1px solid #d5dde5;padding-bottom:.2rem}
+table{border-collapse:collapse;font-size:.84rem;font-variant-numeric:tabular-nums;margin:.6rem 0}
+th,td{padding:.18rem .7rem;text-align:right;border-bottom:1px solid #e6ebf0}th{background:#f3f6f9}
+td:first-child,th:first-child,.words td{text-align:left}.scroll{overflow-x:auto}
+.flag{background:#fff4e0;border-left:4px solid #e0912f;padding:.4rem .8rem;margin:.4rem 0}
+figure{margin:1rem 0}figure svg,figure img{max-width:100%;height:auto}figcaption{font-size:.85rem;color:#52616f}
+"""
+BITMAPS = ("modes", "pressure", "shapes")  # tens of thousands of polygons: a bitmap is smaller than their outlines
+
+
+def picture(name: str, figure: Any) -> str:
+    """Return a figure as SVG, or as a bitmap where its name is one of BITMAPS."""
+    if name in BITMAPS:
+        from base64 import b64encode
+
+        buffer = BytesIO()
+        figure.savefig(buffer, format="png", dpi=130)
+        return f'<img alt="{name}" src="data:image/png;base64,{b64encode(buffer.getvalue()).decode()}">'
+    text = StringIO()
+    figure.savefig(text, format="svg", metadata={"Date": None})
+    svg = text.getvalue()
+    return svg[svg.index("<svg") :]
+
+
+def table(rows: Rows) -> str:
+    """Return rows as a table, the first as its heading."""
+    head = "".join(f"<th>{escape(cell)}</th>" for cell in rows[0])
+    body = "".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows[1:])
+    return f'<div class="scroll"><table><tr>{head}</tr>{body}</table></div>'
+
+
+def facts(known: dict[str, Any]) -> str:
+    """Return names and values as a table of two columns."""
+
+    def show(value: Any) -> str:
+        if isinstance(value, list | tuple):
+            return " to ".join(show(v) for v in value)
+        return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+    rows = "".join(f"<tr><td>{escape(k)}</td><td>{escape(show(v))}</td></tr>" for k, v in known.items())
+    return f'<table class="words">{rows}</table>'
+
+
+def save(figure: Any, path: Path) -> Path:
+    """Write a figure in the format of the ending of `path`; it appears whole or not at all."""
+    return write_atomically(path, lambda temporary: figure.savefig(temporary, format=path.suffix[1:].lower(), dpi=150))

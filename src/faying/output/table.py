@@ -1,0 +1,108 @@
+"""The tables of a result as plain text, for terminals, and as rows, for the report."""
+
+import numpy as np
+
+from faying.result import Result
+
+Rows = list[list[str]]
+
+
+def modes(result: Result) -> Rows:
+    """One row per mode: free, then each preload with its loss factor, then tied."""
+    heads = [f"{load / 1e3:g} kN [Hz] (loss)" for load in result.loads]
+    rows: Rows = [["mode", "free [Hz]", *heads, "tied [Hz]"]]
+    for j in range(len(result.tied)):
+        cells = [
+            f"{f:.2f} ({eta:.1e})" for f, eta in zip(result.frequencies[:, j], result.loss_factors[:, j], strict=True)
+        ]
+        rows.append([str(j + 1), f"{result.free[j]:.2f}", *cells, f"{result.tied[j]:.2f}"])
+    return rows
+
+
+def comparison(result: Result) -> Rows:
+    """One row per preload and source, errors relative to the test; then the change with preload for each."""
+    c = result.comparison
+    if c is None:
+        return []
+    count = c.frequencies.shape[1]
+    rows: Rows = [["preload", "source", *(f"mode {j + 1}" for j in range(count))]]
+    theirs = [] if c.published is None else [(c.published_name, c.published)]
+    for i, load in enumerate(result.loads):
+        rows.append([f"{load / 1e3:g} kN", "test [Hz]", *(f"{f:.1f}" for f in c.frequencies[i])])
+        for name, values in (*theirs, ("Faying", c.predicted)):
+            rows.append(["", f"{name} [Hz]", *(f"{f:.1f}" for f in values[i])])
+            errors = 100 * (values[i] / c.frequencies[i] - 1)
+            rows.append(["", f"{name} error [%]", *(f"{e:+.2f}" for e in errors)])
+    if len(result.loads) > 1:
+        for name, values in (("test", c.frequencies), *theirs, ("Faying", c.predicted)):
+            slope = c.sensitivity(values, result.loads) * 1e3
+            rows.append(["d f/d preload", f"{name} [Hz/kN]", *(f"{s:+.3f}" for s in slope)])
+    return rows
+
+
+def joints(result: Result) -> Rows:
+    """One row per preload: greatest and mean pressure, open and slipping share, total stiffness, balance of forces.
+
+    The slipping share, over all joints, has a column only where something slips.
+    """
+    slips = bool(np.any(result.slipping > 0))
+    rows: Rows = [
+        [
+            "preload",
+            "greatest p [MPa]",
+            "mean p [MPa]",
+            "open [%]",
+            *["slipping [%]"] * slips,
+            "total k_n [N/m]",
+            "total k_t [N/m]",
+            "imbalance",
+        ]
+    ]
+    area = float(result.weights.sum())
+    shares = np.bincount(result.joint_of_point, result.weights, len(result.joints)) / area
+    for i, load in enumerate(result.loads):
+        mean = float(result.weights @ result.pressure[i]) / area
+        facts = result.convergence[i]
+        rows.append(
+            [
+                f"{load / 1e3:g} kN",
+                f"{result.pressure[i].max() * 1e-6:.3g}",
+                f"{mean * 1e-6:.3g}",
+                f"{100 * result.open_share()[i]:.1f}",
+                *[f"{100 * float(result.slipping[i] @ shares):.1f}"] * slips,
+                f"{facts['total_k_n [N/m]']:.4g}",
+                f"{facts['total_k_t [N/m]']:.4g}",
+                f"{facts['imbalance']:.0e}",
+            ]
+        )
+    return rows
+
+
+def bolts(result: Result) -> Rows:
+    """One row per preload: what is left in each bolt when all are tight; empty where all were pulled at once."""
+    if not result.tightening:
+        return []
+    rows: Rows = [["preload", *(f"{name} [kN]" for name in result.bolts)]]
+    for load, forces in zip(result.loads, result.bolt_forces, strict=True):
+        rows.append([f"{load / 1e3:g} kN", *(f"{force / 1e3:.3f}" for force in forces)])
+    return rows
+
+
+def hammer(result: Result) -> Rows:
+    """The hammer test beside the model, one row per mode of the test; empty where there is none."""
+    return [] if result.hammer is None else result.hammer.rows()
+
+
+def text(rows: Rows) -> str:
+    """Align rows in columns: the first two to the left, the others to the right."""
+    if not rows:
+        return ""
+    widths = np.max([[len(cell) for cell in row] for row in rows], axis=0)
+    lines = []
+    for row in rows:
+        cells = [
+            cell.ljust(w) if k < 2 and rows[0][k] in ("preload", "source") else cell.rjust(w)
+            for k, (cell, w) in enumerate(zip(row, widths, strict=True))
+        ]
+        lines.append("  ".join(cells).rstrip())
+    return "\n".join(lines)

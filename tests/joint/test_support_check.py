@@ -1,0 +1,90 @@
+"""Parts that nothing holds are named: no contact left, no tangential stiffness."""
+
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import faying
+from faying.fe.interface import join
+from faying.fe.modes import lowest_modes
+from faying.joint.attachments import Support
+from faying.joint.bolt import Bolt
+from faying.joint.joint_law import JointLaw
+from faying.joint.structure import Joint, Structure
+from faying.joint.support_check import check_motions, held_preload, open_joints
+from tests.helpers.boxes import stack
+
+STEEL = faying.CATALOGUE["45 steel"]
+
+
+@dataclass(frozen=True)
+class Slippery:
+    """p = c w^2 and no stiffness along the face."""
+
+    name: str = "slippery"
+    greatest_pressure: float = 1e9
+
+    def at_pressure(self, pressure, *, exact=None):
+        p = np.asarray(pressure, dtype=float)
+        k = 2 * np.sqrt(1e19 * p)
+        return SimpleNamespace(k_n=k, k_t=0 * k, loss_n=0 * k, loss_t=0 * k, valid=p > 0)
+
+
+def law():
+    return faying.JK(D=2.39, G=1.53e-10, pair=faying.ContactPair(STEEL, STEEL), scan_area=16e-6)
+
+
+def three(gap, **changes):
+    """Bars in a row, pulled together at the first joint only; the second lies `gap` apart."""
+    mesh = stack([0.03] * 3, [2] * 3, width=0.02, height=0.02)
+    joints = []
+    for name, faces, apart in (("a", ("p0.right", "p1.left"), 0.0), ("b", ("p1.right", "p2.left"), gap)):
+        interface = join(mesh, *faces)
+        interface = replace(interface, gap=interface.gap + apart)
+        joints.append(Joint(name=name, faces=faces, interface=interface, law=JointLaw(model=law())))
+    bolt = Bolt(name="bolt", faces=("p0.left", "p1.right"))
+    return Structure(
+        mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=tuple(joints), bolts=(bolt,), **changes
+    )
+
+
+def test_a_gap_that_the_preload_does_not_close():
+    """The bolt shortens its bars by far less than 50 um, and nothing presses the third bar."""
+    structure = three(50e-6, supports=(Support(face="p0.left"),))
+    with pytest.raises(
+        faying.InputError, match=r"part 'p2' is held by nothing .* joint 'b' \(.* um apart .* gap map and its unit"
+    ):
+        held_preload(structure, structure.assembly(), [2e3])
+
+
+def test_an_open_joint_between_parts_that_are_held_otherwise():
+    structure = three(50e-6, supports=(Support(face="p0.left"), Support(face="p2.right")))
+    found = held_preload(structure, structure.assembly(), [2e3])
+    assert open_joints(structure, found.pressures) == ["b"]
+    assert found.openings[1].min() == pytest.approx(50e-6, rel=0.1)
+    assert not np.any(found.pressures[1])
+
+
+def test_a_part_that_slides_freely_is_named():
+    mesh = stack([0.05, 0.03], [3, 2], width=0.02, height=0.02)
+    joint = Joint(
+        name="j",
+        faces=("p0.right", "p1.left"),
+        interface=join(mesh, "p0.right", "p1.left"),
+        law=JointLaw(model=Slippery()),
+    )
+    bolt = Bolt(name="bolt", faces=("p0.left", "p1.right"))
+    free = Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=(joint,), bolts=(bolt,))
+    for structure, still in ((free, 6), (replace(free, supports=(Support(face="p0.left"),)), 0)):
+        K, _ = structure.joined(structure.springs((np.full(len(joint.interface.weights), 5e6),)))
+        modes = lowest_modes(K, structure.vibrating[1], 12, shift_frequency=structure.shift_frequency)
+        # two slips and a twist beside the rigid motions of the whole; the smaller part does most of it
+        with pytest.raises(
+            faying.InputError, match=f"{still + 3} motions cost no energy and {still} of them .* part 'p1' moves"
+        ):
+            check_motions(structure, modes)
+    sticking = replace(free, joints=(replace(joint, law=JointLaw(model=law())),))
+    K, _ = sticking.joined(sticking.springs((np.full(len(joint.interface.weights), 5e6),)))
+    check_motions(sticking, lowest_modes(K, sticking.vibrating[1], 12, shift_frequency=sticking.shift_frequency))
