@@ -139,12 +139,12 @@ def test_resolution_error_is_small_on_a_resolved_map_and_large_on_noise(rough):
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        ({"stiffness": "sideways"}, "use unloading or loading"),
-        ({"area": "none"}, "use corrected or counted"),
+        ({"stiffness": "sideways"}, 'allowed is "unloading" or "loading"'),
+        ({"area": "none"}, 'allowed is "corrected" or "counted"'),
         ({"shear_ratio": 1.0}, "below 1"),
-        ({"points": 3}, "a ladder needs a whole number of 4 or more"),
-        ({"points": 4.5}, "a ladder needs a whole number of 4 or more"),
-        ({"lowest": 0.0}, "give 0 < lowest < highest"),
+        ({"points": 3}, "a whole number, at least 4"),
+        ({"points": 4.5}, "a whole number, at least 4"),
+        ({"lowest": 0.0}, "must be positive"),
         ({"highest": 2e9}, "not below the hardness"),
     ],
 )
