@@ -28,7 +28,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from math import log, pi, sqrt
-from typing import ClassVar, Literal, final
+from typing import Any, ClassVar, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -191,6 +191,11 @@ class JK(ContactLaw):
             "a tangential load needs friction above 0; give a material of the pair its friction",
         )
         need(np.isfinite(self.pair.hardness), "neither body yields; give the pair a hardness or yield_strength")
+
+    def facts(self) -> dict[str, Any]:
+        """Parameters and limits of the law, by name with unit."""
+        pair = {"E_star [Pa]": self.pair.E_star, "G_star [Pa]": self.pair.G_star, "hardness [Pa]": self.pair.hardness}
+        return super().facts() | pair | {"limits [m2]": list(self.limits)}
 
     @cached_property
     def _islands(self) -> Islands:

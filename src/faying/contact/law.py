@@ -129,6 +129,12 @@ class ContactLaw(ABC):
             )
         return cls.from_entries(found, pair)
 
+    def facts(self) -> dict[str, Any]:
+        """Parameters of the law and what it derives from them, by name with unit, for a result."""
+        own = {name: getattr(self, name) for name in self.parameters}
+        numbers = {name: value for name, value in own.items() if isinstance(value, float | int | str)}
+        return {"name": self.name, "source": self.source, **numbers, "greatest_pressure [Pa]": self.greatest_pressure}
+
     def _pressure_at(self, closure: Array) -> Array:
         """Pressure alone; a model overrides this where it is quicker than the whole response."""
         return self.at_closure(closure).pressure

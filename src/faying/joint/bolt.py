@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -82,7 +82,8 @@ class Bolt:
     faces: those that head and nut press on; at [m] (3,): a point on the axis, the middle between the faces where None;
     diameter [m] and material of the shank, None for a bolt that is a force and nothing else; seat: inner and outer
     diameter [m] of the ring that head and nut press on, the whole faces where None (a washer gives its own); washers: under
-    head and nut together; head_mass, nut_mass [kg]: those of hexagon heads and nuts where None.
+    head and nut together; head_mass, nut_mass [kg]: those of hexagon heads and nuts where None; preload [N]: the forces that it is tightened to, one
+    load after another.
     """
 
     name: str
@@ -94,6 +95,8 @@ class Bolt:
     washers: tuple[Washer, ...] = ()
     head_mass: float | None = None
     nut_mass: float | None = None
+    preload: tuple[float, ...] = ()
+    part: ClassVar[None] = None  # it is no part of the mesh
 
     def __post_init__(self) -> None:
         if (self.diameter is None) != (self.material is None):

@@ -20,13 +20,15 @@ class SolidBolt:
     """A bolt that is a meshed part; its faces meet the seats in joints like those of any other part.
 
     part: its name; faces: those of the bolt itself under its head and under its nut, or round its thread; at [m] (3,): a
-    point of the plane in which the shank is drawn in, half-way between the faces where None.
+    point of the plane in which the shank is drawn in, half-way between the faces where None; preload [N]: the forces that
+    it is tightened to, one load after another.
     """
 
     name: str
     part: str
     faces: tuple[str, str]
     at: tuple[float, float, float] | None = None
+    preload: tuple[float, ...] = ()
     diameter: ClassVar[None] = None  # it has no shank but that of the mesh
 
     def fitted(self, mesh: Mesh, stiffness: Any, joined: Sequence[str] = ()) -> "FittedSolidBolt":

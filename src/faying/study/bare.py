@@ -7,7 +7,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.damped import DampedModes, damped_modes
 from faying.fe.elasticity import rigid_motions
-from faying.fe.matrices import arranged, read_matrices
+from faying.decks.matrices import arranged, read_matrices
 from faying.fe.modes import lowest_modes
 from faying.study.attach import Attachment
 

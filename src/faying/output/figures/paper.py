@@ -16,7 +16,8 @@ from faying.contact.jk import JK
 from faying.contact.law import Response
 from faying.contact.power_law import PowerLaw
 from faying.materials import CATALOGUE, RIGID, ContactPair
-from faying.output.figures.law import figure, save
+from faying.output.figures.law import figure
+from faying.output.figures.save import save
 from faying.typing import Array
 
 STEEL = CATALOGUE["45 steel"]
