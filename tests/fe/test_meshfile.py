@@ -12,7 +12,7 @@ from faying.fe.faces import face_centre
 from faying.fe.formats.nastran import number
 from faying.fe.interface import join
 from tests.helpers import meshfiles
-from tests.helpers.blocks import SOLID_KINDS, row
+from tests.helpers.boxes import SOLID_KINDS, row
 
 STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0)
 MIXED = ("hex20", "tet10")

@@ -31,7 +31,7 @@ def bar():
 
 def end_force(mesh, x):
     """An even traction of 1 N along x on the end of the bar: as a force, and as the mean motion it works on."""
-    from faying.fe.faces import face_load
+    from tests.helpers.loads import face_load
 
     name = "p0.left" if x == 0 else "p1.right"
     place = np.array([x, SIDE / 2, SIDE / 2])

@@ -9,7 +9,7 @@ from faying.decks.system import System
 from faying.fe.interface import join
 from faying.fe.mesh import Mesh
 from faying.joint.pairs import consistent, lumped
-from tests.helpers.blocks import row
+from tests.helpers.boxes import row
 
 K_N, K_T, LOSS_N, LOSS_T = 4e13, 2.5e13, 0.02, 0.05
 FACES = ("p0.right", "p1.left")

@@ -12,7 +12,7 @@ from faying.fe.modes import lowest_modes
 from faying.fe.sides import sides_on
 from faying.joint.attachments import PointMass, Support
 from faying.joint.structure import Structure
-from tests.helpers.blocks import block
+from tests.helpers.boxes import block
 
 SIMPLE = faying.Material(name="simple", E=200e9, nu=0.0, density=7800.0)
 SPEED = (200e9 / 7800) ** 0.5

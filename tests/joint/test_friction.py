@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import faying
-from faying.fe.faces import face_load
 from faying.joint.attachments import Support
 from faying.joint.equilibrium import StickSlip
+from tests.helpers.loads import bolt_load, face_load
 from tests.helpers.plates import plates, stacked
 
 MU = 0.3
@@ -19,7 +19,7 @@ MU = 0.3
 def pushed(structure, normal, side):
     """Load [N] (unknowns,): the plates pressed together by `normal`, the upper one pushed along x by `side`."""
     mesh = structure.mesh
-    load = normal * structure.bolt_load("high.top", "low.bottom")
+    load = normal * bolt_load(structure, "high.top", "low.bottom")
     push = np.zeros_like(mesh.points)
     nodes = mesh.face_nodes("high.top")
     face = face_load(mesh.points, mesh.face("high.top"), np.array([0.04, 0.02, 0.02]), np.array([0.0, 0.0, 1.0]))

@@ -17,7 +17,7 @@ from faying.fe.mesh import Mesh
 from faying.fe.modes import lowest_modes
 from faying.joint.solid_bolt import SolidBolt
 from tests.helpers import ccx
-from tests.helpers.blocks import SOLID_KINDS, block, row
+from tests.helpers.boxes import SOLID_KINDS, block, row
 from tests.helpers.voxels import bolted
 
 pytestmark = [

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.elements import FACES, reference, shape_at
-from faying.fe.faces import FACE_DEGREE, surface_frame
+from faying.fe.elements import FACES
+from faying.fe.faces import surface_frame
 from faying.fe.mesh import Mesh
 from faying.fe.overlap import overlap
 from faying.fe.sides import Blocks, padded
@@ -170,8 +170,7 @@ def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Inte
     """Quadrature points of the first face projected on the second; None where the meshes do not match."""
     places, shares, directions, sampled = [], [], [], []
     for faces in faces_a:
-        kind = FACES[faces.shape[1]].name
-        _, weights, values, gradients = reference(kind, FACE_DEGREE[kind])
+        _, weights, values, gradients = FACES[faces.shape[1]].face_rule
         normals, area = surface_frame(mesh.points, faces, gradients)
         places.append(np.einsum("fai,qa->fqi", mesh.points[faces], values).reshape(-1, 3))
         shares.append((area * weights).ravel())
@@ -186,7 +185,7 @@ def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Inte
     if not np.allclose(np.sort(first_values[hit], axis=1), np.sort(second_values[hit], axis=1), atol=1e-6):
         return None
     counts = np.repeat(
-        [len(reference(FACES[f.shape[1]].name, FACE_DEGREE[FACES[f.shape[1]].name])[1]) for f in faces_a],
+        [len(FACES[f.shape[1]].face_rule[1]) for f in faces_a],
         [len(f) for f in faces_a],
     )
     share = np.add.reduceat(hit, np.concatenate([[0], np.cumsum(counts)[:-1]])) / counts
@@ -207,7 +206,7 @@ def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Inte
 
 def _overlapping(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Interface | None:
     """Points in every overlap of two element faces; None where there is none."""
-    degree = max(2 if FACES[faces.shape[1]].count <= 4 else 4 for faces in (*faces_a, *faces_b))
+    degree = max(2 * FACES[faces.shape[1]].order for faces in (*faces_a, *faces_b))
     cut = overlap(mesh.points, faces_a, faces_b, reach=reach, degree=degree)
     q = len(cut.weights)
     positions, normals, weights = cut.positions.copy(), cut.normals.copy(), cut.weights.copy()
@@ -281,10 +280,8 @@ def _project(
 def _inside(faces: Index, shapes: Array) -> Any:
     """Whether points with these shape functions (q, a) lie in the reference element, its edges included."""
     kind = FACES[faces.shape[1]]
-    local, tolerance = shapes @ kind.nodes, 1e-6
-    if kind.shape == "tri":
-        return (local >= -tolerance).all(axis=1) & (local.sum(axis=1) <= 1 + tolerance)
-    return (np.abs(local) <= 1 + 2 * tolerance).all(axis=1)
+    assert kind.shape.inside is not None
+    return kind.shape.inside(shapes @ kind.nodes, 1e-6)
 
 
 def _cut(faces: Array, targets: Array, normals: Array) -> tuple[Array, Array, Array, Any]:
@@ -294,11 +291,11 @@ def _cut(faces: Array, targets: Array, normals: Array) -> tuple[Array, Array, Ar
     the line runs along the face, so that there is no such place.
     """
     kind = FACES[faces.shape[1]]
-    low, high = (-1.0, 2.0) if kind.shape == "tri" else (-2.0, 2.0)
-    guess = np.full((len(faces), 2), 1 / 3 if kind.shape == "tri" else 0.0)
+    low, high = kind.shape.box
+    guess = np.tile(np.mean(kind.shape.corners, axis=0), (len(faces), 1))
     along = np.zeros(len(faces))
     for _ in range(8):
-        values, gradients = shape_at(kind.name, guess.T)
+        values, gradients = kind.at(guess.T)
         miss = np.einsum("qa,qai->qi", values, faces) - targets - along[:, None] * normals
         tangent = np.einsum("qai,qaj->qij", faces, gradients)
         jacobian = np.concatenate([tangent, -normals[:, :, None]], axis=2)
@@ -311,4 +308,4 @@ def _cut(faces: Array, targets: Array, normals: Array) -> tuple[Array, Array, Ar
             break
     normal = np.cross(tangent[..., 0], tangent[..., 1])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
-    return along, shape_at(kind.name, guess.T)[0], normal, flat
+    return along, kind.at(guess.T)[0], normal, flat

@@ -10,16 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from faying.fe.elements import FACES, reference
+from faying.fe.elements import FACES, KINDS
 from faying.fe.sides import Blocks
 from faying.typing import Array, Index
-
-# convex pieces of an element face whose edges are curved, between corners and middle nodes
-_PIECES = {
-    "tri6": ((0, 3, 5, 5), (3, 1, 4, 4), (5, 4, 2, 2), (3, 4, 5, 5)),
-    "quad8": ((0, 4, 7, 7), (4, 1, 5, 5), (5, 2, 6, 6), (6, 3, 7, 7), (4, 5, 6, 7)),
-}
-_WHOLE = {3: (0, 1, 2, 2), 4: (0, 1, 2, 3)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +45,8 @@ def pieces(points: Array, blocks: Blocks) -> Pieces:
             ends = where[:, np.array(kind.edges)]
             sag = np.linalg.norm(where[:, kind.corners :] - ends.mean(axis=2), axis=2)
             bent = (sag > 1e-6 * np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2)).any(axis=1)
-        for some, cuts in ((~bent, (_WHOLE[kind.corners],)), (bent, _PIECES.get(kind.name, ()))):
+        straight = FACES[kind.corners].pieces
+        for some, cuts in ((~bent, straight), (bent, kind.pieces)):
             for cut in cuts:
                 corners.append(where[some][:, cut])
                 face.append(np.flatnonzero(some))
@@ -133,7 +127,7 @@ def overlap(points: Array, first: Blocks, second: Blocks, *, reach: float, degre
         polygon, count = _clip(polygon, count, other[:, edge], other[:, (edge + 1) % 4])
         alive = count > 2
         a, b, polygon, count, other = a[alive], b[alive], polygon[alive], count[alive], other[alive]
-    local, share, _, _ = reference("tri3", degree)
+    local, share, _, _ = KINDS["tri3"].rule(degree)
     limit = 1e-12 * one.radii**2
     places, weights, which = [], [], []
     for corner in range(1, polygon.shape[1] - 1):
