@@ -164,6 +164,21 @@ def test_more_modes_than_the_masses_allow():
         lowest_modes(stiffness, mass, 3, shift_frequency=0.01)
 
 
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize(("size", "blocks"), [(2, 1), (5, 2), (60, 4), (300, 1)])
+def test_the_rank_of_the_masses_does_not_hang_on_rounding(size, blocks, scale):
+    """Each block of ones has rank 1, so that as many modes exist as there are blocks; rounding makes none."""
+    from scipy.sparse import block_diag, csr_array
+
+    mass = csr_array(block_diag([scale * (i + 1) * np.ones((size, size)) for i in range(blocks)]))
+    springs = np.random.default_rng(size).uniform(1, 100, size * blocks)
+    flexibility = (1 / springs).reshape(blocks, size).sum(axis=1) * scale * (1 + np.arange(blocks))
+    found = lowest_modes(csr_array(np.diag(springs)), mass, blocks, shift_frequency=0.01)
+    assert found.frequencies == pytest.approx(np.sort(np.sqrt(1 / flexibility)) / (2 * np.pi), rel=1e-9)
+    with pytest.raises(faying.InputError, match=f"whose masses allow {blocks};"):
+        lowest_modes(csr_array(np.diag(springs)), mass, blocks + 1, shift_frequency=0.01)
+
+
 @pytest.mark.parametrize("name", available())
 def test_every_factorisation_solves(bar, name):
     _, K, M, _ = bar
