@@ -9,10 +9,10 @@ from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import spsolve
 
 import faying
+from faying.decks.matrices import arranged, read_matrices
 from faying.fe.constraint import hold
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
-from faying.fe.matrices import arranged, read_matrices
 from faying.fe.mesh import Mesh
 from faying.fe.modes import lowest_modes
 from faying.joint.solid_bolt import SolidBolt

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from faying.decks.matrices import read_pair
 from faying.errors import InputError
-from faying.fe.matrices import read_pair
 from faying.files import write_atomically
 from faying.joint.support_check import held_preload
 from faying.study.build import build_all, checked_mesh
@@ -49,7 +49,7 @@ class Assembled:
 
     @classmethod
     def of_files(cls, stiffness: Path, mass: Path | None, *, stiffness_unit: str, mass_unit: str) -> "Assembled":
-        """Read matrices of any program; see `faying.fe.matrices.read_pair`."""
+        """Read matrices of any program; see `faying.decks.matrices.read_pair`."""
         K, M, dofs = read_pair(stiffness, mass, stiffness_unit=stiffness_unit, mass_unit=mass_unit)
         return cls(stiffness=K, mass=M, dofs=dofs, shift_frequency=typical_frequency(K, M), source=stiffness.name)
 

@@ -95,7 +95,7 @@ def attach(
         )
         mesh = checked_mesh(moved)
     else:
-        from faying.fe.meshfile import read_mesh
+        from faying.decks.meshfile import read_mesh
 
         mesh = read_mesh(file, unit=unit)
     interface = _interface(mesh, faces, tolerance, any_size, unit)
@@ -338,6 +338,6 @@ def _contact(law: JointLaw, spec: JointSpec, greatest: float, mean: float) -> Co
 
 def _first_free(file: Path) -> int:
     """A round number above those of all elements of the file."""
-    from faying.fe.meshfile import last_element
+    from faying.decks.meshfile import last_element
 
     return (last_element(file) // 100_000 + 1) * 100_000 + 1

@@ -69,7 +69,7 @@ def _meshed(table: Table, folder: Path) -> GeometrySpec:
 def mesh_of(spec: GeometrySpec) -> Mesh:
     """Mesh the STEP file, or read the mesh file. Raises ReadError and InputError as those do."""
     if spec.mesh is not None:
-        from faying.fe.meshfile import read_mesh
+        from faying.decks.meshfile import read_mesh
 
         return read_mesh(spec.mesh, unit=spec.unit, parts=spec.sets or None)
     from faying.fe.geometry import mesh_step

@@ -5,8 +5,8 @@ import pytest
 from scipy.io import mmwrite
 
 import faying
+from faying.decks.matrices import arranged, read_matrices
 from faying.fe.elasticity import assemble
-from faying.fe.matrices import arranged, read_matrices
 from faying.fe.mesh import Mesh
 from tests.helpers.boxes import block
 

@@ -7,23 +7,14 @@ from pathlib import Path
 import numpy as np
 
 from faying import units
+from faying.decks.programs import MESHES, reader_of
+from faying.decks.raw import RawMesh
 from faying.errors import InputError, ReadError
 from faying.fe.elements import FACES, SOLIDS
-from faying.fe.formats.raw import RawMesh
 from faying.fe.mesh import Mesh, least_jacobian
 from faying.fe.sides import Blocks, nodes_of, side_key, skin
 from faying.typing import Array, Index
 
-FORMATS = {
-    ".inp": "abaqus",
-    ".bdf": "nastran",
-    ".nas": "nastran",
-    ".dat": "nastran",
-    ".msh": "gmsh",
-    ".cdb": "ansys",
-    ".vtk": "vtk",
-    ".vtu": "vtk",
-}
 SMALLEST, LARGEST = 1e-3, 100.0  # sizes of a bolted structure [m] beyond which the unit is doubted
 CLOSE = 1e-7  # of the part's size: nodes nearer than this coincide
 
@@ -42,25 +33,18 @@ def read_mesh(
     file = Path(path)
     if not file.is_file():
         raise ReadError(f"no file {file}")
-    if file.suffix.lower() not in FORMATS:
-        raise ReadError(
-            f"{file}: files of the kind {file.suffix or '(none)'} are not known; known are {', '.join(FORMATS)}"
-        )
+    module = reader_of(file, MESHES)
     if unit is None:
         raise InputError(f'{file.name} does not say in which unit its coordinates are; say it, for example unit = "mm"')
     scale = units.scale(unit, "m", name="unit of the mesh")
-    from importlib import import_module
-
-    raw: RawMesh = import_module(f"faying.fe.formats.{FORMATS[file.suffix.lower()]}").read(file)
+    raw: RawMesh = module.read(file)
     return _Builder(raw, file.name, unit, scale).mesh(parts)
 
 
 def last_element(path: str | Path) -> int:
     """Greatest number of a solid element in a mesh file, for whoever adds elements to it."""
-    from importlib import import_module
-
     file = Path(path)
-    raw: RawMesh = import_module(f"faying.fe.formats.{FORMATS[file.suffix.lower()]}").read(file)
+    raw: RawMesh = reader_of(file, MESHES).read(file)
     return max((int(numbers.max()) for numbers, _ in raw.elements.values() if len(numbers)), default=0)
 
 

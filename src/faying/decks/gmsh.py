@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from faying.decks.raw import RawMesh, face_blocks, from_edges, gathered, index
 from faying.errors import ReadError
-from faying.fe.formats.raw import RawMesh, face_blocks, from_edges, gathered, index
 
 _KINDS = {4: ("tet4", 4), 5: ("hex8", 8), 6: ("wedge6", 6), 11: ("tet10", 10), 17: ("hex20", 20), 18: ("wedge15", 15)}
 _FACES = {2: 3, 3: 4, 9: 6, 16: 8}
