@@ -13,7 +13,7 @@ from faying.fe.interface import join
 from faying.fe.mesh import Mesh, least_jacobian
 from faying.fe.modes import lowest_modes
 from faying.fe.sides import all_sides, nodes_of, skin
-from faying.joint.structure import tie
+from faying.joint.structure import bond
 from tests.helpers.boxes import SOLID_KINDS, block, row
 from tests.helpers.loads import face_load
 
@@ -229,7 +229,7 @@ def test_springs_on_every_kind_of_face(kind):
     assert mesh.points[nodes.first_nodes[:, 0]] == pytest.approx(mesh.points[nodes.second_nodes[:, 0]])
     assert nodes.positions == pytest.approx(mesh.points[nodes.first_nodes[:, 0]], abs=1e-12)
     assert nodes.normals == pytest.approx(np.tile([1.0, 0, 0], (len(nodes.weights), 1)), abs=1e-12)
-    assert tie(mesh, [("p0.right", "p1.left")]) is not None
+    assert bond(mesh, [("p0.right", "p1.left")]) is not None
 
 
 @pytest.mark.parametrize("kinds", [("hex20", "tet10"), ("hex8", "tet4"), ("wedge15", "hex8")])

@@ -12,7 +12,7 @@ from faying.fe.elasticity import assemble
 from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
 from faying.fe.solve import available, chosen, factorise
-from faying.joint.structure import tie
+from faying.joint.structure import bond
 from tests.helpers.boxes import stack
 
 BAR = faying.Material(name="bar", E=200e9, nu=0.0, density=7800.0)  # nu = 0: the bar of the textbook
@@ -85,7 +85,7 @@ def test_rigid_motions(bar):
 def test_stiffer_joints_never_lower_a_frequency_and_all_lie_between_free_and_tied(bar):
     mesh, K, M, _ = bar
     free = lowest_modes(K, M, 24, shift_frequency=SHIFT).frequencies
-    grown = tie(mesh, [("p0.right", "p1.left")])
+    grown = bond(mesh, [("p0.right", "p1.left")])
     tied = lowest_modes(
         (grown.T @ K @ grown).tocsr(), (grown.T @ M @ grown).tocsr(), 24, shift_frequency=SHIFT
     ).frequencies
@@ -256,7 +256,7 @@ def test_ties_over_several_joints_do_not_depend_on_their_order(turned):
     """Three bars end to end, the middle one a single layer of elements whose corners lie in both joints."""
     mesh = stack([0.1, 0.1, 0.1], [2, 1, 2], width=0.02, height=0.02, sections=[(1, 1)] * 3)
     pairs = [("p0.right", "p1.left"), ("p2.left", "p1.right") if turned else ("p1.right", "p2.left")]
-    merge = tie(mesh, pairs)
+    merge = bond(mesh, pairs)
     whole = stack([0.3], [5], width=0.02, height=0.02, sections=[(1, 1)])
     assert merge.shape == (mesh.unknowns, whole.unknowns)
 
@@ -279,7 +279,7 @@ def test_a_node_of_two_joints_grows_together_with_both():
         offset += len(where)
     mesh = Mesh(points=np.concatenate(points), parts=parts, faces=faces, face_part=owner)
     sizes = {
-        tie(mesh, [first, second]).shape[1]
+        bond(mesh, [first, second]).shape[1]
         for first in (("a.bottom", "b.top"), ("b.top", "a.bottom"))
         for second in (("c.left", "b.right"), ("b.right", "c.left"))
     }

@@ -45,7 +45,7 @@ def deck_of(mesh, coupling="nodes", seed=1, unit="mm", frequency=500.0, **change
     pairs = pairs_of(mesh, coupling, seed)
     p = np.geomspace(1e5, 1e7, 50)
     contact = Contact(
-        closing=p / K_N, pressure=p, k_n=K_N, k_t=K_T, loss_n=LOSS_N, mean_pressure=5e6, friction=0.2, given=False
+        approach=p / K_N, pressure=p, k_n=K_N, k_t=K_T, loss_n=LOSS_N, mean_pressure=5e6, friction=0.2, given=False
     )
     deck = JointDeck(
         pairs=pairs,

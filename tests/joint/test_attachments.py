@@ -113,7 +113,7 @@ def test_messages():
         (lambda: PointMass(mass=1.0), "on a face or at a point"),
         (lambda: PointMass(mass=1.0, face="a", point=(0.0, 0.0, 0.0)), "on a face or at a point"),
         (lambda: PointMass(mass=1.0, point=(50.0, 0.0, 0.0)).matrix(bar()), "mm away; the structure lies between"),
-        (lambda: Support(face="none").held(bar()), "no face is called 'none'"),
+        (lambda: Support(face="none").fixed(bar()), "no face is called 'none'"),
     ):
         with pytest.raises(faying.InputError, match=text):
             make()

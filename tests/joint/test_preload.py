@@ -45,7 +45,7 @@ def test_uniform_pressure(sections):
         assert weights @ found.pressures[0] == pytest.approx(force, rel=1e-8)
         assert found.pressures[0] == pytest.approx(np.full_like(found.pressures[0], p), rel=tolerance)
         closing = -(weights @ found.openings[0]) / weights.sum()
-        assert closing == pytest.approx(structure.joints[0].law.closing(p), rel=max(tolerance / 10, 1e-7))
+        assert closing == pytest.approx(structure.joints[0].law.approach(p), rel=max(tolerance / 10, 1e-7))
 
 
 def test_balance_and_warm_start():
@@ -98,7 +98,7 @@ def test_a_gap_before_the_load_is_closed_first():
     moved = found.displacement.reshape(-1, 3)[:, 0]
     left, right = (np.unique(mesh.face(name)) for name in ("p0.right", "p1.left"))
     approach = moved[left].mean() - moved[right].mean()
-    assert approach == pytest.approx(2e-6 + joint.law.closing(5e6), rel=1e-4)
+    assert approach == pytest.approx(2e-6 + joint.law.approach(5e6), rel=1e-4)
 
 
 def test_preload_beyond_the_law():

@@ -16,12 +16,12 @@ NOTHING = 1e-14  # of the largest of a block: entries below it are rounding
 
 @dataclass(frozen=True, kw_only=True)
 class Contact:
-    """The law as a contact property: pressure [Pa] against closing [m], k_n, k_t [Pa/m] and loss factor at the mean pressure.
+    """The law as a contact property: pressure [Pa] against approach [m], k_n, k_t [Pa/m] and loss factor at the mean pressure.
 
     friction: coefficient [-]; given: whether the study says it.
     """
 
-    closing: Array
+    approach: Array
     pressure: Array
     k_n: float
     k_t: float

@@ -139,10 +139,10 @@ class Interface:
         return np.asarray(total / weight)
 
 
-def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> Interface:
+def join(mesh: Mesh, first: str, second: str, *, search_distance: float | None = None) -> Interface:
     """Pair two faces: where their meshes match, point by point; else over every overlap of two element faces.
 
-    first, second: names of the faces; reach: the farthest that the second may lie away [m], 1 % of the structure's size
+    first, second: names of the faces; search_distance: the farthest that the second may lie away [m], 1 % of the structure's size
     where None. What finds no partner carries nothing. Raises InputError where the faces do not meet at all, lie on one
     part, or face the same way.
     """
@@ -151,8 +151,8 @@ def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> 
         raise InputError(
             f"faces {first!r} and {second!r} are both on part {mesh.face_part[first]!r}; a joint needs two"
         )
-    reach = 0.01 * mesh.size if reach is None else reach
-    found = _matched(mesh, faces_a, faces_b, reach) or _overlapping(mesh, faces_a, faces_b, reach)
+    search_distance = 0.01 * mesh.size if search_distance is None else search_distance
+    found = _matched(mesh, faces_a, faces_b, search_distance) or _overlapping(mesh, faces_a, faces_b, search_distance)
     if found is None:
         from scipy.spatial import cKDTree
 
@@ -160,13 +160,13 @@ def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> 
         nearest = float(apart.min())
         raise InputError(
             f"faces {first!r} and {second!r} do not touch: they are {nearest * 1e3:.4g} mm apart at the "
-            f"nearest and the joint reaches {reach * 1e3:.4g} mm; move a part, or check the unit of the "
+            f"nearest and the search distance is {search_distance * 1e3:.4g} mm; move a part, or check the unit of the "
             "geometry"
         )
     return found
 
 
-def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Interface | None:
+def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, search_distance: float) -> Interface | None:
     """Quadrature points of the first face projected on the second; None where the meshes do not match."""
     places, shares, directions, sampled = [], [], [], []
     for faces in faces_a:
@@ -178,7 +178,7 @@ def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Inte
         sampled.append((np.repeat(faces, len(weights), axis=0), np.tile(values, (len(faces), 1))))
     positions, normals = np.concatenate(places), np.concatenate(directions)
     first_nodes, first_values = padded(sampled)
-    second_nodes, second_values, distance, hit = _project(mesh.points, faces_b, positions, normals, reach)
+    second_nodes, second_values, distance, hit = _project(mesh.points, faces_b, positions, normals, search_distance)
     if not np.any(hit) or first_values.shape[1] != second_values.shape[1]:
         return None
     # shape functions of both sides agree point by point, up to their order
@@ -204,10 +204,10 @@ def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Inte
     )
 
 
-def _overlapping(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Interface | None:
+def _overlapping(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, search_distance: float) -> Interface | None:
     """Points in every overlap of two element faces; None where there is none."""
     degree = max(2 * FACES[faces.shape[1]].order for faces in (*faces_a, *faces_b))
-    cut = overlap(mesh.points, faces_a, faces_b, reach=reach, degree=degree)
+    cut = overlap(mesh.points, faces_a, faces_b, search_distance=search_distance, degree=degree)
     q = len(cut.weights)
     positions, normals, weights = cut.positions.copy(), cut.normals.copy(), cut.weights.copy()
     gap, good = np.zeros(q), np.zeros(q, dtype=bool)
@@ -226,7 +226,9 @@ def _overlapping(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> 
                 normals[here] = normal
             else:
                 gap[here] = along
-                good[here] = (np.abs(along) <= reach) & (np.einsum("qi,qi->q", normal, normals[here]) < 0) & ~flat
+                good[here] = (
+                    (np.abs(along) <= search_distance) & (np.einsum("qi,qi->q", normal, normals[here]) < 0) & ~flat
+                )
         sides.append((nodes, values))
     if not np.any(good):
         return None
@@ -244,7 +246,7 @@ def _overlapping(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> 
 
 
 def _project(
-    points: Array, blocks: Blocks, positions: Array, normals: Array, reach: float
+    points: Array, blocks: Blocks, positions: Array, normals: Array, search_distance: float
 ) -> tuple[Index, Array, Array, Any]:
     """For each position: nodes and shape functions of the face hit along its normal, signed distance [m], whether hit.
 
@@ -269,7 +271,7 @@ def _project(
                 continue
             tried = faces[within[near[left, rank]]]
             along, shapes, normal, flat = _cut(points[tried], positions[left], normals[left])
-            good = _inside(tried, shapes) & ~flat & (np.abs(along) <= reach)
+            good = _inside(tried, shapes) & ~flat & (np.abs(along) <= search_distance)
             good &= np.einsum("qi,qi->q", normal, normals[left]) < 0
             chosen, columns = left[good], slice(0, faces.shape[1])
             hit[chosen], distance[chosen] = True, along[good]

@@ -54,7 +54,7 @@ def pieces(points: Array, blocks: Blocks) -> Pieces:
     return Pieces(corners=np.concatenate(corners), block=np.concatenate(block), face=np.concatenate(face))
 
 
-def _near(first: Pieces, second: Pieces, reach: float) -> tuple[Index, Index]:
+def _near(first: Pieces, second: Pieces, search_distance: float) -> tuple[Index, Index]:
     """Pairs of pieces that lie near enough to overlap; the second ones are searched size by size."""
     from scipy.spatial import cKDTree
 
@@ -64,7 +64,7 @@ def _near(first: Pieces, second: Pieces, reach: float) -> tuple[Index, Index]:
     for size in np.unique(octave):
         some = np.flatnonzero(octave == size)
         lists = cKDTree(second.centres[some]).query_ball_point(
-            first.centres, first.radii + radii[some].max() + reach, return_sorted=True
+            first.centres, first.radii + radii[some].max() + search_distance, return_sorted=True
         )
         counts = np.array([len(one) for one in lists])
         left.append(np.repeat(np.arange(len(lists)), counts))
@@ -107,14 +107,14 @@ class Overlap:
     second: tuple[Index, Index]
 
 
-def overlap(points: Array, first: Blocks, second: Blocks, *, reach: float, degree: int) -> Overlap:
+def overlap(points: Array, first: Blocks, second: Blocks, *, search_distance: float, degree: int) -> Overlap:
     """Cut two surfaces that face each other into their common pieces.
 
-    reach: the farthest that the second may lie away [m]; degree: of the polynomials that the points integrate exactly
+    search_distance: the farthest that the second may lie away [m]; degree: of the polynomials that the points integrate exactly
     on each triangle of an overlap. May come out empty.
     """
     one, two = pieces(points, first), pieces(points, second)
-    a, b = _near(one, two, reach)
+    a, b = _near(one, two, search_distance)
     frames = _frames(one.corners)
     origin = one.centres
     polygon = np.einsum("pij,pvj->pvi", frames[:, :2], one.corners - origin[:, None])[a]

@@ -30,7 +30,7 @@ class Support:
         if self.stiffness is not None and not self.stiffness > 0:
             raise InputError(f"support of {self.face!r}: stiffness {self.stiffness:g} Pa/m must be positive")
 
-    def held(self, mesh: Mesh) -> Index:
+    def fixed(self, mesh: Mesh) -> Index:
         """Unknowns at rest; none for springs."""
         if self.stiffness is not None:
             return np.zeros(0, dtype=np.int64)

@@ -1,4 +1,4 @@
-"""Whether every part of a structure is held: by contact after the preload, and against every motion in its modes."""
+"""Whether every part of a structure is fixed: by contact after the preload, and against every motion in its modes."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -13,11 +13,11 @@ from faying.joint.structure import Structure
 from faying.joint.tighten import tighten
 from faying.typing import Array
 
-STILL = 0.01  # of the shift: a frequency below it is that of a motion that nothing resists
+RIGID_BELOW = 0.01  # of the shift: a frequency below it is that of a motion that nothing resists
 NOTHING = 1e-6  # of the greatest pressure
 
 
-def held_preload(
+def checked_preload(
     structure: Structure, assembly: PreloadProblem, forces: Sequence[float], order: Sequence[int] | None = None
 ) -> PreloadState:
     """`tighten`, and see that every part is held by what comes of it.
@@ -81,13 +81,13 @@ def check_contact(structure: Structure, pressures: Sequence[Array], openings: Se
 
 def check_motions(structure: Structure, modes: Modes) -> None:
     """Raise InputError where a part moves freely though neither its supports nor the want of any explain it."""
-    still = structure.rigid.shape[1]
-    free = np.flatnonzero(modes.frequencies < STILL * np.sqrt(modes.shift) / (2 * np.pi))
-    if len(free) <= still:
+    rigid_count = structure.rigid_count
+    free = np.flatnonzero(modes.frequencies < RIGID_BELOW * np.sqrt(modes.shift) / (2 * np.pi))
+    if len(free) <= rigid_count:
         return
     part = _mover(structure, modes.shapes[:, free])
     raise InputError(
-        f"{len(free)} motions cost no energy and {still} of them are those of the whole: part {part!r} moves freely "
+        f"{len(free)} motions cost no energy and {rigid_count} of them are those of the whole: part {part!r} moves freely "
         f"against the others (at {modes.frequencies[free].max():.2g} Hz). Its joints resist only some directions; give "
         "the law a tangential stiffness, a joint more, or a support"
     )

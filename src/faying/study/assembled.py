@@ -9,7 +9,7 @@ import numpy as np
 from faying.decks.matrices import read_pair
 from faying.errors import InputError
 from faying.files import write_atomically
-from faying.joint.support_check import held_preload
+from faying.joint.support_check import checked_preload
 from faying.study.build import build_all, checked_mesh
 from faying.study.schema import Study
 from faying.typing import Index
@@ -34,7 +34,7 @@ class Assembled:
         """Assemble a study with the springs of its joints at its first preload."""
         structure = build_all(study, mesh=checked_mesh(study)).structure
         assembly = structure.assembly(solver=study.solver)
-        found = held_preload(structure, assembly, [bolt.preload[0] for bolt in study.bolts], order=study.order)
+        found = checked_preload(structure, assembly, [bolt.preload[0] for bolt in study.bolts], order=study.order)
         stiffness, _ = structure.joined(structure.springs(found.pressures))
         numbers = structure.mesh.numbers
         dofs = np.column_stack([np.repeat(numbers, 3), np.tile([1, 2, 3], len(numbers))])

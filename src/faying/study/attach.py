@@ -169,7 +169,7 @@ def _interface(mesh: Mesh, faces: tuple[str, str], tolerance: float | None, any_
             f"faces {faces[0]!r} and {faces[1]!r} are turned the same way (normals {_vector(normals[0])} and "
             f"{_vector(normals[1])}); a joint needs two that face each other: was the opposite side meant?"
         )
-    interface = join(mesh, *faces, reach=tolerance)
+    interface = join(mesh, *faces, search_distance=tolerance)
     if not any_size and not SMALLEST <= interface.area <= LARGEST:
         raise InputError(
             f"in {unit} the joint has {interface.area:.3g} m2; is that the unit of the model? Areas from "
@@ -232,7 +232,7 @@ def _joint_law(
 
 def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | None) -> tuple[JointLaw, Array, str]:
     """JointLaw and pressure [Pa] at the points of the interface under the study's bolts."""
-    from faying.joint.support_check import held_preload
+    from faying.joint.support_check import checked_preload
 
     loads = study.bolts[0].preload
     number = 0
@@ -245,7 +245,7 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
     elif len(loads) > 1:
         raise InputError(f"the study has the preloads {_kilo(loads)}; say which with --preload")
     structure = build_all(study, mesh=mesh).structure
-    found = held_preload(
+    found = checked_preload(
         structure,
         structure.assembly(solver=study.solver),
         [bolt.preload[number] for bolt in study.bolts],
@@ -321,11 +321,11 @@ def _contact(law: JointLaw, spec: JointSpec, greatest: float, mean: float) -> Co
         return None
     end = min(law.model.greatest_pressure, 3 * greatest)
     pressure = np.geomspace(max(1e-4 * end, law.least_pressure), end, 199)
-    closing = np.array([law.closing(float(p)) for p in pressure])
+    approach = np.array([law.approach(float(p)) for p in pressure])
     (k_n,), (k_t,) = law.stiffness(np.array([mean]))
     (loss_n,), _ = law.loss(np.array([mean]))
     return Contact(
-        closing=closing,
+        approach=approach,
         pressure=pressure,
         k_n=float(k_n),
         k_t=float(k_t),

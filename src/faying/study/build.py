@@ -97,7 +97,7 @@ def build_all(study: Study, *, mesh: Mesh | None = None, surfaces: tuple[Surface
         spec = joint.law or study.law
         model = law_of(spec, surface, ContactPair(rough, RIGID if spec.counterbody == "rigid" else other))
         laws.append(model)
-        interface = join(mesh, *joint.faces, reach=joint.reach)
+        interface = join(mesh, *joint.faces, search_distance=joint.reach)
         if joint.gap_map is not None:
             interface = _gap(joint.gap_map, interface)
         joints.append(

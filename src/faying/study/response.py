@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.fe.constraint import hold
+from faying.fe.constraint import constrain
 from faying.fe.damped import DampedModes
 from faying.fe.modes import Modes
 from faying.fe.response import Response, frequency_response
@@ -85,7 +85,7 @@ class Solved:
             rigid=self.structure.rigid.shape[1],
             kind=self.study.damping,
             structural_loss=eta,
-            parts=hold(self.structure.matrices[0], self.structure.held, 0.0) if eta else None,
+            parts=constrain(self.structure.matrices[0], self.structure.fixed, 0.0) if eta else None,
         )
 
     def _columns(self, nodes: Array, axes: Array) -> Array:
@@ -93,7 +93,7 @@ class Solved:
         columns = np.zeros((self.structure.mesh.unknowns, len(nodes)))
         for k, (node, axis) in enumerate(zip(nodes, axes, strict=True)):
             columns[3 * node : 3 * node + 3, k] = axis
-        columns[self.structure.held] = 0.0
+        columns[self.structure.fixed] = 0.0
         return columns
 
 

@@ -7,13 +7,15 @@ from pathlib import Path
 import numpy as np
 
 from faying.contact.law import ContactLaw
-from faying.fe.constraint import hold
+from faying.fe.constraint import constrain
 from faying.fe.damped import DampedModes, damped_modes
+from faying.fe.interface import Interface
 from faying.fe.modes import Modes, lowest_modes
 from faying.fe.solve import chosen
 from faying.joint.equilibrium import PreloadState
-from faying.joint.structure import Springs, Structure, tie
-from faying.joint.support_check import STILL, check_motions, held_preload, open_joints
+from faying.joint.springs import Springs
+from faying.joint.structure import Structure, bond
+from faying.joint.support_check import RIGID_BELOW, check_motions, checked_preload, open_joints
 from faying.measured.model import FullResponse
 from faying.result import Comparison, Receptance, Result
 from faying.study.build import build_all, checked_mesh, surfaces_of
@@ -59,14 +61,16 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     still = structure.rigid.shape[1]
     count = still + study.mode_count + SPARE_MODES
     preloads: list[PreloadState] = []
-    per_load: list[tuple[Springs, ...]] = []
+    per_load: list[tuple[Springs[Interface], ...]] = []
     modes: list[Modes] = []
     damped: list[DampedModes] = []
     responses: list[Receptance] = []
     full: FullResponse | None = None
     for number, load in enumerate(loads):
         tell(f"preload {load / 1e3:g} kN")
-        preload = held_preload(structure, assembly, [bolt.preload[number] for bolt in study.bolts], order=study.order)
+        preload = checked_preload(
+            structure, assembly, [bolt.preload[number] for bolt in study.bolts], order=study.order
+        )
         springs = structure.springs(preload.pressures)
         tell(f"modes at {load / 1e3:g} kN")
         stiffness, loss = structure.joined(springs, viscous=study.damping == "viscous")
@@ -117,7 +121,7 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         loss_factors=np.stack([d.loss_factors for d in damped]),
         loss_error=np.stack([d.error for d in damped]),
         tied=tied.frequencies[elastic],
-        free=np.where(free.frequencies < STILL * shift, 0.0, free.frequencies)[elastic],
+        free=np.where(free.frequencies < RIGID_BELOW * shift, 0.0, free.frequencies)[elastic],
         rigid=rigid,
         pressure=np.stack([np.concatenate(p.pressures) for p in preloads]),
         k_n=k_n,
@@ -160,12 +164,12 @@ def _mac(first: Complex, other: Complex) -> Array:
 def _tied(structure: Structure, count: int, shift: float, solver: str | None, notes: list[str]) -> Modes:
     """Modes with the faces of every joint grown together."""
     K, M = structure.vibrating
-    merge = structure.tie()
-    if merge is not None and not len(structure.held):
+    merge = structure.bonded()
+    if merge is not None and not len(structure.fixed):
         return lowest_modes(
             (merge.T @ K @ merge).tocsr(), (merge.T @ M @ merge).tocsr(), count, shift_frequency=shift, solver=solver
         )
-    apart = [joint.name for joint in structure.joints if tie(structure.mesh, [joint.faces]) is None]
+    apart = [joint.name for joint in structure.joints if bond(structure.mesh, [joint.faces]) is None]
     why = f"the faces of {', '.join(apart)} do not match node for node" if apart else "supports hold some of the nodes"
     notes.append(
         f"{why}: the tied modes use springs a thousand times as stiff as the parts in place of grown-together faces"
@@ -173,7 +177,7 @@ def _tied(structure: Structure, count: int, shift: float, solver: str | None, no
     stiff = 1e3 * max(m.E for m in structure.materials.values()) / structure.mesh.size
     for joint in structure.joints:
         springs = joint.interface.springs(*2 * (np.full(len(joint.interface.weights), stiff),))
-        K = K + hold(springs, structure.held, 0.0)
+        K = K + constrain(springs, structure.fixed, 0.0)
     return lowest_modes(K, M, count, shift_frequency=shift, solver=solver)
 
 
@@ -215,7 +219,7 @@ def _maps(structure: Structure, preloads: list[PreloadState]) -> tuple[Array, Ar
     return k_n, k_t
 
 
-def _convergence(preload: PreloadState, springs: tuple[Springs, ...]) -> dict[str, float]:
+def _convergence(preload: PreloadState, springs: tuple[Springs[Interface], ...]) -> dict[str, float]:
     totals = [s.total() for s in springs]
     return {
         "imbalance": preload.imbalance,

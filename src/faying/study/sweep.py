@@ -13,7 +13,7 @@ import numpy as np
 from faying.errors import FayingError, InputError
 from faying.joint.joint_law import JointLaw
 from faying.joint.reduce import STATIC_SHARE, Reduction
-from faying.joint.reduced import ReducedModel, densities
+from faying.joint.reduced import ReducedModel
 from faying.joint.structure import Structure
 from faying.materials import RIGID, ContactPair, Material
 from faying.study.axes import Axis, Grid
@@ -65,6 +65,7 @@ def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dic
     """Evaluate some points; rows of what the sweep stores, NaN where a point has no answer, and `reasons`."""
     rows: dict[str, list[Any]] = {name: [] for name in (*Store.COLUMNS, "reasons")}
     weights = np.concatenate(model.weights)
+    start: Array | None = None
     for index in indices:
         nothing = np.full(model.count, np.nan)
         row: dict[str, Any] = {
@@ -77,8 +78,9 @@ def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dic
         }
         reason = ""
         try:
-            laws, forces, model.friction = recipe.laws(index)
-            found = model.evaluate(laws, forces)
+            laws, forces, friction = recipe.laws(index)
+            found = model.evaluate(laws, forces, friction, start)
+            start = found.preload.displacement
             p = np.concatenate(found.preload.pressures)
             end = np.concatenate(
                 [np.full(len(q), s.model.greatest_pressure) for q, s in zip(found.preload.pressures, laws, strict=True)]
@@ -97,7 +99,7 @@ def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dic
                 row |= {"frequencies": found.frequencies, "loss_factors": found.loss_factors}
         except FayingError as fault:
             reason = str(fault)
-            model.last = None
+            start = None
         for name, value in row.items():
             rows[name].append(value)
         rows["reasons"].append(reason)
@@ -218,14 +220,14 @@ class _Trainer:
 
     def _train(self, reduction: Reduction, points: Iterable[int], what: str) -> None:
         fault: FayingError | None = None
+        start: Array | None = None
         for number, index in enumerate(points):
             self.tell(f"{what} {number + 1}", 0)
             try:
-                laws, forces, reduction.model.friction = self.recipe.laws(index)
-                reduction.train(laws, forces, tolerance=self.tolerance)
+                start = reduction.train(*self.recipe.laws(index), tolerance=self.tolerance, start=start)
             except FayingError as met:  # a point without an answer is reported when it is evaluated
                 fault = met
-                reduction.model.last = None
+                start = None
         if fault is not None and not reduction.trained:
             raise fault
 
@@ -235,12 +237,11 @@ class _Trainer:
         for index in points:
             self.tell("check", 0)
             try:
-                laws, forces, reduction.model.friction = self.recipe.laws(index)
-                found = reduction.model.equilibrium(laws, forces)
-                error, _ = reduction.modal_error(densities(laws, found.pressures))
-                balance, _ = reduction.static_error(laws, forces, found)
+                laws, forces, friction = self.recipe.laws(index)
+                found = reduction.model.equilibrium(laws, forces, friction)
+                error, _ = reduction.modal_error(laws, found.pressures)
+                balance, _ = reduction.static_error(laws, forces, friction, found)
             except FayingError:
-                reduction.model.last = None
                 continue
             if error.max() > 4 * self.tolerance or balance > 4 * STATIC_SHARE * self.tolerance:
                 poor.append(index)

@@ -148,9 +148,7 @@ class Store:
             }
             single = ("static_stiffness", "static_loads", "dynamic_stiffness", "dynamic_mass")
             arrays: dict[str, Any] = lists | {name: data[name] for name in single}
-            return ReducedModel(
-                friction=[None] * joints, count=int(data["count"]), coarse=int(data["coarse"]), **arrays
-            )
+            return ReducedModel(count=int(data["count"]), coarse=int(data["coarse"]), **arrays)
 
     def finish(self, grid: Grid, *, title: str, tolerance: float, unknowns: int, model: ReducedModel) -> Sweep:
         """Write the NetCDF file and remove what was kept on the way."""
