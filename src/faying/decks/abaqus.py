@@ -355,7 +355,7 @@ def decks(deck: JointDeck) -> dict[str, str]:
 
 def spring2(deck: JointDeck) -> str:
     """Write SPRING2 elements, and DASHPOT2 where there are dampers. Raises InputError as `NodePairs.own`."""
-    lines = deck.header("**", deck.damping_said())
+    lines = deck.header("**", deck.damping_note())
     axes, group = orientations(deck)
     springs, number = elements(
         deck, "SPRING2", "SPRING", "JK", deck.pairs.own(deck.stiffness), group, deck.first_element
@@ -371,8 +371,8 @@ def connector(deck: JointDeck) -> str:
     k, lost = deck.pairs.own(deck.stiffness), deck.pairs.own(deck.loss)
     ratio = np.divide(lost, k, out=np.zeros_like(k), where=k != 0)
     dampers = deck.pairs.own(deck.dampers) if deck.paper and deck.dampers is not None else None
-    said = deck.damping_said() if dampers is not None else "loss factors as structural damping of each component"
-    lines = deck.header("**", said)
+    note = deck.damping_note() if dampers is not None else "loss factors as structural damping of each component"
+    lines = deck.header("**", note)
     axes, group = orientations(deck)
     lines += axes
     one, two = deck.ends
@@ -402,7 +402,7 @@ def matrix(deck: JointDeck) -> str:
     paper = deck.paper and deck.dampers is not None
     lines = deck.header(
         "**",
-        deck.damping_said()
+        deck.damping_note()
         if paper
         else "loss as a structural damping matrix, the imaginary "
         "part of the stiffness; frequency-domain steps with SIM only",

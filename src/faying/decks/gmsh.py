@@ -99,16 +99,16 @@ def read(path: Path) -> RawMesh:
     bodies: dict[str, list[int]] = {}
     faces: dict[str, list[list[int]]] = {}
     extra: list[int] = []
-    for number, code, tags, held in rows:
+    for number, code, tags, corners in rows:
         if code in _KINDS:
             kind = _KINDS[code][0]
-            solids.setdefault(kind, []).append((number, [held[i] for i in _ORDER.get(kind, range(len(held)))]))
+            solids.setdefault(kind, []).append((number, [corners[i] for i in _ORDER.get(kind, range(len(corners)))]))
             for tag in tags:
                 bodies.setdefault(names.get((3, tag), f"part{tag}"), []).append(number)
         else:
-            extra += held
+            extra += corners
             for tag in tags if code in _FACES else ():
-                faces.setdefault(names.get((2, tag), f"face{tag}"), []).append(held)
+                faces.setdefault(names.get((2, tag), f"face{tag}"), []).append(corners)
     if not solids:
         raise ReadError(f"{path} holds no solid elements; mesh the volumes (gmsh -3) and save them all")
     return RawMesh(

@@ -121,10 +121,10 @@ def _elements(
             continue
         if which not in _SOLIDS:
             raise ReadError(f"element {number} is of type {which}; known are SOLID185, 186, 187 and 285")
-        kind, held = undoubled(
+        kind, ordered = undoubled(
             nodes[: _SOLIDS[which]] if which != "285" else nodes[:4], f"element {number} (SOLID{which})"
         )
-        rows.setdefault(kind, []).append((number, held))
+        rows.setdefault(kind, []).append((number, ordered))
 
 
 def _cut(line: str, width: int) -> list[int]:
@@ -180,10 +180,10 @@ def _sets(deck: JointDeck) -> list[tuple[int, Array, np.ndarray]]:
     return out
 
 
-def _said(deck: JointDeck) -> tuple[str, ...]:
+def _notes(deck: JointDeck) -> tuple[str, ...]:
     solve = "solve with MODOPT,QRDAMP or MODOPT,DAMP: LANB leaves dampers out" if deck.dampers is not None else ""
     return (
-        deck.damping_said(),
+        deck.damping_note(),
         *([solve] if solve else []),
         "nodes keep their axes along the global ones (no NROTAT); a face at an angle is in the full 3 x 3 blocks",
     )
@@ -191,7 +191,7 @@ def _said(deck: JointDeck) -> tuple[str, ...]:
 
 def matrix27(deck: JointDeck) -> str:
     """Write MATRIX27 elements as commands."""
-    lines = [*deck.header("!", *_said(deck)), "/PREP7"]
+    lines = [*deck.header("!", *_notes(deck)), "/PREP7"]
     one, two = deck.ends
     number, real_set = deck.first_element, deck.first_element
     for kind, sets, group in _sets(deck):
@@ -214,7 +214,7 @@ def matrix27(deck: JointDeck) -> str:
 
 def archive(deck: JointDeck) -> str:
     """Write the same elements as an archive: ET, RLBLOCK and EBLOCK, for CDREAD,COMB after the model."""
-    lines = [*deck.header("!", *_said(deck)), "/PREP7"]
+    lines = [*deck.header("!", *_notes(deck)), "/PREP7"]
     one, two = deck.ends
     sets = _sets(deck)
     for kind, _, _ in sets:
@@ -249,7 +249,7 @@ def combin14(deck: JointDeck) -> str:
     axes, frame = grouped(deck.axes)
     lines = deck.header(
         "!",
-        deck.damping_said(),
+        deck.damping_note(),
         "NROTAT turns the axes of the nodes of both faces: supports and loads on them are then in those axes; "
         "MATRIX27 leaves them alone",
     )

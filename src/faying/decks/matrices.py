@@ -24,13 +24,23 @@ def read_matrices(
     dofs: str | Path | None = None,
     names: tuple[str, str] = ("KAAX", "MAAX"),
 ) -> Matrices:
-    """Read K [N/m], M [kg] (n, n) as sparse CSR and dofs (n, 2): number of the node, direction 1, 2, 3.
+    """Read the stiffness and the mass that another program has assembled.
 
-    path: job.sti of CalculiX's SOLVER=MATRIXSTORAGE, with job.mas and job.dof beside it; the stiffness as Matrix Market
-    (.mtx), with `mass` another such file and `dofs` a text file of "node direction" or "node.direction" in each line;
-    or Nastran bulk data (.bdf, .nas, .dat, .pch) with DMIG entries called `names`. stiffness_unit, mass_unit: such as
-    "N/mm" and "t"; no format says. Raises ReadError for the files, InputError for matrices that are not square, of one
-    size and symmetric, and for unknowns without stiffness.
+    Args:
+        path: job.sti of CalculiX's SOLVER=MATRIXSTORAGE, with job.mas and job.dof beside it; or the stiffness as Matrix
+            Market (.mtx); or Nastran bulk data (.bdf, .nas, .dat, .pch) with DMIG entries.
+        stiffness_unit: Unit of the stiffness, such as "N/mm"; no format says it.
+        mass_unit: Unit of the mass, such as "t".
+        mass: With .mtx, the mass as another such file.
+        dofs: With .mtx, a text file with "node direction" or "node.direction" in each line.
+        names: With DMIG, names of stiffness and mass.
+
+    Returns:
+        K [N/m] and M [kg], sparse CSR (n, n), and dofs (n, 2): number of the node, direction 1, 2, 3.
+
+    Raises:
+        ReadError: A file is missing, damaged or cut short.
+        InputError: Matrices are not square, of one size, real and symmetric, or unknowns have no stiffness.
     """
     file = Path(path)
     if stiffness_unit is None or mass_unit is None:

@@ -265,12 +265,12 @@ def cbush(deck: JointDeck) -> str:
     k, lost = deck.pairs.own(deck.stiffness), deck.pairs.own(deck.loss)
     ratio = np.divide(lost, k, out=np.zeros_like(k), where=k != 0)
     dampers = deck.pairs.own(deck.dampers) if deck.paper and deck.dampers is not None else np.zeros_like(k)
-    said = (
-        deck.damping_said()
+    note = (
+        deck.damping_note()
         if dampers.any()
         else "GE of directions 1, 2, 3; a solver that reads one GE takes that of the normal"
     )
-    lines = deck.header("$", said)
+    lines = deck.header("$", note)
     axes, frame = grouped(deck.axes)
     number = deck.first_element
     for g, leader in enumerate(axes):
@@ -298,12 +298,12 @@ def celas2(deck: JointDeck) -> str:
     Grids must have their displacements in the basic axes (CD = 0). Raises InputError where a spring that couples has a
     loss factor of another sign than its stiffness.
     """
-    said = (
-        deck.damping_said()
+    note = (
+        deck.damping_note()
         if deck.paper
         else "loss factors in GE; springs in the basic axes: leave CD of the grids blank"
     )
-    lines = deck.header("$", said)
+    lines = deck.header("$", note)
     number = deck.first_element
     grids = deck.ends
     lost = springs_of(deck.loss, deck.stiffness)
@@ -336,7 +336,7 @@ def dmig(deck: JointDeck) -> str:
     chosen = ["case control: K2GG = KJOINT"]
     bulk = _dmig("KJOINT", deck, deck.stiffness)
     if deck.paper and deck.dampers is not None:
-        chosen += ["case control: B2GG = BJOINT", deck.damping_said()]
+        chosen += ["case control: B2GG = BJOINT", deck.damping_note()]
         bulk += _dmig("BJOINT", deck, deck.dampers)
     elif np.any(deck.loss):
         chosen.append("case control: K42GG = K4JOINT, the loss as a structural damping matrix")

@@ -1,4 +1,4 @@
-"""Unknowns held at zero, without renumbering: their rows and columns give way to a diagonal."""
+"""Unknowns fixed at zero, without renumbering: their rows and columns give way to a diagonal."""
 
 from typing import Any
 
@@ -8,9 +8,9 @@ from faying.typing import Array, Index
 
 
 def constrain(matrix: Any, fixed: Index, diagonal: float | None = None) -> Any:
-    """Return a sparse CSR matrix with the rows and columns of `held` unknowns cleared.
+    """Return a sparse CSR matrix with the rows and columns of `fixed` unknowns cleared.
 
-    diagonal: what stands there instead, the mean of the diagonal where None (a stiffness), 0 for a mass or a loss: held
+    diagonal: what stands there instead, the mean of the diagonal where None (a stiffness), 0 for a mass or a loss: fixed
     unknowns then have no part in any mode.
     """
     matrix = matrix.tocsr()
@@ -28,7 +28,7 @@ def constrain(matrix: Any, fixed: Index, diagonal: float | None = None) -> Any:
 
 
 def free_motions(rigid: Array, fixed: Index) -> Array:
-    """Rigid motions (unknowns, r) out of the six of `rigid` that leave all held unknowns at rest."""
+    """Rigid motions (unknowns, r) out of the six of `rigid` that leave all fixed unknowns at rest."""
     if not len(fixed):
         return rigid
     _, size, right = np.linalg.svd(rigid[fixed], full_matrices=True)

@@ -17,12 +17,19 @@ from faying.typing import Array, Index
 class Mesh:
     """Nodes, the solid elements of each part, and the faces of elements that make up each named face.
 
-    points [m], shape (n, 3); parts: name -> blocks of elements, one array (e, a) per kind, told by a, the nodes of an
-    element: tet4, wedge6, hex8, tet10, wedge15, hex20; faces: name -> blocks of element faces (f, a): tri3, quad4, tri6,
-    quad8, the normal of each pointing out of its part; a single array stands for one block. face_part: name of the face
-    -> name of its part; node_numbers (n,): the numbers of the nodes in the file they came from, 1, 2, ... where None.
-    Nodes of an element in VTK's order (corners against the clock seen from the far side). No node is shared by two
-    parts. Raises InputError for empty parts, elements of negative volume, and nodes that no element holds.
+    No node is shared by two parts: parts meet through joints alone.
+
+    Args:
+        points: Nodes (n, 3) [m].
+        parts: Name -> blocks of elements, one array (e, a) of nodes for each kind; a tells the kind: tet4, wedge6, hex8,
+            tet10, wedge15, hex20. Nodes are in VTK's order. A single array stands for one block.
+        faces: Name -> blocks of element faces (f, a): tri3, quad4, tri6, quad8, normals out of the part.
+        face_part: Name of a face -> name of its part.
+        source: File that the mesh came from.
+        node_numbers: Numbers (n,) of the nodes in that file; 1, 2, ... where None.
+
+    Raises:
+        InputError: Empty parts, elements of negative volume, nodes of no element, coordinates that are not numbers.
     """
 
     points: Array

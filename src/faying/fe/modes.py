@@ -1,4 +1,4 @@
-"""Vibration modes of a structure, free, joined or tied."""
+"""Vibration modes of a structure, free, joined or bonded."""
 
 from dataclasses import dataclass
 from typing import Any

@@ -107,11 +107,11 @@ class Equilibrium(ABC):
         """Return the Newton step for an out-of-balance force and how many inner steps it took."""
 
     def _check_load(self, load: Array) -> None:
-        """Raise InputError where no equilibrium exists under this load; any load will do unless told otherwise."""
+        """Raise InputError where no equilibrium exists under this load; by default any load will do."""
         return
 
     def _admissible(self, force: Array) -> Array:
-        """Remove from a force what nothing can answer: rounding along rigid motions, forces on held unknowns."""
+        """Remove from a force what nothing can answer: rounding along rigid motions, forces on fixed unknowns."""
         return force
 
     def solve(

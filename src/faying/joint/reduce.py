@@ -24,7 +24,7 @@ from faying.joint.reduced import ReducedModel, ReducedMotion, Variant
 from faying.joint.springs import Springs
 from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions, checked_preload
-from faying.typing import Array, Complex, Index
+from faying.typing import Array, Complex
 
 FEW_STEPS = 60  # enrichments of one variant after which something else must be wrong
 EXTRA_MODES = 25  # real modes of the reference beyond those wanted: they speed the enrichment of the highest ones
@@ -104,43 +104,35 @@ class Reduction:
 
     def __init__(
         self,
+        structure: Structure,
         *,
-        stiffness: Any,
-        stiffness_static: Any,
-        mass: Any,
-        traces: Sequence[Any],
         factor: Factorisation,
         reference: Any,
-        loads: Array,
         state: Array,
         shapes: Array,
         count: int,
-        rigid: Array,
-        fixed: Index,
     ) -> None:
         """Start from a factorised reference.
 
-        stiffness, stiffness_static, mass (n, n): of the parts with their attachments, for vibration and for preload
-        (fixed unknowns cleared); reference (n, n): stiffness + joints + shift x mass, of which `factor` is the
-        factorisation; loads (n, b): one column for 1 N in each bolt; state (n,): a displacement in equilibrium; shapes (n, m): elastic modes at the reference,
-        more of them than the `count` that is asked for; rigid (n, r): motions that nothing resists; fixed: unknowns at rest.
+        reference (n, n): stiffness + joints + shift x mass, of which `factor` is the factorisation; state (n,): a
+        displacement in equilibrium; shapes (n, m): elastic modes at the reference, more than the `count` that is asked for.
         """
         from scipy.linalg import cholesky, solve_triangular
 
-        self.stiffness, self.stiffness_static, self.mass = stiffness, stiffness_static, mass
-        self.traces, self.factor, self.reference = list(traces), factor, reference
-        self.fixed = fixed
-        loads = loads.copy()
-        loads[fixed] = 0.0
-        self.loads = loads
+        self.stiffness, self.mass = structure.vibrating
+        self.stiffness_static = constrain(structure.standing, structure.fixed, 0.0)
+        self.traces, self.factor, self.reference = [joint.interface for joint in structure.joints], factor, reference
+        self.fixed, mass, rigid = structure.fixed, self.mass, structure.rigid
+        self.loads = loads = structure.loads.copy()
+        loads[self.fixed] = 0.0
         if rigid.shape[1]:
             root = cholesky(rigid.T @ (mass @ rigid))
             rigid = solve_triangular(root, rigid.T, trans="T").T
         motions = {"rigid": rigid, "rigid_momentum": np.asarray(mass @ rigid)}
-        self.static = Basis(reference=reference, operators=(stiffness_static,), traces=self.traces, **motions)
+        self.static = Basis(reference=reference, operators=(self.stiffness_static,), traces=self.traces, **motions)
         self.static.add(state[:, None])
         self.static.add(factor.solve(np.asfortranarray(loads)))
-        self.dynamic = Basis(reference=reference, operators=(stiffness, mass), traces=self.traces, **motions)
+        self.dynamic = Basis(reference=reference, operators=(self.stiffness, mass), traces=self.traces, **motions)
         self.dynamic.add(shapes)
         self._seen: list[tuple[tuple[JointLaw, ...], tuple[Array, ...]]] = []
         self.model = ReducedModel(
@@ -176,24 +168,18 @@ class Reduction:
         structure = replace(structure, joints=joints)
         found = checked_preload(structure, structure.assembly(solver=solver), [float(f) for f in forces])
         shift = shift_frequency or structure.shift_frequency
-        stiffness, mass = structure.vibrating
+        _, mass = structure.vibrating
         joined, _ = structure.joined(structure.springs(found.pressures))
         rigid_count = structure.rigid_count
         modes = lowest_modes(joined, mass, rigid_count + count + EXTRA_MODES, shift_frequency=shift, solver=solver)
         check_motions(structure, modes)
         return cls(
-            stiffness=stiffness,
-            stiffness_static=constrain(structure.standing, structure.fixed, 0.0),
-            mass=mass,
-            traces=[joint.interface for joint in structure.joints],
+            structure,
             factor=modes.factorisation,
             reference=(joined + modes.shift * mass).tocsr(),
-            loads=structure.loads,
             state=found.displacement,
             shapes=modes.shapes[:, rigid_count:],
             count=count,
-            rigid=structure.rigid,
-            fixed=structure.fixed,
         )
 
     def _refresh(self, coarse: int | None = None) -> None:

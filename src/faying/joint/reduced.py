@@ -1,6 +1,6 @@
 """A structure in two small bases, one for equilibrium and one for vibration: any law and preload in milliseconds.
 
-`reduce` makes it from a structure; it holds no matrix of the structure's size and can be sent to other processes.
+`reduce` makes it from a structure; it has no matrix of the structure's size and can be sent to other processes.
 """
 
 from collections.abc import Sequence

@@ -114,7 +114,9 @@ class Structure:
                 )
         loose = [part for part in self.mesh.parts if part not in met]
         if loose and len(self.mesh.parts) > 1:
-            raise InputError(f"part {', '.join(loose)} has no joint; add a [[joint]] that holds it, or leave it out")
+            raise InputError(
+                f"part {', '.join(loose)} has no joint; add a [[joint]] of one of its faces, or leave it out"
+            )
         frame = Frame(
             mesh=self.mesh,
             materials=self.materials,
