@@ -29,7 +29,7 @@ def full(structure, laws, forces, count):
     from faying.study.run import SPARE_MODES
 
     joints = tuple(replace(joint, law=law) for joint, law in zip(structure.joints, laws, strict=True))
-    variant = replace(structure, joints=joints).sharing(structure)
+    variant = replace(structure, joints=joints)
     found = variant.assembly().solve(variant.loads @ forces)
     K, loss = variant.joined(variant.springs(found.pressures))
     M, still = variant.vibrating[1], variant.rigid.shape[1]

@@ -3,9 +3,9 @@ from . import contact
 from .asperity_fe import solve_asperity
 from .contact.half_space import HalfSpace
 from .contact.jk import JK
+from .decks.matrices import read_matrices
+from .decks.meshfile import read_mesh
 from .errors import FayingError, InputError, NotConverged, OutsideValidity, ReadError
-from .fe.matrices import read_matrices
-from .fe.meshfile import read_mesh
 from .halfspace import solve_half_space
 from .materials import CATALOGUE, RIGID, ContactPair, Material
 from .measured.compare import compare_modes

@@ -123,7 +123,7 @@ def test_the_joint_closes_by_the_loading_slope() -> None:
     law = uniform(asperity="Ghaednia", tangent_ratio=0.003)
     joined = JointLaw(model=law)
     p = np.array([1e6, 1e7, 5e7])
-    closing = np.array([joined.closing(one) for one in p])
+    closing = np.array([joined.approach(one) for one in p])
     assert np.diff(closing) == pytest.approx(np.diff(law._closure_at(p)), rel=1e-4)
     assert joined.stiffness(p)[0] == pytest.approx(law.at_pressure(p).k_n, rel=1e-9)
     assert np.all(law.at_pressure(p).k_n > law.at_pressure(p).k_load)

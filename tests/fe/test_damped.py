@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import eig
 
 import faying
-from faying.fe.constraint import free_motions, hold
+from faying.fe.constraint import constrain, free_motions
 from faying.fe.damped import damped_modes, followers
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
@@ -95,14 +95,17 @@ def test_a_loss_that_is_too_great_is_told():
 
 
 def test_held_unknowns_stay_at_rest_and_the_rest_is_as_without_them():
-    """hold() leaves the eigenvalues of the free block; free_motions() those rigid motions that leave them at rest."""
+    """constrain() leaves the eigenvalues of the free block; free_motions() those rigid motions that leave them at rest."""
     K, _, loss = jointed([2, 2], (1, 1))
     held = np.arange(30)
     free = np.setdiff1d(np.arange(K.shape[0]), held)
-    block = np.linalg.eigvalsh(hold(K, held).toarray())
+    block = np.linalg.eigvalsh(constrain(K, held).toarray())
     alone = np.linalg.eigvalsh(K.tocsr()[free][:, free].toarray())
     assert np.isin(np.round(alone / alone[-1], 9), np.round(block / alone[-1], 9)).all()
-    assert hold(loss, held, 0.0).tocsr()[held].nnz == 0 or np.abs(hold(loss, held, 0.0).tocsr()[held].data).max() == 0
+    assert (
+        constrain(loss, held, 0.0).tocsr()[held].nnz == 0
+        or np.abs(constrain(loss, held, 0.0).tocsr()[held].data).max() == 0
+    )
     rigid = rigid_motions(np.random.default_rng(0).uniform(0, 1, (20, 3)))
     one_node = free_motions(rigid, np.array([0, 1, 2]))
     assert one_node.shape[1] == 3  # turns about that node

@@ -3,17 +3,16 @@ import pytest
 
 import faying
 from faying.fe.elasticity import assemble, rigid_motions
-from faying.fe.faces import face_centre, face_load
 from faying.fe.mesh import Mesh
 from faying.fe.modes import lowest_modes
-from tests.helpers.boxes import box, stack
+from tests.helpers.boxes import block, stack
 
 STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0)
 
 
 def crooked():
     """A box whose inner nodes are moved, edges straight, so that no symmetry of the mesh can help."""
-    points, cells = box((3, 3, 3), (1.0, 0.8, 0.6))
+    points, cells = block("tet10", (3, 3, 3), (1.0, 0.8, 0.6))
     rng = np.random.default_rng(3)
     size = points.max(axis=0)
     inside = np.all((points > 1e-9) & (points < size - 1e-9), axis=1)
@@ -78,21 +77,8 @@ def test_second_order_elements_converge_at_fourth_order_in_frequency():
     assert rates[-1] == pytest.approx(4, abs=0.4)
 
 
-def test_face_load_acts_along_its_line():
-    mesh = stack([1.0], [2])
-    tri = mesh.face("p0.right")
-    centre, normal, area = face_centre(mesh.points, tri)
-    assert area == pytest.approx(1.0)
-    assert normal == pytest.approx([1, 0, 0])
-    axis_point = centre + np.array([0.0, 0.1, -0.2])
-    load = face_load(mesh.points, tri, axis_point, np.array([2.0, 0, 0])).reshape(-1, 3)
-    assert load.sum(axis=0) == pytest.approx([1, 0, 0], abs=1e-13)
-    moment = np.cross(mesh.points - axis_point, load).sum(axis=0)
-    assert moment == pytest.approx(np.zeros(3), abs=1e-13)
-
-
 def test_faults_of_a_mesh():
-    points, cells = box((1, 1, 1), (1.0, 1.0, 1.0))
+    points, cells = block("tet10", (1, 1, 1), (1.0, 1.0, 1.0))
     with pytest.raises(faying.InputError, match="no or negative volume"):
         Mesh(points=points, parts={"p": cells[:, [1, 0, 2, 3, 4, 6, 5, 8, 7, 9]]}, faces={}, face_part={})
     with pytest.raises(faying.InputError, match="belong to no element"):

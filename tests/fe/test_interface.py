@@ -4,7 +4,7 @@ import pytest
 import faying
 from faying.fe.elasticity import rigid_motions
 from faying.fe.interface import join
-from faying.joint.structure import tie
+from faying.joint.structure import bond
 from tests.helpers.boxes import stack
 
 
@@ -73,6 +73,6 @@ def test_node_springs_need_matched_faces():
 
 def test_tie_merges_matched_faces_only():
     mesh = stack([1.0, 1.0], [2, 2])
-    grown = tie(mesh, [("p0.right", "p1.left")])
+    grown = bond(mesh, [("p0.right", "p1.left")])
     assert grown.shape == (mesh.unknowns, mesh.unknowns - 3 * 25)
-    assert tie(stack([1.0, 1.0], [2, 2], sections=[(2, 2), (3, 3)]), [("p0.right", "p1.left")]) is None
+    assert bond(stack([1.0, 1.0], [2, 2], sections=[(2, 2), (3, 3)]), [("p0.right", "p1.left")]) is None

@@ -12,7 +12,7 @@ from faying.fe.elasticity import assemble
 from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
 from faying.fe.solve import available, chosen, factorise
-from faying.joint.structure import tie
+from faying.joint.structure import bond
 from tests.helpers.boxes import stack
 
 BAR = faying.Material(name="bar", E=200e9, nu=0.0, density=7800.0)  # nu = 0: the bar of the textbook
@@ -85,7 +85,7 @@ def test_rigid_motions(bar):
 def test_stiffer_joints_never_lower_a_frequency_and_all_lie_between_free_and_tied(bar):
     mesh, K, M, _ = bar
     free = lowest_modes(K, M, 24, shift_frequency=SHIFT).frequencies
-    grown = tie(mesh, [("p0.right", "p1.left")])
+    grown = bond(mesh, [("p0.right", "p1.left")])
     tied = lowest_modes(
         (grown.T @ K @ grown).tocsr(), (grown.T @ M @ grown).tocsr(), 24, shift_frequency=SHIFT
     ).frequencies
@@ -164,6 +164,21 @@ def test_more_modes_than_the_masses_allow():
         lowest_modes(stiffness, mass, 3, shift_frequency=0.01)
 
 
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize(("size", "blocks"), [(2, 1), (5, 2), (60, 4), (300, 1)])
+def test_the_rank_of_the_masses_does_not_hang_on_rounding(size, blocks, scale):
+    """Each block of ones has rank 1, so that as many modes exist as there are blocks; rounding makes none."""
+    from scipy.sparse import block_diag, csr_array
+
+    mass = csr_array(block_diag([scale * (i + 1) * np.ones((size, size)) for i in range(blocks)]))
+    springs = np.random.default_rng(size).uniform(1, 100, size * blocks)
+    flexibility = (1 / springs).reshape(blocks, size).sum(axis=1) * scale * (1 + np.arange(blocks))
+    found = lowest_modes(csr_array(np.diag(springs)), mass, blocks, shift_frequency=0.01)
+    assert found.frequencies == pytest.approx(np.sort(np.sqrt(1 / flexibility)) / (2 * np.pi), rel=1e-9)
+    with pytest.raises(faying.InputError, match=f"whose masses allow {blocks};"):
+        lowest_modes(csr_array(np.diag(springs)), mass, blocks + 1, shift_frequency=0.01)
+
+
 @pytest.mark.parametrize("name", available())
 def test_every_factorisation_solves(bar, name):
     _, K, M, _ = bar
@@ -211,7 +226,7 @@ def test_no_factorisation_takes_a_matrix_that_is_not_positive_definite(name):
     matrix = diags_array(
         [np.r_[np.full(59, 2.0), -1.0], np.full(59, 0.1), np.full(59, 0.1)], offsets=[0, 1, -1]
     ).tocsr()
-    with pytest.raises(faying.NotConverged, match="is a part held by nothing"):
+    with pytest.raises(faying.NotConverged, match="is a part free to move"):
         factorise(matrix, name)
 
 
@@ -241,7 +256,7 @@ def test_ties_over_several_joints_do_not_depend_on_their_order(turned):
     """Three bars end to end, the middle one a single layer of elements whose corners lie in both joints."""
     mesh = stack([0.1, 0.1, 0.1], [2, 1, 2], width=0.02, height=0.02, sections=[(1, 1)] * 3)
     pairs = [("p0.right", "p1.left"), ("p2.left", "p1.right") if turned else ("p1.right", "p2.left")]
-    merge = tie(mesh, pairs)
+    merge = bond(mesh, pairs)
     whole = stack([0.3], [5], width=0.02, height=0.02, sections=[(1, 1)])
     assert merge.shape == (mesh.unknowns, whole.unknowns)
 
@@ -250,7 +265,7 @@ def test_a_node_of_two_joints_grows_together_with_both():
     """Three cubes in an L: the corner's edge lies in two joints, and the same nodes come out whatever is named first."""
     from faying.fe.mesh import Mesh
     from faying.fe.sides import sides_on
-    from tests.helpers.blocks import block
+    from tests.helpers.boxes import block
 
     points, parts, faces, owner, offset = [], {}, {}, {}, 0
     for name, origin in (("a", (0, 0, 1)), ("b", (0, 0, 0)), ("c", (1, 0, 0))):
@@ -264,7 +279,7 @@ def test_a_node_of_two_joints_grows_together_with_both():
         offset += len(where)
     mesh = Mesh(points=np.concatenate(points), parts=parts, faces=faces, face_part=owner)
     sizes = {
-        tie(mesh, [first, second]).shape[1]
+        bond(mesh, [first, second]).shape[1]
         for first in (("a.bottom", "b.top"), ("b.top", "a.bottom"))
         for second in (("c.left", "b.right"), ("b.right", "c.left"))
     }

@@ -14,7 +14,8 @@ from faying.fe.overlap import overlap
 from faying.fe.sides import sides_on
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Joint, Structure
-from tests.helpers.blocks import SOLID_KINDS, block, row
+from tests.helpers.boxes import SOLID_KINDS, block, row
+from tests.helpers.loads import bolt_load
 
 STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0)
 SIMPLE = faying.Material(name="simple", E=200e9, nu=0.0, density=7800.0)
@@ -53,9 +54,9 @@ def test_patch_uniform_pressure_passes(kinds):
     interface = join(mesh, "p0.right", "p1.left")
     joint = Joint(name="j", faces=("p0.right", "p1.left"), interface=interface, law=JointLaw(model=law()))
     structure = Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, SIMPLE), joints=(joint,))
-    found = structure.assembly().solve(2000.0 * structure.bolt_load("p1.right", "p0.left"))
+    found = structure.assembly().solve(2000.0 * bolt_load(structure, "p1.right", "p0.left"))
     assert found.pressures[0] == pytest.approx(np.full_like(found.pressures[0], 2000.0 / 4e-4), rel=1e-8)
-    assert -found.openings[0] == pytest.approx(joint.law.closing(2000.0 / 4e-4) + 0 * found.openings[0], rel=1e-8)
+    assert -found.openings[0] == pytest.approx(joint.law.approach(2000.0 / 4e-4) + 0 * found.openings[0], rel=1e-8)
 
 
 def test_frequencies_are_those_of_the_matched_mesh():
@@ -106,7 +107,7 @@ def test_two_squares_at_any_angle(angle, shift, gap):
     turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
     other = (square - 0.5) @ turn.T + [0.5 + shift[0], 0.5 + shift[1], gap]
     points = np.concatenate([square, other])
-    found = overlap(points, (np.array([[0, 1, 2, 3]]),), (np.array([[4, 7, 6, 5]]),), reach=0.2, degree=2)
+    found = overlap(points, (np.array([[0, 1, 2, 3]]),), (np.array([[4, 7, 6, 5]]),), search_distance=0.2, degree=2)
     grid = (np.arange(400) + 0.5) / 400
     x, y = np.meshgrid(grid, grid)
     local = (np.stack([x, y, 0 * x], -1) - [0.5 + shift[0], 0.5 + shift[1], 0]) @ turn

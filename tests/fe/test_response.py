@@ -8,7 +8,7 @@ from faying.fe.damped import damped_modes
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
-from faying.fe.response import frequency_response
+from faying.fe.response import Vibration, frequency_response
 from tests.helpers.boxes import stack
 
 BAR = faying.Material(name="bar", E=200e9, nu=0.0, density=7800.0)
@@ -31,7 +31,7 @@ def bar():
 
 def end_force(mesh, x):
     """An even traction of 1 N along x on the end of the bar: as a force, and as the mean motion it works on."""
-    from faying.fe.faces import face_load
+    from tests.helpers.loads import face_load
 
     name = "p0.left" if x == 0 else "p1.right"
     place = np.array([x, SIDE / 2, SIDE / 2])
@@ -41,7 +41,9 @@ def end_force(mesh, x):
 def respond(bar, forces, outputs, **changes):
     _, K, M, loss, modes, damped = bar
     given = {"frequencies": FREQUENCIES, "rigid": 6, "structural_loss": ETA} | changes
-    return frequency_response(modes, damped, K, M, loss, forces=forces, outputs=outputs, **given)
+    names = ("rigid", "kind", "structural_loss", "parts")
+    vibration = Vibration(stiffness=K, mass=M, loss=loss, **{name: given.pop(name) for name in names if name in given})
+    return frequency_response(vibration, modes, damped, forces=forces, outputs=outputs, **given)
 
 
 def test_driving_point_and_transfer_of_a_free_bar(bar):
@@ -97,9 +99,8 @@ def test_a_lossy_joint_against_the_full_equations(kind):
     push = np.zeros((K.shape[0], 1))
     push[[1, 5, 40], 0] = 1.0, -0.5, 0.7
     frequencies = np.array([50.0, 400.0, 1300.0, 3000.0])
-    found = frequency_response(
-        modes, damped, K, M, loss, forces=push, outputs=push, frequencies=frequencies, rigid=6, kind=kind, checks=4
-    )
+    vibration = Vibration(stiffness=K, mass=M, loss=loss, rigid=6, kind=kind)
+    found = frequency_response(vibration, modes, damped, forces=push, outputs=push, frequencies=frequencies, checks=4)
     for i, f in enumerate(frequencies):
         w = 2 * np.pi * f
         u = spsolve((K + 1j * (w if kind == "viscous" else 1.0) * loss - w**2 * M).tocsc(), push[:, 0].astype(complex))
@@ -127,11 +128,11 @@ def test_structural_loss_is_that_of_the_parts_alone(bar):
     damped = damped_modes(modes, soft, M, nothing, rigid=6, count=12)
     axial = modes.frequencies[6 + np.argmax([np.sum(s[0::3] ** 2) / np.sum(s**2) for s in modes.shapes[:, 6:].T])]
     force = end_force(mesh, 0.0)[:, None]
-    given = {"forces": force, "outputs": force, "rigid": 6, "structural_loss": ETA}
 
     def width(span, **changes):
         lines = np.linspace(1 - span, 1 + span, 2001) * axial
-        found = frequency_response(modes, damped, soft, M, nothing, frequencies=lines, **given, **changes)
+        vibration = Vibration(stiffness=soft, mass=M, loss=nothing, rigid=6, structural_loss=ETA, **changes)
+        found = frequency_response(vibration, modes, damped, forces=force, outputs=force, frequencies=lines)
         power = np.abs(found.receptance[:, 0, 0]) ** 2
         high = lines[power > power.max() / 2]
         return (high[-1] - high[0]) / axial

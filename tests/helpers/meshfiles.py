@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from faying.fe.elements import KINDS
-from faying.fe.mesh import face_kind, kind_of
+from faying.fe.elements import FACES, KINDS
+from faying.fe.mesh import kind_of
 
 NUMBER0 = 100  # node numbers do not begin at 1, nor follow one another
 ABAQUS = {"tet4": "C3D4", "tet10": "C3D10", "hex8": "C3D8I", "hex20": "C3D20R", "wedge6": "C3D6", "wedge15": "C3D15"}
@@ -58,7 +58,7 @@ def wrapped(words, per=8):
 def sides(mesh, name):
     """(element number, side) of a face."""
     n = numbers(mesh)
-    wanted = {frozenset(n[f[: KINDS[face_kind(block)].corners]].tolist()) for block in mesh.faces[name] for f in block}
+    wanted = {frozenset(n[f[: FACES[block.shape[1]].corners]].tolist()) for block in mesh.faces[name] for f in block}
     for _, number, kind, nodes in solids(mesh):
         for i, side in enumerate(KINDS[kind].sides):
             if frozenset(nodes[k] for k in side if k < KINDS[kind].corners) in wanted:
@@ -157,13 +157,15 @@ def nastran(mesh, unit=1e-3, field="small", faces="load"):
         bulk += card("GRID", i, "", *(real(x) for x in point))
     property_of = {part: i + 1 for i, part in enumerate(mesh.parts)}
     for part, number, kind, nodes in solids(mesh):
-        bulk += card(NASTRAN[KINDS[kind].shape], number, property_of[part], *(nodes[i] for i in nastran_order(kind)))
+        bulk += card(
+            NASTRAN[KINDS[kind].shape.name], number, property_of[part], *(nodes[i] for i in nastran_order(kind))
+        )
     head = ["SOL 103", "CEND"]
     for k, name in enumerate(mesh.faces):
         if faces == "load":
             for number, side, kind, nodes in sides(mesh, name):
                 here = [i for i in KINDS[kind].sides[side] if i < KINDS[kind].corners]
-                if KINDS[kind].shape == "tet":
+                if KINDS[kind].shape.name == "tet":
                     other = next(nodes[i] for i in range(4) if i not in here)
                 else:
                     other = nodes[here[2]] if len(here) == 4 else ""

@@ -9,7 +9,7 @@ from faying.decks.system import System
 from faying.fe.interface import join
 from faying.fe.mesh import Mesh
 from faying.joint.pairs import consistent, lumped
-from tests.helpers.blocks import row
+from tests.helpers.boxes import row
 
 K_N, K_T, LOSS_N, LOSS_T = 4e13, 2.5e13, 0.02, 0.05
 FACES = ("p0.right", "p1.left")
@@ -45,7 +45,7 @@ def deck_of(mesh, coupling="nodes", seed=1, unit="mm", frequency=500.0, **change
     pairs = pairs_of(mesh, coupling, seed)
     p = np.geomspace(1e5, 1e7, 50)
     contact = Contact(
-        closing=p / K_N, pressure=p, k_n=K_N, k_t=K_T, loss_n=LOSS_N, mean_pressure=5e6, friction=0.2, given=False
+        approach=p / K_N, pressure=p, k_n=K_N, k_t=K_T, loss_n=LOSS_N, mean_pressure=5e6, friction=0.2, given=False
     )
     deck = JointDeck(
         pairs=pairs,

@@ -8,7 +8,7 @@ from faying.fe.mesh import Mesh
 from faying.fe.sides import sides_on
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Joint, Structure
-from tests.helpers.blocks import block
+from tests.helpers.boxes import block
 
 STEEL = faying.CATALOGUE["45 steel"]
 LAW = faying.JK(D=2.39, G=1.53e-10, pair=faying.ContactPair(STEEL, STEEL), scan_area=16e-6)

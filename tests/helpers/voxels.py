@@ -4,7 +4,7 @@ import numpy as np
 
 from faying.fe.mesh import Mesh
 from faying.fe.sides import sides_on
-from tests.helpers.blocks import with_middles
+from tests.helpers.boxes import with_middles
 
 CUBE = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
 

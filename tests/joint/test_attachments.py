@@ -12,7 +12,7 @@ from faying.fe.modes import lowest_modes
 from faying.fe.sides import sides_on
 from faying.joint.attachments import PointMass, Support
 from faying.joint.structure import Structure
-from tests.helpers.blocks import block
+from tests.helpers.boxes import block
 
 SIMPLE = faying.Material(name="simple", E=200e9, nu=0.0, density=7800.0)
 SPEED = (200e9 / 7800) ** 0.5
@@ -113,7 +113,7 @@ def test_messages():
         (lambda: PointMass(mass=1.0), "on a face or at a point"),
         (lambda: PointMass(mass=1.0, face="a", point=(0.0, 0.0, 0.0)), "on a face or at a point"),
         (lambda: PointMass(mass=1.0, point=(50.0, 0.0, 0.0)).matrix(bar()), "mm away; the structure lies between"),
-        (lambda: Support(face="none").held(bar()), "no face is called 'none'"),
+        (lambda: Support(face="none").fixed(bar()), "no face is called 'none'"),
     ):
         with pytest.raises(faying.InputError, match=text):
             make()

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import faying
-from faying.fe.faces import face_load
 from faying.joint.attachments import Support
 from faying.joint.equilibrium import StickSlip
+from tests.helpers.loads import bolt_load, face_load
 from tests.helpers.plates import plates, stacked
 
 MU = 0.3
@@ -19,13 +19,13 @@ MU = 0.3
 def pushed(structure, normal, side):
     """Load [N] (unknowns,): the plates pressed together by `normal`, the upper one pushed along x by `side`."""
     mesh = structure.mesh
-    load = normal * structure.bolt_load("high.top", "low.bottom")
+    load = normal * bolt_load(structure, "high.top", "low.bottom")
     push = np.zeros_like(mesh.points)
     nodes = mesh.face_nodes("high.top")
     face = face_load(mesh.points, mesh.face("high.top"), np.array([0.04, 0.02, 0.02]), np.array([0.0, 0.0, 1.0]))
     push[nodes, 0] = face.reshape(-1, 3)[nodes, 2]  # the shares of an even traction, turned to x
     load = load + side * push.ravel()
-    load[structure.held] = 0.0
+    load[structure.fixed] = 0.0
     return load
 
 
@@ -116,14 +116,14 @@ def test_the_tangent_of_a_joint_against_differences():
     grips = assembly._grips(u)
     rng = np.random.default_rng(2)
     step = rng.standard_normal(len(u)) * 1e-12
-    step[made.held] = 0.0
+    step[made.fixed] = 0.0
     moved = (assembly._out_of_balance(u - step, load, grips) - assembly._out_of_balance(u + step, load, grips)) / 2
     expected = assembly.stiffness @ step
     for trace, k_n, k_t in assembly._tangents(u, grips):
         move = assembly._move(trace, step)
         local = np.concatenate([k_n[:, None] * move[:, :1], np.einsum("qij,qj->qi", k_t, move[:, 1:])], axis=1)
         expected = expected + trace.relative.T @ local.ravel()
-    expected[made.held] = 0.0
+    expected[made.fixed] = 0.0
     assert np.linalg.norm(moved - expected) < 1e-4 * np.linalg.norm(expected)
 
 
@@ -157,7 +157,7 @@ def test_what_moves_while_it_is_open_closes_without_shear():
     push[nodes, 0] = up.reshape(-1, 3)[nodes, 2]
     assembly, joint = structure.assembly(), structure.joints[0].interface
     load = 50 * push.ravel()
-    load[structure.held] = 0.0
+    load[structure.fixed] = 0.0
     before = assembly.solve(load)
     assert not before.pressures[0].any()
     slipped = joint.slip(before.displacement).mean(axis=0)

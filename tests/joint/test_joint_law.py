@@ -2,7 +2,12 @@ import numpy as np
 import pytest
 
 import faying
+from faying.fe.interface import join
+from faying.joint.attachments import Support
 from faying.joint.joint_law import JointLaw
+from faying.joint.structure import Joint, Structure
+from tests.helpers.boxes import stack
+from tests.helpers.laws import Given
 
 STEEL = faying.CATALOGUE["45 steel"]
 LAW = faying.JK(D=2.39, G=1.53e-10, pair=faying.ContactPair(STEEL, STEEL), scan_area=16e-6)
@@ -14,18 +19,18 @@ def test_closing_is_the_integral_of_compliance():
     for low, high in ((10.0, 1e3), (1e3, 1e5), (1e5, 1e6), (1e6, 4e7)):
         s = np.linspace(np.log(low), np.log(high), 20001)
         exact = np.trapezoid(np.exp(s) / LAW.at_pressure(np.exp(s)).k_n, s)
-        assert law.closing(high) - law.closing(low) == pytest.approx(exact, rel=1e-5)
+        assert law.approach(high) - law.approach(low) == pytest.approx(exact, rel=1e-5)
 
 
 def test_pressure_inverts_closing():
     law = JointLaw(model=LAW)
     for p in (10.0, 1e3, 1e5, 2e7):
-        assert law.pressure(np.array([law.closing(p)]))[0][0] == pytest.approx(p, rel=1e-4)
+        assert law.pressure(np.array([law.approach(p)]))[0][0] == pytest.approx(p, rel=1e-4)
 
 
 def test_the_tangent_is_the_stiffness_of_the_law():
     law = JointLaw(model=LAW)
-    w = np.geomspace(law.closing(1e2), law.closing(4e7), 50)
+    w = np.geomspace(law.approach(1e2), law.approach(4e7), 50)
     p, slope = law.pressure(w)
     assert slope == pytest.approx(LAW.at_pressure(p).k_n, rel=2e-4)
     step = 1e-4
@@ -52,22 +57,8 @@ def test_mindlin_in_place_of_the_laws_own():
     assert k_t / k_n == pytest.approx(2 * 0.7 / 1.7)
 
 
-class Bare:
-    """A law that defines less than a joint needs."""
-
-    name = "bare"
-    greatest_pressure = 1e8
-
-    def __init__(self, **given):
-        self.given = given
-
-    def at_pressure(self, p, *, exact=None):
-        nothing = dict.fromkeys(("k_n", "k_t", "loss_n", "loss_t"))
-        return type("Answer", (), nothing | {k: f(np.asarray(p)) for k, f in self.given.items()})
-
-
 def test_a_law_without_tangential_stiffness_is_refused_with_advice():
-    law = JointLaw(model=Bare(k_n=lambda p: 1e9 * p**0.5))
+    law = JointLaw(model=Given("bare", k_n=lambda p: 1e9 * p**0.5))
     with pytest.raises(faying.InputError, match='bare defines no tangential stiffness; set tangential = "mindlin"'):
         law.stiffness(np.array([1e6]))
     loss = law.loss(np.array([1e6]))
@@ -76,16 +67,50 @@ def test_a_law_without_tangential_stiffness_is_refused_with_advice():
 
 def test_a_law_without_normal_stiffness_is_refused():
     with pytest.raises(faying.InputError, match="no normal stiffness"):
-        JointLaw(model=Bare()).stiffness(np.array([1e6]))
+        JointLaw(model=Given("bare")).stiffness(np.array([1e6]))
 
 
 def test_a_power_law_closes_as_a_power():
     """k = c p^m gives w = p^(1-m)/(c (1-m)) exactly."""
-    law = JointLaw(model=Bare(k_n=lambda p: 1e9 * p**0.5, k_t=lambda p: 8e8 * p**0.5))
+    law = JointLaw(model=Given("bare", k_n=lambda p: 1e9 * p**0.5, k_t=lambda p: 8e8 * p**0.5))
     w = np.geomspace(1e-12, 1e-6, 7)
     assert law.pressure(w)[0] == pytest.approx((w * 1e9 * 0.5) ** 2, rel=1e-8)
 
 
 def test_a_law_whose_stiffness_outgrows_its_pressure_is_refused():
     with pytest.raises(faying.InputError, match="never meet"):
-        JointLaw(model=Bare(k_n=lambda p: 1e3 * p**1.1), tangential="mindlin").pressure(np.array([1e-9]))
+        JointLaw(model=Given("bare", k_n=lambda p: 1e3 * p**1.1), tangential="mindlin").pressure(np.array([1e-9]))
+
+
+@pytest.mark.parametrize("scan_area", [None, 16e-6])
+def test_springs_per_node_are_those_of_the_law_at_the_force_of_each_node(scan_area):
+    """The paper's use: a node's force on the scan's area gives the node's spring; what is reported is what is assembled."""
+    mesh = stack([0.03, 0.03], [2, 2], width=0.02, height=0.02)
+    faces = "p0.right", "p1.left"
+    law = JointLaw(model=Given(k_n=lambda p: 3e9 * p**0.5, k_t=lambda p: 2e9 * p**0.5, loss_n=lambda p: 0.1 + 0 * p))
+    joint = Joint(name="j", faces=faces, interface=join(mesh, *faces), law=law, per_node=True, scan_area=scan_area)
+    pressure = 1e6 + 2e7 * joint.interface.positions[:, 1]
+    springs = joint.springs(pressure)
+    force = springs.pressure * springs.interface.weights
+    assert force.sum() == pytest.approx(joint.interface.weights @ pressure, rel=1e-2)  # nodes share what varies
+    area = scan_area or 1.0
+    assert springs.k_n * springs.interface.weights == pytest.approx(3e9 * (force / area) ** 0.5 * area, rel=1e-5)
+    assert springs.k_t / springs.k_n == pytest.approx(np.full(len(force), 2 / 3), rel=1e-5)
+    along = np.zeros((len(mesh.points), 3))
+    along[mesh.part_nodes("p1"), 0] = 1.0
+    assert along.ravel() @ (springs.stiffness() @ along.ravel()) == pytest.approx(springs.total()[0], rel=1e-12)
+    assert along.ravel() @ (springs.loss() @ along.ravel()) == pytest.approx(0.1 * springs.total()[0], rel=1e-9)
+
+
+def test_structures_that_differ_in_their_laws_share_what_is_assembled():
+    from dataclasses import replace
+
+    mesh = stack([0.03, 0.03], [2, 2], width=0.02, height=0.02)
+    faces = "p0.right", "p1.left"
+    joint = Joint(name="j", faces=faces, interface=join(mesh, *faces), law=JointLaw(model=LAW))
+    first = Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, faying.CATALOGUE["45 steel"]), joints=(joint,))
+    other = replace(first, joints=(replace(joint, law=JointLaw(model=LAW, scale=2.0)),))
+    assert other.matrices[0] is first.matrices[0]
+    fixed = replace(first, supports=(Support(face="p0.left"),))
+    assert len(fixed.fixed)
+    assert not len(first.fixed)

@@ -2,11 +2,12 @@ import numpy as np
 import pytest
 
 import faying
-from faying.fe.faces import face_centre, face_load
+from faying.fe.faces import face_centre
 from faying.fe.interface import join
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Joint, Structure
 from tests.helpers.boxes import stack
+from tests.helpers.loads import bolt_load, face_load
 
 STEEL = faying.CATALOGUE["45 steel"]
 SIMPLE = faying.Material(name="simple", E=200e9, nu=0.0, density=7800.0)
@@ -29,7 +30,7 @@ def bars(sections=((2, 2), (2, 2)), material=SIMPLE, **changes):
 
 
 def squeeze(structure, force):
-    return force * structure.bolt_load("p1.right", "p0.left")
+    return force * bolt_load(structure, "p1.right", "p0.left")
 
 
 @pytest.mark.parametrize("sections", [((2, 2), (2, 2)), ((2, 2), (3, 3))], ids=["matched", "unmatched"])
@@ -44,7 +45,7 @@ def test_uniform_pressure(sections):
         assert weights @ found.pressures[0] == pytest.approx(force, rel=1e-8)
         assert found.pressures[0] == pytest.approx(np.full_like(found.pressures[0], p), rel=tolerance)
         closing = -(weights @ found.openings[0]) / weights.sum()
-        assert closing == pytest.approx(structure.joints[0].law.closing(p), rel=max(tolerance / 10, 1e-7))
+        assert closing == pytest.approx(structure.joints[0].law.approach(p), rel=max(tolerance / 10, 1e-7))
 
 
 def test_balance_and_warm_start():
@@ -97,7 +98,7 @@ def test_a_gap_before_the_load_is_closed_first():
     moved = found.displacement.reshape(-1, 3)[:, 0]
     left, right = (np.unique(mesh.face(name)) for name in ("p0.right", "p1.left"))
     approach = moved[left].mean() - moved[right].mean()
-    assert approach == pytest.approx(2e-6 + joint.law.closing(5e6), rel=1e-4)
+    assert approach == pytest.approx(2e-6 + joint.law.approach(5e6), rel=1e-4)
 
 
 def test_preload_beyond_the_law():
@@ -123,9 +124,9 @@ def test_too_few_steps_are_reported():
 def test_bolts_that_pull_nothing_together():
     structure = bars()
     with pytest.raises(faying.InputError, match="do not look away from each other"):
-        structure.bolt_load("p0.right", "p1.left")
+        bolt_load(structure, "p0.right", "p1.left")
     with pytest.raises(faying.InputError, match="both on part 'p0'"):
-        structure.bolt_load("p0.right", "p0.left")
+        bolt_load(structure, "p0.right", "p0.left")
 
 
 def test_a_part_without_joint_is_refused():

@@ -12,7 +12,7 @@ from faying.joint.solid_bolt import SolidBolt
 from faying.joint.structure import Joint, Structure
 from faying.joint.tighten import tighten
 from tests.helpers.voxels import bolted
-from tests.joint.test_tighten import LinearLaw
+from tests.joint.test_tighten import bed
 
 STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0)
 
@@ -26,7 +26,7 @@ def structure(mesh, bolts=1, **changes):
             name=first,
             faces=(first, second),
             interface=join(mesh, first, second),
-            law=JointLaw(model=LinearLaw(2e13), tangential="law", nu=0.3),
+            law=JointLaw(model=bed(2e13), tangential="law", nu=0.3),
         )
         for first, second in pairs
     )

@@ -15,7 +15,7 @@ from faying.fe.modes import lowest_modes
 from faying.study import Study, run
 from faying.study.attach import attach
 from tests.helpers import meshfiles
-from tests.helpers.blocks import row
+from tests.helpers.boxes import row
 from tests.helpers.models import two
 
 FACES = ("p0.right", "p1.left")

@@ -8,7 +8,7 @@ from faying.fe.elasticity import assemble
 from faying.fe.modes import lowest_modes
 from faying.study import Study, run
 from tests.helpers import meshfiles
-from tests.helpers.blocks import row
+from tests.helpers.boxes import row
 
 TEXT = meshfiles.STUDY
 

@@ -11,6 +11,7 @@ import faying
 from faying.study import Study, build, run
 from faying.study.schema import LawSpec, SurfaceSpec
 from faying.study.template import write
+from tests.helpers.loads import bolt_load
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +59,7 @@ def test_sum_of_springs_does_not_depend_on_the_mesh(study, result):
         structure = build(
             replace(study, geometry=replace(study.geometry, size=size, face_size={"upper.joint": size / 2}))
         )
-        found = structure.assembly().solve(6000 * structure.bolt_load(*study.bolts[0].faces))
+        found = structure.assembly().solve(6000 * bolt_load(structure, *study.bolts[0].faces))
         return structure.springs(found.pressures)[0].total()[0]
 
     totals = np.array([total(size) for size in (11e-3, 8e-3, 5.5e-3)])
@@ -167,7 +168,7 @@ def on_the_milled_scan(study, model, tangential):
 def test_another_law_presses_the_joint(study):
     """Greenwood and Williamson's sum over Kogut and Etsion's asperity, with Mindlin's ratio for k_t."""
     structure = on_the_milled_scan(study, "gw-ke", "mindlin")
-    found = structure.assembly().solve(6000 * structure.bolt_load(*study.bolts[0].faces))
+    found = structure.assembly().solve(6000 * bolt_load(structure, *study.bolts[0].faces))
     assert structure.joints[0].interface.weights @ found.pressures[0] == pytest.approx(6000, rel=1e-8)
     springs = structure.springs(found.pressures)[0]
     assert springs.k_t == pytest.approx(springs.k_n * 2 * 0.7 / 1.7)

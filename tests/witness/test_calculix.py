@@ -9,15 +9,15 @@ from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import spsolve
 
 import faying
-from faying.fe.constraint import hold
+from faying.decks.matrices import arranged, read_matrices
+from faying.fe.constraint import constrain
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
-from faying.fe.matrices import arranged, read_matrices
 from faying.fe.mesh import Mesh
 from faying.fe.modes import lowest_modes
 from faying.joint.solid_bolt import SolidBolt
 from tests.helpers import ccx
-from tests.helpers.blocks import SOLID_KINDS, block, row
+from tests.helpers.boxes import SOLID_KINDS, block, row
 from tests.helpers.voxels import bolted
 
 pytestmark = [
@@ -235,7 +235,7 @@ def test_pretension_of_a_solid_bolt(tmp_path, height):
     fitted = bolt.fitted(mesh, K)
     right = force * fitted.load
     right[fixed] = 0
-    ours = spsolve(hold((K + joined - fitted.released).tocsc(), fixed), right).reshape(-1, 3)
+    ours = spsolve(constrain((K + joined - fitted.released).tocsc(), fixed), right).reshape(-1, 3)
     differ, size = ours - theirs, np.abs(theirs).max()
     # CalculiX gives the nodes of the section as those of its other half: off by what the shank is drawn in
     cut = (np.abs(mesh.points[:, 2] - height) < 1e-9) & np.isin(np.arange(n), mesh.part_nodes("bolt0"))

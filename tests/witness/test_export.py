@@ -20,6 +20,7 @@ from faying.fe.elasticity import assemble
 from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
 from tests.helpers import ccx, meshfiles, readers
+from tests.helpers.loads import face_load
 from tests.helpers.models import FACES, deck_of, two
 
 pytestmark = pytest.mark.slow
@@ -74,9 +75,7 @@ def test_calculix_runs_the_springs(tmp_path, kind, angle, coupling):
 def contact_step(mesh, traction, fixed, modes):
     """Traction on the free end, then modes about that state; nothing but the contact holds the second block sideways."""
     area = 0.03 * 0.02 * 1e6
-    force = faying.fe.faces.face_load(
-        mesh.points, mesh.face("p1.right"), np.array([0.1, 0.015, 0.01]), np.array([-1.0, 0, 0])
-    )
+    force = face_load(mesh.points, mesh.face("p1.right"), np.array([0.1, 0.015, 0.01]), np.array([-1.0, 0, 0]))
     loads = [f"{i // 3 + 1},{i % 3 + 1},{f * traction * area:.12e}" for i, f in enumerate(force) if f]
     out = ["*BOUNDARY", *(f"{n + 1},1,3" for n in fixed), "*STEP,NLGEOM", "*STATIC", "1.,1.", "*CLOAD", *loads]
     out += ["*NODE FILE", "U", "*NODE PRINT,NSET=SLAVES", "U", "*END STEP"]

@@ -1,1 +1,1 @@
-"""The joint in the words of other solvers: one file for each, all fed by the same `JointDeck`."""
+"""Other programs: one file for each, which reads its meshes and matrices and writes joints for it."""

@@ -1,13 +1,42 @@
-"""CalculiX: SPRING2 elements, and the law as a table for node-to-surface contact.
+"""CalculiX: matrices read, and the joint written as SPRING2 elements or as a table for node-to-surface contact.
 
 After the CalculiX CrunchiX manual, 2.20: values in at most 20 columns with a decimal point; a table of at most 200
 points, pressure constant beyond. Surface-to-surface contact loses a TABULAR law without a word.
 """
 
+from pathlib import Path
+
+import numpy as np
+
 from faying.decks.deck import JointDeck, real
 from faying.decks.keywords import elements, orientations, table
+from faying.decks.raw import Matrices, read_dofs, read_text
+from faying.errors import ReadError
 
 MOST_POINTS = 200
+
+
+def read_matrices(path: Path, _names: tuple[str, str]) -> Matrices:
+    """Read job.sti, .mas and .dof: rows of (row, column, value) of one triangle, and a list of "node.direction"."""
+    from scipy.sparse import coo_array, diags_array
+
+    table = read_dofs(path.with_suffix(".dof"))
+    out = []
+    for suffix, what in ((".sti", "stiffness"), (".mas", "mass")):
+        file = path.with_suffix(suffix)
+        words = read_text(file, what).replace("D", "E").split()
+        try:
+            rows = np.array(words, dtype=float).reshape(-1, 3)
+        except ValueError as fault:
+            raise ReadError(f"{file} is not rows of row, column and value ({fault}); is it whole?") from None
+        i, j = rows[:, 0].astype(np.int64) - 1, rows[:, 1].astype(np.int64) - 1
+        if len(rows) and max(i.max(), j.max()) >= len(table):
+            raise ReadError(
+                f"{file} has row {max(i.max(), j.max()) + 1}, but the .dof file lists {len(table)} unknowns"
+            )
+        half = coo_array((rows[:, 2], (i, j)), shape=(len(table), len(table))).tocsr()
+        out.append((half + half.T - diags_array(half.diagonal())).tocsr())
+    return out[0], out[1], table
 
 
 def decks(deck: JointDeck) -> dict[str, str]:

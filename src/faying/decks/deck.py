@@ -16,12 +16,12 @@ NOTHING = 1e-14  # of the largest of a block: entries below it are rounding
 
 @dataclass(frozen=True, kw_only=True)
 class Contact:
-    """The law as a contact property: pressure [Pa] against closing [m], k_n, k_t [Pa/m] and loss factor at the mean pressure.
+    """The law as a contact property: pressure [Pa] against approach [m], k_n, k_t [Pa/m] and loss factor at the mean pressure.
 
     friction: coefficient [-]; given: whether the study says it.
     """
 
-    closing: Array
+    approach: Array
     pressure: Array
     k_n: float
     k_t: float
@@ -36,7 +36,7 @@ class JointDeck:
     """One joint, ready to be written.
 
     pairs: its springs; mesh: of the model, with its node numbers; faces: their names; facts: lines for the header;
-    viscous [N s/m] (p, 3, 3): dampers, None where no frequency is said; paper: they are the JK paper's; first_element: the
+    viscous [N s/m] (p, 3, 3): dampers, None where no frequency is given; paper: they are the JK paper's; first_element: the
     number from which elements are numbered; contact: None where the law gives no curve.
     """
 
@@ -88,7 +88,7 @@ class JointDeck:
         return _clean(self.viscous) * self.system.stiffness
 
     def header(self, mark: str, *more: str) -> list[str]:
-        """Comment lines: the facts of the joint and what this form needs said, cut to 100 columns."""
+        """Comment lines: the facts of the joint and the notes of this form, cut to 100 columns."""
         out = []
         for text in (*self.facts, *more):
             line = mark
@@ -100,11 +100,11 @@ class JointDeck:
             out.append(line)
         return out
 
-    def damping_said(self) -> str:
+    def damping_note(self) -> str:
         """A sentence on the dampers of a form that takes no loss factor."""
         if self.viscous is None:
             return (
-                "no dampers: this form takes no loss factor, and no frequency was said at which viscous dampers "
+                "no dampers: this form takes no loss factor, and no frequency was given at which viscous dampers "
                 'c = eta k/omega stand for it (--frequency "500 Hz")'
             )
         if self.paper:

@@ -54,7 +54,7 @@ def table(deck: JointDeck) -> tuple[list[str], Contact]:
     """Lines of pressure and overclosure in the deck's units, and the contact they came from."""
     contact = deck.contact
     if contact is None:
-        raise InputError("the law gives no curve of pressure against closing; export springs")
-    pressure, closing = contact.pressure * deck.system.pressure, contact.closing * deck.system.metre
-    rows = [f"{real(p, 20)},{real(w, 20)}" for p, w in zip(pressure, closing, strict=True)]
+        raise InputError("the law gives no curve of pressure against approach; export springs")
+    pressure, approach = contact.pressure * deck.system.pressure, contact.approach * deck.system.metre
+    rows = [f"{real(p, 20)},{real(w, 20)}" for p, w in zip(pressure, approach, strict=True)]
     return ["0.,0.", *rows], contact

@@ -1,22 +1,21 @@
 """All decks of one solver into a folder, whole or not at all, with the pairs as a table beside them."""
 
-from importlib import import_module
 from pathlib import Path
 
 import numpy as np
 
 from faying.decks.deck import JointDeck
+from faying.decks.programs import SOLVERS as SOLVERS
+from faying.decks.programs import module_of
 from faying.errors import InputError
 from faying.files import write_atomically
-
-SOLVERS = ("mapdl", "abaqus", "nastran", "calculix", "aster")
 
 
 def write(deck: JointDeck, solver: str, folder: Path) -> list[Path]:
     """Write the decks of `solver` and joint_pairs.csv (SI units). Raises InputError for a solver that is not known."""
     if solver not in SOLVERS:
         raise InputError(f"no exporter for {solver!r}; there are {', '.join(SOLVERS)}")
-    texts: dict[str, str] = import_module(f"faying.decks.{solver}").decks(deck)
+    texts: dict[str, str] = module_of(solver).decks(deck)
     texts["joint_pairs.csv"] = pairs_csv(deck)
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -6,9 +6,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.elements import SOLIDS, reference
-from faying.fe.incompatible import condensed_stiffness
-from faying.fe.mesh import MASS_RULE, STIFFNESS_RULE, Mesh
+from faying.fe.elements import SOLIDS
+from faying.fe.mesh import Mesh
 from faying.fe.sides import Blocks
 from faying.typing import Array, Index
 
@@ -31,13 +30,6 @@ class Solid(Protocol):
         """Density [kg/m3]."""
 
 
-def gradients_in_space(points: Array, cells: Index, gradients: Array) -> tuple[Array, Array]:
-    """Gradients in space (e, q, a, 3) and determinants (e, q)."""
-    jacobian = np.einsum("eai,qaj->eqij", points[cells], gradients, optimize=True)
-    inverse = np.linalg.inv(jacobian)
-    return np.einsum("qaj,eqji->eqai", gradients, inverse, optimize=True), np.linalg.det(jacobian)
-
-
 def stiffness_of(g: Array, weights: Array, E: float, nu: float) -> Array:
     """Stiffness (e, a, 3, a, 3) of gradients in space g (e, q, a, 3) at points of weight (e, q) [m3]."""
     lam, mu = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
@@ -53,18 +45,13 @@ def stiffness_of(g: Array, weights: Array, E: float, nu: float) -> Array:
 
 def element_stiffness(points: Array, cells: Index, E: float, nu: float) -> Array:
     """Element stiffness [N/m], shape (e, a, 3, a, 3), by the rule of each kind; hex8 bends by incompatible modes."""
-    kind = SOLIDS[cells.shape[1]].name
-    _, weights, _, gradients = reference(kind, *STIFFNESS_RULE[kind])
-    g, det = gradients_in_space(points, cells, gradients)
-    if kind == "hex8":
-        return condensed_stiffness(points, cells, g, det * weights, det, lambda g, w: stiffness_of(g, w, E, nu))
-    return stiffness_of(g, det * weights, E, nu)
+    return SOLIDS[cells.shape[1]].stiffness(points, cells, lambda g, w: stiffness_of(g, w, E, nu))
 
 
 def element_mass(points: Array, cells: Index, density: float, rule: str = "exact") -> Array:
     """Consistent element mass between nodes [kg], shape (e, a, a)."""
-    kind = SOLIDS[cells.shape[1]].name
-    _, weights, values, gradients = reference(kind, *(MASS_RULE if rule == "exact" else STIFFNESS_RULE)[kind])
+    element = SOLIDS[cells.shape[1]]
+    _, weights, values, gradients = element.mass_rule if rule == "exact" else element.stiffness_rule
     jacobian = np.einsum("eai,qaj->eqij", points[cells], gradients, optimize=True)
     share = density * np.linalg.det(jacobian) * weights
     pairs = (values[:, :, None] * values[:, None, :]).reshape(len(weights), -1)

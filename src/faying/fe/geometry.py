@@ -12,16 +12,17 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError, ReadError
-from faying.fe.mesh import CORNERS, EDGES, Mesh, split_at_joints
+from faying.fe.elements import KINDS
+from faying.fe.mesh import Mesh, split_at_joints
 from faying.typing import Array, Index
 
-# netgen numbers the middle nodes by these edges; VTK, and so we, by those of EDGES
+# netgen numbers the middle nodes by these edges; VTK, and so we, by those of its element
 _NETGEN_EDGES = {"tet10": ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)), "tri6": ((1, 2), (0, 2), (0, 1))}
 
 
 def _to_vtk(kind: str) -> list[int]:
-    edges = [_NETGEN_EDGES[kind].index((min(edge), max(edge))) for edge in EDGES[kind]]
-    return [*range(CORNERS[kind]), *(CORNERS[kind] + i for i in edges)]
+    edges = [_NETGEN_EDGES[kind].index((min(edge), max(edge))) for edge in KINDS[kind].edges]
+    return [*range(KINDS[kind].corners), *(KINDS[kind].corners + i for i in edges)]
 
 
 def read_step(path: Path) -> Any:

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.elements import FACES, reference, shape_at
-from faying.fe.faces import FACE_DEGREE, surface_frame
+from faying.fe.elements import FACES
+from faying.fe.faces import surface_frame
 from faying.fe.mesh import Mesh
 from faying.fe.overlap import overlap
 from faying.fe.sides import Blocks, padded
@@ -139,10 +139,10 @@ class Interface:
         return np.asarray(total / weight)
 
 
-def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> Interface:
+def join(mesh: Mesh, first: str, second: str, *, search_distance: float | None = None) -> Interface:
     """Pair two faces: where their meshes match, point by point; else over every overlap of two element faces.
 
-    first, second: names of the faces; reach: the farthest that the second may lie away [m], 1 % of the structure's size
+    first, second: names of the faces; search_distance: the farthest that the second may lie away [m], 1 % of the structure's size
     where None. What finds no partner carries nothing. Raises InputError where the faces do not meet at all, lie on one
     part, or face the same way.
     """
@@ -151,8 +151,8 @@ def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> 
         raise InputError(
             f"faces {first!r} and {second!r} are both on part {mesh.face_part[first]!r}; a joint needs two"
         )
-    reach = 0.01 * mesh.size if reach is None else reach
-    found = _matched(mesh, faces_a, faces_b, reach) or _overlapping(mesh, faces_a, faces_b, reach)
+    search_distance = 0.01 * mesh.size if search_distance is None else search_distance
+    found = _matched(mesh, faces_a, faces_b, search_distance) or _overlapping(mesh, faces_a, faces_b, search_distance)
     if found is None:
         from scipy.spatial import cKDTree
 
@@ -160,18 +160,17 @@ def join(mesh: Mesh, first: str, second: str, *, reach: float | None = None) -> 
         nearest = float(apart.min())
         raise InputError(
             f"faces {first!r} and {second!r} do not touch: they are {nearest * 1e3:.4g} mm apart at the "
-            f"nearest and the joint reaches {reach * 1e3:.4g} mm; move a part, or check the unit of the "
+            f"nearest and the search distance is {search_distance * 1e3:.4g} mm; move a part, or check the unit of the "
             "geometry"
         )
     return found
 
 
-def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Interface | None:
+def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, search_distance: float) -> Interface | None:
     """Quadrature points of the first face projected on the second; None where the meshes do not match."""
     places, shares, directions, sampled = [], [], [], []
     for faces in faces_a:
-        kind = FACES[faces.shape[1]].name
-        _, weights, values, gradients = reference(kind, FACE_DEGREE[kind])
+        _, weights, values, gradients = FACES[faces.shape[1]].face_rule
         normals, area = surface_frame(mesh.points, faces, gradients)
         places.append(np.einsum("fai,qa->fqi", mesh.points[faces], values).reshape(-1, 3))
         shares.append((area * weights).ravel())
@@ -179,14 +178,14 @@ def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Inte
         sampled.append((np.repeat(faces, len(weights), axis=0), np.tile(values, (len(faces), 1))))
     positions, normals = np.concatenate(places), np.concatenate(directions)
     first_nodes, first_values = padded(sampled)
-    second_nodes, second_values, distance, hit = _project(mesh.points, faces_b, positions, normals, reach)
+    second_nodes, second_values, distance, hit = _project(mesh.points, faces_b, positions, normals, search_distance)
     if not np.any(hit) or first_values.shape[1] != second_values.shape[1]:
         return None
     # shape functions of both sides agree point by point, up to their order
     if not np.allclose(np.sort(first_values[hit], axis=1), np.sort(second_values[hit], axis=1), atol=1e-6):
         return None
     counts = np.repeat(
-        [len(reference(FACES[f.shape[1]].name, FACE_DEGREE[FACES[f.shape[1]].name])[1]) for f in faces_a],
+        [len(FACES[f.shape[1]].face_rule[1]) for f in faces_a],
         [len(f) for f in faces_a],
     )
     share = np.add.reduceat(hit, np.concatenate([[0], np.cumsum(counts)[:-1]])) / counts
@@ -205,10 +204,10 @@ def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Inte
     )
 
 
-def _overlapping(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> Interface | None:
+def _overlapping(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, search_distance: float) -> Interface | None:
     """Points in every overlap of two element faces; None where there is none."""
-    degree = max(2 if FACES[faces.shape[1]].count <= 4 else 4 for faces in (*faces_a, *faces_b))
-    cut = overlap(mesh.points, faces_a, faces_b, reach=reach, degree=degree)
+    degree = max(2 * FACES[faces.shape[1]].order for faces in (*faces_a, *faces_b))
+    cut = overlap(mesh.points, faces_a, faces_b, search_distance=search_distance, degree=degree)
     q = len(cut.weights)
     positions, normals, weights = cut.positions.copy(), cut.normals.copy(), cut.weights.copy()
     gap, good = np.zeros(q), np.zeros(q, dtype=bool)
@@ -227,7 +226,9 @@ def _overlapping(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> 
                 normals[here] = normal
             else:
                 gap[here] = along
-                good[here] = (np.abs(along) <= reach) & (np.einsum("qi,qi->q", normal, normals[here]) < 0) & ~flat
+                good[here] = (
+                    (np.abs(along) <= search_distance) & (np.einsum("qi,qi->q", normal, normals[here]) < 0) & ~flat
+                )
         sides.append((nodes, values))
     if not np.any(good):
         return None
@@ -245,7 +246,7 @@ def _overlapping(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, reach: float) -> 
 
 
 def _project(
-    points: Array, blocks: Blocks, positions: Array, normals: Array, reach: float
+    points: Array, blocks: Blocks, positions: Array, normals: Array, search_distance: float
 ) -> tuple[Index, Array, Array, Any]:
     """For each position: nodes and shape functions of the face hit along its normal, signed distance [m], whether hit.
 
@@ -270,7 +271,7 @@ def _project(
                 continue
             tried = faces[within[near[left, rank]]]
             along, shapes, normal, flat = _cut(points[tried], positions[left], normals[left])
-            good = _inside(tried, shapes) & ~flat & (np.abs(along) <= reach)
+            good = _inside(tried, shapes) & ~flat & (np.abs(along) <= search_distance)
             good &= np.einsum("qi,qi->q", normal, normals[left]) < 0
             chosen, columns = left[good], slice(0, faces.shape[1])
             hit[chosen], distance[chosen] = True, along[good]
@@ -281,10 +282,8 @@ def _project(
 def _inside(faces: Index, shapes: Array) -> Any:
     """Whether points with these shape functions (q, a) lie in the reference element, its edges included."""
     kind = FACES[faces.shape[1]]
-    local, tolerance = shapes @ kind.nodes, 1e-6
-    if kind.shape == "tri":
-        return (local >= -tolerance).all(axis=1) & (local.sum(axis=1) <= 1 + tolerance)
-    return (np.abs(local) <= 1 + 2 * tolerance).all(axis=1)
+    assert kind.shape.inside is not None
+    return kind.shape.inside(shapes @ kind.nodes, 1e-6)
 
 
 def _cut(faces: Array, targets: Array, normals: Array) -> tuple[Array, Array, Array, Any]:
@@ -294,11 +293,11 @@ def _cut(faces: Array, targets: Array, normals: Array) -> tuple[Array, Array, Ar
     the line runs along the face, so that there is no such place.
     """
     kind = FACES[faces.shape[1]]
-    low, high = (-1.0, 2.0) if kind.shape == "tri" else (-2.0, 2.0)
-    guess = np.full((len(faces), 2), 1 / 3 if kind.shape == "tri" else 0.0)
+    low, high = kind.shape.box
+    guess = np.tile(np.mean(kind.shape.corners, axis=0), (len(faces), 1))
     along = np.zeros(len(faces))
     for _ in range(8):
-        values, gradients = shape_at(kind.name, guess.T)
+        values, gradients = kind.at(guess.T)
         miss = np.einsum("qa,qai->qi", values, faces) - targets - along[:, None] * normals
         tangent = np.einsum("qai,qaj->qij", faces, gradients)
         jacobian = np.concatenate([tangent, -normals[:, :, None]], axis=2)
@@ -311,4 +310,4 @@ def _cut(faces: Array, targets: Array, normals: Array) -> tuple[Array, Array, Ar
             break
     normal = np.cross(tangent[..., 0], tangent[..., 1])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
-    return along, shape_at(kind.name, guess.T)[0], normal, flat
+    return along, kind.at(guess.T)[0], normal, flat

@@ -16,23 +16,23 @@ FILL_MINIMUM_DEGREE = 25.0  # the only ordering SuperLU has for these: 19 counte
 
 
 def guessed(unknowns: int, *, fill: float = FILL, per_entry: float = 10.0) -> float:
-    """Memory [B] of a factor where no library tells: fill x unknowns^(4/3) entries."""
+    """Memory [B] of a factor where no library says: fill x unknowns^(4/3) entries."""
     return fill * per_entry * unknowns * float(np.cbrt(unknowns))
 
 
 def available() -> float | None:
-    """Memory [B] that can still be taken, of the machine, the container and the process; None where nobody tells.
+    """Memory [B] that can still be taken, of the machine, the container and the process; None where it is not known.
 
     The environment's FAYING_MEMORY, in GB, stands in place of all of them.
     """
-    told = os.environ.get("FAYING_MEMORY", "").strip()
-    if told:
+    given = os.environ.get("FAYING_MEMORY", "").strip()
+    if given:
         try:
-            value = float(told)
+            value = float(given)
         except ValueError:
             value = -1.0
         if not value > 0:
-            raise InputError(f"FAYING_MEMORY={told!r} should be a number of gigabytes such as 24, or inf")
+            raise InputError(f"FAYING_MEMORY={given!r} should be a number of gigabytes such as 24, or inf")
         return value * GB
     found = [value for value in (_machine(), _container(), _process()) if value is not None]
     return min(found) if found else None

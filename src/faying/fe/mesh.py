@@ -7,42 +7,29 @@ from functools import cached_property
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.elements import FACES, KINDS, SOLIDS, reference
+from faying.fe.elements import FACES, SOLIDS
 from faying.fe.sides import Blocks as Blocks
 from faying.fe.sides import nodes_of
 from faying.typing import Array, Index
-
-# the rule for the stiffness of each kind: degree, and degree along the axis of a wedge; those of CalculiX, but for
-# wedge6, to which CalculiX gives two points and so a motion that costs nothing
-STIFFNESS_RULE: dict[str, tuple[int, int | None]] = {
-    "tet4": (1, None),
-    "tet10": (2, None),
-    "hex8": (3, None),
-    "hex20": (5, None),
-    "wedge6": (2, 3),
-    "wedge15": (2, 5),
-}
-# the rule for the mass: exact on straight elements
-MASS_RULE: dict[str, tuple[int, int | None]] = {
-    "tet4": (2, None),
-    "tet10": (4, None),
-    "hex8": (5, None),
-    "hex20": (5, None),
-    "wedge6": (4, 5),
-    "wedge15": (4, 5),
-}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Mesh:
     """Nodes, the solid elements of each part, and the faces of elements that make up each named face.
 
-    points [m], shape (n, 3); parts: name -> blocks of elements, one array (e, a) per kind, told by a, the nodes of an
-    element: tet4, wedge6, hex8, tet10, wedge15, hex20; faces: name -> blocks of element faces (f, a): tri3, quad4, tri6,
-    quad8, the normal of each pointing out of its part; a single array stands for one block. face_part: name of the face
-    -> name of its part; node_numbers (n,): the numbers of the nodes in the file they came from, 1, 2, ... where None.
-    Nodes of an element in VTK's order (corners against the clock seen from the far side). No node is shared by two
-    parts. Raises InputError for empty parts, elements of negative volume, and nodes that no element holds.
+    No node is shared by two parts: parts meet through joints alone.
+
+    Args:
+        points: Nodes (n, 3) [m].
+        parts: Name -> blocks of elements, one array (e, a) of nodes for each kind; a tells the kind: tet4, wedge6, hex8,
+            tet10, wedge15, hex20. Nodes are in VTK's order. A single array stands for one block.
+        faces: Name -> blocks of element faces (f, a): tri3, quad4, tri6, quad8, normals out of the part.
+        face_part: Name of a face -> name of its part.
+        source: File that the mesh came from.
+        node_numbers: Numbers (n,) of the nodes in that file; 1, 2, ... where None.
+
+    Raises:
+        InputError: Empty parts, elements of negative volume, nodes of no element, coordinates that are not numbers.
     """
 
     points: Array
@@ -133,8 +120,7 @@ def _blocks(given: Index | Blocks, what: str, kinds: Mapping[int, object]) -> Bl
 
 def least_jacobian(points: Array, cells: Index) -> Array:
     """Least determinant of the map from the reference element [m3 per unit] at the points of integration (e,)."""
-    kind = SOLIDS[cells.shape[1]]
-    _, _, _, gradients = reference(kind.name, *STIFFNESS_RULE[kind.name])
+    _, _, _, gradients = SOLIDS[cells.shape[1]].stiffness_rule
     out = np.empty(len(cells))
     for begin in range(0, len(cells), 20000):
         here = slice(begin, begin + 20000)
@@ -147,11 +133,6 @@ def least_jacobian(points: Array, cells: Index) -> Array:
 def kind_of(cells: Index) -> str:
     """Name of the kind of a block of solid elements."""
     return SOLIDS[cells.shape[1]].name
-
-
-def face_kind(faces: Index) -> str:
-    """Name of the kind of a block of element faces."""
-    return FACES[faces.shape[1]].name
 
 
 def split_at_joints(
@@ -167,7 +148,3 @@ def split_at_joints(
     new_cells = np.searchsorted(key, part_of_cell[:, None] * n + cells)
     faces = {name: np.searchsorted(key, triangle_part[name] * n + tri) for name, tri in triangles.items()}
     return points[key % n], new_cells.astype(np.int64), {k: v.astype(np.int64) for k, v in faces.items()}
-
-
-CORNERS = {name: kind.corners for name, kind in KINDS.items()}
-EDGES = {name: kind.edges for name, kind in KINDS.items()}

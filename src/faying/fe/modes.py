@@ -1,4 +1,4 @@
-"""Vibration modes of a structure, free, joined or tied."""
+"""Vibration modes of a structure, free, joined or bonded."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -13,6 +13,7 @@ SEED = 20240611
 WIDTH = 8  # of a block of vectors: a factor is read once for all of them
 MOST_STEPS = 1200  # vectors of the basis
 SAME = 1e-6  # relative difference of eigenvalues of A^-1 M below which they may be one
+NOTHING = 1e-13  # of the size of a block: what the basis leaves of it is rounding, and the basis is whole
 TOLERANCE = 1e-8  # residual of A^-1 M x = theta x over theta; the error of theta is of its square over the gap
 
 
@@ -97,10 +98,11 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[A
         edge = np.zeros((last.shape[1], old))
         edge[:, old - before.shape[1] :] = rows
         projected = np.block([[projected, edge.T], [edge, corner]])
+        size = float(np.sqrt(np.einsum("ij,ij->j", image, mass @ image).max()))
         image -= last @ corner + before @ rows.T
         image -= basis @ (basis.T @ (mass @ image))
         before = last
-        last, momentum, rows = _orthonormal(image, mass)
+        last, momentum, rows = _orthonormal(image, mass, nothing=NOTHING * size)
         values, vectors = np.linalg.eigh(projected)
         values, vectors = values[::-1][:count], vectors[:, ::-1][:, :count]
         converged = np.linalg.norm(rows @ vectors[old:], axis=0) <= TOLERANCE * values
@@ -116,14 +118,18 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[A
     )
 
 
-def _orthonormal(new: Array, mass: Any) -> tuple[Array, Array, Array]:
-    """Vectors x (n, r) orthonormal with the mass that span `new` (n, k), mass @ x, and (r, k) with new = x @ that."""
+def _orthonormal(new: Array, mass: Any, nothing: float = 0.0) -> tuple[Array, Array, Array]:
+    """Vectors x (n, r) orthonormal with the mass that span `new` (n, k), mass @ x, and (r, k) with new = x @ that.
+
+    nothing: size, in the norm of the mass, up to which a direction is rounding.
+    """
     rows, least = np.eye(new.shape[1]), 1e-14
     for _ in range(2):  # the Gram matrix squares what is small: what the first pass leaves, the second mends
         momentum = mass @ new
         gram = new.T @ momentum
         values, turn = np.linalg.eigh((gram + gram.T) / 2)
-        keep = values > least * values.max(initial=0.0)
+        keep = values > max(least * values.max(initial=0.0), nothing**2)
+        nothing = 0.0
         root = np.sqrt(values[keep])
         new, rows = new @ (turn[:, keep] / root), (turn[:, keep] * root).T @ rows
     return new, momentum @ (turn[:, keep] / root), rows

@@ -10,16 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from faying.fe.elements import FACES, reference
+from faying.fe.elements import FACES, KINDS
 from faying.fe.sides import Blocks
 from faying.typing import Array, Index
-
-# convex pieces of an element face whose edges are curved, between corners and middle nodes
-_PIECES = {
-    "tri6": ((0, 3, 5, 5), (3, 1, 4, 4), (5, 4, 2, 2), (3, 4, 5, 5)),
-    "quad8": ((0, 4, 7, 7), (4, 1, 5, 5), (5, 2, 6, 6), (6, 3, 7, 7), (4, 5, 6, 7)),
-}
-_WHOLE = {3: (0, 1, 2, 2), 4: (0, 1, 2, 3)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +45,8 @@ def pieces(points: Array, blocks: Blocks) -> Pieces:
             ends = where[:, np.array(kind.edges)]
             sag = np.linalg.norm(where[:, kind.corners :] - ends.mean(axis=2), axis=2)
             bent = (sag > 1e-6 * np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2)).any(axis=1)
-        for some, cuts in ((~bent, (_WHOLE[kind.corners],)), (bent, _PIECES.get(kind.name, ()))):
+        straight = FACES[kind.corners].pieces
+        for some, cuts in ((~bent, straight), (bent, kind.pieces)):
             for cut in cuts:
                 corners.append(where[some][:, cut])
                 face.append(np.flatnonzero(some))
@@ -60,7 +54,7 @@ def pieces(points: Array, blocks: Blocks) -> Pieces:
     return Pieces(corners=np.concatenate(corners), block=np.concatenate(block), face=np.concatenate(face))
 
 
-def _near(first: Pieces, second: Pieces, reach: float) -> tuple[Index, Index]:
+def _near(first: Pieces, second: Pieces, search_distance: float) -> tuple[Index, Index]:
     """Pairs of pieces that lie near enough to overlap; the second ones are searched size by size."""
     from scipy.spatial import cKDTree
 
@@ -70,7 +64,7 @@ def _near(first: Pieces, second: Pieces, reach: float) -> tuple[Index, Index]:
     for size in np.unique(octave):
         some = np.flatnonzero(octave == size)
         lists = cKDTree(second.centres[some]).query_ball_point(
-            first.centres, first.radii + radii[some].max() + reach, return_sorted=True
+            first.centres, first.radii + radii[some].max() + search_distance, return_sorted=True
         )
         counts = np.array([len(one) for one in lists])
         left.append(np.repeat(np.arange(len(lists)), counts))
@@ -113,14 +107,14 @@ class Overlap:
     second: tuple[Index, Index]
 
 
-def overlap(points: Array, first: Blocks, second: Blocks, *, reach: float, degree: int) -> Overlap:
+def overlap(points: Array, first: Blocks, second: Blocks, *, search_distance: float, degree: int) -> Overlap:
     """Cut two surfaces that face each other into their common pieces.
 
-    reach: the farthest that the second may lie away [m]; degree: of the polynomials that the points integrate exactly
+    search_distance: the farthest that the second may lie away [m]; degree: of the polynomials that the points integrate exactly
     on each triangle of an overlap. May come out empty.
     """
     one, two = pieces(points, first), pieces(points, second)
-    a, b = _near(one, two, reach)
+    a, b = _near(one, two, search_distance)
     frames = _frames(one.corners)
     origin = one.centres
     polygon = np.einsum("pij,pvj->pvi", frames[:, :2], one.corners - origin[:, None])[a]
@@ -133,7 +127,7 @@ def overlap(points: Array, first: Blocks, second: Blocks, *, reach: float, degre
         polygon, count = _clip(polygon, count, other[:, edge], other[:, (edge + 1) % 4])
         alive = count > 2
         a, b, polygon, count, other = a[alive], b[alive], polygon[alive], count[alive], other[alive]
-    local, share, _, _ = reference("tri3", degree)
+    local, share, _, _ = KINDS["tri3"].rule(degree)
     limit = 1e-12 * one.radii**2
     places, weights, which = [], [], []
     for corner in range(1, polygon.shape[1] - 1):

@@ -57,7 +57,7 @@ class Pardiso:
         self._block = BLOCK if _in_blocks(matrix) else 1
         bare = np.flatnonzero(np.diff(matrix.indptr) == 0)
         if len(bare):
-            raise NotConverged(f"{len(bare)} unknowns have no stiffness at all; is a part held by nothing?")
+            raise NotConverged(f"{len(bare)} unknowns have no stiffness at all; is a part free to move?")
         blocks = self._in_nodes(matrix)
         rows = np.repeat(np.arange(len(blocks.indptr) - 1, dtype=np.int32), np.diff(blocks.indptr))
         self._kept = blocks.indices >= rows
@@ -137,7 +137,7 @@ class Pardiso:
             )
         if fault.value in SINGULAR:
             raise NotConverged(
-                "PARDISO could not factorise the matrix: it is not positive definite; is a part held by nothing?"
+                "PARDISO could not factorise the matrix: it is not positive definite; is a part free to move?"
             )
         if fault.value:
             raise NotConverged(f"PARDISO could not factorise the matrix (its error {fault.value})")

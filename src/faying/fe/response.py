@@ -34,73 +34,91 @@ class Response:
         return 2j * np.pi * self.frequencies[:, None, None] * self.receptance
 
 
+@dataclass(frozen=True, kw_only=True)
+class Vibration:
+    """The equations (K + i eta P + i C - w^2 M) u = f, or with i w C where kind is viscous.
+
+    stiffness K [N/m], mass M [kg], loss C [N/m or N s/m], sparse; rigid: how many of the lowest modes are rigid motions;
+    structural_loss: eta [-] of the parts themselves, whose stiffness is P (parts; K where None).
+    """
+
+    stiffness: Any
+    mass: Any
+    loss: Any
+    rigid: int
+    kind: Literal["hysteretic", "viscous"] = "hysteretic"
+    structural_loss: float = 0.0
+    parts: Any | None = None
+
+    def dynamic_stiffness(self, omega: float, K: Any, P: Any, C: Any, M: Any) -> Any:
+        """The matrix of the equations at an angular frequency [1/s], of full matrices, projected ones or their products."""
+        damping = omega * C if self.kind == "viscous" else C
+        return K + 1j * (self.structural_loss * P + damping) - omega**2 * M
+
+
 def frequency_response(
+    vibration: Vibration,
     modes: Modes,
     damped: DampedModes,
-    stiffness: Any,
-    mass: Any,
-    loss: Any,
     *,
     forces: Array,
     outputs: Array,
     frequencies: Array,
-    rigid: int,
-    kind: Literal["hysteretic", "viscous"] = "hysteretic",
-    structural_loss: float = 0.0,
-    parts: Any | None = None,
     checks: int = 5,
 ) -> Response:
-    """Solve (K + i eta P + i C - w^2 M) u = f, or with i w C where kind is viscous, in a basis.
+    """Solve the equations of a vibration in a basis.
 
-    forces (unknowns, i): unit forces; outputs (unknowns, o): what is read of u; frequencies [Hz] (f,);
-    structural_loss: eta of the parts themselves, whose stiffness is P (parts; K where None). Basis: rigid motions, real and
-    complex modes, and the response to the forces at the shift of the factorisation, so that modes beyond the last one count through their static part. Raises
-    InputError for frequencies that do not rise from above 0.
+    forces (unknowns, i): unit forces; outputs (unknowns, o): what is read of u; frequencies [Hz] (f,). Basis: rigid
+    motions, real and complex modes, and the response to the forces at the shift of the factorisation, so that modes
+    beyond the last one count through their static part. Raises InputError for frequencies that do not rise from above 0.
     """
-    from scipy.linalg import cholesky, solve_triangular
-
     frequencies = np.asarray(frequencies, dtype=float)
     if frequencies.ndim != 1 or not len(frequencies) or frequencies[0] <= 0 or np.any(np.diff(frequencies) <= 0):
         raise InputError("the frequencies of a response must be positive and rise, for example from 10 Hz to 5000 Hz")
+    mass = vibration.mass
     # without what the known modes answer, which is all but the last digits of it where a body is free
     rest = forces - (mass @ modes.shapes) @ (modes.shapes.T @ forces)
     static = modes.factorisation.solve(np.asfortranarray(rest))
     columns = np.concatenate([modes.shapes, damped.shapes.real, damped.shapes.imag, static], axis=1)
     basis = _orthonormal(columns, mass, leading=modes.shapes.shape[1])
-    small_k, small_c = basis.T @ (stiffness @ basis), basis.T @ (loss @ basis)
-    lossy = stiffness if parts is None else parts
-    small_p = small_k if parts is None else basis.T @ (parts @ basis)
-    for small in (small_k, small_p):
-        small[:rigid] = small[:, :rigid] = 0.0
-    small_m = basis.T @ (mass @ basis)
+    small, basis = _projected(vibration, basis)
     push, read = basis.T @ forces, basis.T @ outputs
-    root = cholesky(small_m)
-    turn = solve_triangular(root, np.eye(len(root)))
-    small_k, small_p, small_c = (turn.T @ small @ turn for small in (small_k, small_p, small_c))
-    push, read = turn.T @ push, turn.T @ read
-    answers = np.empty((len(frequencies), read.shape[1], push.shape[1]), dtype=complex)
-    inner = np.empty((len(frequencies), len(small_k), push.shape[1]), dtype=complex)
-    identity = np.eye(len(small_k))
+    inner = np.empty((len(frequencies), basis.shape[1], push.shape[1]), dtype=complex)
     for i, omega in enumerate(2 * np.pi * frequencies):
-        damping = omega * small_c if kind == "viscous" else small_c
-        inner[i] = np.linalg.solve(
-            small_k + 1j * (structural_loss * small_p + damping) - omega**2 * identity, push.astype(complex)
-        )
-        answers[i] = read.T @ inner[i]
+        inner[i] = np.linalg.solve(vibration.dynamic_stiffness(omega, *small), push.astype(complex))
     where = np.unique(np.linspace(0, len(frequencies) - 1, min(checks, len(frequencies))).astype(int))
-    error = np.empty(len(where))
-    basis = basis @ turn
-    for j, i in enumerate(where):
-        omega = 2 * np.pi * frequencies[i]
-        u = basis @ inner[i]
-        damping = omega if kind == "viscous" else 1.0
-        absorbed = 1j * (structural_loss * (lossy @ u) + damping * (loss @ u))
-        miss = forces - stiffness @ u - absorbed + omega**2 * (mass @ u)
-        solved = [modes.factorisation.solve(np.asfortranarray(part)) for part in (miss.real, miss.imag)]
-        left = np.sqrt(sum(abs(np.sum(part * s)) for part, s in zip((miss.real, miss.imag), solved, strict=True)))
-        energy = np.sqrt(abs(np.vdot(u, stiffness @ u)) + modes.shift * abs(np.vdot(u, mass @ u)))
-        error[j] = left / energy
-    return Response(frequencies=frequencies, receptance=answers, checked=frequencies[where], error=error)
+    error = [_error(vibration, modes, forces, basis @ inner[i], 2 * np.pi * frequencies[i]) for i in where]
+    return Response(
+        frequencies=frequencies,
+        receptance=np.asarray(read.T @ inner, dtype=complex),
+        checked=frequencies[where],
+        error=np.array(error),
+    )
+
+
+def _projected(vibration: Vibration, basis: Array) -> tuple[tuple[Array, ...], Array]:
+    """K, P, C, M in a basis that is orthonormal with the projected mass, and that basis."""
+    from scipy.linalg import cholesky, solve_triangular
+
+    K, C = (basis.T @ (matrix @ basis) for matrix in (vibration.stiffness, vibration.loss))
+    P = K.copy() if vibration.parts is None else basis.T @ (vibration.parts @ basis)
+    for small in (K, P):
+        small[: vibration.rigid] = small[:, : vibration.rigid] = 0.0
+    root = cholesky(basis.T @ (vibration.mass @ basis))
+    turn = solve_triangular(root, np.eye(len(root)))
+    return (*(turn.T @ small @ turn for small in (K, P, C)), np.eye(len(root))), basis @ turn
+
+
+def _error(vibration: Vibration, modes: Modes, forces: Array, u: Complex, omega: float) -> float:
+    """The force left unanswered at an angular frequency, as displacement in the energy norm, over the answer's."""
+    parts = vibration.stiffness if vibration.parts is None else vibration.parts
+    products = [matrix @ u for matrix in (vibration.stiffness, parts, vibration.loss, vibration.mass)]
+    miss = forces - vibration.dynamic_stiffness(omega, *products)
+    left = sum(
+        abs(np.sum(part * modes.factorisation.solve(np.asfortranarray(part)))) for part in (miss.real, miss.imag)
+    )
+    energy = abs(np.vdot(u, products[0])) + modes.shift * abs(np.vdot(u, products[3]))
+    return float(np.sqrt(left / energy))
 
 
 def _orthonormal(columns: Array, mass: Any, leading: int) -> Array:

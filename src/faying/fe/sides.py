@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from faying.fe.elements import FACES, SOLIDS
-from faying.typing import Array, Index, Mask
+from faying.typing import Array, Index
 
 Blocks = tuple[Index, ...]
 
@@ -42,19 +42,6 @@ def skin(blocks: Blocks, nodes: int) -> Blocks:
         _, first, count = np.unique(side_key(faces, nodes), return_index=True, return_counts=True)
         outer.append(faces[np.sort(first[count == 1])])
     return tuple(faces for faces in outer if len(faces))
-
-
-def sides_like(faces: Index, blocks: Blocks, nodes: int) -> tuple[Index, Mask]:
-    """The outer sides with the corners of the given faces, normals outwards, and which of the faces have one."""
-    outer = [side for side in skin(blocks, nodes) if side.shape[1] == faces.shape[1]]
-    if not outer:
-        return faces[:0], np.zeros(len(faces), dtype=bool)
-    key = side_key(outer[0], nodes)
-    order = np.argsort(key)
-    want = side_key(faces, nodes)
-    place = np.minimum(np.searchsorted(key[order], want), len(key) - 1)
-    hit = key[order[place]] == want
-    return outer[0][order[place[hit]]], hit
 
 
 def sides_on(chosen: Index, blocks: Blocks, nodes: int) -> Blocks:

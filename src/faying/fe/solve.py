@@ -42,7 +42,7 @@ class _Mumps:
         try:
             self._context.factor(reuse_analysis=True)
         except mumps.MUMPSError as fault:
-            raise NotConverged(f"MUMPS could not factorise the matrix ({fault}); is a part held by nothing?") from None
+            raise NotConverged(f"MUMPS could not factorise the matrix ({fault}); is a part free to move?") from None
         negative = self._context.mumps_instance.infog[12]
         if negative > 0:
             raise NotConverged(
@@ -74,9 +74,7 @@ class _Cholmod:
             else:
                 self._solve = cholmod.cholesky(csc_matrix(matrix), mode="supernodal")
         except cholmod.CholmodNotPositiveDefiniteError as fault:
-            raise NotConverged(
-                f"CHOLMOD could not factorise the matrix ({fault}); is a part held by nothing?"
-            ) from None
+            raise NotConverged(f"CHOLMOD could not factorise the matrix ({fault}); is a part free to move?") from None
 
     def again(self, matrix: Any) -> "_Cholmod":
         return _Cholmod(matrix)
@@ -101,9 +99,7 @@ class _SuperLU:
                 matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
             )
         except RuntimeError as fault:
-            raise NotConverged(
-                f"SuperLU could not factorise the matrix ({fault}); is a part held by nothing?"
-            ) from None
+            raise NotConverged(f"SuperLU could not factorise the matrix ({fault}); is a part free to move?") from None
 
     def again(self, matrix: Any) -> "_SuperLU":
         return _SuperLU(matrix)

@@ -1,4 +1,4 @@
-"""Supports that hold a structure and masses that hang on it."""
+"""Supports of a structure and masses that hang on it."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -17,7 +17,16 @@ NEAR = 0.02  # of the structure's size: farther from any node than this, a point
 
 @dataclass(frozen=True, kw_only=True)
 class Support:
-    """A face held in some directions: at rest where stiffness is None, else on springs per area [Pa/m]."""
+    """A face that is fixed, or on springs per area, in some directions.
+
+    Args:
+        face: Name of the face.
+        directions: Some of x, y, z.
+        stiffness: Springs per area [Pa/m], greater than 0; the face is fixed where None.
+
+    Raises:
+        InputError: Another direction, or a stiffness that is not positive.
+    """
 
     face: str
     directions: tuple[str, ...] = ("x", "y", "z")
@@ -30,15 +39,15 @@ class Support:
         if self.stiffness is not None and not self.stiffness > 0:
             raise InputError(f"support of {self.face!r}: stiffness {self.stiffness:g} Pa/m must be positive")
 
-    def held(self, mesh: Mesh) -> Index:
-        """Unknowns at rest; none for springs."""
+    def fixed(self, mesh: Mesh) -> Index:
+        """Unknowns that are fixed; none for springs."""
         if self.stiffness is not None:
             return np.zeros(0, dtype=np.int64)
         nodes = mesh.face_nodes(self.face)
         return np.sort((3 * nodes[:, None] + np.array([AXES[axis] for axis in self.directions])).ravel())
 
     def springs(self, mesh: Mesh) -> Any | None:
-        """Sparse stiffness [N/m] of springs per area to the ground; None for a face at rest."""
+        """Sparse stiffness [N/m] of springs per area; None for a face that is fixed."""
         if self.stiffness is None:
             return None
         from scipy.sparse import coo_array
@@ -58,9 +67,16 @@ class Support:
 
 @dataclass(frozen=True, kw_only=True)
 class PointMass:
-    """A mass [kg] that follows the mean motion of a face, or the node nearest to a point (3,) [m].
+    """A mass that follows the mean motion of a face, or the node nearest to a point.
 
-    offset (3,) [m]: from the face's centre to the centre of the mass; its inertia about that is left out.
+    Args:
+        mass: Mass [kg], greater than 0.
+        face: Name of the face, or None.
+        point: Place (3,) [m] of the node, in place of a face.
+        offset: Vector (3,) [m] from the face's centre to the centre of the mass; its inertia about that is left out.
+
+    Raises:
+        InputError: The mass is not positive, or both or neither of face and point are given.
     """
 
     mass: float

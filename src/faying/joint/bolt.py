@@ -52,7 +52,14 @@ def torque_to_preload(
 
 @dataclass(frozen=True, kw_only=True)
 class Washer:
-    """A washer: outer and inner diameter and thickness [m], material."""
+    """A washer under the head or the nut of a bolt.
+
+    Args:
+        outer: Outer diameter [m].
+        inner: Inner diameter [m].
+        thickness: Thickness [m].
+        material: E [Pa], nu [-], density [kg/m3].
+    """
 
     outer: float
     inner: float
@@ -79,11 +86,24 @@ class Washer:
 class Bolt:
     """A bolt between two seats that look away from each other.
 
-    faces: those that head and nut press on; at [m] (3,): a point on the axis, the middle between the faces where None;
-    diameter [m] and material of the shank, None for a bolt that is a force and nothing else; seat: inner and outer
-    diameter [m] of the ring that head and nut press on, the whole faces where None (a washer gives its own); washers: under
-    head and nut together; head_mass, nut_mass [kg]: those of hexagon heads and nuts where None; preload [N]: the forces that it is tightened to, one
-    load after another.
+    Args:
+        name: What messages and results call the bolt.
+        faces: Faces that head and nut press on.
+        at: A point (3,) [m] on the axis; the middle between the faces where None.
+        diameter: Diameter [m] of the shank, greater than 0; None for a bolt that is a force and nothing else.
+        material: Material of the shank, given together with the diameter.
+        seat: Inner and outer diameter [m] of the ring that head and nut press on; a washer's, else the whole faces, where
+            None.
+        washers: Washers under head and nut together.
+        head_mass: Mass of the head [kg]; that of a hexagon head where None.
+        nut_mass: Mass of the nut [kg]; that of a hexagon nut where None.
+        preload: Forces [N] that it is tightened to, one load after another.
+
+    Raises:
+        InputError: Diameter without material or the other way round, a diameter of 0 or less, a ring without width.
+
+    Source:
+        Head and nut: ISO 4014, ISO 4032.
     """
 
     name: str

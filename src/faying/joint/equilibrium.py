@@ -1,8 +1,8 @@
 """Equilibrium of elastic parts on a rough interface, by Newton with a line search.
 
-The rough surface is a normal compliance p(closing), so nothing is penalised: its tangent is the contact stiffness.
+The rough surface is a normal compliance p(approach), so nothing is penalised: its tangent is the contact stiffness.
 Tangentially the joint sticks with the stiffness k_t of its pressure and, where a friction coefficient is given, slips at
-friction times pressure. With k_t and that limit held, equilibrium is the minimum of a convex energy; both then follow
+friction times pressure. With k_t and that limit given, equilibrium is the minimum of a convex energy; both then follow
 the pressure until nothing changes. How a Newton step is solved is left to those who build on this: with sparse matrices
 (`preload`) or in a small basis (`reduce`).
 """
@@ -10,33 +10,18 @@ the pressure until nothing changes. How a Newton step is solved is left to those
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from faying.errors import InputError, NotConverged
 from faying.joint.joint_law import JointLaw
+from faying.joint.springs import InterfaceMotion
 from faying.typing import Array, Mask
 
 BEYOND = 0.1  # share of the contact that may lie beyond the end of the law, at the rim of a hole say; it is flagged
 ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall further
-SETTLED = 1e-4  # imbalance below which k_t and the limit of friction are held
-
-
-class InterfaceMotion(Protocol):
-    """What the balance needs of a joint: relative motion at weighted points from any displacement vector."""
-
-    @property
-    def weights(self) -> Array:
-        """Areas [m2] (q,)."""
-
-    @property
-    def gap(self) -> Array:
-        """Distance of the faces before any load [m] (q,)."""
-
-    @property
-    def relative(self) -> Any:
-        """Operator (3q, unknowns): opening and two slips at each point."""
+SETTLED = 1e-4  # imbalance below which k_t and the limit of friction are kept
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,7 +46,7 @@ class PreloadState:
 
 @dataclass
 class StickSlip:
-    """Tangential state of one joint while k_t (q,) [Pa/m] and the greatest shear (q,) [Pa] are held.
+    """Tangential state of one joint while k_t (q,) [Pa/m] and the greatest shear (q,) [Pa] are kept.
 
     anchor (q, 2) [m]: the slip at which the shear traction is zero.
     """
@@ -101,16 +86,14 @@ class StickSlip:
 class Equilibrium(ABC):
     """Newton on equilibrium, for one load after another: each starts from the last."""
 
-    stiffness: Any
-    joints: list[tuple[Any, JointLaw]]
-
     def __init__(
         self, stiffness: Any, joints: Sequence[tuple[Any, JointLaw]], *, friction: Sequence[float | None] | None = None
     ) -> None:
-        self.stiffness, self.joints = stiffness, list(joints)
+        self.parts = self.stiffness = stiffness
+        self.joints = list(joints)
         self.friction = list(friction) if friction is not None else [None] * len(self.joints)
-        self.anchors = [np.zeros((len(trace.weights), 2)) for trace, _ in self.joints]
-        self.last: Array | None = None
+        self._anchors = [np.zeros((len(trace.weights), 2)) for trace, _ in self.joints]
+        self._last: Array | None = None
         self._known: tuple[Array, list[tuple[Array, Array, Array]]] | None = None
         self.nearest: Array | None = None  # displacement nearest to balance in the last `solve`
         self.factorisations = 0
@@ -124,17 +107,19 @@ class Equilibrium(ABC):
         """Return the Newton step for an out-of-balance force and how many inner steps it took."""
 
     def _check_load(self, load: Array) -> None:
-        """Raise InputError where no equilibrium exists under this load; any load will do unless told otherwise."""
+        """Raise InputError where no equilibrium exists under this load; by default any load will do."""
         return
 
     def _admissible(self, force: Array) -> Array:
-        """Remove from a force what nothing can answer: rounding along rigid motions, forces on held unknowns."""
+        """Remove from a force what nothing can answer: rounding along rigid motions, forces on fixed unknowns."""
         return force
 
     def solve(
         self,
         load: Array,
         *,
+        start: Array | None = None,
+        shanks: Any | None = None,
         tolerance: float = 1e-10,
         steps: int = 60,
         report: Callable[[str], None] | None = None,
@@ -142,70 +127,45 @@ class Equilibrium(ABC):
     ) -> PreloadState:
         """Find equilibrium under nodal forces `load` [N] (unknowns,).
 
-        tolerance: of the residual force relative to the load, or what rounding leaves of it where that is more; beyond: share of the contact that may be pressed beyond
-        the end of its law. Raises InputError when more is, or the load cannot balance, and NotConverged when Newton
-        stops short.
+        start: displacement to start from [m], the last one found where None; shanks: stiffness [N/m] of bolts that are
+        tight; tolerance: of the residual force relative to the load, or what rounding leaves of it where that is more;
+        beyond: share of the contact that may be pressed beyond the end of its law. Raises InputError when more is, or
+        the load cannot balance, and NotConverged when Newton stops short.
         """
         if not np.any(load):
             raise InputError("no bolt pulls: the load is zero everywhere; give at least one bolt a preload")
         self._check_load(load)
-        scale = float(np.linalg.norm(load))
-        u = self._start(load) if self.last is None else self.last
-        newton = inner = 0
-        least = np.inf
-        grips = self._grips(u)
-        while True:
-            force = self._out_of_balance(u, load, grips)
-            size = float(np.linalg.norm(force)) / scale
-            if size < least:
-                least, self.nearest = size, u
-            if size < max(tolerance, ROUNDED) and tolerance < (rounding := self._rounding(u) / scale):
-                tolerance = rounding
-            if size < tolerance:
-                fresh = self._grips(u)
-                change = max(_grip_change(new, old) for new, old in zip(fresh, grips, strict=True))
-                grips = fresh
-                size = float(np.linalg.norm(self._out_of_balance(u, load, grips))) / scale
-                if size < tolerance or change < 1e-12:
-                    break
-                continue
-            if newton >= steps:
-                raise NotConverged(
-                    f"preload: after {newton} Newton steps {size:.1e} of the load is out of balance "
-                    f"(tolerance {tolerance:.0e}); refine the mesh of the joint, or load it in steps"
-                )
-            # as exact as Newton's own convergence asks, and no more than the tolerance does
-            accuracy = max(min(1e-2, 0.1 * size), 0.3 * tolerance / size)
-            step, count = self._direction(u, force, grips, accuracy=accuracy)
-            length = self._line_search(u, step, load, grips)
-            u = u + length * step
-            if size > SETTLED:  # far off, k_t follows at once; near the end it is held so that Newton converges
-                grips = self._grips(u)
-            newton, inner = newton + 1, inner + count
-            if report:
-                report(f"Newton {newton}: imbalance {size:.1e}, {count} inner steps, step {length:.3g}")
-        self.last = u
-        slipping = []
-        for index, ((move, p, _), grip, (trace, _)) in enumerate(zip(self._state(u), grips, self.joints, strict=True)):
-            slides = grip.sliding(move[:, 1:])
-            slipping.append(float(trace.weights @ slides / trace.weights.sum()))
-            if np.any(slides):  # the shear that is left holds until the next load moves on
-                rest = grip.shear(move[:, 1:]) / np.where(grip.k_t > 0, grip.k_t, 1.0)[:, None]
-                self.anchors[index] = np.where(slides[:, None], move[:, 1:] - rest, self.anchors[index])
-            if grip.limit is not None:  # what moves while it is open starts without shear when it closes
-                self.anchors[index] = np.where((p > 0)[:, None], self.anchors[index], move[:, 1:])
+        self.stiffness = self.parts if shanks is None else self.parts + shanks
+        start = self._last if start is None else start
+        newton = _Newton(self, load, tolerance, report)
+        u, grips = newton.run(self._start(load) if start is None else start, steps)
+        self._last = u
+        slipping = self._move_anchors(u, grips)
         openings, pressures = self.contact(u)
         self._check_ends(pressures, beyond)
         return PreloadState(
             pressures=pressures,
             openings=openings,
-            slipping=tuple(slipping),
+            slipping=slipping,
             displacement=u,
-            imbalance=size,
-            newton_steps=newton,
-            inner_steps=inner,
+            imbalance=newton.size,
+            newton_steps=newton.steps,
+            inner_steps=newton.inner,
             factorisations=self.factorisations,
         )
+
+    def _move_anchors(self, u: Array, grips: list[StickSlip]) -> tuple[float, ...]:
+        """Carry the shear that is left to the next load; return the share of the sliding area of each joint."""
+        slipping = []
+        for index, ((move, p, _), grip, (trace, _)) in enumerate(zip(self._state(u), grips, self.joints, strict=True)):
+            slides = grip.sliding(move[:, 1:])
+            slipping.append(float(trace.weights @ slides / trace.weights.sum()))
+            if np.any(slides):  # the shear that is left stays until the next load moves on
+                rest = grip.shear(move[:, 1:]) / np.where(grip.k_t > 0, grip.k_t, 1.0)[:, None]
+                self._anchors[index] = np.where(slides[:, None], move[:, 1:] - rest, self._anchors[index])
+            if grip.limit is not None:  # what moves while it is open starts without shear when it closes
+                self._anchors[index] = np.where((p > 0)[:, None], self._anchors[index], move[:, 1:])
+        return tuple(slipping)
 
     def contact(self, u: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
         """Openings [m] and pressures [Pa] at the points of every joint under displacements [m] (unknowns,)."""
@@ -245,7 +205,7 @@ class Equilibrium(ABC):
     def _grips(self, u: Array) -> list[StickSlip]:
         grips = []
         for (_, p, _), (_, law), friction, anchor in zip(
-            self._state(u), self.joints, self.friction, self.anchors, strict=True
+            self._state(u), self.joints, self.friction, self._anchors, strict=True
         ):
             grips.append(
                 StickSlip(k_t=law.stiffness(p)[1], limit=None if friction is None else friction * p, anchor=anchor)
@@ -305,6 +265,56 @@ class Equilibrium(ABC):
                 return middle
             low, high = (middle, high) if value < 0 else (low, middle)
         return (low + high) / 2
+
+
+@dataclass
+class _Newton:
+    """Newton's iteration for one load: how far it has come, and what it has cost."""
+
+    balance: Equilibrium
+    load: Array
+    tolerance: float
+    report: Callable[[str], None] | None
+    size: float = np.inf
+    steps: int = 0
+    inner: int = 0
+
+    def run(self, u: Array, most: int) -> tuple[Array, list[StickSlip]]:
+        """Return the displacement and the tangential state in equilibrium. Raises NotConverged after `most` steps."""
+        balance, load = self.balance, self.load
+        scale = float(np.linalg.norm(load))
+        least, tolerance = np.inf, self.tolerance
+        grips = balance._grips(u)
+        while True:
+            force = balance._out_of_balance(u, load, grips)
+            self.size = float(np.linalg.norm(force)) / scale
+            if self.size < least:
+                least, balance.nearest = self.size, u
+            if self.size < max(tolerance, ROUNDED) and tolerance < (rounding := balance._rounding(u) / scale):
+                tolerance = rounding
+            if self.size < tolerance:
+                fresh = balance._grips(u)
+                change = max(_grip_change(new, old) for new, old in zip(fresh, grips, strict=True))
+                grips = fresh
+                self.size = float(np.linalg.norm(balance._out_of_balance(u, load, grips))) / scale
+                if self.size < tolerance or change < 1e-12:
+                    return u, grips
+                continue
+            if self.steps >= most:
+                raise NotConverged(
+                    f"preload: after {self.steps} Newton steps {self.size:.1e} of the load is out of balance "
+                    f"(tolerance {tolerance:.0e}); refine the mesh of the joint, or load it in steps"
+                )
+            # as exact as Newton's own convergence asks, and no more than the tolerance does
+            accuracy = max(min(1e-2, 0.1 * self.size), 0.3 * tolerance / self.size)
+            step, count = balance._direction(u, force, grips, accuracy=accuracy)
+            length = balance._line_search(u, step, load, grips)
+            u = u + length * step
+            if self.size > SETTLED:  # far off, k_t follows at once; near the end it is kept so that Newton converges
+                grips = balance._grips(u)
+            self.steps, self.inner = self.steps + 1, self.inner + count
+            if self.report:
+                self.report(f"Newton {self.steps}: imbalance {self.size:.1e}, {count} inner steps, step {length:.3g}")
 
 
 def _grip_change(new: StickSlip, old: StickSlip) -> float:

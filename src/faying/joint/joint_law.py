@@ -1,61 +1,24 @@
-"""A contact law laid on a joint: pressure from closing, and stiffness and loss at every point from its pressure."""
+"""A contact law laid on a joint: pressure from approach, and stiffness and loss at every point from its pressure."""
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from faying.contact.law import ContactLaw
+from faying.contact.response import Response
 from faying.errors import InputError
-from faying.typing import Array, Mask
+from faying.joint.springs import Motion, Springs
+from faying.typing import Array
 
 FEW = 200  # pressures up to which a law is inverted exactly; more are read from the table between its points
-LEAST_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p(closing) goes on as a power
-
-
-class Law(Protocol):
-    """What a joint asks of a contact law."""
-
-    @property
-    def name(self) -> str:
-        """What the law is called."""
-
-    @property
-    def greatest_pressure(self) -> float:
-        """Where the law ends [Pa]."""
-
-    def at_pressure(self, pressure: ArrayLike, *, exact: bool | None = None) -> "Answer":
-        """Response at nominal pressures [Pa]; exact=False may read a checked table."""
-
-
-class Answer(Protocol):
-    """What a joint reads from the response of a law."""
-
-    @property
-    def k_n(self) -> Array | None:
-        """Normal stiffness [Pa/m]."""
-
-    @property
-    def k_t(self) -> Array | None:
-        """Tangential stiffness [Pa/m]."""
-
-    @property
-    def loss_n(self) -> Array | None:
-        """Loss factor of the normal motion [-]."""
-
-    @property
-    def loss_t(self) -> Array | None:
-        """Loss factor of the tangential motion [-]."""
-
-    @property
-    def valid(self) -> Mask:
-        """Where the law stands on its own ground."""
+LEAST_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p(approach) goes on as a power
 
 
 @dataclass(frozen=True, kw_only=True)
 class JointLaw:
-    """The law of one joint, with its pressure as a function of closing: w = integral of dp/k from 0 to p.
+    """The law of one joint, with its pressure as a function of approach: w = integral of dp/k from 0 to p.
 
     k is the law's k_load where it has one (asperities that yield close more on loading than they spring back), else k_n.
 
@@ -64,7 +27,7 @@ class JointLaw:
     gives no k_n, or no k_t and tangential = "law".
     """
 
-    model: Law
+    model: ContactLaw
     tangential: Literal["law", "mindlin"] = "law"
     nu: float = 0.3
     scale: float = 1.0
@@ -72,8 +35,8 @@ class JointLaw:
 
     @property
     def least_pressure(self) -> float:
-        """Below it the joint carries nothing that matters [Pa]: p(closing) and the stiffness go on as powers."""
-        return max(LEAST_PRESSURE, 1.001 * getattr(self.model, "least_pressure", 0.0))
+        """Below it the joint carries nothing that matters [Pa]: p(approach) and the stiffness go on as powers."""
+        return max(LEAST_PRESSURE, 1.001 * self.model.least_pressure)
 
     @cached_property
     def _grid(self) -> Array:
@@ -92,13 +55,13 @@ class JointLaw:
 
     @cached_property
     def _loading(self) -> Array:
-        """Slope of pressure over closing on loading [Pa/m] on the grid."""
-        slope = getattr(self.model.at_pressure(self._grid), "k_load", None)
+        """Slope of pressure over approach on loading [Pa/m] on the grid."""
+        slope = self.model.at_pressure(self._grid).k_load
         return np.exp(self._samples[1][0]) if slope is None else self.scale * slope
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
-        """ln closing, ln pressure, and d ln p/d ln w, from the least pressure to where the law ends."""
+        """ln approach, ln pressure, and d ln p/d ln w, from the least pressure to where the law ends."""
         p, k = self._grid, self._loading
         slope = np.gradient(np.log(k), np.log(p))
         if np.any(k <= 0) or slope[0] >= 1 - 1e-9:
@@ -134,7 +97,7 @@ class JointLaw:
             )
         return k_n, self.scale * answer.k_t
 
-    def answer(self, pressure: Array) -> Answer:
+    def answer(self, pressure: Array) -> Response:
         """What the law says at pressures [Pa]; beyond its ends, what it says there."""
         return self.model.at_pressure(self._within(pressure), exact=False if np.size(pressure) > FEW else None)
 
@@ -143,7 +106,7 @@ class JointLaw:
         return np.where(pressure > 0, np.clip(pressure, self.least_pressure, self.model.greatest_pressure), 0.0)
 
     def stiffness(self, pressure: Array) -> tuple[Array, Array]:
-        """k_n and k_t [Pa/m] at pressures [Pa] of any shape; 0 where the pressure is 0, held beyond the end of the law."""
+        """k_n and k_t [Pa/m] at pressures [Pa] of any shape; 0 where the pressure is 0, constant beyond the end of the law."""
         within = self._within(pressure)
         if np.size(pressure) > FEW:
             log_p, (log_n, log_t), _ = self._samples
@@ -168,6 +131,12 @@ class JointLaw:
         n, t = (np.where(within > 0, np.interp(x, log_p, y), 0.0) for y in losses)
         return n, t
 
+    def springs(self, interface: Motion, pressure: Array) -> Springs[Motion]:
+        """Springs at pressures [Pa] (q,) at the points of an interface."""
+        k_n, k_t = self.stiffness(pressure)
+        loss_n, loss_t = self.loss(pressure)
+        return Springs(interface=interface, pressure=pressure, k_n=k_n, k_t=k_t, loss_n=loss_n, loss_t=loss_t)
+
     def _ask_loss(self, pressure: Array) -> tuple[Array, Array]:
         answer = self.model.at_pressure(pressure)
         nothing = np.zeros(np.shape(pressure))
@@ -176,15 +145,15 @@ class JointLaw:
             nothing if answer.loss_t is None else answer.loss_t,
         )
 
-    def pressure(self, closing: Array) -> tuple[Array, Array]:
-        """Pressure [Pa] and its slope, the stiffness [Pa/m], at closings [m]; both 0 where the faces are apart.
+    def pressure(self, approach: Array) -> tuple[Array, Array]:
+        """Pressure [Pa] and its slope, the stiffness [Pa/m], at approaches [m]; both 0 where the faces are apart.
 
         Beyond the end of the law the curve goes on as a power, so that an iteration may pass through; whoever keeps a
         result checks the pressure against `law.greatest_pressure`.
         """
         log_w, _, slope = self._table
-        shut = closing > 0
-        x = np.log(np.where(shut, closing, 1.0))
+        shut = approach > 0
+        x = np.log(np.where(shut, approach, 1.0))
         inside = np.clip(x, log_w[0], log_w[-1])
         cell = np.clip(np.searchsorted(log_w, inside, side="right") - 1, 0, len(log_w) - 2)
         cubic = self._curve.c[:, cell]
@@ -196,9 +165,9 @@ class JointLaw:
         value = value + np.where(beyond, end * (x - inside), 0.0)
         steep = np.where(beyond, end, steep)
         p = np.where(shut, np.exp(value), 0.0)
-        return p, np.where(shut, p * steep / np.where(shut, closing, 1.0), 0.0)
+        return p, np.where(shut, p * steep / np.where(shut, approach, 1.0), 0.0)
 
-    def closing(self, pressure: float) -> float:
+    def approach(self, pressure: float) -> float:
         """Closing [m] at one pressure [Pa] between the least and the greatest of the law."""
         from scipy.interpolate import CubicHermiteSpline
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.constraint import hold
+from faying.fe.constraint import constrain
 from faying.fe.interface import Interface
 from faying.fe.solve import Factorisation, factorise
 from faying.joint.equilibrium import Equilibrium, StickSlip
@@ -25,7 +25,7 @@ FLAT = 1e-9  # curvature over that of the factor below which a direction costs n
 class PreloadProblem(Equilibrium):
     """Parts with joints between them, ready for one load after another (each starts from the last).
 
-    held: unknowns that supports fix; rigid (unknowns, r): rigid motions that nothing resists, r = 0 where supports do.
+    fixed: unknowns that supports fix; rigid (unknowns, r): rigid motions that nothing resists, r = 0 where supports do.
     """
 
     def __init__(
@@ -38,11 +38,11 @@ class PreloadProblem(Equilibrium):
         shift_frequency: float,
         solver: str | None = None,
         friction: Sequence[float | None] | None = None,
-        held: Index | None = None,
+        fixed: Index | None = None,
     ) -> None:
         super().__init__(stiffness, joints, friction=friction)
         self.solver = solver
-        self.held = np.zeros(0, dtype=np.int64) if held is None else held
+        self.fixed = np.zeros(0, dtype=np.int64) if fixed is None else fixed
         self.mass_shift = (2 * np.pi * shift_frequency) ** 2 * mass
         self._rigid = np.linalg.qr(rigid)[0] if rigid.size else rigid
         self.factor: Factorisation | None = None
@@ -65,8 +65,8 @@ class PreloadProblem(Equilibrium):
             mean = np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure)
             k_n, k_t = (np.full(len(joint.weights), float(k)) for k in law.stiffness(np.asarray(mean)))
             springs = springs + joint.springs(k_n, k_t)
-            # a spring that is tangent to p(closing) at the mean pressure, in place of the curve
-            offset = mean - k_n * (law.closing(float(mean)) + joint.gap)
+            # a spring that is tangent to p(approach) at the mean pressure, in place of the curve
+            offset = mean - k_n * (law.approach(float(mean)) + joint.gap)
             push = push + joint.forces(np.asarray(offset), np.zeros((len(joint.weights), 2)))
         self._factorise(springs)
         assert self.factor is not None
@@ -74,15 +74,15 @@ class PreloadProblem(Equilibrium):
 
     def _factorise(self, matrix: Any) -> None:
         self.factor = None
-        self.factor = factorise(hold(matrix.tocsr(), self.held), self.solver)
+        self.factor = factorise(constrain(matrix.tocsr(), self.fixed), self.solver)
         self.factorisations += 1
 
     def _admissible(self, force: Array) -> Array:
         if self._rigid.size:
             force = force - self._rigid @ (self._rigid.T @ force)
-        if len(self.held):
+        if len(self.fixed):
             force = force.copy()
-            force[self.held] = 0.0
+            force[self.fixed] = 0.0
         return force
 
     def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> tuple[Array, int]:
@@ -94,8 +94,8 @@ class PreloadProblem(Equilibrium):
                 move = self._move(trace, x)
                 local = np.concatenate([k_n[:, None] * move[:, :1], np.einsum("qij,qj->qi", k_t, move[:, 1:])], axis=1)
                 y = y + trace.relative.T @ local.ravel()
-            if len(self.held):
-                y[self.held] = 0.0
+            if len(self.fixed):
+                y[self.fixed] = 0.0
             return np.asarray(y)
 
         if self.factor is None:

@@ -15,15 +15,16 @@ from typing import Any, Self
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.fe.constraint import hold
+from faying.fe.constraint import constrain
 from faying.fe.modes import lowest_modes
 from faying.fe.solve import Factorisation
 from faying.joint.equilibrium import PreloadState, StickSlip
 from faying.joint.joint_law import JointLaw
-from faying.joint.reduced import Densities, ReducedModel, Variant, densities
+from faying.joint.reduced import ReducedModel, ReducedMotion, Variant
+from faying.joint.springs import Springs
 from faying.joint.structure import Structure
-from faying.joint.support_check import check_motions, held_preload
-from faying.typing import Array, Complex, Index
+from faying.joint.support_check import check_motions, checked_preload
+from faying.typing import Array, Complex
 
 FEW_STEPS = 60  # enrichments of one variant after which something else must be wrong
 EXTRA_MODES = 25  # real modes of the reference beyond those wanted: they speed the enrichment of the highest ones
@@ -103,50 +104,40 @@ class Reduction:
 
     def __init__(
         self,
+        structure: Structure,
         *,
-        stiffness: Any,
-        stiffness_static: Any,
-        mass: Any,
-        traces: Sequence[Any],
         factor: Factorisation,
         reference: Any,
-        loads: Array,
         state: Array,
         shapes: Array,
         count: int,
-        rigid: Array,
-        friction: Sequence[float | None],
-        held: Index,
     ) -> None:
         """Start from a factorised reference.
 
-        stiffness, stiffness_static, mass (n, n): of the parts with their attachments, for vibration and for preload
-        (held unknowns cleared); reference (n, n): stiffness + joints + shift x mass, of which `factor` is the
-        factorisation; loads (n, b): one column for 1 N in each bolt; state (n,): a displacement in equilibrium; shapes (n, m): elastic modes at the reference,
-        more of them than the `count` that is asked for; rigid (n, r): motions that nothing resists; held: unknowns at rest.
+        reference (n, n): stiffness + joints + shift x mass, of which `factor` is the factorisation; state (n,): a
+        displacement in equilibrium; shapes (n, m): elastic modes at the reference, more than the `count` that is asked for.
         """
         from scipy.linalg import cholesky, solve_triangular
 
-        self.stiffness, self.stiffness_static, self.mass = stiffness, stiffness_static, mass
-        self.traces, self.factor, self.reference = list(traces), factor, reference
-        self.held = held
-        loads = loads.copy()
-        loads[held] = 0.0
-        self.loads = loads
+        self.stiffness, self.mass = structure.vibrating
+        self.stiffness_static = constrain(structure.standing, structure.fixed, 0.0)
+        self.traces, self.factor, self.reference = [joint.interface for joint in structure.joints], factor, reference
+        self.fixed, mass, rigid = structure.fixed, self.mass, structure.rigid
+        self.loads = loads = structure.loads.copy()
+        loads[self.fixed] = 0.0
         if rigid.shape[1]:
             root = cholesky(rigid.T @ (mass @ rigid))
             rigid = solve_triangular(root, rigid.T, trans="T").T
-        still = {"rigid": rigid, "rigid_momentum": np.asarray(mass @ rigid)}
-        self.static = Basis(reference=reference, operators=(stiffness_static,), traces=self.traces, **still)
+        motions = {"rigid": rigid, "rigid_momentum": np.asarray(mass @ rigid)}
+        self.static = Basis(reference=reference, operators=(self.stiffness_static,), traces=self.traces, **motions)
         self.static.add(state[:, None])
         self.static.add(factor.solve(np.asfortranarray(loads)))
-        self.dynamic = Basis(reference=reference, operators=(stiffness, mass), traces=self.traces, **still)
+        self.dynamic = Basis(reference=reference, operators=(self.stiffness, mass), traces=self.traces, **motions)
         self.dynamic.add(shapes)
-        self._seen: list[list[Densities]] = []
+        self._seen: list[tuple[tuple[JointLaw, ...], tuple[Array, ...]]] = []
         self.model = ReducedModel(
             weights=[trace.weights for trace in self.traces],
             gaps=[trace.gap for trace in self.traces],
-            friction=list(friction),
             static_stiffness=self.static.small[0],
             static_loads=self.static.vectors.T @ loads,
             static_relative=self.static.relative,
@@ -174,76 +165,88 @@ class Reduction:
         nothing.
         """
         joints = tuple(replace(joint, law=law) for joint, law in zip(structure.joints, laws, strict=True))
-        structure = replace(structure, joints=joints).sharing(structure)
-        found = held_preload(structure, structure.assembly(solver=solver), [float(f) for f in forces])
+        structure = replace(structure, joints=joints)
+        found = checked_preload(structure, structure.assembly(solver=solver), [float(f) for f in forces])
         shift = shift_frequency or structure.shift_frequency
-        stiffness, mass = structure.vibrating
+        _, mass = structure.vibrating
         joined, _ = structure.joined(structure.springs(found.pressures))
-        still = structure.rigid.shape[1]
-        modes = lowest_modes(joined, mass, still + count + EXTRA_MODES, shift_frequency=shift, solver=solver)
+        rigid_count = structure.rigid_count
+        modes = lowest_modes(joined, mass, rigid_count + count + EXTRA_MODES, shift_frequency=shift, solver=solver)
         check_motions(structure, modes)
         return cls(
-            stiffness=stiffness,
-            stiffness_static=hold(structure.standing, structure.held, 0.0),
-            mass=mass,
-            traces=[joint.interface for joint in structure.joints],
+            structure,
             factor=modes.factorisation,
             reference=(joined + modes.shift * mass).tocsr(),
-            loads=structure.loads,
             state=found.displacement,
-            shapes=modes.shapes[:, still:],
+            shapes=modes.shapes[:, rigid_count:],
             count=count,
-            rigid=structure.rigid,
-            friction=[joint.friction for joint in structure.joints],
-            held=structure.held,
         )
 
-    def _refresh(self) -> None:
-        model = self.model
-        model.static_stiffness, model.static_relative = self.static.small[0], self.static.relative
-        model.static_loads = self.static.vectors.T @ self.loads
-        model.dynamic_stiffness, model.dynamic_mass = self.dynamic.small
-        model.dynamic_relative = self.dynamic.relative
+    def _refresh(self, coarse: int | None = None) -> None:
+        self.model = replace(
+            self.model,
+            static_stiffness=self.static.small[0],
+            static_relative=self.static.relative,
+            static_loads=self.static.vectors.T @ self.loads,
+            dynamic_stiffness=self.dynamic.small[0],
+            dynamic_mass=self.dynamic.small[1],
+            dynamic_relative=self.dynamic.relative,
+            coarse=self.model.coarse if coarse is None else coarse,
+        )
 
-    def _static_residual(self, laws: Sequence[JointLaw], forces: Array, found: PreloadState) -> Array:
+    def _static_residual(
+        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], found: PreloadState
+    ) -> Array:
         u = self.static.vectors @ found.displacement
         residual = self.loads @ forces - self.stiffness_static @ u
-        for trace, law, friction, p, relative in zip(
-            self.traces, laws, self.model.friction, found.pressures, self.static.relative, strict=True
+        for trace, law, limit, p, relative in zip(
+            self.traces, laws, friction, found.pressures, self.static.relative, strict=True
         ):
             slip = (relative @ found.displacement).reshape(-1, 3)[:, 1:]
             grip = StickSlip(
-                k_t=law.stiffness(p)[1], limit=None if friction is None else friction * p, anchor=np.zeros_like(slip)
+                k_t=law.stiffness(p)[1], limit=None if limit is None else limit * p, anchor=np.zeros_like(slip)
             )
             local = np.concatenate([-p[:, None], grip.shear(slip)], axis=1) * trace.weights[:, None]
             residual = residual - trace.relative.T @ local.ravel()
-        residual[self.held] = 0.0
+        residual[self.fixed] = 0.0
         return np.asarray(residual)
 
-    def static_error(self, laws: Sequence[JointLaw], forces: Array, found: PreloadState) -> tuple[float, Array]:
+    def static_error(
+        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], found: PreloadState
+    ) -> tuple[float, Array]:
         """Error of an equilibrium in energy, over that of the joints' normal springs [-], and what would mend it (n,)."""
-        residual = self._static_residual(laws, forces, found)
+        residual = self._static_residual(laws, forces, friction, found)
         answer = self.factor.solve(residual)
         return float(np.sqrt(np.maximum(residual @ answer, 0.0)) / _pressed(self.traces, laws, found)), answer
 
-    def train_static(self, laws: Sequence[JointLaw], forces: Array, tolerance: float) -> int:
-        """Enrich until the equilibrium of a variant is right to `tolerance` in energy; return the vectors added."""
-        added, error = 0, np.inf
+    def train_static(
+        self,
+        laws: Sequence[JointLaw],
+        forces: Array,
+        friction: Sequence[float | None],
+        tolerance: float,
+        start: Array | None = None,
+    ) -> PreloadState:
+        """Enrich until the equilibrium of a variant is right to `tolerance` in energy; return it."""
+        error = np.inf
         for _ in range(FEW_STEPS):
-            error, mend = self.static_error(laws, forces, self.model.equilibrium(laws, forces))
+            found = self.model.equilibrium(laws, forces, friction, start)
+            error, mend = self.static_error(laws, forces, friction, found)
             if error < tolerance:
-                return added
-            added += self.static.add(mend[:, None])
+                return found
+            start = found.displacement
+            self.static.add(mend[:, None])
             self._refresh()
         raise NotConverged(
             f"reduction: {FEW_STEPS} enrichments leave the preload wrong by {error:.1e}; raise the tolerance"
         )
 
-    def modal_error(self, springs: Sequence[Densities]) -> tuple[Array, Array]:
+    def modal_error(self, laws: Sequence[JointLaw], pressures: Sequence[Array]) -> tuple[Array, Array]:
         """Estimated relative error of the complex eigenvalues (m,) of a variant, and what would mend it (n, 2m).
 
         The square of the residual in the energy norm: eigenvalues err by the square of their vectors.
         """
+        springs = self.model.springs(laws, pressures)
         values, vectors, _ = self.model.modes(springs)
         residual = self._modal_residual(springs, values, vectors)
         both = np.concatenate([residual.real, residual.imag], axis=1)
@@ -254,40 +257,47 @@ class Reduction:
         size = np.abs(values) * np.abs(np.einsum("ij,ij->j", vectors.conj(), momentum))
         return (energy[:split] + energy[split:]) / size, solved / np.sqrt(np.tile(size, 2))
 
-    def _modal_residual(self, springs: Sequence[Densities], values: Complex, vectors: Complex) -> Complex:
+    def _modal_residual(self, springs: Sequence[Springs[ReducedMotion]], values: Complex, vectors: Complex) -> Complex:
         x = self.dynamic.vectors @ vectors
         residual = self.stiffness @ x - (self.mass @ x) * values
         for trace, relative, d in zip(self.traces, self.dynamic.relative, springs, strict=True):
-            n, t = trace.weights * (d.k_n + 1j * d.c_n), trace.weights * (d.k_t + 1j * d.c_t)
+            n, t = trace.weights * d.k_n * (1 + 1j * d.loss_n), trace.weights * d.k_t * (1 + 1j * d.loss_t)
             share = np.stack([n, t, t], axis=1).reshape(-1, 1)
             residual = residual + trace.relative.T @ (share * (relative @ vectors))
-        residual[self.held] = 0.0
+        residual[self.fixed] = 0.0
         return np.asarray(residual)
 
-    def train_dynamic(self, springs: Sequence[Densities], tolerance: float) -> int:
-        """Enrich until all modes of a variant are right; tolerance: of the complex eigenvalues. Returns vectors added."""
-        added = 0
+    def train_dynamic(self, laws: Sequence[JointLaw], pressures: Sequence[Array], tolerance: float) -> None:
+        """Enrich until all modes of a variant are right; tolerance: of the complex eigenvalues."""
         for _ in range(FEW_STEPS):
-            error, mend = self.modal_error(springs)
+            error, mend = self.modal_error(laws, pressures)
             if error.max() < tolerance:
-                return added
+                return
             new = self.dynamic.add(mend, least=0.02 * tolerance)
             self._refresh()
             if not new:
                 raise NotConverged(f"reduction: the modes stay wrong by {error.max():.1e} and nothing improves them")
-            added += new
         raise NotConverged(
             f"reduction: {FEW_STEPS} enrichments do not bring a mode to {tolerance:.0e}; ask for fewer modes"
         )
 
-    def train(self, laws: Sequence[JointLaw], forces: Array, *, tolerance: float) -> int:
-        """Make the bases fit one variant; tolerance: relative error of a frequency. Returns the vectors added."""
-        static = self.train_static(laws, forces, STATIC_SHARE * tolerance)
-        found = self.model.equilibrium(laws, forces)
-        springs = densities(laws, found.pressures)
-        dynamic = self.train_dynamic(springs, 2 * tolerance)
-        self._seen.append(springs)
-        return static + dynamic
+    def train(
+        self,
+        laws: Sequence[JointLaw],
+        forces: Array,
+        friction: Sequence[float | None],
+        *,
+        tolerance: float,
+        start: Array | None = None,
+    ) -> Array:
+        """Make the bases fit one variant; tolerance: relative error of a frequency; start: see `ReducedModel.evaluate`.
+
+        Returns the coefficients from which a like variant may start.
+        """
+        found = self.train_static(laws, forces, friction, STATIC_SHARE * tolerance, start)
+        self.train_dynamic(laws, found.pressures, 2 * tolerance)
+        self._seen.append((tuple(laws), found.pressures))
+        return found.displacement
 
     @property
     def trained(self) -> int:
@@ -297,16 +307,17 @@ class Reduction:
     def compress(self, tolerance: float) -> None:
         """Keep of the basis for vibration what the modes of all variants trained on need, most needed first."""
         columns = []
-        for springs in self._seen:
-            _, vectors, _ = self.model.modes(springs)
+        for laws, pressures in self._seen:
+            _, vectors, _ = self.model.modes(self.model.springs(laws, pressures))
             both = np.concatenate([vectors.real, vectors.imag], axis=1)
             columns.append(both / np.tile(np.linalg.norm(vectors, axis=0), 2))
         rotation, size, _ = np.linalg.svd(np.concatenate(columns, axis=1), full_matrices=False)
         share = size**2
         self.dynamic.turn(rotation[:, share > 0.3 * tolerance])
-        self.model.coarse = max(int(np.count_nonzero(share > 30 * tolerance)), self.model.count)
-        self._refresh()
+        self._refresh(max(int(np.count_nonzero(share > 30 * tolerance)), self.model.count))
 
-    def evaluate(self, laws: Sequence[JointLaw], forces: Array) -> Variant:
+    def evaluate(
+        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None = None
+    ) -> Variant:
         """Modes under one law per joint and one force per bolt [N] (b,); see `ReducedModel.evaluate`."""
-        return self.model.evaluate(laws, forces)
+        return self.model.evaluate(laws, forces, friction, start)

@@ -1,6 +1,6 @@
 """A structure in two small bases, one for equilibrium and one for vibration: any law and preload in milliseconds.
 
-`reduce` makes it from a structure; it holds no matrix of the structure's size and can be sent to other processes.
+`reduce` makes it from a structure; it has no matrix of the structure's size and can be sent to other processes.
 """
 
 from collections.abc import Sequence
@@ -12,6 +12,7 @@ from faying.errors import InputError, NotConverged
 from faying.fe.damped import followers
 from faying.joint.equilibrium import Equilibrium, PreloadState, StickSlip
 from faying.joint.joint_law import JointLaw
+from faying.joint.springs import Springs
 from faying.typing import Array, Complex
 
 BALANCED = 1e-8  # imbalance at which the pressure is right to far more digits than a sweep gives
@@ -27,15 +28,9 @@ class ReducedMotion:
     gap: Array
     relative: Array
 
-
-@dataclass(frozen=True, kw_only=True)
-class Densities:
-    """Springs of one joint at its points: k_n, k_t and their imaginary parts [Pa/m] (q,)."""
-
-    k_n: Array
-    k_t: Array
-    c_n: Array
-    c_t: Array
+    def springs(self, k_n: Array, k_t: Array) -> Array:
+        """Stiffness (m, m) [N/m] of springs per area k_n, k_t [Pa/m] (q,)."""
+        return _sprung(self.relative, self.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,23 +38,14 @@ class Variant:
     """One law and preload, evaluated in the bases.
 
     frequencies [Hz], loss_factors [-] (m,), elastic modes; estimate (m,): what the frequencies change by, relatively,
-    when the last part of the basis is left out; preload: the equilibrium, with coefficients in place of displacements.
+    when the last part of the basis is left out; preload: the equilibrium, with coefficients in place of displacements;
+    its `displacement` is what a like variant may start from.
     """
 
     frequencies: Array
     loss_factors: Array
     estimate: Array
     preload: PreloadState
-
-
-def densities(laws: Sequence[JointLaw], pressures: Sequence[Array]) -> list[Densities]:
-    """Springs per area of all joints at given pressures [Pa], one array for each joint."""
-    out = []
-    for law, p in zip(laws, pressures, strict=True):
-        k_n, k_t = law.stiffness(p)
-        loss_n, loss_t = law.loss(p)
-        out.append(Densities(k_n=k_n, k_t=k_t, c_n=k_n * loss_n, c_t=k_t * loss_t))
-    return out
 
 
 def _complex_modes(real: Array, loss: Array, count: int) -> tuple[Complex, Complex]:
@@ -104,7 +90,7 @@ class ReducedEquilibrium(Equilibrium):
     """Equilibrium in a basis: dense Newton."""
 
     def _start(self, load: Array) -> Array:
-        """Every joint at one common pressure, by springs tangent to p(closing) there."""
+        """Every joint at one common pressure, by springs tangent to p(approach) there."""
         matrix, push = self.stiffness.copy(), load.copy()
         for trace, law in self.joints:
             middle = 10 * np.sqrt(law.least_pressure * law.model.greatest_pressure)
@@ -112,7 +98,7 @@ class ReducedEquilibrium(Equilibrium):
             k_n, k_t = (float(k) for k in law.stiffness(np.asarray(mean)))
             share = trace.weights[:, None] * np.array([k_n, k_t, k_t])
             matrix = matrix + trace.relative.T @ (share.reshape(-1, 1) * trace.relative)
-            offset = mean - k_n * (law.closing(mean) + trace.gap)
+            offset = mean - k_n * (law.approach(mean) + trace.gap)
             local = np.zeros((len(offset), 3))
             local[:, 0] = offset * trace.weights
             push = push + trace.relative.T @ local.ravel()
@@ -138,54 +124,57 @@ class ReducedEquilibrium(Equilibrium):
             raise NotConverged("preload: the joint opens wholly on the way; load it in smaller steps") from None
 
 
-@dataclass(kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class ReducedModel:
     """The two bases, projected.
 
-    static_*: stiffness (s, s), loads (s, bolts) of 1 N each, relative motion at the points of each joint (3q, s);
-    dynamic_*: stiffness, mass (d, d), relative motion (3q, d); count: modes that are given; coarse: how many leading
-    vectors of the dynamic basis make the coarser one of the estimate.
+    weights [m2], gaps [m]: (q,) of each joint; static_*: stiffness (s, s), loads (s, bolts) of 1 N each, relative motion
+    at the points of each joint (3q, s); dynamic_*: stiffness, mass (d, d), relative motion (3q, d); count: modes that are
+    given; coarse: how many leading vectors of the dynamic basis make the coarser one of the estimate.
     """
 
-    weights: list[Array]
-    gaps: list[Array]
-    friction: list[float | None]
+    weights: Sequence[Array]
+    gaps: Sequence[Array]
     static_stiffness: Array
     static_loads: Array
-    static_relative: list[Array]
+    static_relative: Sequence[Array]
     dynamic_stiffness: Array
     dynamic_mass: Array
-    dynamic_relative: list[Array]
+    dynamic_relative: Sequence[Array]
     count: int
     coarse: int
-    last: Array | None = None
 
-    def equilibrium(self, laws: Sequence[JointLaw], forces: Array) -> PreloadState:
-        """PreloadState in the basis under bolt forces [N] (b,), started from the last one that was found."""
-        joints = [
-            (ReducedMotion(weights=w, gap=gap, relative=relative), law)
-            for w, gap, relative, law in zip(self.weights, self.gaps, self.static_relative, laws, strict=True)
-        ]
-        balance = ReducedEquilibrium(self.static_stiffness, joints, friction=self.friction)
+    def _motions(self, relative: Sequence[Array]) -> list[ReducedMotion]:
+        found = zip(self.weights, self.gaps, relative, strict=True)
+        return [ReducedMotion(weights=w, gap=gap, relative=motion) for w, gap, motion in found]
+
+    def equilibrium(
+        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None = None
+    ) -> PreloadState:
+        """Equilibrium in the basis under bolt forces [N] (b,); start: coefficients found before, maybe in fewer vectors."""
+        joints = list(zip(self._motions(self.static_relative), laws, strict=True))
         load = self.static_loads @ forces
-        if self.last is not None:
-            balance.last = np.concatenate([self.last, np.zeros(len(load) - len(self.last))])
-        try:
-            found = balance.solve(load, beyond=1.0, tolerance=BALANCED)
-        except NotConverged:
-            if balance.last is None:
-                raise
-            balance.last = None
-            found = balance.solve(load, beyond=1.0, tolerance=BALANCED)
-        self.last = found.displacement
-        return found
+        if start is not None:
+            padded = np.concatenate([start, np.zeros(len(load) - len(start))])
+            try:
+                balance = ReducedEquilibrium(self.static_stiffness, joints, friction=friction)
+                return balance.solve(load, start=padded, beyond=1.0, tolerance=BALANCED)
+            except NotConverged:
+                pass
+        balance = ReducedEquilibrium(self.static_stiffness, joints, friction=friction)
+        return balance.solve(load, beyond=1.0, tolerance=BALANCED)
 
-    def modes(self, springs: Sequence[Densities]) -> tuple[Complex, Complex, Array]:
+    def springs(self, laws: Sequence[JointLaw], pressures: Sequence[Array]) -> list[Springs[ReducedMotion]]:
+        """Springs of all joints under pressures [Pa], one array for each joint."""
+        motions = self._motions(self.dynamic_relative)
+        return [law.springs(motion, p) for motion, law, p in zip(motions, laws, pressures, strict=True)]
+
+    def modes(self, springs: Sequence[Springs[ReducedMotion]]) -> tuple[Complex, Complex, Array]:
         """Complex eigenvalues w^2 (1 + i eta) [1/s2] (m,), coefficients (d, m), the estimate (m,)."""
         from scipy.linalg import eigh
 
-        joint, loss = self._joints(springs)
-        K, M = self.dynamic_stiffness + joint, self.dynamic_mass
+        K, M = self.dynamic_stiffness + sum(s.stiffness() for s in springs), self.dynamic_mass
+        loss = sum(s.loss() for s in springs)
         real, shapes = eigh(K, M)
         cut = slice(0, self.coarse)
         rough = eigh(K[cut, cut], M[cut, cut], eigvals_only=True, subset_by_index=[0, self.count - 1])
@@ -193,20 +182,25 @@ class ReducedModel:
         values, inner = _complex_modes(real, shapes.T @ loss @ shapes, self.count)
         return values, shapes @ inner, estimate
 
-    def _joints(self, springs: Sequence[Densities]) -> tuple[Array, Array]:
-        size = len(self.dynamic_mass)
-        real, imaginary = np.zeros((size, size)), np.zeros((size, size))
-        for weights, relative, d in zip(self.weights, self.dynamic_relative, springs, strict=True):
-            for target, n, t in ((real, d.k_n, d.k_t), (imaginary, d.c_n, d.c_t)):
-                target += _sprung(relative, weights[:, None] * np.stack([n, t, t], axis=1))
-        return real, imaginary
+    def evaluate(
+        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None = None
+    ) -> Variant:
+        """Evaluate one variant.
 
-    def evaluate(self, laws: Sequence[JointLaw], forces: Array) -> Variant:
-        """Modes under one law per joint and one force per bolt [N] (b,). Raises InputError for forces that fit no bolt."""
+        Args:
+            laws: The law of each joint.
+            forces: Force of each bolt [N] (b,).
+            friction: Coefficient of each joint [-], None where it sticks.
+            start: `preload.displacement` of a like variant, from which the equilibrium is sought first.
+
+        Raises:
+            InputError: The forces fit no bolt, or are all zero.
+            NotConverged: No equilibrium is found.
+        """
         if np.shape(forces) != (self.static_loads.shape[1],):
             raise InputError(f"{np.size(forces)} bolt forces for {self.static_loads.shape[1]} bolts; give one for each")
-        found = self.equilibrium(laws, np.asarray(forces, dtype=float))
-        values, _, estimate = self.modes(densities(laws, found.pressures))
+        found = self.equilibrium(laws, np.asarray(forces, dtype=float), friction, start)
+        values, _, estimate = self.modes(self.springs(laws, found.pressures))
         return Variant(
             frequencies=np.sqrt(values.real) / (2 * np.pi),
             loss_factors=values.imag / values.real,

@@ -19,9 +19,12 @@ MOST = 6000  # unknowns of the layer that is drawn in: its dense block takes .3 
 class SolidBolt:
     """A bolt that is a meshed part; its faces meet the seats in joints like those of any other part.
 
-    part: its name; faces: those of the bolt itself under its head and under its nut, or round its thread; at [m] (3,): a
-    point of the plane in which the shank is drawn in, half-way between the faces where None; preload [N]: the forces that
-    it is tightened to, one load after another.
+    Args:
+        name: What messages and results call the bolt.
+        part: Name of the part.
+        faces: Faces of the bolt itself under its head and under its nut, or round its thread.
+        at: A point (3,) [m] of the plane in which the shank is drawn in; half-way between the faces where None.
+        preload: Forces [N] that it is tightened to, one load after another.
     """
 
     name: str

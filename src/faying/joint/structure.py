@@ -1,31 +1,45 @@
-"""A bolted structure: meshed parts, the joints between them, the bolts that pull them together, what holds them."""
+"""A bolted structure: meshed parts, the joints between them, the bolts that pull them together, what supports them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.constraint import free_motions, hold
-from faying.fe.elasticity import Solid, assemble, rigid_motions
+from faying.fe.constraint import constrain
+from faying.fe.elasticity import Solid
 from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
 from faying.fe.sides import skin, triangles_of
 from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt, FittedBolt
+from faying.joint.frame import Frame, added
 from faying.joint.joint_law import JointLaw
 from faying.joint.preload import PreloadProblem
 from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
+from faying.joint.springs import Springs
 from faying.typing import Array, Index
 
 
 @dataclass(frozen=True, kw_only=True)
 class Joint:
-    """Two faces, how they meet, and the law between them; per_node puts springs at nodes, as the JK paper does.
+    """Two faces that meet, and the contact law between them.
 
-    friction: coefficient of Coulomb slip under the preload [-]; None where the joint sticks everywhere.
+    Args:
+        name: What messages and results call the joint.
+        faces: Names of the two faces, on two parts.
+        interface: How they meet, from `faying.fe.interface.join`.
+        law: The contact law on the joint.
+        per_node: Springs at nodes instead of per area, as the JK paper has them; the faces must match node for node.
+        scan_area: With per_node, area of the scan [m2] to which a node's force is applied; 1 m2 where None.
+        friction: Coefficient of Coulomb slip under the preload [-], 0 to 10; None where the joint sticks everywhere.
+
+    Raises:
+        InputError: The friction is no coefficient of friction.
+
+    Source:
+        Springs at nodes: the JK paper, doi:10.3390/fractalfract8100611.
     """
 
     name: str
@@ -43,46 +57,36 @@ class Joint:
                 "0.2, or leave it out for a joint that sticks"
             )
 
-
-@dataclass(frozen=True, kw_only=True)
-class Springs:
-    """The springs of one joint at one preload: densities [Pa/m] and loss factors [-] at the points of `interface`."""
-
-    interface: Interface
-    k_n: Array
-    k_t: Array
-    loss_n: Array
-    loss_t: Array
-
-    def stiffness(self) -> Any:
-        """Stiffness matrix [N/m]."""
-        return self.interface.springs(self.k_n, self.k_t)
-
-    def loss(self) -> Any:
-        """Imaginary part of the stiffness matrix [N/m]: hysteretic loss."""
-        return self.interface.springs(self.k_n * self.loss_n, self.k_t * self.loss_t)
-
-    def viscous(self, mass: float) -> Any:
-        """Damping matrix [N s/m] of the JK paper's dampers, c = eta sqrt(M k) at every point, M [kg] the whole mass.
-
-        k is the spring of a point, so that c grows with the root of its share of the area: the sum depends on the mesh.
-        """
-        w = self.interface.weights
-        c_n, c_t = (eta * np.sqrt(mass * k / w) for eta, k in ((self.loss_n, self.k_n), (self.loss_t, self.k_t)))
-        return self.interface.springs(c_n, c_t)
-
-    def total(self) -> tuple[float, float]:
-        """Sum of all normal and all tangential springs [N/m]."""
-        w = self.interface.weights
-        return float(w @ self.k_n), float(w @ self.k_t)
+    def springs(self, pressure: Array) -> Springs[Interface]:
+        """Springs of this joint under a pressure [Pa] (q,) at the points of its interface."""
+        if not self.per_node:
+            return self.law.springs(self.interface, pressure)
+        # the paper's use: each node's force goes straight into the law as if the node were a whole scan
+        nodes = self.interface.at_nodes()
+        at_nodes = np.maximum(self.interface.to_nodes(nodes, pressure), 0.0)
+        area = self.scan_area or 1.0
+        scans = self.law.springs(nodes, at_nodes * nodes.weights / area)
+        per_area = area / nodes.weights
+        return replace(scans, pressure=at_nodes, k_n=scans.k_n * per_area, k_t=scans.k_t * per_area)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Structure:
-    """Mesh, material of each part, joints, bolts, supports and point masses.
+    """A bolted structure.
 
-    Raises InputError where a part is held by nothing, neither a joint nor a support, or is two solid bolts, and where a
-    solid bolt's face is in no joint.
+    What does not depend on the laws of the joints is assembled once, when it is first asked for, and shared with a
+    structure that `dataclasses.replace` makes with other laws on the same faces.
+
+    Args:
+        mesh: Parts and faces.
+        materials: Part -> its material (E [Pa], nu [-], density [kg/m3]).
+        joints: The joints between the parts.
+        bolts: Bolts as beams, forces or meshed parts.
+        supports: Faces that are fixed or on springs.
+        masses: Point masses.
+
+    Raises:
+        InputError: A part has neither joint nor support, or is two solid bolts; a solid bolt's face is in no joint.
     """
 
     mesh: Mesh
@@ -91,10 +95,11 @@ class Structure:
     bolts: tuple[Bolt | SolidBolt, ...] = ()
     supports: tuple[Support, ...] = ()
     masses: tuple[PointMass, ...] = ()
+    frame: Frame | None = field(default=None, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         faces = [face for joint in self.joints for face in joint.faces] + [support.face for support in self.supports]
-        held = {self.mesh.face_part[face] for face in faces if face in self.mesh.face_part}
+        met = {self.mesh.face_part[face] for face in faces if face in self.mesh.face_part}
         solid = [bolt for bolt in self.bolts if isinstance(bolt, SolidBolt)]
         meshed = [bolt.part for bolt in solid]
         twice = sorted({part for part in meshed if meshed.count(part) > 1})
@@ -107,83 +112,71 @@ class Structure:
                     f"bolt {bolt.name!r}: its face {apart[0]!r} is in no joint; add a [[joint]] of it and the seat that it "
                     "presses"
                 )
-        loose = [part for part in self.mesh.parts if part not in held]
+        loose = [part for part in self.mesh.parts if part not in met]
         if loose and len(self.mesh.parts) > 1:
-            raise InputError(f"part {', '.join(loose)} has no joint; add a [[joint]] that holds it, or leave it out")
+            raise InputError(
+                f"part {', '.join(loose)} has no joint; add a [[joint]] of one of its faces, or leave it out"
+            )
+        frame = Frame(
+            mesh=self.mesh,
+            materials=self.materials,
+            joined=tuple(face for joint in self.joints for face in joint.faces),
+            bolts=self.bolts,
+            supports=self.supports,
+            masses=self.masses,
+        )
+        if self.frame is None or not self.frame.same(frame):
+            object.__setattr__(self, "frame", frame)
 
-    @cached_property
+    @property
+    def _frame(self) -> Frame:
+        assert self.frame is not None
+        return self.frame
+
+    @property
     def matrices(self) -> tuple[Any, Any]:
         """Stiffness [N/m] and mass [kg] of the parts alone."""
-        return assemble(self.mesh, self.materials)
+        return self._frame.matrices
 
-    def sharing(self, other: "Structure") -> "Structure":
-        """Return this structure with what `other`, which differs in its laws alone, has assembled already."""
-        for name in ("matrices", "held", "fitted_bolts", "loads", "_upheld", "standing", "vibrating", "rigid"):
-            self.__dict__[name] = getattr(other, name)
-        return self
-
-    @cached_property
-    def held(self) -> Index:
+    @property
+    def fixed(self) -> Index:
         """Unknowns that supports keep at rest."""
-        found = [support.held(self.mesh) for support in self.supports]
-        return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.int64)
+        return self._frame.fixed
 
-    @cached_property
+    @property
     def fitted_bolts(self) -> tuple[FittedBolt | FittedSolidBolt, ...]:
         """The bolts in their places."""
-        joined = [*(f for joint in self.joints for f in joint.faces), *(support.face for support in self.supports)]
-        return tuple(
-            bolt.fitted(self.mesh) if isinstance(bolt, Bolt) else bolt.fitted(self.mesh, self.matrices[0], joined)
-            for bolt in self.bolts
-        )
+        return self._frame.fitted_bolts
 
-    @cached_property
+    @property
     def loads(self) -> Array:
         """Nodal forces [N] (unknowns, bolts) of 1 N in each bolt."""
-        if not self.bolts:
-            return np.zeros((self.mesh.unknowns, 0))
-        return np.stack([bolt.load for bolt in self.fitted_bolts], axis=1)
+        return self._frame.loads
 
-    @cached_property
-    def _upheld(self) -> Any:
-        """Stiffness [N/m] of the parts and of elastic supports."""
-        return _added(self.matrices[0], [support.springs(self.mesh) for support in self.supports])
-
-    @cached_property
+    @property
     def standing(self) -> Any:
         """Stiffness [N/m] of the parts and of elastic supports, before any bolt is tight."""
-        return _added(self._upheld, [-bolt.released for bolt in self.fitted_bolts if bolt.released is not None])
+        return self._frame.standing
 
-    @cached_property
+    @property
     def vibrating(self) -> tuple[Any, Any]:
-        """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; held unknowns cleared."""
-        K = _added(self._upheld, [bolt.stiffness for bolt in self.fitted_bolts if bolt.released is None])
-        M = _added(self.matrices[1], [bolt.mass for bolt in self.fitted_bolts])
-        M = _added(M, [mass.matrix(self.mesh) for mass in self.masses])
-        return hold(K, self.held), hold(M, self.held, 0.0)
+        """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; fixed unknowns cleared."""
+        return self._frame.vibrating
 
-    @cached_property
+    @property
     def rigid(self) -> Array:
         """Rigid motions of the whole that no support resists (unknowns, up to 6)."""
-        if any(support.stiffness is not None for support in self.supports):
-            springs = _added(None, [support.springs(self.mesh) for support in self.supports])
-            all_six = free_motions(rigid_motions(self.mesh.points), self.held)
-            if not all_six.shape[1]:
-                return all_six
-            energy = all_six.T @ (springs @ all_six)
-            values, vectors = np.linalg.eigh(energy)
-            return np.asarray(all_six @ vectors[:, values < 1e-10 * max(values.max(), 1e-300)])
-        return free_motions(rigid_motions(self.mesh.points), self.held)
+        return self._frame.rigid
 
-    @cached_property
+    @property
+    def rigid_count(self) -> int:
+        """Number of rigid motions that no support resists, 0 to 6."""
+        return int(self.rigid.shape[1])
+
+    @property
     def shift_frequency(self) -> float:
         """A frequency below the first elastic mode of any compact body of this size [Hz]: .02 c/size."""
-        speeds = [(m.E / (m.density or np.inf)) ** 0.5 for m in self.materials.values()]
-        return float(0.02 * max(speeds) / self.mesh.size)
-
-    def bolt_load(self, first: str, second: str) -> Array:
-        """Nodal forces [N] (unknowns,) of a bolt that pulls the two faces towards each other with 1 N."""
-        return Bolt(name="bolt", faces=(first, second)).fitted(self.mesh).load
+        return self._frame.shift_frequency
 
     def assembly(self, *, solver: str | None = None) -> PreloadProblem:
         """Return the preload problem of this structure."""
@@ -196,42 +189,34 @@ class Structure:
             shift_frequency=self.shift_frequency,
             solver=solver,
             friction=[joint.friction for joint in self.joints],
-            held=self.held,
+            fixed=self.fixed,
         )
 
-    def joined(self, springs: Sequence[Springs], *, viscous: bool = False) -> tuple[Any, Any]:
-        """Stiffness [N/m] with the springs of all joints, and their loss; held unknowns cleared.
+    def joined(self, springs: Sequence[Springs[Interface]], *, viscous: bool = False) -> tuple[Any, Any]:
+        """Stiffness [N/m] with the springs of all joints, and their loss; fixed unknowns cleared.
 
         The loss is the imaginary part of the stiffness [N/m], or where viscous the damping [N s/m] of the JK paper.
         """
-        K = _added(self.vibrating[0], [hold(s.stiffness(), self.held, 0.0) for s in springs])
+        K = added(self.vibrating[0], [constrain(s.stiffness(), self.fixed, 0.0) for s in springs])
         weight = float(self.matrices[1].sum()) / 3 if viscous else 0.0
-        losses = [hold(s.viscous(weight) if viscous else s.loss(), self.held, 0.0) for s in springs]
-        return K, _added(None, losses)
+        losses = [constrain(s.viscous(weight) if viscous else s.loss(), self.fixed, 0.0) for s in springs]
+        return K, added(None, losses)
 
-    def springs(self, pressures: tuple[Array, ...]) -> tuple[Springs, ...]:
-        """Stiffness and loss of every joint at pressures [Pa], one array per joint at the points of its interface."""
-        out = []
-        for joint, pressure in zip(self.joints, pressures, strict=True):
-            interface = joint.interface
-            per_area: Array = np.ones(1)
-            if joint.per_node:
-                # the paper's use: each node's force goes straight into the law as if the node were a whole scan
-                nodes = interface.at_nodes()
-                forces = np.maximum(interface.to_nodes(nodes, pressure), 0.0) * nodes.weights
-                area = joint.scan_area or 1.0
-                pressure, interface = forces / area, nodes
-                per_area = area / nodes.weights
-            k_n, k_t = joint.law.stiffness(pressure)
-            loss_n, loss_t = joint.law.loss(pressure)
-            out.append(
-                Springs(interface=interface, k_n=k_n * per_area, k_t=k_t * per_area, loss_n=loss_n, loss_t=loss_t)
-            )
-        return tuple(out)
+    def springs(self, pressures: Sequence[Array]) -> tuple[Springs[Interface], ...]:
+        """Return the springs of every joint, as they are assembled.
 
-    def tie(self) -> Any | None:
-        """Return the map that grows the faces of every joint together; see `tie`."""
-        return tie(self.mesh, [joint.faces for joint in self.joints])
+        Args:
+            pressures: Pressure [Pa] at the points of each joint's interface, one array per joint.
+
+        Returns:
+            For each joint: the points of its springs with their share of the area, the pressure there, k_n, k_t and both
+            loss factors. With springs per node the points are nodes.
+        """
+        return tuple(joint.springs(pressure) for joint, pressure in zip(self.joints, pressures, strict=True))
+
+    def bonded(self) -> Any | None:
+        """Return the map that bonds the faces of every joint; see `bond`."""
+        return bond(self.mesh, [joint.faces for joint in self.joints])
 
     def outline(self) -> tuple[Index, Index]:
         """Nodes of the outer surface and triangles between them (t, 3), for pictures."""
@@ -240,15 +225,8 @@ class Structure:
         return nodes, triangles.reshape(-1, 3).astype(np.int64)
 
 
-def _added(matrix: Any, more: Sequence[Any]) -> Any:
-    for one in more:
-        if one is not None:
-            matrix = one if matrix is None else matrix + one
-    return matrix
-
-
-def tie(mesh: Mesh, pairs: Sequence[tuple[str, str]]) -> Any | None:
-    """Return the sparse map (unknowns, fewer) that grows pairs of faces together node by node.
+def bond(mesh: Mesh, pairs: Sequence[tuple[str, str]]) -> Any | None:
+    """Return the sparse map (unknowns, fewer) that bonds pairs of faces node by node.
 
     None where the meshes of a pair do not match.
     """
@@ -266,7 +244,7 @@ def tie(mesh: Mesh, pairs: Sequence[tuple[str, str]]) -> Any | None:
         near.append(a[index])
         far.append(b)
     ends = np.concatenate(near), np.concatenate(far)
-    # a node of several joints grows together with all that it meets in any of them
+    # a node of several joints is bonded to all that it meets in any of them
     _, column = connected_components(csr_array((np.ones(len(ends[0])), ends), shape=(n, n)), directed=False)
     count = int(column.max()) + 1
     columns = (3 * column.reshape(-1, 1) + np.arange(3)).ravel()

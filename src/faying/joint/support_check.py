@@ -1,4 +1,4 @@
-"""Whether every part of a structure is held: by contact after the preload, and against every motion in its modes."""
+"""Whether every part of a structure is fixed: by contact after the preload, and against every motion in its modes."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -13,14 +13,14 @@ from faying.joint.structure import Structure
 from faying.joint.tighten import tighten
 from faying.typing import Array
 
-STILL = 0.01  # of the shift: a frequency below it is that of a motion that nothing resists
+RIGID_BELOW = 0.01  # of the shift: a frequency below it is that of a motion that nothing resists
 NOTHING = 1e-6  # of the greatest pressure
 
 
-def held_preload(
+def checked_preload(
     structure: Structure, assembly: PreloadProblem, forces: Sequence[float], order: Sequence[int] | None = None
 ) -> PreloadState:
-    """`tighten`, and see that every part is held by what comes of it.
+    """`tighten`, and check that no part is left free to move.
 
     Raises InputError where a part is not, also in place of the NotConverged that this leads to, and what `tighten` raises.
     """
@@ -59,11 +59,11 @@ def check_contact(structure: Structure, pressures: Sequence[Array], openings: Se
     for bolt in structure.bolts:
         if bolt.diameter is not None:
             meet(*(owner[face] for face in bolt.faces))
-    ground = [owner[support.face] for support in structure.supports]
-    for part in ground[1:]:
-        meet(ground[0], part)
+    supported = [owner[support.face] for support in structure.supports]
+    for part in supported[1:]:
+        meet(supported[0], part)
     sizes = {name: sum(len(structure.mesh.part_nodes(p)) for p in group if group[p] == name) for name in group.values()}
-    main = group[ground[0]] if ground else max(sizes, key=lambda name: sizes[name])
+    main = group[supported[0]] if supported else max(sizes, key=lambda name: sizes[name])
     loose = [part for part in group if group[part] != main]
     if not loose:
         return
@@ -72,22 +72,22 @@ def check_contact(structure: Structure, pressures: Sequence[Array], openings: Se
         for joint, gap in zip(structure.joints, openings, strict=True)
         if joint.name in apart and any(owner[face] in loose for face in joint.faces)
     }
-    told = ", ".join(f"{name!r} ({gap * 1e6:.4g} um apart at the nearest)" for name, gap in nearest.items())
+    gaps = ", ".join(f"{name!r} ({gap * 1e6:.4g} um apart at the nearest)" for name, gap in nearest.items())
     raise InputError(
-        f"part {', '.join(map(repr, loose))} is held by nothing under this preload: no contact is left at joint {told}; "
+        f"part {', '.join(map(repr, loose))} is free to move under this preload: no contact is left at joint {gaps}; "
         "pull the bolts harder, place them so that they press these faces, or check the gap map and its unit"
     )
 
 
 def check_motions(structure: Structure, modes: Modes) -> None:
     """Raise InputError where a part moves freely though neither its supports nor the want of any explain it."""
-    still = structure.rigid.shape[1]
-    free = np.flatnonzero(modes.frequencies < STILL * np.sqrt(modes.shift) / (2 * np.pi))
-    if len(free) <= still:
+    rigid_count = structure.rigid_count
+    free = np.flatnonzero(modes.frequencies < RIGID_BELOW * np.sqrt(modes.shift) / (2 * np.pi))
+    if len(free) <= rigid_count:
         return
     part = _mover(structure, modes.shapes[:, free])
     raise InputError(
-        f"{len(free)} motions cost no energy and {still} of them are those of the whole: part {part!r} moves freely "
+        f"{len(free)} motions cost no energy and {rigid_count} of them are those of the whole: part {part!r} moves freely "
         f"against the others (at {modes.frequencies[free].max():.2g} Hz). Its joints resist only some directions; give "
         "the law a tangential stiffness, a joint more, or a support"
     )

@@ -48,22 +48,18 @@ def tighten(
         )
     tight: dict[int, tuple[float, Array]] = {}  # force and displacement when the bolt was let go
     found: PreloadState | None = None
-    standing = structure.standing
-    try:
-        for turn in order:
-            assembly.stiffness, load = standing, force[turn] * loads[:, turn]
-            for index, bolt in enumerate(bolts):
-                if bolt.released is not None and index not in tight and index != turn:
-                    load = load + SNUG * force[index] * loads[:, index]
-            for index, (held, moved) in tight.items():
-                if index != turn:
-                    shank = bolts[index].stiffness
-                    assembly.stiffness = assembly.stiffness + shank
-                    load = load + held * loads[:, index] + shank @ moved  # type: ignore[operator]
-            found = assembly.solve(load, report=report)
-            tight[turn] = (float(force[turn]), found.displacement)
-    finally:
-        assembly.stiffness = standing
+    for turn in order:
+        shanks, load = None, force[turn] * loads[:, turn]
+        for index, bolt in enumerate(bolts):
+            if bolt.released is not None and index not in tight and index != turn:
+                load = load + SNUG * force[index] * loads[:, index]
+        for index, (kept, moved) in tight.items():
+            shank = bolts[index].stiffness
+            if index != turn and shank is not None:
+                shanks = shank if shanks is None else shanks + shank
+                load = load + kept * loads[:, index] + shank @ moved
+        found = assembly.solve(load, shanks=shanks, report=report)
+        tight[turn] = (float(force[turn]), found.displacement)
     assert found is not None
     final = found.displacement
     left = tuple(tight[i][0] + bolts[i].tension(final - tight[i][1]) for i in range(len(bolts)))

@@ -8,7 +8,7 @@ import numpy as np
 from faying.fe.constraint import constrain
 from faying.fe.damped import DampedModes
 from faying.fe.modes import Modes
-from faying.fe.response import Response, frequency_response
+from faying.fe.response import Response, Vibration, frequency_response
 from faying.joint.attachments import nearest_node
 from faying.joint.structure import Structure
 from faying.measured.model import FullResponse
@@ -76,19 +76,18 @@ class LoadedStructure:
     def _at(self, frequencies: Array, outputs: tuple[Array, Array], inputs: tuple[Array, Array]) -> Response:
         spec = self.study.response
         eta = 0.0 if spec is None else spec.structural_loss
-        return frequency_response(
-            self.modes,
-            self.damped,
-            self.stiffness,
-            self.mass,
-            self.loss,
-            forces=self._columns(*inputs),
-            outputs=self._columns(*outputs),
-            frequencies=frequencies,
+        vibration = Vibration(
+            stiffness=self.stiffness,
+            mass=self.mass,
+            loss=self.loss,
             rigid=self.structure.rigid_count,
             kind=self.study.modes.damping,
             structural_loss=eta,
             parts=constrain(self.structure.matrices[0], self.structure.fixed, 0.0) if eta else None,
+        )
+        forces, read = self._columns(*inputs), self._columns(*outputs)
+        return frequency_response(
+            vibration, self.modes, self.damped, forces=forces, outputs=read, frequencies=frequencies
         )
 
     def _columns(self, nodes: Array, axes: Array) -> Array:

@@ -194,9 +194,10 @@ class _Trainer:
     """Makes the bases when they are first needed, and enriches them at points of the grid."""
 
     def __init__(
-        self, study: Study, structure: Structure, recipe: Recipe, tolerance: float, tell: Callable[[str, int], None]
+        self, study: Study, structure: Structure, recipe: Recipe, tolerance: float, report: Callable[[str, int], None]
     ) -> None:
-        self.study, self.structure, self.recipe, self.tolerance, self.tell = study, structure, recipe, tolerance, tell
+        self.study, self.structure, self.recipe, self.tolerance = study, structure, recipe, tolerance
+        self.report = report
         self.reduction: Reduction | None = None
 
     def trained(self, more: Sequence[int] = ()) -> Reduction:

@@ -5,10 +5,10 @@ import pytest
 from scipy.io import mmwrite
 
 import faying
+from faying.decks.matrices import arranged, read_matrices
 from faying.fe.elasticity import assemble
-from faying.fe.matrices import arranged, read_matrices
 from faying.fe.mesh import Mesh
-from tests.helpers.blocks import block
+from tests.helpers.boxes import block
 
 STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0)
 UNITS = {"stiffness_unit": "N/mm", "mass_unit": "t"}

@@ -1,13 +1,18 @@
-"""What a mesh file holds, before it becomes a mesh: the file's own numbers, its own unit, its sets."""
+"""What a file holds before it becomes a mesh or matrices: the file's own numbers, its own unit, its sets."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from faying.errors import ReadError
 from faying.fe.elements import KINDS, SOLIDS
 from faying.typing import Array, Index
+
+Matrices: TypeAlias = tuple[Any, Any, Index]
+"""Stiffness and mass (n, n), sparse, and dofs (n, 2): number of the node, direction 1, 2, 3."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,3 +84,24 @@ def from_edges(kind: str, edges: tuple[tuple[int, int], ...]) -> list[int]:
     corners = KINDS[kind].corners
     place = {frozenset(edge): corners + i for i, edge in enumerate(edges)}
     return [*range(corners), *(place[frozenset(edge)] for edge in KINDS[kind].edges)]
+
+
+def read_text(path: Path, what: str) -> str:
+    """Text of a file; ReadError where it cannot be read."""
+    try:
+        return path.read_text(encoding="utf-8", errors="replace")
+    except OSError as fault:
+        raise ReadError(f"cannot read the {what} {path}: {fault.strerror or fault}") from None
+
+
+def read_dofs(path: Path) -> Index:
+    """Read a list of unknowns (n, 2): node and direction."""
+    out = []
+    for k, line in enumerate(read_text(path, "list of unknowns").splitlines(), 1):
+        words = line.replace(".", " ").split()
+        if not words:
+            continue
+        if len(words) != 2 or not all(word.isdigit() for word in words):
+            raise ReadError(f'{path}, line {k}: "{line.strip()}" should be a node and a direction, such as 12.1')
+        out.append((int(words[0]), int(words[1])))
+    return np.array(out, dtype=np.int64).reshape(-1, 2)

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from faying.decks.raw import RawMesh, face_blocks, from_edges, gathered, index
 from faying.errors import ReadError
-from faying.fe.formats.raw import RawMesh, face_blocks, from_edges, gathered, index
 
 _KINDS = {4: ("tet4", 4), 5: ("hex8", 8), 6: ("wedge6", 6), 11: ("tet10", 10), 17: ("hex20", 20), 18: ("wedge15", 15)}
 _FACES = {2: 3, 3: 4, 9: 6, 16: 8}
@@ -99,16 +99,16 @@ def read(path: Path) -> RawMesh:
     bodies: dict[str, list[int]] = {}
     faces: dict[str, list[list[int]]] = {}
     extra: list[int] = []
-    for number, code, tags, held in rows:
+    for number, code, tags, corners in rows:
         if code in _KINDS:
             kind = _KINDS[code][0]
-            solids.setdefault(kind, []).append((number, [held[i] for i in _ORDER.get(kind, range(len(held)))]))
+            solids.setdefault(kind, []).append((number, [corners[i] for i in _ORDER.get(kind, range(len(corners)))]))
             for tag in tags:
                 bodies.setdefault(names.get((3, tag), f"part{tag}"), []).append(number)
         else:
-            extra += held
+            extra += corners
             for tag in tags if code in _FACES else ():
-                faces.setdefault(names.get((2, tag), f"face{tag}"), []).append(held)
+                faces.setdefault(names.get((2, tag), f"face{tag}"), []).append(corners)
     if not solids:
         raise ReadError(f"{path} holds no solid elements; mesh the volumes (gmsh -3) and save them all")
     return RawMesh(

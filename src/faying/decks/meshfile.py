@@ -7,23 +7,14 @@ from pathlib import Path
 import numpy as np
 
 from faying import units
+from faying.decks.programs import MESHES, reader_of
+from faying.decks.raw import RawMesh
 from faying.errors import InputError, ReadError
 from faying.fe.elements import FACES, SOLIDS
-from faying.fe.formats.raw import RawMesh
 from faying.fe.mesh import Mesh, least_jacobian
 from faying.fe.sides import Blocks, nodes_of, side_key, skin
 from faying.typing import Array, Index
 
-FORMATS = {
-    ".inp": "abaqus",
-    ".bdf": "nastran",
-    ".nas": "nastran",
-    ".dat": "nastran",
-    ".msh": "gmsh",
-    ".cdb": "ansys",
-    ".vtk": "vtk",
-    ".vtu": "vtk",
-}
 SMALLEST, LARGEST = 1e-3, 100.0  # sizes of a bolted structure [m] beyond which the unit is doubted
 CLOSE = 1e-7  # of the part's size: nodes nearer than this coincide
 
@@ -31,36 +22,39 @@ CLOSE = 1e-7  # of the part's size: nodes nearer than this coincide
 def read_mesh(
     path: str | Path, *, unit: str | None = None, parts: Mapping[str, str] | Sequence[str] | None = None
 ) -> Mesh:
-    """Read a mesh file: Abaqus or CalculiX .inp, Nastran .bdf, Gmsh .msh, ANSYS .cdb, VTK .vtk or .vtu.
+    """Read a mesh file: Abaqus or CalculiX .inp, Nastran .bdf, Gmsh .msh, MAPDL .cdb, VTK .vtk or .vtu.
 
-    unit: the length unit of the coordinates, such as "mm"; no format says. parts: names of the element sets that are
-    the parts, or part -> element set; where None, the bodies that the file names, else its element sets if they divide
-    the elements, else what hangs together. Faces are the file's node sets, surfaces and face elements, turned outwards;
-    a set that lies on several parts gives PART.SET for each. Parts that share nodes on named faces get nodes of their
-    own there. Raises ReadError for the file and InputError for what it holds.
+    Faces are the file's node sets, surfaces and face elements, turned outwards; a set that lies on several parts gives
+    PART.SET for each. Parts that share nodes on named faces get nodes of their own there.
+
+    Args:
+        path: The file.
+        unit: Length unit of the coordinates, such as "mm"; no format says it.
+        parts: Names of the element sets that are the parts, or part -> element set. Where None: the bodies that the file
+            names, else its element sets if they divide the elements, else the pieces that share no node.
+
+    Returns:
+        The mesh in metres, with the file's node numbers.
+
+    Raises:
+        ReadError: The file is missing, damaged, cut short or of an unknown kind.
+        InputError: The unit is missing or wrong, or parts, faces or elements cannot be used.
     """
     file = Path(path)
     if not file.is_file():
         raise ReadError(f"no file {file}")
-    if file.suffix.lower() not in FORMATS:
-        raise ReadError(
-            f"{file}: files of the kind {file.suffix or '(none)'} are not known; known are {', '.join(FORMATS)}"
-        )
+    module = reader_of(file, MESHES)
     if unit is None:
         raise InputError(f'{file.name} does not say in which unit its coordinates are; say it, for example unit = "mm"')
     scale = units.scale(unit, "m", name="unit of the mesh")
-    from importlib import import_module
-
-    raw: RawMesh = import_module(f"faying.fe.formats.{FORMATS[file.suffix.lower()]}").read(file)
+    raw: RawMesh = module.read(file)
     return _Builder(raw, file.name, unit, scale).mesh(parts)
 
 
 def last_element(path: str | Path) -> int:
     """Greatest number of a solid element in a mesh file, for whoever adds elements to it."""
-    from importlib import import_module
-
     file = Path(path)
-    raw: RawMesh = import_module(f"faying.fe.formats.{FORMATS[file.suffix.lower()]}").read(file)
+    raw: RawMesh = reader_of(file, MESHES).read(file)
     return max((int(numbers.max()) for numbers, _ in raw.elements.values() if len(numbers)), default=0)
 
 
@@ -134,8 +128,8 @@ class _Builder:
         used = np.zeros(len(points), dtype=bool)
         for block in cells:
             used[block] = True
-        held = np.isin(self.raw.numbers, self.raw.extra)
-        loose = self.raw.numbers[~used & ~held]
+        known = np.isin(self.raw.numbers, self.raw.extra)
+        loose = self.raw.numbers[~used & ~known]
         if len(loose):
             raise InputError(f"{self.name}: {len(loose)} nodes belong to no element: {_some(loose)}; delete them")
 
@@ -279,8 +273,8 @@ class _Builder:
     ) -> Mesh:
         """Give each part nodes of its own where parts share them on named faces."""
         n = len(points)
-        held = [i * n + nodes_of(some) for i, some in enumerate(blocks.values())]
-        key = np.unique(np.concatenate(held))
+        owned = [i * n + nodes_of(some) for i, some in enumerate(blocks.values())]
+        key = np.unique(np.concatenate(owned))
         place = {part: i for i, part in enumerate(blocks)}
         node, count = np.unique(key % n, return_counts=True)
         shared = node[count > 1]
@@ -322,8 +316,8 @@ class _Builder:
         from scipy.spatial import cKDTree
 
         where = points[nodes]
-        reach = CLOSE * float(np.linalg.norm(np.ptp(where, axis=0)))
-        pairs = cKDTree(where).query_pairs(reach, output_type="ndarray")
+        radius = CLOSE * float(np.linalg.norm(np.ptp(where, axis=0)))
+        pairs = cKDTree(where).query_pairs(radius, output_type="ndarray")
         if len(pairs):
             a, b = numbers[nodes[pairs[0]]]
             raise InputError(

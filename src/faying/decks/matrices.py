@@ -6,14 +6,13 @@ from typing import Any
 import numpy as np
 
 from faying import units
+from faying.decks.programs import MATRICES, reader_of
+from faying.decks.raw import Matrices, read_dofs
 from faying.errors import InputError, ReadError
-from faying.fe.formats.nastran import cards, number
 from faying.fe.mesh import Mesh
 from faying.typing import Index
 
 SYMMETRIC = 1e-8  # largest difference from the transpose, relative to the largest entry
-
-Matrices = tuple[Any, Any, Index]
 
 
 def read_matrices(
@@ -25,13 +24,23 @@ def read_matrices(
     dofs: str | Path | None = None,
     names: tuple[str, str] = ("KAAX", "MAAX"),
 ) -> Matrices:
-    """Read K [N/m], M [kg] (n, n) as sparse CSR and dofs (n, 2): number of the node, direction 1, 2, 3.
+    """Read the stiffness and the mass that another program has assembled.
 
-    path: job.sti of CalculiX's SOLVER=MATRIXSTORAGE, with job.mas and job.dof beside it; the stiffness as Matrix Market
-    (.mtx), with `mass` another such file and `dofs` a text file of "node direction" or "node.direction" in each line;
-    or Nastran bulk data (.bdf, .nas, .dat, .pch) with DMIG entries called `names`. stiffness_unit, mass_unit: such as
-    "N/mm" and "t"; no format says. Raises ReadError for the files, InputError for matrices that are not square, of one
-    size and symmetric, and for unknowns without stiffness.
+    Args:
+        path: job.sti of CalculiX's SOLVER=MATRIXSTORAGE, with job.mas and job.dof beside it; or the stiffness as Matrix
+            Market (.mtx); or Nastran bulk data (.bdf, .nas, .dat, .pch) with DMIG entries.
+        stiffness_unit: Unit of the stiffness, such as "N/mm"; no format says it.
+        mass_unit: Unit of the mass, such as "t".
+        mass: With .mtx, the mass as another such file.
+        dofs: With .mtx, a text file with "node direction" or "node.direction" in each line.
+        names: With DMIG, names of stiffness and mass.
+
+    Returns:
+        K [N/m] and M [kg], sparse CSR (n, n), and dofs (n, 2): number of the node, direction 1, 2, 3.
+
+    Raises:
+        ReadError: A file is missing, damaged or cut short.
+        InputError: Matrices are not square, of one size, real and symmetric, or unknowns have no stiffness.
     """
     file = Path(path)
     if stiffness_unit is None or mass_unit is None:
@@ -39,21 +48,14 @@ def read_matrices(
             f'{file.name} does not say its units; say them, for example stiffness_unit = "N/mm", mass_unit = "t"'
         )
     scales = units.scale(stiffness_unit, "N/m", name="stiffness_unit"), units.scale(mass_unit, "kg", name="mass_unit")
-    kind = file.suffix.lower()
-    if kind == ".sti":
-        K, M, table = _calculix(file)
-    elif kind == ".mtx":
+    if file.suffix.lower() == ".mtx":
         if mass is None or dofs is None:
             raise InputError(
                 f"{file.name}: Matrix Market holds one matrix and no nodes; name the mass and the dofs too"
             )
-        K, M, table = _market(file), _market(Path(mass)), _dofs(Path(dofs))
-    elif kind in (".bdf", ".nas", ".dat", ".pch"):
-        K, M, table = _dmig(file, names)
+        K, M, table = _market(file), _market(Path(mass)), read_dofs(Path(dofs))
     else:
-        raise ReadError(
-            f"{file}: files of the kind {kind or '(none)'} are not known; known are .sti, .mtx, .bdf, .nas, .dat, .pch"
-        )
+        K, M, table = reader_of(file, MATRICES, (".mtx",)).read_matrices(file, names)
     _check(file.name, K, M, table)
     return (K * scales[0]).tocsr(), (M * scales[1]).tocsr(), table
 
@@ -113,48 +115,6 @@ def arranged(matrices: Matrices, mesh: Mesh) -> tuple[Any, Any]:
     return K[order][:, order].tocsr(), M[order][:, order].tocsr()
 
 
-def _text(path: Path, what: str) -> str:
-    try:
-        return path.read_text(encoding="utf-8", errors="replace")
-    except OSError as fault:
-        raise ReadError(f"cannot read the {what} {path}: {fault.strerror or fault}") from None
-
-
-def _calculix(path: Path) -> Matrices:
-    """Rows of (row, column, value) of one triangle; the .dof file lists "node.direction"."""
-    from scipy.sparse import coo_array, diags_array
-
-    table = _dofs(path.with_suffix(".dof"))
-    out = []
-    for suffix, what in ((".sti", "stiffness"), (".mas", "mass")):
-        file = path.with_suffix(suffix)
-        words = _text(file, what).replace("D", "E").split()
-        try:
-            rows = np.array(words, dtype=float).reshape(-1, 3)
-        except ValueError as fault:
-            raise ReadError(f"{file} is not rows of row, column and value ({fault}); is it whole?") from None
-        i, j = rows[:, 0].astype(np.int64) - 1, rows[:, 1].astype(np.int64) - 1
-        if len(rows) and max(i.max(), j.max()) >= len(table):
-            raise ReadError(
-                f"{file} has row {max(i.max(), j.max()) + 1}, but the .dof file lists {len(table)} unknowns"
-            )
-        half = coo_array((rows[:, 2], (i, j)), shape=(len(table), len(table))).tocsr()
-        out.append((half + half.T - diags_array(half.diagonal())).tocsr())
-    return out[0], out[1], table
-
-
-def _dofs(path: Path) -> Index:
-    out = []
-    for k, line in enumerate(_text(path, "list of unknowns").splitlines(), 1):
-        words = line.replace(".", " ").split()
-        if not words:
-            continue
-        if len(words) != 2 or not all(word.isdigit() for word in words):
-            raise ReadError(f'{path}, line {k}: "{line.strip()}" should be a node and a direction, such as 12.1')
-        out.append((int(words[0]), int(words[1])))
-    return np.array(out, dtype=np.int64).reshape(-1, 2)
-
-
 def _market(path: Path) -> Any:
     from scipy.io import mmread
     from scipy.sparse import csr_array
@@ -165,47 +125,6 @@ def _market(path: Path) -> Any:
         return csr_array(mmread(path))
     except Exception as fault:  # a reader in C++ that raises many kinds
         raise ReadError(f"{path} cannot be read as Matrix Market ({fault})") from None
-
-
-def _dmig(path: Path, names: tuple[str, str]) -> Matrices:
-    """Real DMIG entries: G and C of the column, then rows of G, C, value; form 6 gives one triangle."""
-    from scipy.sparse import coo_array, diags_array
-
-    heads: dict[str, int] = {}
-    entries: dict[str, list[tuple[tuple[int, int], tuple[int, int], float]]] = {}
-    for card, fields, where in cards(path):
-        if card != "DMIG":
-            continue
-        name = fields[0].upper()
-        try:
-            if fields[1] == "0":
-                if int(fields[3] or 1) > 2:
-                    raise ReadError(f"{where}: DMIG {name} is complex; stiffness and mass are real")
-                heads[name] = int(fields[2])
-                continue
-            column = int(fields[1]), int(fields[2] or 0)
-            for k in range(4, len(fields) - 2, 4):
-                if fields[k]:
-                    entry = (int(fields[k]), int(fields[k + 1] or 0)), column, number(fields[k + 2])
-                    entries.setdefault(name, []).append(entry)
-        except ReadError:
-            raise
-        except (ValueError, IndexError) as fault:
-            raise ReadError(f"{where}: DMIG {name} cannot be read ({fault}); is the file whole?") from None
-    for name in names:
-        if name.upper() not in entries:
-            raise ReadError(f"{path} holds no DMIG {name}; it holds {', '.join(sorted(entries)) or 'none'}")
-    found = [entries[name.upper()] for name in names]
-    keys = sorted({key for some in found for row, column, _ in some for key in (row, column)})
-    place = {key: i for i, key in enumerate(keys)}
-    out = []
-    for name, some in zip(names, found, strict=True):
-        i, j = [place[row] for row, _, _ in some], [place[column] for _, column, _ in some]
-        A = coo_array(([value for *_, value in some], (i, j)), shape=(len(keys), len(keys))).tocsr()
-        if heads.get(name.upper(), 6) == 6:
-            A = (A + A.T - diags_array(A.diagonal())).tocsr()
-        out.append(A)
-    return out[0], out[1], np.array(keys, dtype=np.int64)
 
 
 def _check(name: str, K: Any, M: Any, dofs: Index) -> None:

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
+from faying.decks.raw import RawMesh, index
 from faying.errors import InputError, ReadError
-from faying.fe.formats.raw import RawMesh, index
 
 _KINDS = {
     "tetra": "tet4",

@@ -1,0 +1,49 @@
+"""What each program's file reads and writes: the one table of mesh formats, matrix formats and exporters."""
+
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from faying.errors import ReadError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Program:
+    """Suffixes of the meshes and the matrices that the module `faying.decks.<name>` reads, and whether it writes joints.
+
+    Such a module has `read(path) -> RawMesh`, `read_matrices(path, names) -> Matrices`, `decks(deck) -> {file: text}`.
+    """
+
+    meshes: tuple[str, ...] = ()
+    matrices: tuple[str, ...] = ()
+    joints: bool = False
+
+
+PROGRAMS: dict[str, Program] = {
+    "mapdl": Program(meshes=(".cdb",), joints=True),
+    "abaqus": Program(meshes=(".inp",), joints=True),
+    "nastran": Program(meshes=(".bdf", ".nas", ".dat"), matrices=(".bdf", ".nas", ".dat", ".pch"), joints=True),
+    "calculix": Program(matrices=(".sti",), joints=True),
+    "aster": Program(joints=True),
+    "gmsh": Program(meshes=(".msh",)),
+    "vtk": Program(meshes=(".vtk", ".vtu")),
+}
+SOLVERS = tuple(name for name, program in PROGRAMS.items() if program.joints)
+MESHES = {suffix: name for name, program in PROGRAMS.items() for suffix in program.meshes}
+MATRICES = {suffix: name for name, program in PROGRAMS.items() for suffix in program.matrices}
+
+
+def module_of(program: str) -> Any:
+    """Import the module of a program."""
+    return import_module(f"faying.decks.{program}")
+
+
+def reader_of(path: Path, formats: dict[str, str], more: tuple[str, ...] = ()) -> Any:
+    """Import the module that reads a file by its suffix. Raises ReadError that lists the suffixes known."""
+    suffix = path.suffix.lower()
+    if suffix not in formats:
+        raise ReadError(
+            f"{path}: files of the kind {suffix or '(none)'} are not known; known are {', '.join([*formats, *more])}"
+        )
+    return module_of(formats[suffix])

@@ -1,0 +1,106 @@
+"""A bolted structure without the laws of its joints: what is assembled once for all laws and preloads."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from faying.fe.constraint import constrain, free_motions
+from faying.fe.elasticity import Solid, assemble, rigid_motions
+from faying.fe.mesh import Mesh
+from faying.joint.attachments import PointMass, Support
+from faying.joint.bolt import Bolt, FittedBolt
+from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
+from faying.typing import Array, Index
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Frame:
+    """Parts, bolts, supports and masses of a structure, and the faces that its joints join; see `Structure`."""
+
+    mesh: Mesh
+    materials: Mapping[str, Solid]
+    joined: tuple[str, ...]
+    bolts: tuple[Bolt | SolidBolt, ...]
+    supports: tuple[Support, ...]
+    masses: tuple[PointMass, ...]
+
+    def same(self, other: "Frame") -> bool:
+        """Whether two frames are made of the same things."""
+        mine = (self.mesh, self.materials, self.bolts, self.supports, self.masses)
+        others = (other.mesh, other.materials, other.bolts, other.supports, other.masses)
+        return self.joined == other.joined and all(a is b for a, b in zip(mine, others, strict=True))
+
+    @cached_property
+    def matrices(self) -> tuple[Any, Any]:
+        """Stiffness [N/m] and mass [kg] of the parts alone."""
+        return assemble(self.mesh, self.materials)
+
+    @cached_property
+    def fixed(self) -> Index:
+        """Unknowns that supports keep at rest."""
+        found = [support.fixed(self.mesh) for support in self.supports]
+        return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.int64)
+
+    @cached_property
+    def fitted_bolts(self) -> tuple[FittedBolt | FittedSolidBolt, ...]:
+        """The bolts in their places."""
+        joined = [*self.joined, *(support.face for support in self.supports)]
+        return tuple(
+            bolt.fitted(self.mesh) if isinstance(bolt, Bolt) else bolt.fitted(self.mesh, self.matrices[0], joined)
+            for bolt in self.bolts
+        )
+
+    @cached_property
+    def loads(self) -> Array:
+        """Nodal forces [N] (unknowns, bolts) of 1 N in each bolt."""
+        if not self.bolts:
+            return np.zeros((self.mesh.unknowns, 0))
+        return np.stack([bolt.load for bolt in self.fitted_bolts], axis=1)
+
+    @cached_property
+    def _upheld(self) -> Any:
+        """Stiffness [N/m] of the parts and of elastic supports."""
+        return added(self.matrices[0], [support.springs(self.mesh) for support in self.supports])
+
+    @cached_property
+    def standing(self) -> Any:
+        """Stiffness [N/m] of the parts and of elastic supports, before any bolt is tight."""
+        return added(self._upheld, [-bolt.released for bolt in self.fitted_bolts if bolt.released is not None])
+
+    @cached_property
+    def vibrating(self) -> tuple[Any, Any]:
+        """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; fixed unknowns cleared."""
+        K = added(self._upheld, [bolt.stiffness for bolt in self.fitted_bolts if bolt.released is None])
+        M = added(self.matrices[1], [bolt.mass for bolt in self.fitted_bolts])
+        M = added(M, [mass.matrix(self.mesh) for mass in self.masses])
+        return constrain(K, self.fixed), constrain(M, self.fixed, 0.0)
+
+    @cached_property
+    def rigid(self) -> Array:
+        """Rigid motions of the whole that no support resists (unknowns, up to 6)."""
+        if any(support.stiffness is not None for support in self.supports):
+            springs = added(None, [support.springs(self.mesh) for support in self.supports])
+            all_six = free_motions(rigid_motions(self.mesh.points), self.fixed)
+            if not all_six.shape[1]:
+                return all_six
+            energy = all_six.T @ (springs @ all_six)
+            values, vectors = np.linalg.eigh(energy)
+            return np.asarray(all_six @ vectors[:, values < 1e-10 * max(values.max(), 1e-300)])
+        return free_motions(rigid_motions(self.mesh.points), self.fixed)
+
+    @cached_property
+    def shift_frequency(self) -> float:
+        """A frequency below the first elastic mode of any compact body of this size [Hz]: .02 c/size."""
+        speeds = [(m.E / (m.density or np.inf)) ** 0.5 for m in self.materials.values()]
+        return float(0.02 * max(speeds) / self.mesh.size)
+
+
+def added(matrix: Any, more: Sequence[Any]) -> Any:
+    """Sum of a matrix and others, those that are None left out."""
+    for one in more:
+        if one is not None:
+            matrix = one if matrix is None else matrix + one
+    return matrix

@@ -1,0 +1,67 @@
+"""The springs of a joint at one preload, on any description of how its faces move."""
+
+from dataclasses import dataclass
+from typing import Any, Generic, Protocol, TypeVar
+
+import numpy as np
+
+from faying.typing import Array
+
+
+class InterfaceMotion(Protocol):
+    """What a joint needs to know of its faces: relative motion at weighted points, from any vector of displacements."""
+
+    @property
+    def weights(self) -> Array:
+        """Areas [m2] (q,)."""
+
+    @property
+    def gap(self) -> Array:
+        """Distance of the faces before any load [m] (q,)."""
+
+    @property
+    def relative(self) -> Any:
+        """Operator (3q, unknowns): opening and two slips at each point."""
+
+    def springs(self, k_n: Array, k_t: Array) -> Any:
+        """Stiffness matrix [N/m] of springs per area k_n, k_t [Pa/m] (q,)."""
+
+
+Motion = TypeVar("Motion", bound=InterfaceMotion)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Springs(Generic[Motion]):
+    """The springs of one joint at one preload, at the points of `interface` (q,).
+
+    pressure [Pa]: nominal, under which the springs are; k_n, k_t [Pa/m]; loss_n, loss_t: loss factors [-].
+    """
+
+    interface: Motion
+    pressure: Array
+    k_n: Array
+    k_t: Array
+    loss_n: Array
+    loss_t: Array
+
+    def stiffness(self) -> Any:
+        """Stiffness matrix [N/m]."""
+        return self.interface.springs(self.k_n, self.k_t)
+
+    def loss(self) -> Any:
+        """Imaginary part of the stiffness matrix [N/m]: hysteretic loss."""
+        return self.interface.springs(self.k_n * self.loss_n, self.k_t * self.loss_t)
+
+    def viscous(self, mass: float) -> Any:
+        """Damping matrix [N s/m] of the JK paper's dampers, c = eta sqrt(M k) at every point, M [kg] the whole mass.
+
+        k is the spring of a point, so that c grows with the root of its share of the area: the sum depends on the mesh.
+        """
+        w = self.interface.weights
+        c_n, c_t = (eta * np.sqrt(mass * k / w) for eta, k in ((self.loss_n, self.k_n), (self.loss_t, self.k_t)))
+        return self.interface.springs(c_n, c_t)
+
+    def total(self) -> tuple[float, float]:
+        """Sum of all normal and all tangential springs [N/m]."""
+        w = self.interface.weights
+        return float(w @ self.k_n), float(w @ self.k_t)
