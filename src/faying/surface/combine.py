@@ -23,10 +23,15 @@ from faying.typing import Array
 class Combined:
     """The equivalent surface of two unrelated rough surfaces.
 
-    `fit` holds D and G [m] with intervals from the sum of the two spectra over the wavelengths that both scans cover;
-    `Rq` [m], `m0` [m2], `m2` [-] and `m4` [1/m2] are the root of the sum of squares, and the sums (m2 and m4 at the
-    shortest wavelength of each scan: `spacings` [m] tells whether they belong together). `frequency` [1/m] and
-    `density` [m3] are the summed spectrum.
+    Args:
+        fit: D and G with intervals, from the sum of the two spectra over the wavelengths that both scans cover.
+        Rq: root of the sum of the squares of the rms heights [m].
+        m0: sum of the mean square heights [m2].
+        m2: sum of the mean square slopes [-], each at the shortest wavelength of its scan.
+        m4: sum of the mean square curvatures [1/m2], in the same way.
+        spacings: of the two scans [m]; they show whether m2 and m4 belong together.
+        frequency: of the summed spectrum [1/m].
+        density: of the summed spectrum [m3].
     """
 
     fit: FractalFit
@@ -67,6 +72,12 @@ def _summed(a: tuple[Spectrum, Array], b: tuple[Spectrum, Array]) -> Spectrum:
     )
 
 
+def _check(**scans: object) -> None:
+    for name, scan in scans.items():
+        if not isinstance(scan, Scan):
+            raise InputError(f"{name} is a {type(scan).__name__}: two areal scans (faying.Scan) can be combined")
+
+
 def combine(
     scan_a: Scan, scan_b: Scan, *, degree: int = 1, convention: str = "yan-komvopoulos", gamma: float = 1.5
 ) -> Combined:
@@ -85,9 +96,7 @@ def combine(
     Raises:
         InputError: for anything but two areal scans, and where the bands of wavelength do not overlap by a factor of 4.
     """
-    for name, scan in (("scan_a", scan_a), ("scan_b", scan_b)):
-        if not isinstance(scan, Scan):
-            raise InputError(f"{name} is a {type(scan).__name__}: two areal scans (faying.Scan) can be combined")
+    _check(scan_a=scan_a, scan_b=scan_b)
     c = prefactor(convention, gamma)
     ready = prepared(scan_a, degree=degree), prepared(scan_b, degree=degree)
     wholes = _whole(ready[0]), _whole(ready[1])
@@ -114,14 +123,10 @@ def combine(
     )
     parts = [summits(r) for r in ready]
     m0, m2, m4 = (sum(getattr(p, name) for p in parts) for name in ("m0", "m2", "m4"))
-    facts = Facts(
-        Rq=m0**0.5,
-        Ra=float((2 / np.pi * m0) ** 0.5),
-        length=max(min(scan_a.size), min(scan_b.size)),
-        missing=sum(r.missing for r in ready),
-        spikes=sum(r.spikes for r in ready),
-        areal=True,
-    )
+    length = max(min(scan_a.size), min(scan_b.size))
+    missing, spikes = (sum(getattr(r, name) for r in ready) for name in ("missing", "spikes"))
+    Ra = float((2 / np.pi * m0) ** 0.5)
+    facts = Facts(Rq=m0**0.5, Ra=Ra, length=length, missing=missing, spikes=spikes, areal=True)
     return Combined(
         fit=result(estimate, facts, method="psd", convention=convention, gamma=gamma),
         Rq=m0**0.5,

@@ -19,13 +19,23 @@ from faying.surface.scan import Profile, Scan
 class FractalFit:
     """What one estimator says of a surface.
 
-    `D` is the dimension of the surface (2 < D < 3), `G` the fractal roughness [m] in the convention that `convention`
-    states; `D_interval` and `G_interval` [m] are 95 % intervals. `band` is the shortest and the longest wavelength
-    used [m]. `Rq` and `Ra` [m] are the scan's own after levelling, `implied_Rq` and `implied_Ra` [m] what D and G say
-    of all wavelengths up to the side of the scan (Ra for Gaussian heights). `noise` [m] is the rms of the white part
-    found, `misfit` the mean squared residual over its expectation (1 for a true power law). `missing` and `spikes`
-    count the points that were filled in. `bias` is what a self-test took off D, None without one. `warnings` says
-    what the user ought to know.
+    Args:
+        method: name of the estimator.
+        D: dimension of the surface [-]; 2 < D < 3 where the surface is fractal.
+        G: fractal roughness [m], in the convention that `convention` states.
+        D_interval: 95 % interval [-].
+        G_interval: 95 % interval [m].
+        band: shortest and longest wavelength used [m].
+        Rq: rms height of the levelled scan [m].
+        Ra: mean absolute height of the levelled scan [m].
+        implied_Rq: what D and G say of all wavelengths up to the side of the scan [m].
+        convention: of D and G, in words.
+        noise: rms of the white part found [m].
+        misfit: mean squared residual over its expectation [-], 1 for a true power law.
+        missing: missing points that were filled in.
+        spikes: spikes that were filled in.
+        bias: what a self-test took off D [-], None without one.
+        warnings: what the user ought to know.
     """
 
     method: str

@@ -69,8 +69,7 @@ def spectral(
     """
     check_dimension(D)
     counts, steps = _grid(shape, spacing)
-    if (G is None) == (Rq is None):
-        raise InputError("give either G (fractal roughness, metres) or Rq (rms height, metres), one of them")
+    _scale_of(G, Rq)
     for name, value in (("G", G), ("Rq", Rq), ("longest", longest), ("shortest", shortest)):
         if value is not None and not 0 < value < float("inf"):
             raise InputError(f"{name} = {value}: give a positive length in metres")
@@ -88,8 +87,14 @@ def spectral(
     z -= z.mean()
     if Rq is not None:
         z *= Rq / z.std()
-    what = f"G {G:.4g} m" if G is not None else f"Rq {Rq:.4g} m"
-    return _output(z, steps, f"spectral surface, D {D}, {what}, {convention}")
+    return _output(z, steps, f"spectral surface, D {D}, {_scale_of(G, Rq)}, {convention}")
+
+
+def _scale_of(G: float | None, Rq: float | None) -> str:
+    """The scale of the heights in words; InputError unless one of the two is given."""
+    if (G is None) == (Rq is None):
+        raise InputError("give either G (fractal roughness, metres) or Rq (rms height, metres), one of them")
+    return f"G {G:.4g} m" if G is not None else f"Rq {Rq:.4g} m"
 
 
 def _frequencies(
