@@ -123,7 +123,7 @@ def rows_of(file: str) -> list[dict[str, str]]:
 
 def case_of(options: dict[str, Any]) -> Any:
     """Build one case from texts with units."""
-    from faying.asperity_fe.cases import AsperityCase
+    from faying.asperity_fe.drive import AsperityCase
     from faying.errors import InputError
     from faying.materials import CATALOGUE, RIGID, Material
     from faying.units import parse
