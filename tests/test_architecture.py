@@ -10,8 +10,8 @@ SOURCE = Path(__file__).parent.parent / "src" / "faying"
 # a room may import from rooms on earlier lines, and from itself; rooms on one line do not see each other
 ORDER = [
     {"errors"},
-    {"units", "files", "typing"},
-    {"materials"},
+    {"units", "files", "typing", "notes"},
+    {"materials", "netcdf"},
     {"surface", "fe", "halfspace"},
     {"contact", "asperity_fe"},
     {"joint"},
