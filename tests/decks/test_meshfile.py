@@ -242,7 +242,7 @@ def test_faults_of_a_mesh_file(tmp_path):
     )
     fault(tmp_path, good.replace("_p0.left_S6, S6", "_p0.left_S6, S9"), "side 'S9'; the sides of solids are S1 to S6")
     fault(tmp_path, good.replace("_p0.left_S6, S6", "_p0.left_S6, S4"), "are no outer side of a solid")
-    fault(tmp_path, good + "*NSET, NSET=x\ny\n", "set 'x' names the set 'y', which the file does not hold above it")
+    fault(tmp_path, good + "*NSET, NSET=x\ny\n", r"set 'x' names the set 'y', which the file does not hold")
     fault(tmp_path, good + "*NSET, NSET=x\n5\n", "the set 'x' names node 5, which the file does not hold")
     fault(tmp_path, good + "*NSET\n5\n", r"\*NSET without a name")
     fault(tmp_path, good + "*INCLUDE, INPUT=none.inp\n", "cannot read .*none.inp")

@@ -1,7 +1,7 @@
 """Meshes of other programs: from what a file holds to parts and faces, with the faults that such files have."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +11,7 @@ from faying.decks.programs import MESHES, reader_of
 from faying.decks.raw import RawMesh
 from faying.errors import InputError, ReadError
 from faying.fe.elements import FACES, SOLIDS
-from faying.fe.mesh import Mesh, least_jacobian
+from faying.fe.mesh import Mesh, MeshNote, least_jacobian
 from faying.fe.sides import Blocks, nodes_of, side_key, skin
 from faying.typing import Array, Index
 
@@ -64,6 +64,7 @@ class _Builder:
     name: str
     unit: str
     scale: float
+    notes: list[MeshNote] = field(default_factory=list)
 
     def mesh(self, wanted: Mapping[str, str] | Sequence[str] | None) -> Mesh:
         """Put it all together."""
@@ -128,10 +129,22 @@ class _Builder:
         used = np.zeros(len(points), dtype=bool)
         for block in cells:
             used[block] = True
-        known = np.isin(self.raw.numbers, self.raw.extra)
-        loose = self.raw.numbers[~used & ~known]
+        loose = self.raw.numbers[~used & ~np.isin(self.raw.numbers, self.raw.extra)]
+        points_of_reference = np.concatenate(
+            [self.raw.references, *(some for some in self.raw.node_sets.values() if len(some) == 1)]
+        )
+        lost = loose[~np.isin(loose, points_of_reference)]
+        if len(lost):
+            raise InputError(
+                f"{self.name}: {len(lost)} nodes belong to no element: {_some(lost)}; delete them, or is the file cut short?"
+            )
         if len(loose):
-            raise InputError(f"{self.name}: {len(loose)} nodes belong to no element: {_some(loose)}; delete them")
+            self.notes.append(
+                MeshNote(
+                    code="reference-points",
+                    text=f"{len(loose)} reference points are left out, with the couplings that name them: {_some(loose)}",
+                )
+            )
 
     def _parts(
         self, numbers: Index, cells: list[Index], wanted: Mapping[str, str] | Sequence[str] | None
@@ -310,6 +323,7 @@ class _Builder:
             face_part=face_part,
             source=self.name,
             node_numbers=numbers,
+            notes=(*self.notes, *(MeshNote(code="file", text=text) for text in self.raw.notes)),
         )
 
     def _unmerged(self, points: Array, nodes: Index, numbers: Index, part: str) -> None:

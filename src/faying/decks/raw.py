@@ -11,6 +11,9 @@ from faying.errors import ReadError
 from faying.fe.elements import KINDS, SOLIDS
 from faying.typing import Array, Index
 
+GREATEST = 10**12  # number of a node or an element
+MOST = 20_000_000  # numbers of a range
+
 Matrices: TypeAlias = tuple[Any, Any, Index]
 """Stiffness and mass (n, n), sparse, and dofs (n, 2): number of the node, direction 1, 2, 3."""
 
@@ -22,7 +25,8 @@ class RawMesh:
     numbers (n,), points (n, 3); elements: kind -> (numbers (e,), node numbers (e, a)) in VTK's order; bodies: name ->
     element numbers, the parts that the file itself makes of its elements; element_sets, node_sets: name -> numbers;
     side_sets: name -> rows of (element number, side); face_elements: name -> arrays of node numbers (f, a); extra:
-    numbers of nodes that only elements other than solids hold.
+    numbers of nodes that only elements other than solids hold; references: nodes that constraints alone name; notes: what
+    was left out. Raises ReadError for numbers below 1 or without end, and places that are not finite.
     """
 
     numbers: Index
@@ -34,11 +38,41 @@ class RawMesh:
     side_sets: Mapping[str, Index] = field(default_factory=dict)
     face_elements: Mapping[str, tuple[Index, ...]] = field(default_factory=dict)
     extra: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    references: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        named = {"node": [self.numbers], "element": [numbers for numbers, _ in self.elements.values()]}
+        for what, several in named.items():
+            for some in several:
+                wrong = some[(some < 1) | (some > GREATEST)]
+                if len(wrong):
+                    raise ReadError(
+                        f"{what} {wrong[0]}: numbers of {what}s lie between 1 and {GREATEST:,}; is the file whole?"
+                    )
+        if self.points.shape != (len(self.numbers), 3) or not np.all(np.isfinite(self.points)):
+            bad = self.numbers[~np.isfinite(self.points).all(axis=-1)] if self.points.ndim == 2 else self.numbers
+            raise ReadError(f"node {bad[0] if len(bad) else 1} has no three finite coordinates; is the file whole?")
 
 
-def index(values: Iterable[object]) -> Index:
-    """Whole numbers as an array."""
-    return np.array(list(values), dtype=np.int64)
+def index(values: Iterable[Any]) -> Index:
+    """Whole numbers, or their texts, as an array. Raises ValueError for others and ReadError for huge ones."""
+    numbers = [int(value) for value in values]
+    try:
+        return np.array(numbers, dtype=np.int64)
+    except OverflowError:
+        raise ReadError(
+            f"the number {max(numbers, key=abs):.3g} is none of a node or an element; is the file whole?"
+        ) from None
+
+
+def ranged(first: int, last: int, step: int, where: str) -> Index:
+    """Numbers from first to last. Raises ReadError where they do not rise or are more than any file holds."""
+    if step < 1 or last < first or first < 1 or (last - first) // step > MOST:
+        raise ReadError(
+            f"{where}: a range from {first} to {last} by {step}; ranges rise from 1 or more and have at most {MOST:,} numbers"
+        )
+    return np.arange(first, last + 1, step)
 
 
 def gathered(rows: Mapping[str, list[tuple[int, list[int]]]]) -> dict[str, tuple[Index, Index]]:
@@ -88,6 +122,8 @@ def from_edges(kind: str, edges: tuple[tuple[int, int], ...]) -> list[int]:
 
 def read_text(path: Path, what: str) -> str:
     """Text of a file; ReadError where it cannot be read."""
+    if path.exists() and not path.is_file():
+        raise ReadError(f"cannot read the {what} {path}: it is no regular file")
     try:
         return path.read_text(encoding="utf-8", errors="replace")
     except OSError as fault:

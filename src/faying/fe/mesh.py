@@ -14,6 +14,14 @@ from faying.typing import Array, Index
 
 
 @dataclass(frozen=True, kw_only=True)
+class MeshNote:
+    """What a user should know of a mesh: a code, such as reference-points, and a sentence."""
+
+    code: str
+    text: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class Mesh:
     """Nodes, the solid elements of each part, and the faces of elements that make up each named face.
 
@@ -27,6 +35,7 @@ class Mesh:
         face_part: Name of a face -> name of its part.
         source: File that the mesh came from.
         node_numbers: Numbers (n,) of the nodes in that file; 1, 2, ... where None.
+        notes: What the reader of the file left out.
 
     Raises:
         InputError: Empty parts, elements of negative volume, nodes of no element, coordinates that are not numbers.
@@ -38,6 +47,7 @@ class Mesh:
     face_part: Mapping[str, str]
     source: str = field(default="")
     node_numbers: Index | None = None
+    notes: tuple[MeshNote, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.parts:
