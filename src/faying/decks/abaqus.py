@@ -10,7 +10,7 @@ the tests by a reader of that grammar.
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from faying.decks.deck import JointDeck, grouped, real
-from faying.decks.keywords import elements, orientations, table
+from faying.decks.keywords import DATA, Block, blocks, elements, orientations, table
 from faying.decks.raw import RawMesh, index, ranged, read_text
 from faying.errors import ReadError
 from faying.typing import Array, Index
@@ -32,28 +32,8 @@ _LINE = re.compile(
 )
 _MAKERS = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "IMPORT", "SYMMETRIC MODEL GENERATION")
 _REFERENCES = {"COUPLING", "RIGID BODY", "KINEMATIC COUPLING", "DISTRIBUTING COUPLING", "PRE-TENSION SECTION"}
-_DEEPEST, _MOST_FILES = 20, 500
-_DATA = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE"}
 
 Items = list[tuple[str, "Index | str"]]
-
-
-@dataclass(frozen=True)
-class Block:
-    """A keyword with its parameters and the data lines below it."""
-
-    keyword: str
-    options: dict[str, str]
-    lines: list[str]
-    where: str
-
-    def rows(self) -> list[list[str]]:
-        """The entries of each data line."""
-        return [[word.strip() for word in line.split(",")] for line in self.lines]
-
-    def words(self) -> list[str]:
-        """All entries that are not empty."""
-        return [word for row in self.rows() for word in row if word]
 
 
 @dataclass
@@ -69,52 +49,9 @@ class Scope:
     surfaces: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
     sections: list[str] = field(default_factory=list)
     references: list[str] = field(default_factory=list)
+    turned: list[str] = field(default_factory=list)
     frame: tuple[Array, Array] = field(default_factory=lambda: (np.eye(3), np.zeros(3)))
     notes: list[str] = field(default_factory=list)
-
-
-def blocks(path: Path, seen: tuple[Path, ...] = (), count: list[int] | None = None) -> Iterator[Block]:
-    """Keyword blocks of a file and of the files it includes."""
-    count = [0] if count is None else count
-    count[0] += 1
-    if path.resolve() in seen:
-        raise ReadError(f"{path} includes itself")
-    if len(seen) > _DEEPEST or count[0] > _MOST_FILES:
-        raise ReadError(f"{path}: more than {_MOST_FILES} files are included, or {_DEEPEST} deep; write them into one")
-    current: Block | None = None
-    lines = iter(enumerate(read_text(path, "input file").splitlines(), 1))
-    for number, line in lines:
-        if line.startswith("**") or not line.strip():
-            continue
-        if not line.startswith("*"):
-            if current is None:
-                raise ReadError(f"{path}, line {number}: data before the first keyword; is this an Abaqus input file?")
-            current.lines.append(line)
-            continue
-        while line.rstrip().endswith(","):
-            more = next(lines, None)
-            if more is None:
-                raise ReadError(f"{path}, line {number}: the file ends in a keyword that goes on; is it whole?")
-            line = line.rstrip() + more[1]
-        if current is not None:
-            yield current
-            current = None
-        name, *rest = line[1:].split(",")
-        pairs = (part.partition("=") for part in rest if part.strip())
-        options = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
-        keyword = re.sub(r"\s+", " ", name.strip().upper())
-        where = f"{path.name}, line {number}"
-        if keyword == "INCLUDE":
-            if "INPUT" not in options:
-                raise ReadError(f"{path}, line {number}: *INCLUDE without INPUT=file")
-            yield from blocks(path.parent / options["INPUT"], (*seen, path.resolve()), count)
-            continue
-        current = Block(keyword, options, [], where)
-        if keyword in _DATA and "INPUT" in options:
-            data = read_text(path.parent / options["INPUT"], "data").splitlines()
-            current.lines.extend(line for line in data if line.strip() and not line.startswith("**"))
-    if current is not None:
-        yield current
 
 
 def read(path: Path) -> RawMesh:
@@ -149,7 +86,7 @@ def read(path: Path) -> RawMesh:
     if opened or (parts and not assembled):
         lost = f"*END {opened}" if opened else "*ASSEMBLY"
         raise ReadError(f"{path} ends without {lost}; the file is cut short")
-    if last is not None and last.keyword in _DATA and not read_text(path, "input file").endswith("\n"):
+    if last is not None and last.keyword in DATA and not read_text(path, "input file").endswith("\n"):
         top.notes.append(
             f"{path.name} ends in the middle of *{last.keyword} without an end of line: it may be cut short"
         )
@@ -178,10 +115,7 @@ def _take(block: Block, scope: Scope) -> None:
         elif keyword in _REFERENCES:
             scope.references.extend(options[key] for key in ("REF NODE", "NODE") if key in options)
         elif keyword == "TRANSFORM":
-            scope.notes.append(
-                f"{block.where}: *TRANSFORM turns the directions of some nodes; a joint that is exported as a matrix acts "
-                "in the directions of the model"
-            )
+            scope.turned.append(options.get("NSET", ""))
     except ReadError:
         raise
     except (ValueError, IndexError, OverflowError) as fault:
@@ -366,6 +300,7 @@ def _merged(path: Path, top: Scope, instances: dict[str, Scope]) -> RawMesh:
                 (str(int(what) + raised) if what.isdigit() else f"{name}.{what}", side) for what, side in some
             ]
         top.references += [str(int(r) + shift) if r.isdigit() else f"{name}.{r}" for r in one.references]
+        top.turned += [f"{name}.{label}" for label in one.turned]
         top.notes += one.notes
         top.element_sets[name] = [("", _element_numbers(one) + raised)]
     if instances:
@@ -441,6 +376,7 @@ def _raw(path: Path, top: Scope, node_sets: dict[str, Index], element_sets: dict
         side_sets=side_sets,
         face_elements={name: tuple(rows) for name, rows in top.sheets.items()},
         extra=np.concatenate([index([]), *top.extra]),
+        turned=np.concatenate([index([]), *(nodes.get(name.upper(), index([])) for name in top.turned)]),
         references=np.unique(np.concatenate([index([]), *references])),
         notes=tuple(top.notes),
     )

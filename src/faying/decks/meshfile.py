@@ -218,7 +218,12 @@ class _Builder:
                     found.setdefault(label, {})[part] = here
         for label, rows in self.raw.face_elements.items():
             given = [self._index(block.ravel(), f"the face {label!r}").reshape(block.shape) for block in rows]
-            self._by_key(label, np.concatenate([side_key(block, n) for block in given]), skins, found)
+            key = np.concatenate([side_key(block, n) for block in given])
+            if any(np.isin(side_key(faces, n), key).any() for outer in skins.values() for faces in outer):
+                self._by_key(label, key, skins, found)
+                continue
+            text = f"{len(key)} shells {label!r} lie on no solid and are left out, with their stiffness and mass"
+            self.notes.append(MeshNote(code="left-out", text=text))
         order = np.argsort(numbers)
         for label, pairs in self.raw.side_sets.items():
             place = np.minimum(np.searchsorted(numbers[order], pairs[:, 0]), len(numbers) - 1)
@@ -302,7 +307,8 @@ class _Builder:
                     "one part of them"
                 )
         old = key % n
-        numbers = self.raw.numbers[old].copy()
+        old_numbers = self.raw.numbers[old]
+        numbers = old_numbers.copy()
         again = np.ones(len(key), dtype=bool)
         again[np.unique(old, return_index=True)[1]] = False
         numbers[again] = self.raw.numbers.max() + 1 + np.arange(np.count_nonzero(again))
@@ -323,6 +329,7 @@ class _Builder:
             face_part=face_part,
             source=self.name,
             node_numbers=numbers,
+            turned=np.isin(old_numbers, self.raw.turned),
             notes=(*self.notes, *(MeshNote(code="file", text=text) for text in self.raw.notes)),
         )
 
