@@ -18,7 +18,8 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 from faying import Material, solve_asperity  # noqa: E402  the thread limits are read when NumPy is loaded
 from faying.asperity_fe import AsperityResult  # noqa: E402
-from faying.asperity_fe.cases import AsperityCase, solve_cases  # noqa: E402
+from faying.asperity_fe.cases import solve_cases  # noqa: E402
+from faying.asperity_fe.drive import AsperityCase  # noqa: E402
 from faying.fe.solve import available  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parent.parent))

@@ -12,7 +12,8 @@ import os
 import numpy as np
 
 from faying import RIGID, Material
-from faying.asperity_fe.cases import AsperityCase, solve_cases
+from faying.asperity_fe.cases import solve_cases
+from faying.asperity_fe.drive import AsperityCase
 
 RATIOS = (1.0, 1.5, 2.0)
 WIDER_RATIOS = (1.0, 1.5, 2.0, 4.0)

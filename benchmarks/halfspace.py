@@ -4,7 +4,7 @@
 
 PYTHON: interpreters that have tamaas and aspher, and ContactMechanics (their needs may clash; neither is a dependency of
 faying). Without them only faying is measured. Every run is on one thread; CPU seconds of the solution alone, median of
-three for faying, one run for the others. "residual" is faying's certificate, computed by faying for everyone.
+three for faying, one run for the others. "residual" is faying's error bound, computed by faying for everyone.
 """
 
 import argparse
@@ -22,7 +22,7 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 sys.path.insert(0, str(Path(__file__).parent.parent))
 import numpy as np  # noqa: E402  the thread counts come first
 
-from faying.halfspace import certify, solve_half_space  # noqa: E402
+from faying.halfspace import error_bound, solve_half_space  # noqa: E402
 from tests.helpers.self_affine import self_affine  # noqa: E402
 
 WITNESS = Path(__file__).with_name("halfspace_witness.py")
@@ -71,7 +71,7 @@ def compare(n, pressure, hardness, peers):
         if traction is None:
             print(f"  {code:18s} {seconds}")
             continue
-        residual = certify(h, 1 / n, traction, E_star=1.0, hardness=hardness)
+        residual = error_bound(h, 1 / n, traction, E_star=1.0, hardness=hardness)
         line(
             code,
             np.count_nonzero(traction > 0) / n**2,

@@ -22,8 +22,9 @@ from typing import Any
 import numpy as np
 
 from faying.errors import FayingError
+from faying.surface.estimators.table import METHODS
 from faying.surface.form import prepared
-from faying.surface.fractal import METHODS, fit_fractal
+from faying.surface.fractal import fit_fractal
 from faying.surface.scan import Scan
 from faying.surface.synthesize import spectral, with_missing, with_noise
 

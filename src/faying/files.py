@@ -1,7 +1,8 @@
 """Files that appear whole or not at all, and rows of numbers read from text."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,29 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
     finally:
         temporary.unlink(missing_ok=True)
     return path
+
+
+def make_folder(folder: Path, remedy: str) -> Path:
+    """Make a folder with those above it; InputError that ends in the remedy where that cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as fault:
+        raise InputError(f"cannot make the folder {folder}: {fault.strerror}; {remedy}") from None
+    return folder
+
+
+@contextmanager
+def new_folder(folder: Path, remedy: str) -> Iterator[Path]:
+    """Make a folder before hours of work, and take away what is new and empty if they come to nothing."""
+    new = [path for path in (folder, *folder.parents) if not path.exists()]
+    make_folder(folder, remedy)
+    try:
+        yield folder
+    except BaseException:
+        for path in new:
+            with suppress(OSError):  # it holds something by now
+                path.rmdir()
+        raise
 
 
 def read_numbers(path: Path, columns: int, form: str) -> Any:

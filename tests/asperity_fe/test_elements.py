@@ -26,8 +26,8 @@ def skewed():
 
 def sphere(elements=6, R=1.0):
     mesh = cap_mesh(R=R, h_a=R, contact_radius=0.1 * R, elements=elements, domain=None)
-    held = np.concatenate([2 * mesh.axis, 2 * mesh.base + 1])
-    return mesh, {"mesh": mesh, "materials": [STEEL], "hardening": [0.02], "held": held}
+    constrained = np.concatenate([2 * mesh.axis, 2 * mesh.base + 1])
+    return mesh, {"mesh": mesh, "materials": [STEEL], "hardening": [0.02], "constrained": constrained}
 
 
 def test_volume_of_a_hemisphere():

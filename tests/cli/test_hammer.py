@@ -212,7 +212,7 @@ def test_text_files_and_a_figure(measured_frfs, tmp_path, capsys):
     )
     out = capsys.readouterr().out
     assert re.search(r"\n +6 +958\.5", out)
-    assert "narrower than the 1 Hz between lines" in out
+    assert "narrower than the 1 Hz between spectral lines" in out
     assert plot.stat().st_size > 20_000
     assert (
         run("test", *files, "--quantity", "accelerance", "--frequency-step", "1 Hz", "--plot", tmp_path / "a.xyz") == 1

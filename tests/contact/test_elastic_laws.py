@@ -124,7 +124,7 @@ def test_stack_marks_yield() -> None:
     ("change", "message"),
     [
         ({"D": 3.0}, "between 2 and 3"),
-        ({"G": 0.0}, "G = 0.0"),
+        ({"G": 0.0}, "G = 0 m; it must be positive"),
         ({"scan_area": 0.0}, "scan_area"),
         ({"gamma": 1.0}, "gamma"),
         ({"shortest": 5e-3}, "below 0.004 m"),

@@ -82,7 +82,7 @@ def test_every_law_describes_itself(cls: type[ContactLaw]) -> None:
 
     assert cls.source.startswith(("doi:", "measured", "isbn:", "ISBN "))
     assert cls.__doc__
-    assert cls.ground
+    assert cls.validity
     own = {f.name for f in fields(cls) if f.init}  # type: ignore[arg-type]
     needed = {f.name for f in fields(cls) if f.init and f.default is MISSING}  # type: ignore[arg-type]
     assert set(cls.parameters) <= own

@@ -20,7 +20,14 @@ ETA, R = 1.4e6, 1.4e-3
 
 
 def uniform(span=20e-6, **changes):
-    given = {"gaps": [0.0, span], "chance": [1.0, 1.0], "density": ETA, "radius": R, "pair": PAIR, "asperity": "Hertz"}
+    given = {
+        "gaps": [0.0, span],
+        "probability": [1.0, 1.0],
+        "density": ETA,
+        "radius": R,
+        "pair": PAIR,
+        "asperity": "Hertz",
+    }
     return MeasuredHeights(**(given | changes))
 
 
@@ -44,8 +51,8 @@ def test_even_gaps_under_hertz_have_closed_forms(share: float, log_span: float) 
 def test_a_gaussian_table_is_greenwood_and_williamson(name: str) -> None:
     sigma, top = 2e-6, 8.0
     g = np.linspace(0, 2 * top * sigma, 1601)
-    chance = np.exp(-((g / sigma - top) ** 2) / 2)
-    table = uniform(gaps=g, chance=chance, asperity=name)
+    probability = np.exp(-((g / sigma - top) ** 2) / 2)
+    table = uniform(gaps=g, probability=probability, asperity=name)
     exact = GreenwoodWilliamson(density=ETA, radius=R, sigma=sigma, pair=PAIR, asperity=name)
     d = np.linspace(-1.5, 4.0, 23) * sigma
     ours, theirs = table.at_closure(top * sigma - d), exact.at_closure(d)
@@ -60,13 +67,15 @@ def test_a_gaussian_table_is_greenwood_and_williamson(name: str) -> None:
 
 
 def test_one_height_is_one_asperity_times_their_number() -> None:
-    law = uniform(gaps=[5e-6, 5.001e-6, 5.002e-6], chance=[0.0, 1.0, 0.0], asperity="Ghaednia", tangent_ratio=0.003)
+    law = uniform(
+        gaps=[5e-6, 5.001e-6, 5.002e-6], probability=[0.0, 1.0, 0.0], asperity="Ghaednia", tangent_ratio=0.003
+    )
     model = asperity.models()["Ghaednia"](R=R, pair=PAIR, tangent_ratio=0.003)
     w = law.closure_range[1] * np.array([0.8, 0.95])
     one = model.at(w - 0.001e-6)
     got = law.at_closure(w)
     assert got.pressure == pytest.approx(ETA * one.force, rel=0.2)  # 2 nm of spread on 4 nm of interference
-    far = uniform(gaps=[0.0, 1e-9, 100e-6], chance=[1.0, 0.0, 0.0], asperity="Ghaednia", tangent_ratio=0.003)
+    far = uniform(gaps=[0.0, 1e-9, 100e-6], probability=[1.0, 0.0, 0.0], asperity="Ghaednia", tangent_ratio=0.003)
     w = np.array([2e-6, 20e-6])
     one = model.at(w)
     assert far.at_closure(w).pressure == pytest.approx(ETA * one.force, rel=2e-3)
@@ -78,11 +87,11 @@ def test_one_height_is_one_asperity_times_their_number() -> None:
 def test_any_table_equals_quadrature(seed: int, share: float) -> None:
     rng = np.random.default_rng(seed)
     g = np.sort(rng.uniform(0, 30e-6, 12))
-    chance = rng.uniform(0, 1, 12)
-    law = uniform(gaps=g, chance=chance, asperity="Ghaednia", tangent_ratio=0.003)
+    probability = rng.uniform(0, 1, 12)
+    law = uniform(gaps=g, probability=probability, asperity="Ghaednia", tangent_ratio=0.003)
     model = law._asperity
     w = share * (g[-1] - g[0])
-    density = lambda x: np.interp(x, g, chance / np.trapezoid(chance, g), left=0, right=0)  # noqa: E731
+    density = lambda x: np.interp(x, g, probability / np.trapezoid(probability, g), left=0, right=0)  # noqa: E731
     cuts = sorted({*g, g[0] + w, *(g[0] + w - b * model.critical for b in model.borders)})
     cuts = [c for c in cuts if g[0] <= c <= min(g[-1], g[0] + w)]
     for field, value in (("force", law.at_closure(w).pressure), ("area", law.at_closure(w).area)):
@@ -130,16 +139,16 @@ def test_flags() -> None:
 @pytest.mark.parametrize(
     ("changes", "text"),
     [
-        ({"gaps": [0.0, 1e-6], "chance": [1.0]}, "give two rows of one length"),
+        ({"gaps": [0.0, 1e-6], "probability": [1.0]}, "give two rows of one length"),
         ({"gaps": [1e-6, 0.0]}, "gaps do not rise"),
         ({"gaps": [-1e-6, 0.0]}, "must be 0 or more"),
-        ({"chance": [0.0, 0.0]}, "the chance of every gap is 0"),
-        ({"chance": [-1.0, 1.0]}, "must be 0 or more"),
+        ({"probability": [0.0, 0.0]}, "the probability of every gap is 0"),
+        ({"probability": [-1.0, 1.0]}, "must be 0 or more"),
         ({"density": 0.0}, "density = 0 1/m.2; it must be positive"),
         ({"radius": -5.9999999999999995e-05}, "radius = -6e-05 m; it must be positive"),
         ({"asperity": "cube"}, "asperity = 'cube'; use one of"),
         ({"tangent_ratio": 0.1}, "tangent_ratio belongs to asperity = 'Ghaednia'"),
-        ({"asperity": "Ghaednia", "tangent_ratio": 1.5}, "must be 0 up to below 1"),
+        ({"asperity": "Ghaednia", "tangent_ratio": 1.5}, "must be at least 0 and below 1"),
     ],
 )
 def test_faults(changes, text: str) -> None:

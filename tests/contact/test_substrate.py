@@ -216,7 +216,7 @@ def test_a_computed_substrate_says_where_it_was_not_computed() -> None:
     assert "h_a/R above 0.075" in words(modulus_ratio=2.0, G=1e-5)
     with pytest.raises(InputError, match=r"modulus_ratio = 9.0 with substrate=.computed.; it goes up to 4"):
         LAW.with_(substrate="computed", modulus_ratio=9.0)
-    with pytest.raises(InputError, match='use "exact", "computed" or a share'):
+    with pytest.raises(InputError, match='at most 1, or "exact" or "computed"'):
         LAW.with_(substrate="soft")
 
 

@@ -10,7 +10,7 @@ import pytest
 from faying.contact.half_space import HalfSpace
 from faying.contact.law import ContactLaw
 from faying.errors import InputError
-from faying.halfspace import certify, solve_half_space
+from faying.halfspace import error_bound, solve_half_space
 from faying.materials import CATALOGUE, RIGID, ContactPair, Material
 
 STEEL = CATALOGUE["45 steel"]
@@ -139,12 +139,12 @@ def test_resolution_error_is_small_on_a_resolved_map_and_large_on_noise(rough):
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        ({"stiffness": "sideways"}, "use unloading or loading"),
-        ({"area": "none"}, "use corrected or counted"),
+        ({"stiffness": "sideways"}, 'allowed is "unloading" or "loading"'),
+        ({"area": "none"}, 'allowed is "corrected" or "counted"'),
         ({"shear_ratio": 1.0}, "below 1"),
-        ({"points": 3}, "a ladder needs a whole number of 4 or more"),
-        ({"points": 4.5}, "a ladder needs a whole number of 4 or more"),
-        ({"lowest": 0.0}, "give 0 < lowest < highest"),
+        ({"points": 3}, "a whole number, at least 4"),
+        ({"points": 4.5}, "a whole number, at least 4"),
+        ({"lowest": 0.0}, "must be positive"),
         ({"highest": 2e9}, "not below the hardness"),
     ],
 )
@@ -173,6 +173,6 @@ def test_machined_steel_at_its_hardness(name):
         contact = solve_half_space(z, 5e-6, E_star=E_star, pressure=pressure, hardness=0.0045 * E_star)
         assert contact.residual < 1e-6
         assert contact.pressure == pytest.approx(pressure, rel=1e-9)
-        assert certify(z, 5e-6, contact.traction, E_star=E_star, hardness=0.0045 * E_star) < 1e-6
+        assert error_bound(z, 5e-6, contact.traction, E_star=E_star, hardness=0.0045 * E_star) < 1e-6
         # nearly all that touches is at hardness: the area is little more than pressure over hardness
         assert 1 <= contact.area * 0.0045 * E_star / pressure < 1.1 + 4 / np.count_nonzero(contact.traction)

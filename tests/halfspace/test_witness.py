@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from faying.halfspace import certify, solve_half_space
+from faying.halfspace import error_bound, solve_half_space
 
 SCRIPT = Path(__file__).parents[2] / "benchmarks" / "halfspace_witness.py"
 PYTHON = {"tamaas": os.environ.get("FAYING_WITNESS"), "contactmechanics": os.environ.get("FAYING_WITNESS_CM")}
@@ -33,7 +33,7 @@ def test_elastic_contact_of_a_self_affine_map(code, pressure, rough, tmp_path):
     h = rough(256)
     ours = solve_half_space(h, 1 / 256, E_star=1.0, pressure=pressure, tol=1e-8)
     theirs = witness(code, tmp_path, h, pressure)
-    assert certify(h, 1 / 256, theirs, E_star=1.0) < 1e-5
+    assert error_bound(h, 1 / 256, theirs, E_star=1.0) < 1e-5
     assert ours.area == pytest.approx(np.count_nonzero(theirs > 0) / h.size, rel=1e-3)
     assert ours.traction == pytest.approx(theirs, abs=1e-3 * theirs.max())
 
@@ -43,8 +43,8 @@ def test_contact_at_hardness_of_a_self_affine_map(code, rough, tmp_path):
     h = rough(128)
     ours = solve_half_space(h, 1 / 128, E_star=1.0, pressure=0.002, hardness=0.05, tol=1e-8)
     theirs = witness(code, tmp_path, h, 0.002, 0.05)
-    if certify(h, 1 / 128, theirs, E_star=1.0, hardness=0.05) > 1e-4:
-        pytest.skip(f"{code} did not solve the problem, by our certificate")
+    if error_bound(h, 1 / 128, theirs, E_star=1.0, hardness=0.05) > 1e-4:
+        pytest.skip(f"{code} did not solve the problem, by our error bound")
     assert ours.area == pytest.approx(np.count_nonzero(theirs > 0) / h.size, rel=1e-2)
     assert ours.traction == pytest.approx(theirs, abs=0.02 * 0.05)
 
@@ -65,6 +65,6 @@ def test_machined_scan_at_the_hardness_of_steel(name, share, tmp_path):
     assert ours.residual < 1e-6
     assert ours.pressure == pytest.approx(pressure, rel=1e-9)
     theirs = witness("tamaas", tmp_path, h, pressure, hardness, tol=1e-8)
-    assert certify(h, 1 / 101, theirs, E_star=1.0, hardness=hardness) < 1e-4
+    assert error_bound(h, 1 / 101, theirs, E_star=1.0, hardness=hardness) < 1e-4
     assert ours.area == pytest.approx(np.count_nonzero(theirs > 0) / h.size, rel=0.01)
     assert ours.saturated == pytest.approx(np.count_nonzero(theirs > hardness * (1 - 1e-6)) / h.size, rel=0.01)

@@ -16,6 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from faying.asperity_fe.body import State
+from faying.asperity_fe.mesh import cap_mesh
 from faying.asperity_fe.model import build
 
 
@@ -41,37 +42,31 @@ def table_1_model(R, h_a, ratio, elements, material):
     """A row of Table 1, meshed more coarsely."""
     cap, below = material(100e9 * ratio), material(100e9)
     a = np.sqrt(2 * R * 0.1 * h_a / (1 + 0.24 * ratio))
+    domain = 20 * np.sqrt(2 * R * h_a)
     return build(
-        R=R,
+        mesh=cap_mesh(R=R, h_a=h_a, contact_radius=float(a), elements=elements, domain=domain),
         h_a=h_a,
         materials=(cap, cap, below),
         hardening=(0.0,) * 3,
-        rigid=False,
         sliding=False,
         contact_radius=float(a),
-        elements=elements,
-        domain=20 * np.sqrt(2 * R * h_a),
-        layer_thickness=0.0,
         solver=None,
     )
 
 
 def sphere_model(displacement, elements, material):
     """Half of a sphere of 1 mm radius on a sliding foot, meshed for a contact at full plastic flow; all may yield."""
+    a = float(np.sqrt(1.85 * 1e-3 * displacement))
     model = build(
-        R=1e-3,
+        mesh=cap_mesh(R=1e-3, h_a=1e-3, contact_radius=a, elements=elements, domain=None),
         h_a=1e-3,
         materials=(material(100e9),) * 3,
         hardening=(0.0,) * 3,
-        rigid=True,
         sliding=True,
-        contact_radius=float(np.sqrt(1.85 * 1e-3 * displacement)),
-        elements=elements,
-        domain=1.0,
-        layer_thickness=0.0,
+        contact_radius=a,
         solver=None,
     )
-    return replace(model, reach=np.inf)
+    return replace(model, plastic_radius=np.inf)
 
 
 def deck(model, touching, *, element="CAX8R", large=False, increments=2):
@@ -105,7 +100,7 @@ def deck(model, touching, *, element="CAX8R", large=False, increments=2):
     r, z = np.array(nodes).T
     bottom, wall = np.flatnonzero(z < z.min() + 1e-9), np.flatnonzero(r > r.max() - 1e-9)
     lines += ["*BOUNDARY", *(f"{n + 1},1,1" for n in np.flatnonzero(r < 1e-12))]
-    bonded = bool(np.isin(2 * np.setdiff1d(bottom, np.flatnonzero(r < 1e-12)), model.held).all())
+    bonded = bool(np.isin(2 * np.setdiff1d(bottom, np.flatnonzero(r < 1e-12)), model.constrained).all())
     lines += [f"{n + 1},{1 if bonded else 2},2" for n in bottom]
     lines += [f"{n + 1},1,1" for n in np.setdiff1d(wall, bottom)] if len(mesh.wall) else []
     top = {(int(a), int(b)) for a, b in zip(mesh.surface[:-1], mesh.surface[1:], strict=True)}

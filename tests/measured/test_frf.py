@@ -76,7 +76,7 @@ def test_arrays_cannot_be_changed():
         ({"values": np.ones((1, 2, 101))}, r"need \(1, 1, 101\)"),
         ({"frequency": -F}, "must be two or more, not negative, and rise"),
         ({"values": np.where(F < 3, np.nan, 1.0)[None, None]}, "some of its frequencies only"),
-        ({"values": np.full((1, 1, 101), np.nan)}, "leave such lines out"),
+        ({"values": np.full((1, 1, 101), np.nan)}, "leave such spectral lines out"),
         ({"outputs": [(1, "up")]}, "use one of 'x'"),
         ({"outputs": [(1, "z"), (1, "z")]}, "stands twice"),
         ({"coherence": np.ones(101)}, "coherence has the shape"),
@@ -90,7 +90,7 @@ def test_what_does_not_fit(changes, match):
 def test_other_errors():
     with pytest.raises(InputError, match="use one of"):
         one().to("inertance")
-    with pytest.raises(InputError, match="no two lines between 200 and 300 Hz"):
+    with pytest.raises(InputError, match="no two spectral lines between 200 and 300 Hz"):
         one().band(200, 300)
     with pytest.raises(InputError, match="evenly spaced"):
         _ = one(frequency=F**1.1).step

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from faying import InputError
-from faying.measured.mac import fdac, frac, mac
+from faying.measured.mac import frac, mac
 
 numbers = st.floats(-1e3, 1e3).map(lambda x: round(x, 6))
 shapes = arrays(float, (2, 3, 7), elements=numbers).map(lambda a: a[0] + 1j * a[1])
@@ -50,20 +50,8 @@ def test_frac_is_one_for_frfs_that_differ_by_a_factor():
     assert frac(x, x[::-1]).max() < 0.9
 
 
-def test_fdac_of_a_model_too_soft_has_its_ones_beside_the_diagonal():
-    """Frequencies lower by a tenth throughout: the operating shape at 0.9 f is the test's at f."""
-    modes, shapes = np.array([30.0, 70.0]), np.random.default_rng(1).standard_normal((2, 6))
-    lines = np.linspace(10, 100, 91)
-
-    def frfs(scale, f):
-        return sum(np.outer(s, 1 / ((r * scale) ** 2 * (1 + 0.01j) - f**2)) for r, s in zip(modes, shapes, strict=True))
-
-    table = fdac(frfs(1.0, lines), frfs(0.9, 0.9 * lines))
-    np.testing.assert_allclose(np.diag(table), 1, atol=1e-12)
-
-
 def test_shapes_that_do_not_fit():
     with pytest.raises(InputError, match="at 2 and at 3 degrees of freedom"):
         mac(np.ones((1, 2)), np.ones((1, 3)))
-    with pytest.raises(InputError, match="same pairs and lines"):
+    with pytest.raises(InputError, match="same pairs and spectral lines"):
         frac(np.ones(3), np.ones(4))

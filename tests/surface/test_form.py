@@ -5,12 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from faying import InputError, NotConverged, Scan
-from faying.surface.filters import bandpass, gaussian_highpass, gaussian_lowpass
+from faying import InputError, Scan
+from faying.surface.filters import gaussian_lowpass
 from faying.surface.form import filled, find_spikes, levelled, prepared
 from faying.surface.roughness import roughness
 from faying.surface.scan import Profile
-from faying.surface.shapes import without_cylinder, without_sphere
 from faying.surface.synthesize import spectral, with_missing
 
 
@@ -121,52 +120,14 @@ def test_the_gaussian_filter_passes_what_iso_16610_says(ratio, passed):
     assert areal @ scan.heights[32, 128:384] / 128 == pytest.approx(passed, abs=2e-3)
 
 
-def test_the_filter_keeps_constants_at_borders_and_holes_and_splits_exactly():
+def test_the_filter_keeps_constants_at_borders_and_holes():
     z = np.full((40, 40), 7e-6)
     z[5:9, 5:9] = np.nan
     scan = Scan(heights=z, spacing=(1e-6, 1e-6))
     assert np.nanmax(np.abs(gaussian_lowpass(scan, 10e-6).heights - 7e-6)) < 1e-18
-    rough = spectral((64, 64), spacing=1e-6, D=2.5, Rq=1e-6)
-    parts = gaussian_lowpass(rough, 1e-5).heights + gaussian_highpass(rough, 1e-5).heights
-    assert np.allclose(parts, rough.heights, atol=1e-18)
-    assert bandpass(rough, 4e-6, 3e-5).heights.std() < rough.heights.std()
 
 
 def test_cutoffs_outside_the_scan_are_refused():
     rough = spectral((64, 64), spacing=1e-6, D=2.5, Rq=1e-6)
     with pytest.raises(InputError, match="between twice the spacing"):
         gaussian_lowpass(rough, 1e-6)
-    with pytest.raises(InputError, match="smaller wavelength"):
-        bandpass(rough, 3e-5, 3e-6)
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-def test_a_sphere_is_removed_and_its_radius_found(sign):
-    x, y = grid(60, 80, 5e-6)
-    R = 5e-3
-    z = sign * (np.sqrt(R**2 - (x - 1.5e-4) ** 2 - (y - 2e-4) ** 2) - R)
-    left, radius = without_sphere(Scan(heights=z, spacing=(5e-6, 5e-6)))
-    assert radius == pytest.approx(sign * R, rel=1e-6)
-    assert np.abs(left.heights).max() < 1e-12
-
-
-@pytest.mark.parametrize("angle", [0.0, 0.4, 1.3, 2.5])
-def test_a_tilted_cylinder_is_removed(angle):
-    x, y = grid(60, 80, 5e-6)
-    across = (x - 2e-4) * -np.sin(angle) + (y - 1.4e-4) * np.cos(angle)
-    along = (x - 2e-4) * np.cos(angle) + (y - 1.4e-4) * np.sin(angle)
-    R = 4e-3
-    z = np.sqrt(R**2 - across**2) - R + 0.01 * along
-    left, radius, axis = without_cylinder(Scan(heights=z, spacing=(5e-6, 5e-6)))
-    assert radius == pytest.approx(R, rel=1e-5)
-    assert abs((axis - angle + np.pi / 2) % np.pi - np.pi / 2) < 1e-5
-    assert np.abs(left.heights).max() < 1e-11
-
-
-def test_a_flat_scan_has_no_sphere_or_cylinder():
-    x, y = grid()
-    flat = Scan(heights=0.1 * x + 0 * y, spacing=(1e-6, 1e-6))
-    with pytest.raises(NotConverged, match="flat"):
-        without_sphere(flat)
-    with pytest.raises(NotConverged, match="flat"):
-        without_cylinder(flat)

@@ -1,5 +1,7 @@
 """D and G found again on surfaces of known D and G, with intervals that hold."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,8 +9,9 @@ from hypothesis import strategies as st
 
 from faying import FractalFit, InputError, NotConverged, Scan, fit_fractal
 from faying.surface.convention import cut_factor, implied_Rq
-from faying.surface.fractal import METHODS, consistency, fit_all
-from faying.surface.scaling import generalised_hurst, window_transfer
+from faying.surface.estimators.table import ESTIMATORS, METHODS
+from faying.surface.estimators.windows import share_left, window_transfer
+from faying.surface.fractal import consistency, fit_all
 from faying.surface.selftest import self_test, stretch_of
 from faying.surface.synthesize import spectral, weierstrass_mandelbrot, with_missing, with_noise
 
@@ -180,20 +183,9 @@ def test_window_transfer_is_what_windows_of_noise_leave(order, integrated):
     x = np.stack([np.cos(2 * np.pi * u * t), np.sin(2 * np.pi * u * t)], axis=1)
     basis = np.linalg.qr(np.stack([(2 * t - 1) ** k for k in range(order + 1)], axis=1))[0]
     left = np.mean((x - basis @ (basis.T @ x)) ** 2) * 2
-    from faying.surface.scaling import _share_left
-
-    cycles, share = _share_left(order)
+    cycles, share = share_left(order)
     assert np.interp(u, cycles, share) == pytest.approx(left, abs=1e-4)
     assert window_transfer(2.5, order, integrated) > 0
-
-
-def test_generalised_hurst_is_flat_for_a_monofractal():
-    scan = spectral((512, 512), spacing=1e-6, D=2.4, G=G, seed=2)
-    h = generalised_hurst(scan, np.array([-2.0, 0.0, 2.0]), low=1e-5, high=1e-4)
-    assert np.ptp(h) < 0.08
-    assert h[2] == pytest.approx(4 - 2.4, abs=0.06)
-    with pytest.raises(InputError, match="half the profile"):
-        generalised_hurst(scan, np.array([2.0]), low=1e-6, high=1e-4)
 
 
 @pytest.mark.parametrize("method", ["box", "higuchi"])
@@ -232,3 +224,12 @@ def test_coverage_over_many_surfaces():
     for number in inside.values():
         # 95 % of 120 is 114; below 106 or above 119 has a probability of a few in a thousand
         assert 106 <= number <= 119
+
+
+def test_the_theory_page_states_the_bias_that_each_estimator_declares():
+    page = (Path(__file__).parents[2] / "docs" / "theory" / "surface.md").read_text()
+    rows = {cells[1].strip(): cells[-2].strip() for line in page.splitlines() if len(cells := line.split("|")) == 6}
+    assert {name: rows[name] for name in METHODS if name != "psd"} == {
+        name: entry.bias for name, entry in ESTIMATORS.items() if name != "psd"
+    }
+    assert METHODS[0] == "psd"  # the default

@@ -1,4 +1,4 @@
-"""Two surfaces combined; lay, sections and summits; a second reader's opinion."""
+"""Two surfaces combined; lay and summits; a second reader's opinion."""
 
 import numpy as np
 import pytest
@@ -6,8 +6,7 @@ import pytest
 from faying import InputError, Scan, fit_fractal, read_scan
 from faying.surface.combine import combine
 from faying.surface.crosscheck import compare, cross_check
-from faying.surface.lay import across_and_along, find_lay, sections
-from faying.surface.scan import Profile
+from faying.surface.lay import find_lay
 from faying.surface.summits import cutoff_study, summits
 from faying.surface.synthesize import spectral
 from faying.surface.write import write_scan
@@ -61,27 +60,6 @@ def test_an_isotropic_surface_has_none():
     for seed in range(5):
         scan = spectral((192, 192), spacing=1e-6, D=2.4, Rq=1e-6, seed=seed)
         assert not find_lay(scan).present
-    with pytest.raises(InputError, match="no lay"):
-        across_and_along(scan)
-
-
-def test_profiles_across_the_lay_are_rougher_than_along():
-    scan = spectral((256, 256), spacing=1e-6, D=2.4, Rq=1e-6, lay=(0.6, 3.0), seed=3)
-    across, along = across_and_along(scan, 24)
-    slope = [np.mean([np.mean(np.diff(p.heights) ** 2) for p in lines]) for lines in (across, along)]
-    assert slope[0] > 3 * slope[1]
-
-
-def test_sections_lie_where_they_should():
-    y, x = np.mgrid[0:40, 0:60] * 1e-6
-    scan = Scan(heights=2 * x + 3 * y, spacing=(1e-6, 1e-6))
-    for angle in (0.0, 0.5, 1.2, 2.2):
-        for line in sections(scan, angle, 9):
-            assert isinstance(line, Profile)
-            rise = np.diff(line.heights) / line.spacing
-            assert np.allclose(rise, 2 * np.cos(angle) + 3 * np.sin(angle), atol=1e-6)
-    with pytest.raises(InputError, match="no line of 16 points"):
-        sections(Scan(heights=np.zeros((4, 4)), spacing=(1e-6, 1e-6)), 0.0)
 
 
 def test_moments_and_summits_of_an_egg_box():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from faying import InputError, Scan
-from faying.surface.scan import Profile, usable
+from faying.surface.scan import Instrument, Profile, usable
 
 
 def test_scan_is_frozen_and_copies_its_heights():
@@ -81,3 +81,33 @@ def test_heights_that_carry_no_statistic(heights, match):
 def test_profile_needs_one_row():
     with pytest.raises(InputError, match="one row"):
         Profile(heights=np.zeros((3, 3)), spacing=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("shape", "share", "rows", "columns"),
+    [
+        ((40, 60), 0.5, slice(10, 30), slice(15, 45)),
+        ((41, 9), 0.6, slice(8, 33), slice(2, 7)),
+        ((12, 20), 1.0, slice(0, 12), slice(0, 20)),
+    ],
+)
+def test_cropped_is_the_middle_of_the_scan(shape, share, rows, columns):
+    z = np.arange(np.prod(shape), dtype=float).reshape(shape) * 1e-9
+    scan = Scan(heights=z, spacing=(2e-6, 3e-6), source="made", instrument=Instrument(resolution=5e-6))
+    part = scan.cropped(share)
+    np.testing.assert_array_equal(part.heights, z[rows, columns])
+    assert (part.spacing, part.source, part.instrument) == (scan.spacing, scan.source, scan.instrument)
+    assert "cropped" in part.history[-1]
+
+
+@pytest.mark.parametrize("share", [0.0, -0.5, 1.0001, float("nan"), float("inf")])
+def test_a_share_that_cannot_be_is_refused(share):
+    with pytest.raises(InputError, match="above 0 and at most 1"):
+        Scan(heights=np.eye(20), spacing=(1e-6, 1e-6)).cropped(share)
+
+
+def test_a_crop_of_too_few_points_is_refused():
+    scan = Scan(heights=np.eye(20), spacing=(1e-6, 1e-6))
+    assert scan.cropped(0.25).shape == (5, 5)
+    with pytest.raises(InputError, match="4 x 4; at least 5 points a side"):
+        scan.cropped(0.2)

@@ -45,14 +45,14 @@ class Spring:
 class Body:
     """Elements of a mesh with their materials and supports.
 
-    materials, hardening (tangent modulus over E): by the number in mesh.body; held: degrees of freedom (2 node +
+    materials, hardening (tangent modulus over E): by the number in mesh.body; constrained: degrees of freedom (2 node +
     component) kept at zero; elements: those of the mesh that belong to this body; far: what they rest on, if anything.
     """
 
     mesh: Mesh
     materials: Sequence[Material]
     hardening: Sequence[float]
-    held: Index
+    constrained: Index
     elements: Index
     far: Spring | None = None
 
@@ -90,10 +90,10 @@ class Body:
 
     @cached_property
     def unknown_of_dof(self) -> Index:
-        """Number of each degree of freedom of the mesh among the unknowns; -1 where held or not of this body."""
+        """Number of each degree of freedom of the mesh among the unknowns; -1 where constrained or not of this body."""
         number = np.full(2 * len(self.mesh.nodes), -1)
         number[2 * self._quads] = number[2 * self._quads + 1] = 0
-        number[self.held] = -1
+        number[self.constrained] = -1
         number[number == 0] = np.arange(np.sum(number == 0))
         return number
 
@@ -114,7 +114,7 @@ class Body:
 
     @cached_property
     def _dofs(self) -> Index:
-        """Unknowns of each element (m, 8); held ones point one past the end."""
+        """Unknowns of each element (m, 8); constrained ones point one past the end."""
         q = self._quads
         number = self.unknown_of_dof[np.stack([2 * q, 2 * q + 1], axis=-1).reshape(len(q), 8)]
         return np.where(number < 0, self.size, number)
@@ -160,7 +160,7 @@ class Body:
 
     @cached_property
     def _pattern(self) -> tuple[Index, Index, Index]:
-        """Columns and row pointers of the matrix; where each element's 64 entries, then the springs', go in its data."""
+        """Columns and row pointers of the matrix; where each element's 64 entries, then the springs', go in it."""
         rows = np.repeat(self._dofs, 8, axis=1).reshape(-1)
         columns = np.tile(self._dofs, (1, 8)).reshape(-1)
         if self.far is not None:

@@ -2,40 +2,14 @@
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 
-from faying.asperity_fe.drive import AsperityResult, solve_asperity
+from faying.asperity_fe.drive import AsperityCase, AsperityResult
 from faying.errors import FayingError, InputError
 from faying.files import write_atomically
-from faying.materials import Material
-
-
-@dataclass(frozen=True, kw_only=True)
-class AsperityCase:
-    """Arguments of `solve_asperity`, to be solved later or elsewhere."""
-
-    R: float
-    h_a: float
-    cap: Material
-    substrate: Material
-    displacement: tuple[float, ...] | None = None
-    force: tuple[float, ...] | None = None
-    layer: Material | None = None
-    layer_thickness: float = 0.0
-    hardening: float = 0.0
-    foot: Literal["bonded", "sliding"] = "bonded"
-    elements: int = 40
-    steps: int | None = None
-    domain: float | None = None
-    solver: str | None = None
-
-    def solve(self) -> AsperityResult:
-        """Solve this case."""
-        return solve_asperity(**{f.name: getattr(self, f.name) for f in fields(self)})
+from faying.typing import Array
 
 
 def _solved(case: AsperityCase) -> AsperityResult | FayingError:
@@ -108,38 +82,44 @@ def write_netcdf(
             nc.title = "Single asperities pressed by a smooth rigid plane, axisymmetric finite elements"
             for name, size in (("case", len(cases)), ("step", longest), ("bound", 2), ("letter", width)):
                 nc.createDimension(name, size)
-            inputs = {
-                "R": ("m", [c.R for c in cases]),
-                "h_a": ("m", [c.h_a for c in cases]),
-                "E_cap": ("Pa", [c.cap.E for c in cases]),
-                "E_substrate": ("Pa", [c.substrate.E for c in cases]),
-                "yield_cap": ("Pa", [c.cap.yield_strength or np.inf for c in cases]),
-                "yield_substrate": ("Pa", [c.substrate.yield_strength or np.inf for c in cases]),
-                "hardening": ("1", [c.hardening for c in cases]),
-                "layer_thickness": ("m", [c.layer_thickness for c in cases]),
-                "residual": ("m", [np.nan if r is None or r.residual is None else r.residual for r in found]),
-            }
-            for name, (unit, values) in inputs.items():
+            for name, (unit, values) in _inputs(cases, found).items():
                 variable = nc.createVariable(name, "f8", ("case",))
                 variable[:] = np.array(values, float)
                 variable.units = unit
             for name, unit in (("displacement", "m"), ("force", "N"), ("area", "m2"), ("pressure", "Pa")):
                 variable = nc.createVariable(name, "f8", ("case", "step"))
-                block = np.full((len(cases), longest), np.nan)
-                for row, result in zip(block, found, strict=True):
-                    if result is not None:
-                        values = getattr(result.history, name)
-                        row[: len(values)] = values
-                variable[:] = block
+                variable[:] = _padded([None if r is None else getattr(r.history, name) for r in found], (longest,))
                 variable.units = unit
             variable = nc.createVariable("area_bounds", "f8", ("case", "step", "bound"))
-            bounds = np.full((len(cases), longest, 2), np.nan)
-            for rows, result in zip(bounds, found, strict=True):
-                if result is not None:
-                    rows[: len(result.history.force)] = result.history.area_bounds
-            variable[:] = bounds
+            variable[:] = _padded([None if r is None else r.history.area_bounds for r in found], (longest, 2))
             variable.units = "m2"
             variable = nc.createVariable("message", "c", ("case", "letter"))
             variable[:] = np.array([list(m.ljust(width)) for m in messages], "S1")
 
     return write_atomically(Path(path), write)
+
+
+def _inputs(
+    cases: Sequence[AsperityCase], found: Sequence[AsperityResult | None]
+) -> dict[str, tuple[str, list[float]]]:
+    """Unit and value of each case, by name."""
+    return {
+        "R": ("m", [c.R for c in cases]),
+        "h_a": ("m", [c.h_a for c in cases]),
+        "E_cap": ("Pa", [c.cap.E for c in cases]),
+        "E_substrate": ("Pa", [c.substrate.E for c in cases]),
+        "yield_cap": ("Pa", [c.cap.yield_strength or np.inf for c in cases]),
+        "yield_substrate": ("Pa", [c.substrate.yield_strength or np.inf for c in cases]),
+        "hardening": ("1", [c.hardening for c in cases]),
+        "layer_thickness": ("m", [c.layer_thickness for c in cases]),
+        "residual": ("m", [np.nan if r is None or r.residual is None else r.residual for r in found]),
+    }
+
+
+def _padded(rows: Sequence[Array | None], shape: tuple[int, ...]) -> Array:
+    """Rows of different length in one array, filled up with NaN."""
+    out = np.full((len(rows), *shape), np.nan)
+    for block, values in zip(out, rows, strict=True):
+        if values is not None:
+            block[: len(values)] = values
+    return out

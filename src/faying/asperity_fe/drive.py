@@ -1,15 +1,16 @@
 """Press one asperity: geometry and materials in, history of force and area out."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from itertools import pairwise
-from math import isfinite, pi, sqrt
+from math import inf, isfinite, pi, sqrt
 from typing import Literal
 
 import numpy as np
 
 from faying.asperity_fe.body import State
 from faying.asperity_fe.equilibrium import Equilibrium
+from faying.asperity_fe.mesh import cap_mesh, rim_radius
 from faying.asperity_fe.model import Model, build, expected_radius
 from faying.errors import InputError, NotConverged
 from faying.materials import RIGID, ContactPair, Material
@@ -86,6 +87,58 @@ class AsperityResult:
         return float(low), float(high)
 
 
+@dataclass(frozen=True, kw_only=True)
+class AsperityCase:
+    """The problem that `solve_asperity` solves; its keywords mean the same there."""
+
+    R: float
+    h_a: float
+    cap: Material
+    substrate: Material
+    displacement: float | Sequence[float] | None = None
+    force: float | Sequence[float] | None = None
+    layer: Material | None = None
+    layer_thickness: float = 0.0
+    hardening: float = 0.0
+    foot: Literal["bonded", "sliding"] = "bonded"
+    elements: int = 40
+    steps: int | None = None
+    domain: float | None = None
+    solver: str | None = None
+
+    @property
+    def base(self) -> float:
+        """Radius of the cap's base [m]."""
+        return rim_radius(self.R, self.h_a)
+
+    def solve(self, progress: Callable[[float], None] | None = None) -> AsperityResult:
+        """Solve this case; `progress` is called with the share done."""
+        if (self.displacement is None) == (self.force is None):
+            raise InputError("give displacement or force, one of them")
+        _check_shape(self)
+        name = "displacement" if self.force is None else "force"
+        targets = _turning_points(getattr(self, name), name)
+        radius, top = _expected(self, max(targets))
+        model = build(
+            mesh=cap_mesh(
+                R=self.R,
+                h_a=self.h_a,
+                contact_radius=radius,
+                elements=self.elements,
+                domain=None if self.substrate.is_rigid else self.domain or 40 * self.base,
+                layer_thickness=self.layer_thickness if self.layer else 0.0,
+            ),
+            h_a=self.h_a,
+            materials=(self.cap, self.layer or self.cap, self.cap if self.substrate.is_rigid else self.substrate),
+            hardening=(self.hardening,) * 3,
+            sliding=self.foot == "sliding",
+            contact_radius=radius,
+            solver=self.solver,
+        )
+        run = _Run(model, self.steps or round(1.5 * self.elements), targets, progress)
+        return run.result() if self.force is None else run.to_forces(sqrt(top))
+
+
 def solve_asperity(
     *,
     R: float,
@@ -106,58 +159,62 @@ def solve_asperity(
 ) -> AsperityResult:
     """Press a spherical cap on a substrate with a smooth rigid plane, by axisymmetric elastic-plastic finite elements.
 
-    R, h_a: radius and height of the cap [m], 0 < h_a <= R; its base has the radius sqrt(2 R h_a - h_a^2). cap,
-    substrate: Material; one without a yield strength stays elastic; substrate RIGID holds the base of the cap, bonded
-    or sliding (`foot`): h_a = R on a sliding rigid foot is half of a sphere between two planes. displacement: of the
-    plane from first touch [m], one value or the turning points of a history (a smaller value after a larger one
-    unloads; 0 unloads until contact is lost); or force: of the plane [N] in place of it, in the same way. layer, layer_thickness: a third material under the cap [m]. hardening:
-    tangent modulus over E, 0 <= hardening < 1. elements: over the contact radius. steps: load steps for the largest
-    displacement (1.5 a contact element where not given). domain: radius and depth of the substrate [m] (40 radii of
-    the cap's base); its foot keeps its height, its wall its radius. solver: name of the factorisation.
+    Strains are small and geometry is linear inside the body; the contact is closed on the plane's true height.
 
-    Small strains and linear geometry inside the body; the contact is closed on the plane's true height. Returns
-    AsperityResult. Raises InputError for impossible geometry and NotConverged with the step, the place and the steps
-    done (attribute `result`). Source of the setting: Zhang et al. 2024, doi:10.3390/fractalfract8100611, section 2.4.
+    Args:
+        R: radius of the cap [m], positive.
+        h_a: its height [m], 0 < h_a <= R; its base has the radius sqrt(2 R h_a - h_a^2).
+        cap: its material; without a yield strength it stays elastic.
+        substrate: what it stands on; RIGID fixes the base of the cap.
+        displacement: of the plane from first touch [m], one value or the turning points of a history. A smaller value
+            after a larger one unloads; 0 unloads until contact is lost.
+        force: of the plane [N], in place of the displacement and in the same way.
+        layer: a third material under the cap.
+        layer_thickness: of that layer [m].
+        hardening: tangent modulus over E, 0 <= hardening < 1.
+        foot: "bonded" or "sliding" base on a rigid substrate; h_a = R sliding is half of a sphere between two planes.
+        elements: over the contact radius, 4 or more.
+        steps: load steps for the largest displacement (default: 1.5 for each contact element).
+        domain: radius and depth of the substrate [m] (default: 40 radii of the base); its foot keeps its height, its
+            wall its radius.
+        solver: name of the factorisation.
+        progress: called with the share done.
+
+    Returns:
+        AsperityResult: the history of the plane and the field at its last step.
+
+    Raises:
+        InputError: for impossible geometry or loads.
+        NotConverged: with the step and the place; the steps done are in its attribute `result`.
+
+    Source:
+        Zhang et al. 2024, doi:10.3390/fractalfract8100611, section 2.4, for the setting.
     """
-    if (displacement is None) == (force is None):
-        raise InputError("give displacement or force, one of them")
-    _check_shape(R, h_a, layer, layer_thickness, hardening, elements, steps, domain, cap)
-    targets = _turning_points(displacement if force is None else force, "displacement" if force is None else "force")
-    top = max(targets)
-    if force is None and top > h_a:
-        raise InputError(f"displacement {top} m is more than the height of the cap, {h_a} m; stay at or below h_a")
-    soft = [m for m in (cap, substrate, layer) if m is not None and m.hardness is not None and not m.is_rigid]
+    given = locals()
+    return AsperityCase(**{f.name: given[f.name] for f in fields(AsperityCase)}).solve(progress)
+
+
+def _expected(case: AsperityCase, greatest: float) -> tuple[float, float]:
+    """Contact radius to mesh for and displacement [m] at the greatest displacement or force asked for."""
+    cap, R, h_a = case.cap, case.R, case.h_a
+    if case.force is None and greatest > h_a:
+        raise InputError(f"displacement {greatest} m is more than the height of the cap, {h_a} m; stay at or below h_a")
+    soft = [m for m in (cap, case.substrate, case.layer) if m is not None and m.hardness is not None and not m.is_rigid]
     weakest = min(soft, key=lambda m: m.hardness or np.inf) if soft else None
-    pair = ContactPair(cap, RIGID)
-    K = 0.454 + 0.41 * (weakest or cap).nu
+    E_star = ContactPair(cap, RIGID).E_star
     hardness = weakest.hardness if weakest else None
-    if force is None:
-        radius = expected_radius(R, h_a, top, pair.E_star, hardness, K)
-    else:
-        radius = max((0.75 * top * R / pair.E_star) ** (1 / 3), sqrt(top / (pi * hardness)) if hardness else 0.0)
+    if case.force is not None:
+        radius = max((0.75 * greatest * R / E_star) ** (1 / 3), sqrt(greatest / (pi * hardness)) if hardness else 0.0)
         top = radius**2 / (1.5 * R)  # between Hertz's a^2/R and the truncated sphere's a^2/(2R)
         if top > h_a:
             raise InputError(
-                f"force {max(targets)} N would press the cap by about {top:.3g} m, more than its height {h_a} m"
+                f"force {greatest} N would press the cap by about {top:.3g} m, more than its height {h_a} m; give less"
             )
-    if force is None and not substrate.is_rigid:
-        radius /= sqrt(1 + 0.75 * cap.E / substrate.E * sqrt(top / h_a))  # what the substrate gives way
-    base = sqrt(2 * R * h_a - h_a**2)
-    model = build(
-        R=R,
-        h_a=h_a,
-        materials=(cap, layer or cap, cap if substrate.is_rigid else substrate),
-        hardening=(hardening,) * 3,
-        rigid=substrate.is_rigid,
-        sliding=foot == "sliding",
-        contact_radius=radius,
-        elements=elements,
-        domain=domain or 40 * base,
-        layer_thickness=layer_thickness if layer else 0.0,
-        solver=solver,
-    )
-    run = _Run(model, steps or round(1.5 * elements), targets, progress)
-    return run.result() if force is None else run.to_forces(sqrt(top))
+        return radius, top
+    radius = expected_radius(R, h_a, greatest, E_star, hardness, 0.454 + 0.41 * (weakest or cap).nu)
+    if not case.substrate.is_rigid:
+        radius /= sqrt(1 + 0.75 * cap.E / case.substrate.E * sqrt(greatest / h_a))  # what the substrate gives way
+    return radius, greatest
 
 
 class _Run:
@@ -223,7 +280,7 @@ class _Run:
     def _between(
         self, low: float, f_low: float, high: float, f_high: float, target: float, tolerance: float
     ) -> tuple[float, float]:
-        """Displacement in one step from here that gives the force `target`, by regula falsi (Illinois), and the force."""
+        """Displacement in one step from here that gives the force `target`, and the force (regula falsi, Illinois)."""
         a, fa, b, fb = low, f_low - target, high, f_high - target
         middle, f = b, fb
         for _ in range(40):
@@ -262,7 +319,7 @@ class _Run:
             if self.at is None:
                 raise NotConverged("the first step yields outside the fine part of the mesh; take more steps")
             self.factorisations += self.model.factors.factorisations
-            self.model, self.at, self.state = self.model.grown(self.at, self.state)
+            self.model, self.at, self.state = self.model.enlarged(self.at, self.state)
         returned = found.balance.returned
         self.state = State(plastic=returned.plastic, hardened=returned.hardened)
         self.at = found
@@ -336,34 +393,27 @@ def _turning_points(given: float | Sequence[float] | None, name: str) -> list[fl
     return targets
 
 
-def _check_shape(
-    R: float,
-    h_a: float,
-    layer: Material | None,
-    layer_thickness: float,
-    hardening: float,
-    elements: int,
-    steps: int | None,
-    domain: float | None,
-    cap: Material,
-) -> None:
+def _check_shape(case: AsperityCase) -> None:
     """Refuse what cannot be meshed."""
+    R, h_a, layer, thickness = case.R, case.h_a, case.layer, case.layer_thickness
     if not (isfinite(R) and R > 0):
         raise InputError(f"R = {R} m; the radius of the cap must be positive, for example 15e-6")
     if not (isfinite(h_a) and 0 < h_a <= R):
         raise InputError(f"h_a = {h_a} m with R = {R} m; the height must be above 0 and at most R (a half sphere)")
-    if cap.is_rigid:
+    if case.cap.is_rigid:
         raise InputError("the cap is rigid; it must be deformable, only the substrate may be RIGID")
-    if (layer is None) != (layer_thickness == 0) or layer_thickness < 0:
+    if (layer is None) != (thickness == 0) or not 0 <= thickness < inf:
         raise InputError(
-            f"layer {layer.name if layer else None!r} with layer_thickness = {layer_thickness} m; give both, or neither"
+            f"layer {layer.name if layer else None!r} with layer_thickness = {thickness} m; give both, or neither"
         )
-    if not 0 <= hardening < 1:
-        raise InputError(f"hardening = {hardening}; the tangent modulus over E must lie in [0, 1)")
-    if elements < 4 or (steps is not None and steps < 1):
-        raise InputError(f"elements = {elements}, steps = {steps}; at least 4 elements and 1 step are needed")
-    base = sqrt(2 * R * h_a - h_a**2)
-    if domain is not None and not (isfinite(domain) and domain > 2 * base and domain > 2 * layer_thickness):
+    if not 0 <= case.hardening < 1:
+        raise InputError(f"hardening = {case.hardening}; the tangent modulus over E must lie in [0, 1)")
+    if case.elements < 4 or (case.steps is not None and case.steps < 1):
+        raise InputError(f"elements = {case.elements}, steps = {case.steps}; at least 4 elements and 1 step are needed")
+    if case.domain is not None and not (
+        isfinite(case.domain) and case.domain > 2 * case.base and case.domain > 2 * thickness
+    ):
         raise InputError(
-            f"domain = {domain} m; it must be more than twice the cap's base radius {base:.4g} m and the layer"
+            f"domain = {case.domain} m; it must be more than twice the cap's base radius {case.base:.4g} m and the "
+            "layer"
         )

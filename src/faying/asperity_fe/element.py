@@ -56,7 +56,7 @@ class Quads:
 
     @cached_property
     def plain(self) -> Array:
-        """Strain operators (m, 4, 4, 8) before the dilatation is averaged: the fully integrated element, which locks."""
+        """Strain operators (m, 4, 4, 8) before the dilatation is averaged: fully integrated elements, which lock."""
         slopes, _ = self._slopes
         radius = self.place[..., 0]
         m = len(self.corners)

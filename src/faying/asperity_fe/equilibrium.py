@@ -107,7 +107,8 @@ def balanced(
     node = int(np.flatnonzero(body.unknown_of_dof == worst)[0]) // 2
     r, z = body.mesh.nodes[node]
     raise NotConverged(
-        f"no equilibrium after {iteration + 1} iterations: imbalance {imbalance:.2e} of the load (allowed {tolerance:g}),"
+        f"no equilibrium after {iteration + 1} iterations: imbalance {imbalance:.2e} of the load (allowed "
+        f"{tolerance:g}),"
         f" largest at r = {r:.4g} m, z = {z:.4g} m; take more steps, or a finer mesh"
     )
 

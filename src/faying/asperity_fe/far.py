@@ -1,4 +1,4 @@
-"""The part of the asperity and its substrate that stays elastic, condensed once to the border of the part that yields."""
+"""The elastic part of an asperity and its substrate, condensed once to the border of the part that yields."""
 
 from dataclasses import dataclass
 from functools import cached_property

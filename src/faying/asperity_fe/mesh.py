@@ -87,62 +87,80 @@ def cap_mesh(
     R, h_a: radius and height of the cap [m]; contact_radius: the largest expected [m]; elements: their number over
     that radius; domain: radius and depth of the block [m]; layer_thickness [m]: a row of nodes lies there.
     """
-    r_a = rim_radius(R, h_a)
-    angle = np.pi / 2 if h_a == R else asin(r_a / R)
     fine = contact_radius / elements
-    across = _Grading(fine=fine, flat=1.2 * contact_radius, growth=growth)
-    down = _Grading(fine=fine, flat=0.7 * contact_radius, growth=growth)
+    cap = _cap(
+        R,
+        h_a,
+        across=_Grading(fine=fine, flat=1.2 * contact_radius, growth=growth),
+        down=_Grading(fine=fine, flat=0.7 * contact_radius, growth=growth),
+    )
+    if domain is None:
+        return cap
+    return _on_block(
+        cap,
+        across=_Grading(fine=fine, flat=1.2 * contact_radius, growth=1.5 * growth - 0.5),
+        down=_Grading(fine=fine, flat=0.7 * contact_radius, growth=1.5 * growth - 0.5),
+        stops=[h_a, *([h_a + layer_thickness] if layer_thickness else []), h_a + domain],
+    )
 
-    arc = across.split(0.0, R * angle)
+
+def _cap(R: float, h_a: float, *, across: _Grading, down: _Grading) -> Mesh:
+    """The cap alone, on its base; its nodes go row by row from the top, the node of the rim last."""
+    r_a = rim_radius(R, h_a)
+    arc = across.split(0.0, R * (np.pi / 2 if h_a == R else asin(r_a / R)))
     phi = arc / R
     depth = down.split(0.0, h_a)
     columns, rows = len(arc) - 1, len(depth) - 1
     top = np.stack([R * np.sin(phi), R * np.cos(phi) - (R - h_a)], axis=-1)
     foot = np.stack([r_a * arc / arc[-1], np.zeros_like(arc)], axis=-1)
     share = (depth / h_a)[:, None, None]
-    cap = (1 - share) * top + share * foot  # (rows + 1, columns + 1, 2)
-    # the rim: one node for all rows
+    points = (1 - share) * top + share * foot  # (rows + 1, columns + 1, 2)
     number = np.zeros((rows + 1, columns + 1), np.int64)
     number[:, :columns] = np.arange((rows + 1) * columns).reshape(rows + 1, columns)
-    rim = (rows + 1) * columns
-    number[:, columns] = rim
-    nodes = [cap[:, :columns].reshape(-1, 2), np.array([[r_a, 0.0]])]
-    quads = [_grid(number)]
-    body = [np.full(rows * columns, CAP)]
-    surface, axis, base = number[0], number[:, 0], number[-1]
-    wall = np.zeros(0, np.int64)
-
-    if domain is not None:
-        outwards = _Grading(fine=fine, flat=1.2 * contact_radius, growth=1.5 * growth - 0.5)
-        flat = outwards.split(r_a, domain)[1:]
-        radii = np.concatenate([foot[:, 0], flat])
-        coarse = _Grading(fine=fine, flat=0.7 * contact_radius, growth=1.5 * growth - 0.5)
-        stops = [h_a, *([h_a + layer_thickness] if layer_thickness else []), h_a + domain]
-        pieces = [coarse.split(a, b)[1:] for a, b in pairwise(stops)]
-        z = h_a - np.concatenate(pieces)
-        below = np.zeros((len(z) + 1, len(radii)), np.int64)
-        below[0, : columns + 1] = number[-1]
-        start = rim + 1
-        below[0, columns + 1 :] = start + np.arange(len(flat))
-        nodes.append(np.stack([flat, np.zeros_like(flat)], axis=-1))
-        start += len(flat)
-        below[1:] = start + np.arange(below[1:].size).reshape(below[1:].shape)
-        grid_r, grid_z = np.meshgrid(radii, z)
-        nodes.append(np.stack([grid_r.ravel(), grid_z.ravel()], axis=-1))
-        quads.append(_grid(below))
-        in_layer = np.arange(len(z)) < (len(pieces[0]) if layer_thickness else 0)
-        body.append(np.repeat(np.where(in_layer, LAYER, SUBSTRATE), len(radii) - 1))
-        surface = np.concatenate([surface, below[0, columns + 1 :]])
-        axis = np.concatenate([axis, below[1:, 0]])
-        base, wall = below[-1], below[:, -1]
+    number[:, columns] = (rows + 1) * columns  # the rim: one node for all rows
     return Mesh(
-        nodes=np.concatenate(nodes),
-        quads=np.concatenate(quads),
-        body=np.concatenate(body),
-        surface=surface,
-        axis=axis,
-        base=base,
-        wall=wall,
+        nodes=np.concatenate([points[:, :columns].reshape(-1, 2), np.array([[r_a, 0.0]])]),
+        quads=_grid(number),
+        body=np.full(rows * columns, CAP),
+        surface=number[0],
+        axis=number[:, 0],
+        base=number[-1],
+        wall=np.zeros(0, np.int64),
+    )
+
+
+def _on_block(cap: Mesh, *, across: _Grading, down: _Grading, stops: list[float]) -> Mesh:
+    """The cap on a block of depth and radius stops[-1] - stops[0].
+
+    `stops` [m], from the top of the cap down, begin with its height; a layer's lower face is the second of three.
+    """
+    foot = cap.nodes[cap.base, 0]
+    flat = across.split(float(foot[-1]), stops[-1] - stops[0])[1:]
+    radii = np.concatenate([foot, flat])
+    pieces = [down.split(a, b)[1:] for a, b in pairwise(stops)]
+    z = stops[0] - np.concatenate(pieces)
+    below = np.zeros((len(z) + 1, len(radii)), np.int64)
+    below[0, : len(foot)] = cap.base
+    start = len(cap.nodes)
+    below[0, len(foot) :] = start + np.arange(len(flat))
+    start += len(flat)
+    below[1:] = start + np.arange(below[1:].size).reshape(below[1:].shape)
+    grid_r, grid_z = np.meshgrid(radii, z)
+    in_layer = np.arange(len(z)) < (len(pieces[0]) if len(pieces) > 1 else 0)
+    return Mesh(
+        nodes=np.concatenate(
+            [
+                cap.nodes,
+                np.stack([flat, np.zeros_like(flat)], axis=-1),
+                np.stack([grid_r.ravel(), grid_z.ravel()], axis=-1),
+            ]
+        ),
+        quads=np.concatenate([cap.quads, _grid(below)]),
+        body=np.concatenate([cap.body, np.repeat(np.where(in_layer, LAYER, SUBSTRATE), len(radii) - 1)]),
+        surface=np.concatenate([cap.surface, below[0, len(foot) :]]),
+        axis=np.concatenate([cap.axis, below[1:, 0]]),
+        base=below[-1],
+        wall=below[:, -1],
     )
 
 

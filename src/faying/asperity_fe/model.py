@@ -9,11 +9,11 @@ import numpy as np
 from faying.asperity_fe.body import Body, State
 from faying.asperity_fe.equilibrium import Equilibrium, Solver, balanced, follow
 from faying.asperity_fe.far import FarField, elastic_stress, shared
-from faying.asperity_fe.mesh import Mesh, cap_mesh
+from faying.asperity_fe.mesh import Mesh
 from faying.materials import Material
 from faying.typing import Array, Index
 
-REACH = 2.5  # radius of the part that may yield, over the contact radius
+PLASTIC_RADIUS = 2.5  # radius of the part that may yield, over the contact radius
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,25 +27,29 @@ class Contact:
 
 @dataclass(frozen=True, kw_only=True)
 class Model:
-    """Mesh, materials and supports of one asperity; `reach` [m] bounds the part in which plastic flow is followed."""
+    """Mesh, materials and supports of one asperity; plastic flow is followed within `plastic_radius` [m]."""
 
     mesh: Mesh
     h_a: float
     materials: tuple[Material, ...]
     hardening: tuple[float, ...]
-    held: Index
-    reach: float
+    constrained: Index
+    plastic_radius: float
     solver: str | None = None
 
     def _part(self, elements: Index) -> Body:
         return Body(
-            mesh=self.mesh, materials=self.materials, hardening=self.hardening, held=self.held, elements=elements
+            mesh=self.mesh,
+            materials=self.materials,
+            hardening=self.hardening,
+            constrained=self.constrained,
+            elements=elements,
         )
 
     @cached_property
     def _near(self) -> Array:
         centre = self.mesh.nodes[self.mesh.quads].mean(axis=1)
-        return np.asarray(np.hypot(centre[:, 0], centre[:, 1] - self.h_a) < self.reach)
+        return np.asarray(np.hypot(centre[:, 0], centre[:, 1] - self.h_a) < self.plastic_radius)
 
     @cached_property
     def far(self) -> FarField | None:
@@ -110,9 +114,9 @@ class Model:
             stress[far.elements] = hooke.reshape(-1, 4, 4).mean(axis=1)
         return stress, strain
 
-    def grown(self, at: Equilibrium, state: State) -> tuple["Model", Equilibrium, State]:
+    def enlarged(self, at: Equilibrium, state: State) -> tuple["Model", Equilibrium, State]:
         """Return the model with a larger part that may yield, and the same equilibrium and state in it."""
-        larger = replace(self, reach=1.4 * self.reach)
+        larger = replace(self, plastic_radius=1.4 * self.plastic_radius)
         field = self.displacement_of(at).reshape(-1)
         number = larger.body.unknown_of_dof
         unknowns = np.zeros(larger.body.size)
@@ -176,35 +180,23 @@ def _edge(r: Array, gap: Array, press: Array) -> float:
 
 def build(
     *,
-    R: float,
+    mesh: Mesh,
     h_a: float,
     materials: tuple[Material, ...],
     hardening: tuple[float, ...],
-    rigid: bool,
     sliding: bool,
     contact_radius: float,
-    elements: float,
-    domain: float,
-    layer_thickness: float,
     solver: str | None,
 ) -> Model:
-    """Mesh and support an asperity: axis and outer wall keep their radius, the foot its height (and, bonded, radius)."""
-    mesh = cap_mesh(
-        R=R,
-        h_a=h_a,
-        contact_radius=contact_radius,
-        elements=elements,
-        domain=None if rigid else domain,
-        layer_thickness=layer_thickness,
-    )
-    held = np.concatenate([2 * mesh.axis, 2 * mesh.base + 1, 2 * mesh.wall, [] if sliding else 2 * mesh.base])
+    """Support an asperity: axis and outer wall keep their radius, the foot its height (and, bonded, its radius)."""
+    constrained = np.concatenate([2 * mesh.axis, 2 * mesh.base + 1, 2 * mesh.wall, [] if sliding else 2 * mesh.base])
     return Model(
         mesh=mesh,
         h_a=h_a,
         materials=materials,
         hardening=hardening,
-        held=np.unique(held).astype(np.int64),
-        reach=REACH * contact_radius,
+        constrained=np.unique(constrained).astype(np.int64),
+        plastic_radius=PLASTIC_RADIUS * contact_radius,
         solver=solver,
     )
 

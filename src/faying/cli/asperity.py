@@ -88,7 +88,7 @@ def command(
         raise first
     if plot:
         from faying.output.figures.asperity import overview
-        from faying.output.figures.law import save
+        from faying.output.figures.save import save
 
         save(overview(cases[0], first), plot)
     document = [described(case, result) for case, result in zip(cases, results, strict=True)]
@@ -123,7 +123,7 @@ def rows_of(file: str) -> list[dict[str, str]]:
 
 def case_of(options: dict[str, Any]) -> Any:
     """Build one case from texts with units."""
-    from faying.asperity_fe.cases import AsperityCase
+    from faying.asperity_fe.drive import AsperityCase
     from faying.errors import InputError
     from faying.materials import CATALOGUE, RIGID, Material
     from faying.units import parse

@@ -64,14 +64,15 @@ def command(
     The mode shapes of TEST are taken where it holds some; otherwise they are identified from its FRFs.
     """
     from faying import units
-    from faying.errors import InputError
+    from faying.files import make_folder
     from faying.measured.compare import compare_modes
-    from faying.measured.model import read_model_modes
     from faying.measured.tested import read_test
     from faying.output import report_measured, table
+    from faying.result import Result
 
-    model = read_model_modes(result, load=units.parse(load, "N", name="--load") if load else None)
-    reach = units.parse(tolerance, "m", name="--tolerance") if tolerance else None
+    wanted = units.parse(load, "N", name="--load") if load else None
+    model = Result.load(result).modes_at(wanted, source=str(result))
+    distance = units.parse(tolerance, "m", name="--tolerance") if tolerance else None
     tested = read_test(test, points=points, length_unit=length_unit, direction=direction, quantity=quantity)
     if tested.identified:
         click.echo(f"{test}: no mode shapes; modes are identified from its FRFs", err=True)
@@ -79,7 +80,7 @@ def command(
         tested.modes,
         model,
         transform=tested.transform(frame) if frame else None,
-        tolerance=reach,
+        tolerance=distance,
         frf=tested.frf,
         least_mac=least_mac,
         greatest_shift=greatest_shift,
@@ -87,11 +88,7 @@ def command(
     files: list[Path] = []
     if out:
         click.echo("figures and report", err=True)
-        try:
-            out.mkdir(parents=True, exist_ok=True)
-        except OSError as fault:
-            raise InputError(f"cannot make the folder {out}: {fault.strerror}; give another with --out") from None
-        files = report_measured.write(comparison, out)
+        files = report_measured.write(comparison, make_folder(out, "give another with --out"))
     for line in tested.notes:
         click.echo(f"note: {line}", err=True)
     if as_json:

@@ -1,4 +1,4 @@
-"""`faying law`: the curves of a contact law, on the terminal, as JSON, CSV and as a figure."""
+"""`faying law`: the curves of one contact law, or of several on one scan, as tables, JSON, CSV and figures."""
 
 import json
 from pathlib import Path
@@ -6,17 +6,8 @@ from typing import Any
 
 import click
 
-UNITS = {
-    "pressure": "Pa",
-    "area": "",
-    "k_n": "Pa/m",
-    "k_t": "Pa/m",
-    "loss_n": "",
-    "loss_t": "",
-    "energy_n": "J/m^2",
-    "energy_t": "J/m^2",
-    "k_load": "Pa/m",
-}
+from faying.cli.options import quantity
+
 # what the table shows: heading and factor from SI
 SHOWN = {
     "pressure": ("p [MPa]", 1e-6),
@@ -26,11 +17,12 @@ SHOWN = {
     "loss_n": ("loss n", 1.0),
     "loss_t": ("loss t", 1.0),
 }
+WIDTH = 78
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.option("--model", default="JK", show_default=True, help="The law; `faying models` lists them.")
-@click.option("--D", "D", type=float, help="Fractal dimension of the surface, 2 to 3.")
+@click.option("--D", "D", help="Fractal dimension of the surface, 2 to 3.")
 @click.option("--G", "G", metavar="LENGTH", help='Fractal roughness, for example "1.53e-10 m".')
 @click.option("--scan-area", metavar="AREA", help='Area that the scan covers, for example "16 mm^2".')
 @click.option(
@@ -54,10 +46,10 @@ SHOWN = {
     metavar="FROM:TO[:POINTS]",
     help="Nominal pressures, spaced logarithmically; or one pressure.",
 )
-@click.option("--scan", type=click.Path(), help="A scan: D, G, moments and area come from it.")
+@click.option("--scan", type=click.Path(path_type=Path), help="A scan: D, G, moments and area come from it.")
 @click.option("--xy-unit", help='Unit of x and y where the scan states none, for example "mm".')
 @click.option("--z-unit", help='Unit of the heights where the scan states none, for example "um".')
-@click.option("--method", default="psd", show_default=True, help="Estimator of D and G: psd, structure or moments.")
+@click.option("--method", default="psd", show_default=True, help="Estimator of D and G; `faying surface` lists them.")
 @click.option("--models", metavar="LIST", help='Several laws of the scan, for example "jk,gw,gw-ke,persson".')
 @click.option("--all-models", is_flag=True, help="All laws that take their inputs from a scan.")
 @click.option(
@@ -75,8 +67,6 @@ def command(
     as_json: bool,
     csv_file: str | None,
     plot: str | None,
-    against: str,
-    scan: str | None,
     models: str | None,
     all_models: bool,
     contact_map: str | None,
@@ -86,67 +76,48 @@ def command(
 
     Example: faying law --D 2.39 --G "1.53e-10 m" --scan-area "16 mm^2" --material "45 steel"
     """
-    from faying.contact.registry import find_law
+    from faying.contact.build import build, find
     from faying.errors import InputError
+    from faying.files import write_atomically
 
-    cls = find_law(model)
-    pair = pair_of(options, against)
+    kind = find(model)
+    pair = pair_of(options)
     if models or all_models:
         from faying.cli.law_table import show
 
-        if scan is None or settings:
+        if options["scan"] is None or settings:
             raise InputError("--models and --all-models take every input from a scan: give --scan FILE and no --set")
         names = None if all_models else [name for name in (models or "").split(",") if name.strip()]
-        show(surface_of(scan, options), pair, names, pressures_of(pressure), as_json, csv_file, plot, contact_map)
+        show(surface_of(options), pair, names, pressures_of(pressure), as_json, csv_file, plot, contact_map)
         return
     if contact_map:
         raise InputError("--contact-map goes with --scan and halfspace among --models")
-    if scan is not None:
-        inputs, levelled = surface_of(scan, options)
-        law = cls(scan=levelled, pair=pair) if takes_scan(cls) else cls.from_surface(inputs, pair)  # type: ignore[call-arg]
-        changes = parameters_of(cls, options, settings, needed=False)
-        law = law.with_(**changes) if changes else law
-    else:
-        law = cls(pair=pair, **parameters_of(cls, options, settings))  # type: ignore[call-arg]
-    pressures = pressures_of(pressure)
-    response = law.at_pressure(pressures)
+    surface = surface_of(options) if options["scan"] is not None else None
+    law = build(kind, given_of(kind, options, settings), surface, pair)
+    response = law.at_pressure(pressures_of(pressure))
     if csv_file:
-        write_csv(csv_file, law, response)
+        write_atomically(Path(csv_file), lambda temporary: temporary.write_text(csv_text(law, response)))
     if plot:
-        from faying.output.figures.law import curves, save
+        from faying.output.figures.law import curves
+        from faying.output.figures.save import save
 
         save(curves({law.name: response}), plot)
     click.echo(json.dumps(document(law, response), indent=2, allow_nan=False) if as_json else table(law, response))
 
 
-def takes_scan(cls: Any) -> bool:
-    """Whether a law is solved on the scan itself."""
-    from dataclasses import fields
-
-    return any(f.name == "scan" for f in fields(cls))
-
-
-def surface_of(file: str, options: dict[str, Any]) -> tuple[Any, Any]:
-    """Read, level and fit a scan; return what the models take from it, and the levelled scan."""
-    from faying.contact.inputs import SurfaceInputs
+def surface_of(options: dict[str, Any]) -> Any:
+    """Read, level and fit the scan of --scan, as a study does."""
     from faying.errors import InputError
-    from faying.surface.form import prepared
-    from faying.surface.fractal import fit_fractal
-    from faying.surface.read import read_scan
-    from faying.surface.scan import Profile
+    from faying.study.keys.surface import SurfaceChoice
 
-    scan = read_scan(file, xy_unit=options["xy_unit"], z_unit=options["z_unit"])
-    if isinstance(scan, Profile):
-        raise InputError(f"{file} holds a profile; contact laws need an areal scan")
-    ready = prepared(scan)
-    fit = fit_fractal(scan, options["method"])
-    import numpy as np
-
-    heights = np.where(ready.known, ready.scan.heights, np.nan)
-    return SurfaceInputs.from_heights(heights, ready.scan.spacing, D=fit.D, G=fit.G), ready.scan
+    names = ("scan", "xy_unit", "z_unit", "method")
+    surface = SurfaceChoice(**{name: options[name] for name in names}, scan_area=None).read()
+    if surface.rough is None or surface.rough.scan is None:
+        raise InputError(f"{options['scan']} holds a profile; contact laws need an areal scan")
+    return surface.rough
 
 
-def pair_of(options: dict[str, Any], against: str) -> Any:
+def pair_of(options: dict[str, Any]) -> Any:
     """Build the pair from --material, --E ... and --against."""
     from dataclasses import replace
 
@@ -173,15 +144,13 @@ def pair_of(options: dict[str, Any], against: str) -> Any:
         if "yield_strength" in given and "hardness" not in given:
             given["hardness"] = None
         rough = replace(rough, **given)
+    against = options["against"]
     return ContactPair(rough, RIGID if against == "rigid" else rough if against == "same" else known(against))
 
 
-def parameters_of(
-    cls: Any, options: dict[str, Any], settings: tuple[str, ...], *, needed: bool = True
-) -> dict[str, Any]:
-    """Read the parameters of the law `cls` from --D, --G, --scan-area and --set; every fault in one message."""
-    from dataclasses import MISSING, fields
-
+def given_of(kind: Any, options: dict[str, Any], settings: tuple[str, ...]) -> dict[str, Any]:
+    """Read the parameters of a law from --D, --G, --scan-area and --set; every fault in one message."""
+    from faying.contact.build import check_entries
     from faying.errors import InputError
 
     texts = {name: str(options[name]) for name in ("D", "G", "scan_area") if options[name] is not None}
@@ -190,42 +159,18 @@ def parameters_of(
         name, mark, text = setting.partition("=")
         if not mark:
             faults.append(f'--set "{setting}" is not NAME=VALUE')
-        texts[name.strip()] = text.strip()
+        else:
+            texts[name.strip()] = text.strip()
     out: dict[str, Any] = {}
     for name, text in texts.items():
-        parameter = cls.parameters.get(name)
-        if parameter is None:
-            faults.append(f"{cls.name} has no parameter {name!r}; it has {', '.join(cls.parameters)}")
-            continue
         try:
-            out[name] = value_of(text, parameter.unit, name)
+            check_entries(kind, [name])
+            out[name] = kind.law.entries()[name].read(text, name)
         except InputError as fault:
             faults.append(str(fault))
-    must = [f.name for f in fields(cls) if f.init and f.default is MISSING and f.default_factory is MISSING]
-    missing = [name for name in must if needed and name in cls.parameters and name not in texts]
-    if missing:
-        wants = "; ".join(f"{n} ({cls.parameters[n].meaning}{unit_note(cls.parameters[n].unit)})" for n in missing)
-        faults.append(f"{cls.name} needs {wants}; give them by --set NAME=VALUE, or as options where there is one")
     if faults:
         raise InputError("\n  ".join(faults))
     return out
-
-
-def unit_note(unit: str) -> str:
-    """Write the unit for an error text."""
-    return f", in {unit}" if unit not in ("", "text") else ""
-
-
-def value_of(text: str, unit: str, name: str) -> Any:
-    """Read one value: a word or number as it is, anything else with its unit."""
-    from faying.units import parse
-
-    if unit in ("", "text"):
-        try:
-            return float(text)
-        except ValueError:
-            return text
-    return parse(text, unit, name=name)
 
 
 def pressures_of(text: str, points: int = 19) -> Any:
@@ -244,10 +189,15 @@ def pressures_of(text: str, points: int = 19) -> Any:
     if not 0 < values[0] < values[1]:
         raise InputError(f'--pressure "{text}": the first must be above 0 and below the second')
     if len(parts) == 3:
-        if not parts[2].isdigit() or int(parts[2]) < 2:
-            raise InputError(f'--pressure "{text}": POINTS = {parts[2]}; it must be a whole number of 2 or more')
+        if not parts[2].isdigit() or not 2 <= int(parts[2]) <= MOST_POINTS:
+            raise InputError(
+                f'--pressure "{text}": POINTS = {parts[2]}; it must be a whole number from 2 to {MOST_POINTS:,}'
+            )
         points = int(parts[2])
     return np.geomspace(values[0], values[1], points)
+
+
+MOST_POINTS = 1_000_000
 
 
 def parameter_values(law: Any) -> dict[str, Any]:
@@ -257,22 +207,25 @@ def parameter_values(law: Any) -> dict[str, Any]:
 
 
 def document(law: Any, response: Any) -> dict[str, Any]:
-    """Everything that the command knows, as a tree for JSON."""
+    """Everything that the command knows, as a tree for JSON; SI units."""
+    from faying.contact.response import UNITS
+
     pair = getattr(law, "pair", None)
+    parameters = law.parameters
     return {
-        "law": type(law).__name__,
+        "law": law.name,
         "source": law.source,
-        "parameters": {n: {"value": v, "unit": law.parameters[n].unit} for n, v in parameter_values(law).items()},
-        "pair": None if pair is None else {"materials": [pair.first.name, pair.second.name], "E_star": pair.E_star},
-        "units": {name: UNITS[name] for name in response.quantities()},
-        **{name: value.tolist() for name, value in response.quantities().items()},
+        "parameters": {n: quantity(v, parameters[n].unit) for n, v in parameter_values(law).items()},
+        "materials": None if pair is None else [pair.first.name, pair.second.name],
+        "E_star": None if pair is None else quantity(pair.E_star, "Pa"),
+        **{name: quantity(value.tolist(), UNITS[name]) for name, value in response.quantities().items()},
         "valid": response.valid.tolist(),
         "reasons": {reason: mask.tolist() for reason, mask in response.reasons.items() if mask.any()},
     }
 
 
 def table(law: Any, response: Any) -> str:
-    """Format the response for the terminal; * marks rows where the law leaves its ground, with the reasons below."""
+    """Format the response for the terminal; * marks rows outside the validity range, with the reasons below."""
     from faying.units import show
 
     quantities = response.quantities()
@@ -284,18 +237,18 @@ def table(law: Any, response: Any) -> str:
     lines = [f"{law.name}, {law.source}"]
     while given:
         line = "  " + given.pop(0)
-        while given and len(line) + len(given[0]) < 100:
+        while given and len(line) + len(given[0]) < WIDTH:
             line += ", " + given.pop(0)
         lines.append(line)
     if getattr(law, "pair", None) is not None:
         lines.append(f"  {law.pair.first.name} against {law.pair.second.name}, E* {show(law.pair.E_star, 'Pa')}")
     lines.append("")
-    lines.append("  " + "".join(f"{SHOWN[name][0]:>14}" for name in names))
+    lines.append("".join(f"{SHOWN[name][0]:>13}" for name in names))
     for i, good in enumerate(response.valid):
-        row = "".join(f"{quantities[name][i] * SHOWN[name][1]:>14.4g}" for name in names)
-        lines.append("  " + row + ("" if good else "  *"))
+        row = "".join(f"{quantities[name][i] * SHOWN[name][1]:>13.4g}" for name in names)
+        lines.append(row + ("" if good else " *"))
     if not response.valid.all():
-        lines += ["", "  * outside the ground of the model:"]
+        lines += ["", "  * outside the validity range of the model:"]
         for reason, mask in response.reasons.items():
             if mask.any():
                 low, high = response.pressure[mask].min(), response.pressure[mask].max()
@@ -303,13 +256,12 @@ def table(law: Any, response: Any) -> str:
     return "\n".join(lines)
 
 
-def write_csv(path: str, law: Any, response: Any) -> None:
-    """Write every column with its unit, and whether the law stands on its ground."""
-    from faying.files import write_atomically
+def csv_text(law: Any, response: Any) -> str:
+    """Return every column with its unit, and whether the law is within its validity range."""
+    from faying.contact.response import UNITS
 
     quantities = response.quantities()
     head = [f"{name} [{UNITS[name] or '-'}]" for name in quantities]
     rows = zip(*(value.tolist() for value in quantities.values()), response.valid.tolist(), strict=True)
     body = "\n".join(",".join(repr(v) if isinstance(v, float) else str(v).lower() for v in row) for row in rows)
-    text = f"# {law.name}, {law.source}\n" + ",".join([*head, "valid"]) + "\n" + body + "\n"
-    write_atomically(Path(path), lambda temporary: temporary.write_text(text))
+    return f"# {law.name}, {law.source}\n" + ",".join([*head, "valid"]) + "\n" + body + "\n"

@@ -9,9 +9,13 @@ from typing import Any
 
 import click
 
+from faying.cli.options import quantity
+
+SURFACE_UNITS = {"G": "m", "scan_area": "m^2", "m0": "m^2", "m4": "1/m^2", "h_rms": "m", "shortest": "m"}
+
 
 def show(
-    surface: tuple[Any, Any],
+    surface: Any,
     pair: Any,
     names: list[str] | None,
     pressures: Any,
@@ -24,8 +28,8 @@ def show(
     from faying.contact.compare import compare, laws_of_surface
     from faying.files import write_atomically
 
-    inputs, scan = surface
-    made, left_out = laws_of_surface(inputs, pair, names=names, scan=scan)
+    inputs = surface.inputs
+    made, left_out = laws_of_surface(surface, pair, names=names)
     if contact_map:
         draw_contact(made, float(pressures[-1]), contact_map)
     with progress_bar(made) as made:
@@ -33,7 +37,8 @@ def show(
     if csv_file:
         write_atomically(Path(csv_file), lambda path: path.write_text(csv(comparison)))
     if plot:
-        from faying.output.figures.law import curves, save
+        from faying.output.figures.law import curves
+        from faying.output.figures.save import save
 
         save(curves(comparison.responses), plot)
     click.echo(
@@ -46,7 +51,7 @@ def draw_contact(laws: dict[str, Any], pressure: float, path: str) -> None:
     from faying.contact.half_space import HalfSpace
     from faying.errors import InputError
     from faying.output.figures.contact_map import contact_figure
-    from faying.output.figures.law import save
+    from faying.output.figures.save import save
 
     solved = [law for law in laws.values() if isinstance(law, HalfSpace)]
     if not solved:
@@ -75,12 +80,14 @@ def clean(values: Any) -> list[float | None]:
 
 def document(inputs: Any, comparison: Any) -> dict[str, Any]:
     """Everything that the command knows, as a tree for JSON; SI."""
+    from faying.contact.response import UNITS
+
     quantities = ("area", "k_n", "k_t")
     return {
-        "surface": vars(inputs),
-        "pressure": comparison.pressure.tolist(),
+        "surface": {name: quantity(value, SURFACE_UNITS.get(name, "")) for name, value in vars(inputs).items()},
+        "pressure": quantity(comparison.pressure.tolist(), "Pa"),
         "laws": {
-            name: {n: clean(v) for n, v in r.quantities().items()}
+            name: {n: quantity(clean(v), UNITS[n]) for n, v in r.quantities().items()}
             | {"valid": r.valid.tolist(), "reasons": {k: m.tolist() for k, m in r.reasons.items() if m.any()}}
             for name, r in comparison.responses.items()
         },
@@ -101,21 +108,21 @@ def table(inputs: Any, comparison: Any) -> str:
         f"{inputs.slope:.4g}, summits {inputs.summit_density * 1e-6:.4g} per mm2 of radius "
         f"{unit(inputs.summit_radius, 'm')} and deviation {unit(inputs.summit_deviation, 'm')}",
     ]
-    for quantity, title, scale in (("area", "real area / nominal area", 1.0), ("k_n", "k_n [MPa/um]", 1e-12)):
-        laws = {n: r for n, r in comparison.responses.items() if quantity in r.quantities()}
+    for what, title, scale in (("area", "real area / nominal area", 1.0), ("k_n", "k_n [MPa/um]", 1e-12)):
+        laws = {n: r for n, r in comparison.responses.items() if what in r.quantities()}
         lines += ["", title, f"  {'p [MPa]':<12}" + "".join(f"{comparison.pressure[i] * 1e-6:>11.4g}" for i in shown)]
         for name, response in laws.items():
             cells = []
             for i in shown:
-                value = response.quantities()[quantity][i] * scale
+                value = response.quantities()[what][i] * scale
                 text = "-" if np.isnan(value) else f"{value:.4g}"
                 cells.append(f"{text + ('' if response.valid[i] else '*'):>11}")
             lines.append(f"  {name:<12}" + "".join(cells))
-        spread = comparison.spread(quantity)
+        spread = comparison.spread(what)
         lines.append(f"  {'max / min':<12}" + "".join(f"{spread[i]:>11.4g}" for i in shown))
-    lines += ["", "* the model stands outside its ground (`faying models`); - outside what it covers"]
+    lines += ["", "* outside the validity range of the model (`faying models`); - outside what it covers"]
     for name, response in comparison.responses.items():
-        lines += [f"  {name}: {reason}" for reason in told(response)]
+        lines += [f"  {name}: {reason}" for reason in reasons(response)]
     without = [n for n, r in comparison.responses.items() if r.k_n is None]
     if without:
         lines.append(f"without a stiffness of their own: {', '.join(without)}")
@@ -123,8 +130,8 @@ def table(inputs: Any, comparison: Any) -> str:
     return "\n".join(lines)
 
 
-def told(response: Any) -> list[str]:
-    """Return why a response leaves its ground, with the pressures from and to; coverage is shown by - already."""
+def reasons(response: Any) -> list[str]:
+    """Return why a response leaves its validity range, with the pressures from and to; coverage is shown by - already."""
     from faying.units import show as unit
 
     lines = []
@@ -138,8 +145,9 @@ def told(response: Any) -> list[str]:
 def csv(comparison: Any) -> str:
     """Return one row per law and pressure, SI, with units in the head."""
     names = ("area", "k_n", "k_t", "loss_n", "loss_t")
-    units = {"area": "-", "k_n": "Pa/m", "k_t": "Pa/m", "loss_n": "-", "loss_t": "-"}
-    rows = ["law,pressure [Pa]," + ",".join(f"{n} [{units[n]}]" for n in names) + ",valid"]
+    from faying.contact.response import UNITS
+
+    rows = ["law,pressure [Pa]," + ",".join(f"{n} [{UNITS[n] or '-'}]" for n in names) + ",valid"]
     for law, r in comparison.responses.items():
         for i, p in enumerate(comparison.pressure.tolist()):
             cells = [repr(float(r.quantities()[n][i])) if n in r.quantities() else "" for n in names]

@@ -12,24 +12,24 @@ import click
 def command(name: str | None, as_json: bool) -> None:
     """List the contact laws and the single-asperity models, or all about the law NAME."""
     from faying.contact import asperity
-    from faying.contact.registry import find_law, laws
+    from faying.contact.build import find, laws
 
-    if name:
-        entries = [describe(find_law(name))]
-    else:
-        entries = [describe(cls) for cls in laws().values()]
+    entries = [describe(cls) for cls in ([find(name).law] if name else laws().values())]
     singles = [] if name else [single(cls) for cls in asperity.models().values()]
     if as_json:
         click.echo(json.dumps({"laws": entries, "asperities": singles}, indent=2))
         return
     lines = ["Laws of rough surfaces, faying.contact", ""] if not name else []
     for entry in entries:
-        lines += [f"{entry['class']} ({entry['name']}), {entry['source']}", f"  holds: {entry['ground']}"]
+        lines += [
+            f"{entry['class']} ({entry['name']}), {entry['source']}",
+            f"  holds: {entry['validity']}; takes {entry['takes']}",
+        ]
         lines += [f"  {n}{mark(p)}: {p['meaning']}; {p['allowed']}" for n, p in entry["parameters"].items()]
         lines.append("")
     if singles:
         lines += ["Models of one asperity, faying.contact.asperity", ""]
-        lines += [f"{e['class']} ({e['name']}), {e['source']}\n  holds: {e['ground']}" for e in singles]
+        lines += [f"{e['class']} ({e['name']}), {e['source']}\n  holds: {e['validity']}" for e in singles]
     click.echo("\n".join(lines).rstrip())
 
 
@@ -41,31 +41,25 @@ def mark(parameter: dict[str, Any]) -> str:
 
 
 def describe(cls: Any) -> dict[str, Any]:
-    """Return what a law says of itself."""
+    """Return what a law declares."""
     from dataclasses import MISSING, fields
 
     defaults = {f.name: f.default for f in fields(cls)}
     parameters = {}
-    for name, p in cls.parameters.items():
-        needed = defaults[name] is MISSING
+    for name, p in cls.entries().items():
+        default = defaults.get(name, MISSING)
         parameters[name] = {
             "unit": p.unit,
             "meaning": p.meaning,
             "allowed": p.allowed,
-            "needed": needed,
-            "default": None if needed else defaults[name],
+            "needed": default is MISSING,
+            "default": None if default is MISSING else default,
         }
-    return {
-        "class": cls.__name__,
-        "name": cls.name,
-        "source": cls.source,
-        "ground": cls.ground,
-        "summary": (cls.__doc__ or "").split("\n")[0],
-        "parameters": parameters,
-    }
+    return single(cls) | {"takes": cls.takes(), "variants": list(cls.variants), "parameters": parameters}
 
 
 def single(cls: Any) -> dict[str, Any]:
-    """Return what a single-asperity model says of itself."""
+    """Return what any model says of itself."""
     summary = (cls.__doc__ or "").split("\n")[0]
-    return {"class": cls.__name__, "name": cls.name, "source": cls.source, "ground": cls.ground, "summary": summary}
+    own = {name: getattr(cls, name) for name in ("name", "source", "validity")}
+    return {"class": cls.__name__, **own, "summary": summary}

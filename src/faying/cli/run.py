@@ -2,9 +2,9 @@
 
 import json
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import nullcontext
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -20,8 +20,10 @@ import click
 def command(study: Path, out: Path | None, as_json: bool, no_files: bool, uff: bool) -> None:
     """Run STUDY: surface, contact law, preload, modes; write NetCDF, CSV, figures and a report."""
     from faying.errors import InputError
-    from faying.output import report, table
+    from faying.files import new_folder
+    from faying.output import report
     from faying.study import Study, run, universal
+    from faying.study.run import stage_count
 
     plan = Study.read(study)
     if uff and no_files:
@@ -29,56 +31,41 @@ def command(study: Path, out: Path | None, as_json: bool, no_files: bool, uff: b
     if uff:
         universal.check(plan.response)
     folder = out or plan.folder / "results"
-    stages = 3 + (2 + (plan.response is not None)) * plan.load_count + (plan.hammer is not None) + (not no_files)
-    bar = click.progressbar(length=stages, file=sys.stderr, label="study", item_show_func=lambda s: s or "")
-    with nullcontext() if no_files else _folder(folder), bar:
-
-        def tell(stage: str) -> None:
-            bar.update(0 if stage.endswith("of the test") else 1, stage)
-
-        result = run(plan, report=tell)
+    bar = click.progressbar(
+        length=stage_count(plan) + 1, file=sys.stderr, label="study", item_show_func=lambda stage: stage or ""
+    )
+    with nullcontext() if no_files else new_folder(folder, "give another with --out"), bar:
+        result = run(plan, report=lambda stage, done, total: bar.update(min(done, 1), stage))
         files = []
         if not no_files:
-            tell("report")
+            bar.update(1, "report")
             files = report.write(result, folder)
             files += universal.write(result, folder) if uff else []
+        bar.update(1, "done")
     if as_json:
         click.echo(json.dumps(result.to_dict() | {"files": [str(f) for f in files]}, indent=2))
         return
-    click.echo(
-        f"{result.title}: {result.unknowns:,} unknowns, {result.solver} ({result.factor_memory / 1e9:.2g} GB), "
-        f"{result.damping} loss in the joints\n"
-    )
-    at = "" if result.hammer is None else f" at {result.hammer.model.load / 1e3:g} kN"
-    for name, rows in (
-        ("modes", table.modes(result)),
-        ("joints", table.joints(result)),
-        (f"bolts, tightened in the order {', '.join(result.tightening)}", table.bolts(result)),
-        ("comparison with the test", table.comparison(result)),
-        (f"hammer test{at}", table.hammer(result)),
-    ):
-        if rows:
-            click.echo(f"{name}\n{table.text(rows)}\n")
-    for line in (*result.warnings, *(() if result.hammer is None else result.hammer.notes)):
-        click.echo(f"note: {line}")
+    click.echo(text(result))
     if files:
         click.echo(f"\nwritten to {folder}: {', '.join(f.name for f in files)}")
 
 
-@contextmanager
-def _folder(folder: Path) -> Iterator[None]:
-    """Make a folder before hours of work, and take it away again if they come to nothing."""
-    from faying.errors import InputError
+def text(result: Any) -> str:
+    """The tables and notes of a result for the terminal."""
+    from faying.output import table
 
-    new = [path for path in (folder, *folder.parents) if not path.exists()]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as fault:
-        raise InputError(f"cannot make the folder {folder}: {fault.strerror}; give another with --out") from None
-    try:
-        yield
-    except BaseException:
-        for path in new:
-            with suppress(OSError):  # it holds something by now
-                path.rmdir()
-        raise
+    head = (
+        f"{result.title}: {result.unknowns:,} unknowns, {result.solver} ({result.factor_memory / 1e9:.2g} GB), "
+        f"{result.damping} loss in the joints\n"
+    )
+    at = "" if result.hammer is None else f" at {result.hammer.model.load / 1e3:g} kN"
+    tables = {
+        "modes": table.modes(result),
+        "joints": table.joints(result),
+        f"bolts, tightened in the order {', '.join(result.tightening)}": table.bolts(result),
+        "comparison with the test": table.comparison(result),
+        f"hammer test{at}": table.hammer(result),
+    }
+    parts = [head, *(f"{name}\n{table.text(rows)}\n" for name, rows in tables.items() if rows)]
+    notes = (*result.warnings, *(() if result.hammer is None else result.hammer.notes))
+    return "\n".join([*parts, *(f"note: {line}" for line in notes)])

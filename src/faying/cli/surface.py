@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-METHODS = ("psd", "structure", "roughness-length", "box", "higuchi", "mfdfa", "moments", "fpenn")
+from faying.surface.estimators.table import METHODS
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})

@@ -40,8 +40,9 @@ def command(
 
     What is done is kept beside the output; the same command goes on after an interruption.
     """
-    from faying.errors import InputError
+    from faying.files import make_folder
     from faying.output.figures import sweep as drawing
+    from faying.output.figures.save import save
     from faying.study import Study
     from faying.study.axes import axis_of
     from faying.study.sweep import sweep
@@ -51,12 +52,7 @@ def command(
         drawing.check(plot, len(axes))
     plan = Study.read(study)
     if out is None:
-        folder = plan.folder / "results"
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as fault:
-            raise InputError(f"cannot make the folder {folder}: {fault.strerror}; give a file with --out") from None
-        out = folder / "sweep.nc"
+        out = make_folder(plan.folder / "results", "give a file with --out") / "sweep.nc"
     size = 1
     for axis in axes:
         size *= len(axis.values)
@@ -66,7 +62,7 @@ def command(
         )
     summary = done.to_dict()
     if plot:
-        summary["plot"] = str(drawing.save(done, plot))
+        summary["plot"] = str(save(drawing.figure(done), plot))
     if as_json:
         click.echo(json.dumps(summary, indent=2))
         return

@@ -181,7 +181,7 @@ def draw(found: Any, path: str) -> None:
     from matplotlib.figure import Figure
 
     from faying.output.figures import measured
-    from faying.output.figures.law import save
+    from faying.output.figures.save import save
 
     fig = Figure(figsize=(9, 7.5), layout="constrained")
     upper, lower = fig.subplots(2, 1)

@@ -3,22 +3,16 @@
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.islands import Islands
-from faying.contact.law import ContactLaw, Parameter, Response, checked, require
+from faying.contact.law import ContactLaw, Response, checked, require
+from faying.contact.parameter import FRACTAL_MB
 from faying.materials import ContactPair
 from faying.typing import Array
-
-PARAMETERS = {
-    "D": Parameter("", "fractal dimension of the surface", "between 2 and 3"),
-    "G": Parameter("m", "fractal roughness", "above 0"),
-    "scan_area": Parameter("m^2", "area that the scan covers, to which the largest spot belongs", "above 0"),
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,17 +29,12 @@ class BearingLaw(ContactLaw):
     pair: ContactPair
     scan_area: float
 
-    parameters: ClassVar = PARAMETERS
+    parameters: ClassVar = FRACTAL_MB
     # real area of an elastic island over its truncated area
     elastic_share: ClassVar[float] = 1.0
 
     def __post_init__(self) -> None:
-        require(
-            self.name, 2 < self.D < 3, f"D = {self.D}; the dimension of a surface lies between 2 and 3, such as 2.4"
-        )
-        require(self.name, 0 < self.G < inf, f"G = {self.G} m; it must be positive, for example 1.5e-10")
-        area = self.scan_area
-        require(self.name, 0 < area < inf, f"scan_area = {area} m2; it must be positive, for example 16e-6")
+        super().__post_init__()
         require(self.name, np.isfinite(self.pair.hardness), "neither body yields; give a hardness or yield_strength")
 
     @cached_property

@@ -1,34 +1,18 @@
 """Several laws on one surface: each takes its own inputs from it, all answer the same pressures."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
-from typing import Any, final
+from dataclasses import dataclass
+from typing import final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.inputs import SurfaceInputs
+from faying.contact.build import build, find, kinds
+from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.law import ContactLaw, Response, checked
-from faying.contact.registry import find_law, laws
 from faying.errors import FayingError
 from faying.materials import ContactPair
 from faying.typing import Array
-
-# the asperities that published models put into Greenwood and Williamson's sum
-ASPERITIES = {
-    "GW-CEB": "ChangEtsionBogy",
-    "GW-KE": "KogutEtsion",
-    "GW-ZMC": "ZhaoMaiettaChang",
-    "GW-JG": "JacksonGreen",
-}
-
-
-def law_class(name: str) -> type[ContactLaw]:
-    """Return the class of a law by any of its names; "GW-KE" and the like are Greenwood and Williamson's.
-
-    Raises InputError for unknown names.
-    """
-    return laws()["GreenwoodWilliamson"] if name.upper() in ASPERITIES else find_law(name)
 
 
 @final
@@ -60,32 +44,28 @@ class Comparison:
 
 
 def laws_of_surface(
-    surface: SurfaceInputs, pair: ContactPair, *, names: Sequence[str] | None = None, scan: Any = None
+    surface: RoughSurface | FractalSurface, pair: ContactPair, *, names: Sequence[str] | None = None
 ) -> tuple[dict[str, ContactLaw], dict[str, str]]:
-    """Return the laws of a measured surface by name, and why others are left out.
+    """Return the laws of a measured surface by label, and why others are left out.
 
-    names: models to take (any spelling; "GW-KE" and the like put another asperity into GW); None takes all that live
-    on numbers. A law with a field `scan` (the half-space) takes the scan itself, and only when it is named.
-    Raises InputError for unknown names.
+    Args:
+        surface: the rough surface, or its numbers alone.
+        pair: the materials that meet.
+        names: the laws to take, in any spelling; None takes all that live on numbers of a surface. The half-space,
+            which is solved on the scan, is taken only when it is named.
+
+    Raises:
+        InputError: unknown names.
     """
-    wanted = list(names) if names is not None else [*laws(), *ASPERITIES]
+    rough = RoughSurface(inputs=surface) if isinstance(surface, FractalSurface) else surface
+    numbers = [kind for kind in kinds().values() if kind.law.takes() in ("fractal", "moments")]
     made: dict[str, ContactLaw] = {}
     left_out: dict[str, str] = {}
-    for name in wanted:
-        upper = name.strip().upper()
-        cls = law_class(name.strip())
-        label = upper if upper in ASPERITIES else cls.name
-        takes_scan = any(f.name == "scan" for f in fields(cls))  # type: ignore[arg-type]
-        if names is None and cls.from_surface.__func__ is ContactLaw.from_surface.__func__:  # type: ignore[attr-defined]
-            continue
+    for kind in numbers if names is None else [find(name) for name in names]:
         try:
-            if takes_scan:
-                made[label] = cls(scan=scan, pair=pair)  # type: ignore[call-arg]
-            else:
-                law = cls.from_surface(surface, pair)
-                made[label] = law.with_(asperity=ASPERITIES[upper]) if upper in ASPERITIES else law
+            made[kind.label] = build(kind, {}, rough, pair)
         except FayingError as fault:
-            left_out[label] = str(fault)
+            left_out[kind.label] = str(fault)
     return made, left_out
 
 

@@ -1,16 +1,16 @@
 """Greenwood and Williamson 1966: summits of one radius and Gaussian heights, with any asperity law."""
 
 from dataclasses import dataclass
-from functools import cached_property, partial
-from math import inf, pi, sqrt
+from functools import cached_property
+from math import pi, sqrt
 from typing import ClassVar, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.asperity.base import AsperityModel, summed_model
-from faying.contact.inputs import SurfaceInputs
-from faying.contact.law import ContactLaw, Parameter, Response, require
+from faying.contact.law import ContactLaw, Response
+from faying.contact.parameter import TEXT, Parameter
 from faying.errors import InputError
 from faying.materials import ContactPair
 from faying.typing import Array
@@ -42,28 +42,25 @@ class GreenwoodWilliamson(ContactLaw):
 
     name: ClassVar[str] = "GW"
     source: ClassVar[str] = "doi:10.1098/rspa.1966.0242"
-    ground: ClassVar[str] = "real area up to 0.3, separation above that of the summits' mean plane; no interaction"
+    validity: ClassVar[str] = "real area up to 0.3, separation above that of the summits' mean plane; no interaction"
     geometric: ClassVar[bool] = False
+    # the asperities that published models put into the sum
+    variants: ClassVar = {
+        "GW-CEB": {"asperity": "ChangEtsionBogy"},
+        "GW-KE": {"asperity": "KogutEtsion"},
+        "GW-ZMC": {"asperity": "ZhaoMaiettaChang"},
+        "GW-JG": {"asperity": "JacksonGreen"},
+    }
     parameters: ClassVar = {
-        "density": Parameter("1/m^2", "summits per area", "above 0"),
-        "radius": Parameter("m", "radius of the summits", "above 0"),
-        "sigma": Parameter("m", "standard deviation of the summit heights", "above 0"),
-        "asperity": Parameter("text", "law of one asperity", "a name of faying.contact.asperity"),
+        "density": Parameter("1/m^2", "summits per area", 0, surface="summit_density"),
+        "radius": Parameter("m", "radius of the summits", 0, surface="summit_radius"),
+        "sigma": Parameter("m", "standard deviation of the summit heights", 0, surface="summit_deviation"),
+        "asperity": Parameter(TEXT, "law of one asperity, one of faying.contact.asperity"),
     }
 
     def __post_init__(self) -> None:
-        need = partial(require, "GW")
-        for name in ("density", "radius", "sigma"):
-            value, unit = getattr(self, name), self.parameters[name].unit
-            need(0 < value < inf, f"{name} = {value:g} {unit}; it must be positive and finite")
+        super().__post_init__()
         self._asperity  # noqa: B018  # names its own faults
-
-    @classmethod
-    def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> "GreenwoodWilliamson":
-        """Return the law of a measured surface, from its spectral moments (McCool 1986)."""
-        return cls(
-            density=surface.summit_density, radius=surface.summit_radius, sigma=surface.summit_deviation, pair=pair
-        )
 
     @cached_property
     def _asperity(self) -> AsperityModel:

@@ -3,12 +3,14 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar, Literal, Protocol, final
+from typing import Any, ClassVar, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.law import ContactLaw, Parameter, Response
+from faying.contact.inputs import HeightMap
+from faying.contact.law import ContactLaw, Response
+from faying.contact.parameter import TABLE, TEXT, Parameter
 from faying.errors import InputError
 from faying.halfspace.solution import HalfSpaceContact
 from faying.halfspace.solve import halved_map, solve_half_space
@@ -17,21 +19,6 @@ from faying.typing import Array
 
 FEWEST_POINTS = 30
 RESOLVED = 0.1  # greatest change of k_n on half the points each way
-WORDS = {"stiffness": ("unloading", "loading"), "area": ("corrected", "counted")}
-
-
-class HeightMap(Protocol):
-    """What HalfSpace needs of a scan: heights [m], NaN where missing, and the distances (dx, dy) [m]."""
-
-    @property
-    def heights(self) -> Array:
-        """Heights [m]."""
-        ...
-
-    @property
-    def spacing(self) -> tuple[float, float]:
-        """Distances (dx, dy) [m]."""
-        ...
 
 
 @final
@@ -81,27 +68,22 @@ class HalfSpace(ContactLaw):
     name: ClassVar[str] = "half-space"
     source: ClassVar[str] = "doi:10.1016/S0043-1648(99)00113-1"
     parameters: ClassVar[Mapping[str, Parameter]] = {
-        "stiffness": Parameter("text", "direction in which k_n is taken", "unloading or loading"),
-        "area": Parameter("text", "real area, freed of the points' size or as counted", "corrected or counted"),
-        "shear_ratio": Parameter("", "tangential load over friction times normal load", "0 <= shear_ratio < 1"),
-        "points": Parameter("", "pressures at which the contact is solved", "4 or more"),
-        "lowest": Parameter("Pa", "least pressure covered", "> 0"),
-        "highest": Parameter("Pa", "greatest pressure covered", "> lowest, below hardness"),
-        "tol": Parameter("", "certificate asked of every contact", "0 < tol < 1"),
+        "scan": Parameter(TABLE, "levelled heights of the scan", surface="scan"),
+        "stiffness": Parameter(TEXT, "direction in which k_n is taken", choices=("unloading", "loading")),
+        "area": Parameter(TEXT, "real area, freed of the points' size or as counted", choices=("corrected", "counted")),
+        "shear_ratio": Parameter("", "tangential load over friction times normal load", 0, 1, "[)"),
+        "points": Parameter("", "pressures at which the contact is solved", 4, ends="[)", whole=True),
+        "lowest": Parameter("Pa", "least pressure covered", 0),
+        "highest": Parameter("Pa", "greatest pressure covered, above the least and below the hardness", 0),
+        "tol": Parameter("", "error bound asked of every contact", 0, 1),
     }
-    ground: ClassVar[str] = (
+    validity: ClassVar[str] = (
         "the scan resolves the roughness that touches: at least 30 points in contact, some open, and "
         "k_n within 10 % on half the points each way"
     )
 
     def __post_init__(self) -> None:
-        for name, words in WORDS.items():
-            if getattr(self, name) not in words:
-                raise InputError(f"half-space: {name} = {getattr(self, name)!r}; use {' or '.join(words)}")
-        if not 0 <= self.shear_ratio < 1:
-            raise InputError(f"half-space: shear_ratio = {self.shear_ratio}; it must be at least 0 and below 1")
-        if self.points < 4 or self.points != int(self.points):
-            raise InputError(f"half-space: points = {self.points}; a ladder needs a whole number of 4 or more")
+        super().__post_init__()
         object.__setattr__(self, "points", int(self.points))  # the command line reads numbers as floats
         low, high = self.closure_range
         if not 0 < low < high < np.inf:

@@ -1,42 +1,79 @@
-"""What contact models take from a measured surface, in plain numbers; the heights come as an array."""
+"""What contact models take from a measured surface: plain numbers, and the levelled heights."""
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import inf, log, pi, sqrt
-from typing import Self, final
+from typing import ClassVar, Protocol, Self, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from faying.contact.parameter import Parameter
 from faying.errors import InputError
+from faying.typing import Array
 
 
-@final
+class HeightMap(Protocol):
+    """Levelled heights [m] without missing points, and the distances (dx, dy) [m] between them."""
+
+    @property
+    def heights(self) -> Array:
+        """Heights [m]."""
+
+    @property
+    def spacing(self) -> tuple[float, float]:
+        """Distances (dx, dy) [m]."""
+
+
 @dataclass(frozen=True, kw_only=True)
-class SurfaceInputs:
-    """Numbers of one scan that the models need; SI.
+class FractalSurface:
+    """D [-] and G [m] in the convention of Yan and Komvopoulos (that of JK), scan_area [m2], gamma, frequency index.
 
-    D, G [m] in the convention of Yan and Komvopoulos (that of JK); scan_area [m2]; m0 [m2], m2 [-], m4 [1/m2] the
-    moments of a profile, mean over both directions; slope, the rms gradient of the surface [-]; h_rms [m]; shortest
-    wavelength that the scan resolves [m]; gamma, frequency index. Raises InputError unless all are positive.
-
-    m2, m4 and slope grow without end as the spacing of the scan falls, if the surface is fractal: they belong to it.
+    Raises InputError unless all are positive and finite.
     """
 
     D: float
     G: float
     scan_area: float
-    m0: float
-    m2: float
-    m4: float
-    slope: float
-    h_rms: float
-    shortest: float
     gamma: float = 1.5
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
             if not 0 < value < inf:
                 raise InputError(f"surface: {name} = {value}; it must be positive and finite")
+
+    @property
+    def side(self) -> float:
+        """Side of the scan [m]."""
+        return sqrt(self.scan_area)
+
+    @property
+    def G_majumdar_bhushan(self) -> float:
+        """G [m] in the convention of Majumdar and Bhushan, whose series lacks the factor ln(gamma)."""
+        return float(self.G * log(self.gamma) ** (1 / (2 * (self.D - 2))))
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class SurfaceInputs(FractalSurface):
+    """Numbers of one scan that the models need; SI.
+
+    D, G, scan_area, gamma as in `FractalSurface`; m0 [m2], m2 [-], m4 [1/m2] the moments of a profile, mean over both
+    directions; slope, the rms gradient of the surface [-]; h_rms [m]; shortest wavelength that the scan resolves [m].
+    Raises InputError unless all are positive.
+
+    m2, m4 and slope grow without end as the spacing of the scan falls, if the surface is fractal: they belong to it.
+    """
+
+    m0: float
+    m2: float
+    m4: float
+    slope: float
+    h_rms: float
+    shortest: float
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
         if self.alpha <= 0.8968:
             raise InputError(
                 f"surface: m0 m4/m2^2 = {self.alpha:.4g}; for a random surface it exceeds 1.5: the heights are "
@@ -129,7 +166,37 @@ class SurfaceInputs:
         """Height of the mean plane of the summits above that of the surface, 4 sqrt(m0/(pi alpha)) [m]."""
         return 4 * sqrt(self.m0 / (pi * self.alpha))
 
-    @property
-    def G_majumdar_bhushan(self) -> float:
-        """G [m] in the convention of Majumdar and Bhushan, whose series lacks the factor ln(gamma)."""
-        return float(self.G * log(self.gamma) ** (1 / (2 * (self.D - 2))))
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class RoughSurface:
+    """All that a law can be made from: numbers of a surface, and the levelled scan where there is one.
+
+    Args:
+        inputs: `SurfaceInputs` of a scan, or a `FractalSurface` where only D, G and scan_area are known.
+        scan: levelled heights with missing points filled in; None where there is no areal scan.
+    """
+
+    inputs: FractalSurface
+    scan: HeightMap | None = None
+
+    FRACTAL: ClassVar = ("D", "G", "scan_area", "gamma", "side", "G_majumdar_bhushan")
+
+    @classmethod
+    def needed_for(cls, numbers: Iterable[str]) -> str:
+        """What has to be measured for these numbers: "scan", "moments", "fractal" or "nothing"."""
+        wanted = set(numbers) - {""}
+        if "scan" in wanted:
+            return "scan"
+        return "moments" if wanted - set(cls.FRACTAL) else "fractal" if wanted else "nothing"
+
+    def supplies(self, parameters: Mapping[str, Parameter]) -> dict[str, object]:
+        """Values of those parameters that this surface gives."""
+        out: dict[str, object] = {}
+        for name, parameter in parameters.items():
+            if parameter.surface == "scan":
+                if self.scan is not None:
+                    out[name] = self.scan
+            elif parameter.surface in self.FRACTAL or (parameter.surface and isinstance(self.inputs, SurfaceInputs)):
+                out[name] = getattr(self.inputs, parameter.surface)
+        return out

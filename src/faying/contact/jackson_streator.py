@@ -1,15 +1,15 @@
 """Jackson and Streator 2006: sinusoids stacked on sinusoids, each carrying the pressure of the contacts above it."""
 
 from dataclasses import dataclass
-from functools import cached_property, partial
-from math import inf, log, pi, sqrt
+from functools import cached_property
+from math import log, pi, sqrt
 from typing import ClassVar, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.inputs import SurfaceInputs
-from faying.contact.law import ContactLaw, Parameter, Response, checked, require
+from faying.contact.law import ContactLaw, Response, checked, require
+from faying.contact.parameter import FRACTAL, GAMMA, Parameter
 from faying.materials import ContactPair
 from faying.typing import Array
 
@@ -50,35 +50,17 @@ class JacksonStreator(ContactLaw):
 
     name: ClassVar[str] = "JS"
     source: ClassVar[str] = "doi:10.1016/j.wear.2006.03.015"
-    ground: ClassVar[str] = "real area up to 0.3; elastic; depends on the shortest wavelength taken in"
+    validity: ClassVar[str] = "real area up to 0.3; elastic; depends on the shortest wavelength taken in"
     parameters: ClassVar = {
-        "D": Parameter("", "fractal dimension of the surface", "between 2 and 3"),
-        "G": Parameter("m", "fractal roughness", "above 0"),
-        "shortest": Parameter("m", "shortest wavelength", "above 0, below the side of the scan"),
-        "scan_area": Parameter("m^2", "area that the scan covers; its side is the longest wavelength", "above 0"),
-        "gamma": Parameter("", "ratio of successive wavelengths", "above 1"),
+        **FRACTAL,
+        "shortest": Parameter("m", "shortest wavelength", 0, surface="shortest"),
+        **GAMMA,
     }
 
     def __post_init__(self) -> None:
-        need = partial(require, "JS")
-        need(2 < self.D < 3, f"D = {self.D}; the dimension of a surface lies between 2 and 3, for example 2.4")
-        for name in ("G", "scan_area"):
-            need(0 < getattr(self, name) < inf, f"{name} = {getattr(self, name)}; it must be positive")
-        need(1 < self.gamma < inf, f"gamma = {self.gamma}; it must be above 1, for example 1.5")
+        super().__post_init__()
         side = sqrt(self.scan_area)
-        need(0 < self.shortest < side, f"shortest = {self.shortest} m; it must be positive and below {side:.4g} m")
-
-    @classmethod
-    def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> "JacksonStreator":
-        """Return the law of a measured surface: its D and G down to the wavelength that the scan resolves."""
-        return cls(
-            D=surface.D,
-            G=surface.G,
-            shortest=surface.shortest,
-            pair=pair,
-            scan_area=surface.scan_area,
-            gamma=surface.gamma,
-        )
+        require("JS", self.shortest < side, f"shortest = {self.shortest} m; it must be below {side:.4g} m")
 
     @cached_property
     def layers(self) -> tuple[Array, Array]:

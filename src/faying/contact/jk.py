@@ -28,14 +28,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from math import log, pi, sqrt
-from typing import ClassVar, Literal, final
+from typing import Any, ClassVar, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.inputs import SurfaceInputs
 from faying.contact.islands import Islands
-from faying.contact.law import ContactLaw, Parameter, Response, checked, require
+from faying.contact.law import ContactLaw, Response, checked, require
+from faying.contact.parameter import FRACTAL, GAMMA, TEXT, Parameter
 from faying.contact.substrate import (
     MOST_RATIO,
     SHAPE,
@@ -149,71 +149,39 @@ class JK(ContactLaw):
 
     name: ClassVar[str] = "JK"
     source: ClassVar[str] = "doi:10.3390/fractalfract8100611"
-    ground: ClassVar[str] = (
+    validity: ClassVar[str] = (
         "real area up to 0.3, k_n below that of the bulk, al' <= al3', al1' < al2' < al3', 2.1 <= D <= 2.9"
     )
     parameters: ClassVar = {
-        "D": Parameter("", "fractal dimension of the surface", "between 2 and 3"),
-        "G": Parameter("m", "fractal roughness", "above 0"),
-        "scan_area": Parameter("m^2", "area that the scan covers, to which al' belongs", "above 0"),
-        "gamma": Parameter("", "frequency index of the surface", "above 1"),
-        "alpha": Parameter("", "elastic-plastic load index", "0 up to 1"),
-        "closure": Parameter("text", "exponents and borders of the elastic-plastic regime", "consistent or printed"),
-        "substrate": Parameter(
-            "", "share of the deformation that the asperity takes", "above 0 up to 1, exact or computed"
+        **FRACTAL,
+        **GAMMA,
+        "alpha": Parameter("", "elastic-plastic load index", 0, 1, "[)"),
+        "closure": Parameter(
+            TEXT, "exponents and borders of the elastic-plastic regime", choices=("consistent", "printed")
         ),
-        "cutoff": Parameter("", "least area that adds stiffness, over the smaller of a1c' and al'", "between 0 and 1"),
-        "loss": Parameter("text", "loss factor beyond the small stage", "held or literal"),
-        "shear_ratio": Parameter("", "tangential load over mu times normal load", "0 up to 1"),
-        "psi": Parameter("", "domain extension", "1 or more; solved where not given"),
-        "modulus_ratio": Parameter("", "E of the asperity over that of its substrate", "above 0"),
-        "shear_stress": Parameter("Pa", "shear stress on the real area, in place of shear_ratio", "0 or more"),
+        "substrate": Parameter(
+            "", "share of the deformation that the asperity takes", 0, 1, "(]", choices=("exact", "computed")
+        ),
+        "cutoff": Parameter("", "least area that adds stiffness, over the smaller of a1c' and al'", 0, 1),
+        "loss": Parameter(TEXT, "loss factor beyond the small stage", choices=("held", "literal")),
+        "shear_ratio": Parameter("", "tangential load over mu times normal load", 0, 1, "[)"),
+        "psi": Parameter("", "domain extension, solved where not given", 1, ends="[)"),
+        "modulus_ratio": Parameter("", "E of the asperity over that of its substrate", 0),
+        "shear_stress": Parameter("Pa", "shear stress on the real area, in place of shear_ratio", 0, ends="[)"),
     }
-
-    @classmethod
-    def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> "JK":
-        """Return the law of a measured surface, from its D and G."""
-        return cls(D=surface.D, G=surface.G, pair=pair, scan_area=surface.scan_area, gamma=surface.gamma)
 
     def __post_init__(self) -> None:
         need = partial(require, "JK")
-        need(2 < self.D < 3, f"D = {self.D}; the dimension of a surface lies between 2 and 3, for example 2.4")
-        need(0 < self.G < np.inf, f"G = {self.G} m; it must be positive, for example 1.5e-10")
         need(
-            0 < self.scan_area < np.inf,
-            f"scan_area = {self.scan_area} m2; it must be positive, for example 16e-6",
-        )
-        need(1 < self.gamma < np.inf, f"gamma = {self.gamma}; it must be above 1, for example 1.5")
-        need(0 <= self.alpha < 1, f"alpha = {self.alpha}; it must be at least 0 and below 1, for example 0.2")
-        need(
-            self.closure in ("consistent", "printed"),
-            f'closure = {self.closure!r}; use "consistent" or "printed"',
-        )
-        need(self.loss in ("held", "literal"), f'loss = {self.loss!r}; use "held" or "literal"')
-        need(0 < self.cutoff < 1, f"cutoff = {self.cutoff}; it must lie between 0 and 1, for example 0.01")
-        need(
-            self.psi is None or 1 <= self.psi < np.inf,
-            f"psi = {self.psi}; it must be 1 or more, or None to solve it",
-        )
-        need(0 < self.modulus_ratio < np.inf, f"modulus_ratio = {self.modulus_ratio}; it must be positive")
-        if isinstance(self.substrate, str):
-            need(
-                self.substrate in ("exact", "computed"),
-                f'substrate = {self.substrate!r}; use "exact", "computed" or a share such as 0.95',
-            )
-            need(
-                self.substrate == "exact" or self.modulus_ratio <= MOST_RATIO,
-                f'modulus_ratio = {self.modulus_ratio} with substrate="computed"; it goes up to {MOST_RATIO:g}',
-            )
-        else:
-            need(0 < self.substrate <= 1, f"substrate = {self.substrate}; a share lies above 0 and up to 1")
-        need(self.shear_ratio >= 0, f"shear_ratio = {self.shear_ratio}; it must be 0 or more, and below 1")
-        need(
-            self.shear_ratio < 1,
+            not self.shear_ratio >= 1,
             f"shear_ratio = {self.shear_ratio}: at T = mu F and above the joint slips as a whole and has no "
             "stiffness; lower the shear load or raise the preload",
         )
-        need(0 <= self.shear_stress < np.inf, f"shear_stress = {self.shear_stress} Pa; it must be 0 or more")
+        super().__post_init__()
+        need(
+            self.substrate != "computed" or self.modulus_ratio <= MOST_RATIO,
+            f'modulus_ratio = {self.modulus_ratio} with substrate="computed"; it goes up to {MOST_RATIO:g}',
+        )
         need(
             self.shear_stress == 0 or self.shear_ratio == 0,
             f"shear_ratio = {self.shear_ratio} and shear_stress = {self.shear_stress} Pa; give one of them",
@@ -223,6 +191,11 @@ class JK(ContactLaw):
             "a tangential load needs friction above 0; give a material of the pair its friction",
         )
         need(np.isfinite(self.pair.hardness), "neither body yields; give the pair a hardness or yield_strength")
+
+    def facts(self) -> dict[str, Any]:
+        """Parameters and limits of the law, by name with unit."""
+        pair = {"E_star [Pa]": self.pair.E_star, "G_star [Pa]": self.pair.G_star, "hardness [Pa]": self.pair.hardness}
+        return super().facts() | pair | {"limits [m2]": list(self.limits)}
 
     @cached_property
     def _islands(self) -> Islands:

@@ -1,15 +1,16 @@
-"""How any contact law is asked for a pressure (ContactLaw), and what a parameter of one is."""
+"""How any contact law is asked for a pressure."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import MISSING, fields, replace
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.inputs import SurfaceInputs
+from faying.contact.inputs import FractalSurface, RoughSurface
+from faying.contact.parameter import FILE, Parameter, check_all
 from faying.contact.response import Response
 from faying.contact.table import PressureTable
 from faying.errors import InputError, NotConverged
@@ -21,15 +22,6 @@ __all__ = ["ContactLaw", "Parameter", "Response", "checked", "require"]
 TABLE_POINTS = 500
 # from this many pressures on, at_pressure reads the checked table unless asked to be exact
 MANY = 20_000
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """What one parameter of a law is: its SI unit ("" for a number, "text" for a word), meaning and allowed values."""
-
-    unit: str
-    meaning: str
-    allowed: str
 
 
 def require(law: str, good: bool, text: str) -> None:
@@ -58,14 +50,16 @@ class ContactLaw(ABC):
 
     A model gives `at_closure`, `closure_range` (the closures of the least and of the greatest load that it covers,
     between which pressure grows strictly) and says by `geometric` whether that variable wants a logarithmic scale.
-    For people it states its `source`, its `parameters` (all but the pair of materials) and the `ground` on which it
-    stands.
+    It declares its `source`, its `validity` range in words and its `parameters` (all but the pair of materials). Study
+    keys, command-line settings, sweep axes, checks and `faying models` follow from `parameters`. `variants` are further
+    names of the model, each with parameters that it fixes.
     """
 
     name: ClassVar[str]
     source: ClassVar[str]
     parameters: ClassVar[Mapping[str, Parameter]]
-    ground: ClassVar[str]
+    validity: ClassVar[str]
+    variants: ClassVar[Mapping[str, Mapping[str, object]]] = {}
     geometric: ClassVar[bool] = True
 
     @abstractmethod
@@ -85,10 +79,61 @@ class ContactLaw(ABC):
             raise InputError(f"{self.name} has no parameter {', '.join(unknown)}; it has {', '.join(own)}")
         return replace(self, **changes)  # type: ignore[type-var]
 
+    def __post_init__(self) -> None:
+        check_all(self.name, self.parameters, vars(self))
+
     @classmethod
-    def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> Self:
-        """Return the law of a measured surface; InputError where the model cannot take its inputs from a scan."""
-        raise InputError(f"{cls.name} takes no input from a scan; give its parameters: {', '.join(cls.parameters)}")
+    def entries(cls) -> Mapping[str, Parameter]:
+        """What a user writes to give the law: its parameters, unless it is given by a file."""
+        return cls.parameters
+
+    @classmethod
+    def from_entries(cls, given: Mapping[str, object], pair: ContactPair) -> Self:
+        """Return the law from values of `entries` in SI units; InputError where they do not fit."""
+        own: dict[str, Any] = dict(given)
+        if cls._has("pair"):
+            own["pair"] = pair
+        return cls(**own)
+
+    @classmethod
+    def _has(cls, name: str) -> bool:
+        return any(f.name == name for f in fields(cls))  # type: ignore[arg-type]
+
+    @classmethod
+    def required(cls) -> tuple[str, ...]:
+        """The entries without which there is no law."""
+        optional = {
+            f.name
+            for f in fields(cls)  # type: ignore[arg-type]
+            if f.default is not MISSING or f.default_factory is not MISSING
+        }
+        return tuple(name for name in cls.entries() if name not in optional)
+
+    @classmethod
+    def takes(cls) -> str:
+        """What the law is made from: a fractal surface, its moments, the scan itself, a file, or nothing measured."""
+        if any(p.unit == FILE for p in cls.entries().values()):
+            return "file"
+        return RoughSurface.needed_for(p.surface for p in cls.parameters.values())
+
+    @classmethod
+    def from_surface(cls, surface: RoughSurface | FractalSurface, pair: ContactPair) -> Self:
+        """Return the law of a measured surface; InputError where the model cannot take its inputs from it."""
+        if isinstance(surface, FractalSurface):
+            surface = RoughSurface(inputs=surface)
+        found = surface.supplies(cls.parameters)
+        missing = [name for name in cls.required() if name not in found]
+        if missing:
+            raise InputError(
+                f"{cls.name} takes no {', '.join(missing)} from this surface; give {' and '.join(missing)}"
+            )
+        return cls.from_entries(found, pair)
+
+    def facts(self) -> dict[str, Any]:
+        """Parameters of the law and what it derives from them, by name with unit, for a result."""
+        own = {name: getattr(self, name) for name in self.parameters}
+        numbers = {name: value for name, value in own.items() if isinstance(value, float | int | str)}
+        return {"name": self.name, "source": self.source, **numbers, "greatest_pressure [Pa]": self.greatest_pressure}
 
     def _pressure_at(self, closure: Array) -> Array:
         """Pressure alone; a model overrides this where it is quicker than the whole response."""
@@ -109,7 +154,7 @@ class ContactLaw(ABC):
         if not np.all(np.isfinite(log_p)) or np.any(np.diff(log_p) <= 0):
             raise NotConverged(
                 f"{self.name}: pressure does not grow with closure over {self.closure_range}; "
-                "the parameters leave the ground of the model"
+                "the parameters leave the validity range of the model"
             )
         return u, log_p
 

@@ -5,18 +5,11 @@ from math import pi, sqrt
 from typing import ClassVar, final
 
 from faying.contact.bearing import BearingLaw
-from faying.contact.inputs import SurfaceInputs
-from faying.materials import ContactPair
 
 
 @dataclass(frozen=True, kw_only=True)
 class MajumdarBhushanBase(BearingLaw):
     """Asperities of Majumdar and Bhushan, profile dimension d = D - 1, over any island distribution."""
-
-    @classmethod
-    def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> "MajumdarBhushanBase":
-        """Return the law of a measured surface: its D, and its G in this law's convention."""
-        return cls(D=surface.D, G=surface.G_majumdar_bhushan, pair=pair, scan_area=surface.scan_area)
 
     @property
     def critical_area(self) -> float:
@@ -41,4 +34,4 @@ class MajumdarBhushan(MajumdarBhushanBase):
 
     name: ClassVar[str] = "MB"
     source: ClassVar[str] = "doi:10.1115/1.2920588"
-    ground: ClassVar[str] = "real area up to 0.3, 2.1 <= D <= 2.9; bearing area, no interaction; plastic to elastic"
+    validity: ClassVar[str] = "real area up to 0.3, 2.1 <= D <= 2.9; bearing area, no interaction; plastic to elastic"

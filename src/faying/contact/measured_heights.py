@@ -1,18 +1,22 @@
 """Greenwood and Williamson's sum over measured asperities: any distribution of gaps, elastic-plastic loading."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
-from math import inf
-from typing import Any, ClassVar, final
+from pathlib import Path
+from typing import Any, ClassVar, Self, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.asperity.base import AsperityModel, summed_model
-from faying.contact.law import ContactLaw, Parameter, Response, checked, require
+from faying.contact.law import ContactLaw, Response, checked, require
+from faying.contact.parameter import FILE, TABLE, TEXT, Parameter
 from faying.errors import InputError
+from faying.files import read_numbers
 from faying.materials import ContactPair
 from faying.typing import Array
+from faying.units import scale
 
 FIRST, REACH = 1e-3, 2.0  # closures covered, in spans of the gaps from the first touch
 KNOTS, HINGES = 2000, 5000  # closures at which the sum is taken; pieces of the asperity's curve
@@ -23,7 +27,7 @@ KNOTS, HINGES = 2000, 5000  # closures at which the sum is taken; pieces of the 
 class MeasuredHeights(ContactLaw):
     """p = eta int f(w - g) phi(g) dg over asperities of gap g, as measured. doi:10.1016/j.ymssp.2023.110210.
 
-    gaps [m] (n,), rising: how far an asperity stands off when the highest touches; chance (n,), their probability
+    gaps [m] (n,), rising: how far an asperity stands off when the highest touches; probability (n,), their probability
     density on any scale, linear between the points; density eta [1/m2]; radius R [m]; pair; asperity: name of a model
     of `faying.contact.asperity`; tangent_ratio: E_t/E for Ghaednia's.
 
@@ -35,7 +39,7 @@ class MeasuredHeights(ContactLaw):
     """
 
     gaps: ArrayLike
-    chance: ArrayLike
+    probability: ArrayLike
     density: float
     radius: float
     pair: ContactPair
@@ -44,30 +48,47 @@ class MeasuredHeights(ContactLaw):
 
     name: ClassVar[str] = "GW-measured"
     source: ClassVar[str] = "doi:10.1016/j.ymssp.2023.110210"
-    ground: ClassVar[str] = "real area up to 0.3; closing within the measured gaps; no interaction between asperities"
+    validity: ClassVar[str] = "real area up to 0.3; closing within the measured gaps; no interaction between asperities"
     parameters: ClassVar = {
-        "gaps": Parameter("m", "distances of the asperities at first touch", "0 or more, rising"),
-        "chance": Parameter("", "their probability density, any scale", "0 or more"),
-        "density": Parameter("1/m^2", "asperities per area", "above 0"),
-        "radius": Parameter("m", "radius of the asperities, both faces together", "above 0"),
-        "asperity": Parameter("text", "law of one asperity", "a name of faying.contact.asperity"),
-        "tangent_ratio": Parameter("", "E_t/E of bilinear hardening, Ghaednia's only", "0 up to below 1"),
+        "gaps": Parameter(TABLE, "distances of the asperities at first touch [m], rising"),
+        "probability": Parameter(TABLE, "their probability density, any scale"),
+        "density": Parameter("1/m^2", "asperities per area", 0),
+        "radius": Parameter("m", "radius of the asperities, both faces together", 0),
+        "asperity": Parameter(TEXT, "law of one asperity, one of faying.contact.asperity"),
+        "tangent_ratio": Parameter("", "E_t/E of bilinear hardening, Ghaednia's only", 0, 1, "[)"),
     }
 
+    @classmethod
+    def entries(cls) -> Mapping[str, Parameter]:
+        """A file of gaps and their density stands for the two arrays."""
+        own = {name: p for name, p in cls.parameters.items() if p.unit != TABLE}
+        return {
+            "gaps": Parameter(FILE, "gaps of the asperities and their probability density, in two columns"),
+            "gaps_unit": Parameter(TEXT, "unit of the gaps in that file"),
+            **own,
+        }
+
+    @classmethod
+    def from_entries(cls, given: Mapping[str, object], pair: ContactPair) -> Self:
+        """Read the file of gaps, then make the law."""
+        own: dict[str, Any] = {name: value for name, value in given.items() if name not in ("gaps", "gaps_unit")}
+        form = "measured heights have the columns gap and probability density"
+        table = read_numbers(Path(str(given["gaps"])), 2, form)
+        unit = scale(str(given["gaps_unit"]), "m", name="gaps_unit")
+        return cls(gaps=table[:, 0] * unit, probability=table[:, 1], pair=pair, **own)
+
     def __post_init__(self) -> None:
+        super().__post_init__()
         need = partial(require, self.name)
         g = checked(self.gaps, name="gaps", unit="m", zero=True)
-        c = checked(self.chance, name="chance of the gaps", unit="1/m", zero=True)
+        c = checked(self.probability, name="probability of the gaps", unit="1/m", zero=True)
         need(
             g.ndim == 1 and g.size >= 2 and g.shape == c.shape,
-            f"gaps of shape {g.shape} and chance of shape {c.shape}; give two rows of one length, 2 or more",
+            f"gaps of shape {g.shape} and probability of shape {c.shape}; give two rows of one length, 2 or more",
         )
         need(bool(np.all(np.diff(g) > 0)), "gaps do not rise; sort the table and drop repetitions")
-        need(bool(np.trapezoid(c, g) > 0), "the chance of every gap is 0")
-        for name in ("density", "radius"):
-            value, unit = getattr(self, name), self.parameters[name].unit
-            need(0 < value < inf, f"{name} = {value:g} {unit}; it must be positive and finite")
-        for name, value in (("gaps", g.copy()), ("chance", c / np.trapezoid(c, g))):
+        need(bool(np.trapezoid(c, g) > 0), "the probability of every gap is 0")
+        for name, value in (("gaps", g.copy()), ("probability", c / np.trapezoid(c, g))):
             value.setflags(write=False)
             object.__setattr__(self, name, value)
         self._asperity  # noqa: B018  # names its own faults
@@ -87,7 +108,7 @@ class MeasuredHeights(ContactLaw):
     @cached_property
     def _touch(self) -> float:
         """The least gap that an asperity has [m]."""
-        g, c = np.asarray(self.gaps), np.asarray(self.chance)
+        g, c = np.asarray(self.gaps), np.asarray(self.probability)
         return float(g[max(int(np.argmax(c > 0)) - 1, 0)])
 
     @cached_property
@@ -127,7 +148,7 @@ class MeasuredHeights(ContactLaw):
             out[begin : begin + 100] = np.stack([p, area, first @ hinges[0], radii], axis=1)
         late = closing[:, None] - borders
         shares = self._integrals(late)[1]
-        g, c = np.asarray(self.gaps) - self._touch, np.asarray(self.chance)
+        g, c = np.asarray(self.gaps) - self._touch, np.asarray(self.probability)
         out[:, 0] += shares @ steps["force"]
         out[:, 1] += shares @ steps["area"]
         out[:, 2] += np.interp(late, g, c, left=0.0, right=0.0) @ steps["force"]
@@ -135,7 +156,7 @@ class MeasuredHeights(ContactLaw):
 
     def _integrals(self, place: Array) -> tuple[Array, Array]:
         """Second [m] and first [-] integral of the probability density up to a place [m], any shape."""
-        g, c = np.asarray(self.gaps) - self._touch, np.asarray(self.chance)
+        g, c = np.asarray(self.gaps) - self._touch, np.asarray(self.probability)
         h = np.diff(g)
         first = np.concatenate([[0.0], np.cumsum(h * (c[1:] + c[:-1]) / 2)])
         second = np.concatenate([[0.0], np.cumsum(h * (first[:-1] + h * (2 * c[:-1] + c[1:]) / 6))])

@@ -1,17 +1,17 @@
 """Morag and Etsion 2007: asperities of a fixed wavelength, which yield as load grows."""
 
 from dataclasses import dataclass
-from functools import cached_property, partial
-from math import inf, pi
+from functools import cached_property
+from math import pi
 from typing import ClassVar, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.asperity.lin_lin import LinLin
-from faying.contact.inputs import SurfaceInputs
 from faying.contact.islands import Islands
-from faying.contact.law import ContactLaw, Parameter, Response, checked, require
+from faying.contact.law import ContactLaw, Response, checked, require
+from faying.contact.parameter import FRACTAL_MB, Parameter
 from faying.materials import ContactPair
 
 
@@ -37,31 +37,17 @@ class MoragEtsion(ContactLaw):
 
     name: ClassVar[str] = "ME"
     source: ClassVar[str] = "doi:10.1115/WTC2005-64357"
-    ground: ClassVar[str] = "real area up to 0.3, largest contact within its wavelength, 2.1 <= D <= 2.9"
+    validity: ClassVar[str] = "real area up to 0.3, largest contact within its wavelength, 2.1 <= D <= 2.9"
     parameters: ClassVar = {
-        "D": Parameter("", "fractal dimension of the surface", "between 2 and 3"),
-        "G": Parameter("m", "fractal roughness", "above 0"),
-        "wavelength": Parameter("m", "wavelength of the asperities", "above 0"),
-        "scan_area": Parameter("m^2", "area that the scan covers, to which al' belongs", "above 0"),
+        **FRACTAL_MB,
+        "wavelength": Parameter("m", "wavelength of the asperities", 0, surface="side"),
     }
     CUTOFF: ClassVar[float] = 0.01
 
     def __post_init__(self) -> None:
-        need = partial(require, "ME")
-        need(2 < self.D < 3, f"D = {self.D}; the dimension of a surface lies between 2 and 3, for example 2.4")
-        for name in ("G", "wavelength", "scan_area"):
-            need(0 < getattr(self, name) < inf, f"{name} = {getattr(self, name)}; it must be positive")
-        need(np.isfinite(self.pair.hardness), "neither body yields; give the pair a hardness or yield_strength")
-
-    @classmethod
-    def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> "MoragEtsion":
-        """Return the law of a measured surface; the wavelength is the side of the scan."""
-        return cls(
-            D=surface.D,
-            G=surface.G_majumdar_bhushan,
-            wavelength=surface.scan_area**0.5,
-            pair=pair,
-            scan_area=surface.scan_area,
+        super().__post_init__()
+        require(
+            "ME", np.isfinite(self.pair.hardness), "neither body yields; give the pair a hardness or yield_strength"
         )
 
     @property

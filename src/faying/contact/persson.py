@@ -1,15 +1,14 @@
 """Persson 2001, 2007: area from the rms slope, stiffness from the rms height."""
 
 from dataclasses import dataclass
-from functools import partial
-from math import inf, sqrt
+from math import sqrt
 from typing import ClassVar, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.inputs import SurfaceInputs
-from faying.contact.law import ContactLaw, Parameter, Response, require
+from faying.contact.law import ContactLaw, Response
+from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.materials import ContactPair
 
@@ -38,23 +37,13 @@ class Persson(ContactLaw):
 
     name: ClassVar[str] = "Persson"
     source: ClassVar[str] = "doi:10.1063/1.1388626"
-    ground: ClassVar[str] = "elastic; real area up to 0.3 for the stiffness; a surface much larger than its waves"
+    validity: ClassVar[str] = "elastic; real area up to 0.3 for the stiffness; a surface much larger than its waves"
     parameters: ClassVar = {
-        "slope": Parameter("", "rms gradient of the surface", "above 0"),
-        "h_rms": Parameter("m", "rms height", "above 0"),
-        "corrected": Parameter("", "use the area-dependent correction", "1 or 0"),
-        "gamma": Parameter("", "factor of the mean separation", "above 0; 0.4 to 0.5"),
+        "slope": Parameter("", "rms gradient of the surface", 0, surface="slope"),
+        "h_rms": Parameter("m", "rms height", 0, surface="h_rms"),
+        "corrected": Parameter("", "use the area-dependent correction, 1 or 0", 0, 1, "[]", whole=True),
+        "gamma": Parameter("", "factor of the mean separation, 0.4 to 0.5", 0),
     }
-
-    def __post_init__(self) -> None:
-        need = partial(require, "Persson")
-        for name in ("slope", "h_rms", "gamma"):
-            need(0 < getattr(self, name) < inf, f"{name} = {getattr(self, name)}; it must be positive")
-
-    @classmethod
-    def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> "Persson":
-        """Return the law of a measured surface, from its rms gradient and rms height."""
-        return cls(slope=surface.slope, h_rms=surface.h_rms, pair=pair)
 
     @property
     def closure_range(self) -> tuple[float, float]:

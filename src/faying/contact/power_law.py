@@ -1,14 +1,13 @@
 """The approach law of machine-tool joints: approach = C p^m, fitted to measured joints since Ostrovskii."""
 
 from dataclasses import dataclass
-from functools import partial
-from math import inf
 from typing import ClassVar, Self, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.law import ContactLaw, Parameter, Response, checked, require
+from faying.contact.law import ContactLaw, Response, checked
+from faying.contact.parameter import TEXT, Parameter
 
 
 @final
@@ -28,19 +27,13 @@ class PowerLaw(ContactLaw):
 
     name: ClassVar[str] = "Power law"
     source: ClassVar[str] = "isbn:978-0071496605"
-    ground: ClassVar[str] = "the joint and the pressures that it was fitted to"
+    validity: ClassVar[str] = "the joint and the pressures that it was fitted to"
     parameters: ClassVar = {
-        "C": Parameter("", "approach at 1 Pa, in m/Pa^m", "above 0"),
-        "m": Parameter("", "power of pressure", "between 0 and 1"),
-        "greatest": Parameter("Pa", "largest pressure of the measurement", "above 0"),
-        "origin": Parameter("text", "which joint it is", "any text"),
+        "C": Parameter("", "approach at 1 Pa, in m/Pa^m", 0),
+        "m": Parameter("", "power of pressure", 0, 1),
+        "greatest": Parameter("Pa", "largest pressure of the measurement", 0),
+        "origin": Parameter(TEXT, "which joint it is"),
     }
-
-    def __post_init__(self) -> None:
-        need = partial(require, "Power law")
-        need(0 < self.C < inf, f"C = {self.C}; it must be positive")
-        need(0 < self.m < 1, f"m = {self.m}; it must lie between 0 and 1, for example 0.5")
-        need(0 < self.greatest < inf, f"greatest = {self.greatest} Pa; it must be positive")
 
     @classmethod
     def measured(cls, *, C: float, m: float, origin: str, greatest: float = 9.8e6) -> Self:

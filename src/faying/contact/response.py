@@ -8,6 +8,19 @@ import numpy as np
 
 from faying.typing import Array, Mask
 
+# SI unit of every quantity, "" for plain numbers
+UNITS = {
+    "pressure": "Pa",
+    "area": "",
+    "k_n": "Pa/m",
+    "k_t": "Pa/m",
+    "loss_n": "",
+    "loss_t": "",
+    "energy_n": "J/m^2",
+    "energy_t": "J/m^2",
+    "k_load": "Pa/m",
+}
+
 
 @dataclass(frozen=True, kw_only=True)
 class Response:
@@ -16,7 +29,7 @@ class Response:
     pressure [Pa]; area, real over nominal [-]; k_n, k_t normal and tangential stiffness [Pa/m]; loss_n, loss_t
     loss factors [-]; energy_n, energy_t strain energies [J/m2]; k_load [Pa/m], the slope of pressure over closing on
     first loading where it is not k_n, because asperities yield. A quantity that the model does not define is None.
-    valid tells where the model stands on its own ground; `reasons` names, per sign of leaving it, where.
+    valid tells where the model is within its validity range; `reasons` names, per way of leaving it, where.
     """
 
     pressure: Array

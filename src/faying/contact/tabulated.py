@@ -11,14 +11,17 @@ from typing import Any, ClassVar, Self, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.law import ContactLaw, Parameter, Response, checked, require
+from faying.contact.law import ContactLaw, Response, checked, require
+from faying.contact.parameter import FILE, TABLE, TEXT, Parameter
+from faying.contact.response import UNITS
 from faying.errors import InputError, ReadError
+from faying.materials import ContactPair
 from faying.typing import Array
 
 FORM = "a table looks like: pressure [MPa],k_n [MPa/um] and under it rows such as 1,40"
 EXAMPLES = {"Pa": "MPa", "Pa/m": "MPa/um", "J/m^2": "J/m^2"}
 PASSED_OVER = "valid"
-QUANTITIES = ("area", "k_n", "k_t", "loss_n", "loss_t", "energy_n", "energy_t", "k_load")
+QUANTITIES = tuple(name for name in UNITS if name != "pressure")
 
 
 @final
@@ -45,19 +48,29 @@ class TabulatedLaw(ContactLaw):
 
     name: ClassVar[str] = "Table"
     source: ClassVar[str] = "measured or computed curve"
-    ground: ClassVar[str] = "between its first and last pressure"
+    validity: ClassVar[str] = "between its first and last pressure"
     parameters: ClassVar = {
-        "pressure": Parameter("Pa", "nominal pressures of the table", "positive, rising"),
-        "area": Parameter("", "real area over nominal area", "0 to 1"),
-        "k_n": Parameter("Pa/m", "normal stiffness per area", "0 or more"),
-        "k_t": Parameter("Pa/m", "tangential stiffness per area", "0 or more"),
-        "loss_n": Parameter("", "normal loss factor", "0 or more"),
-        "loss_t": Parameter("", "tangential loss factor", "0 or more"),
-        "energy_n": Parameter("J/m^2", "normal energy per area", "0 or more"),
-        "energy_t": Parameter("J/m^2", "tangential energy per area", "0 or more"),
-        "k_load": Parameter("Pa/m", "slope of pressure over closing on first loading, where not k_n", "above 0"),
-        "origin": Parameter("text", "where the table comes from", "any text"),
+        "pressure": Parameter(TABLE, "nominal pressures [Pa], rising"),
+        "area": Parameter(TABLE, "real area over nominal area [-]"),
+        "k_n": Parameter(TABLE, "normal stiffness per area [Pa/m]"),
+        "k_t": Parameter(TABLE, "tangential stiffness per area [Pa/m]"),
+        "loss_n": Parameter(TABLE, "normal loss factor [-]"),
+        "loss_t": Parameter(TABLE, "tangential loss factor [-]"),
+        "energy_n": Parameter(TABLE, "normal energy per area [J/m2]"),
+        "energy_t": Parameter(TABLE, "tangential energy per area [J/m2]"),
+        "k_load": Parameter(TABLE, "slope of pressure over approach on first loading [Pa/m], where not k_n"),
+        "origin": Parameter(TEXT, "where the table comes from"),
     }
+
+    @classmethod
+    def entries(cls) -> Mapping[str, Parameter]:
+        """A user gives the table by its file."""
+        return {"file": Parameter(FILE, "the table, as CSV with units in its head")}
+
+    @classmethod
+    def from_entries(cls, given: Mapping[str, object], pair: ContactPair) -> Self:
+        """Read the table; the materials are those of the measurement."""
+        return cls.from_csv(str(given["file"]))
 
     def __post_init__(self) -> None:
         p = checked(self.pressure, name="pressure of the table", unit="Pa", zero=False)
@@ -68,7 +81,7 @@ class TabulatedLaw(ContactLaw):
         columns = self._columns
         require(self.name, bool(columns), f"nothing but pressure is given; give any of {', '.join(QUANTITIES)}")
         for name, value in columns.items():
-            checked(value, name=f"{name} of the table", unit=self.parameters[name].unit or "no unit", zero=True)
+            checked(value, name=f"{name} of the table", unit=UNITS[name] or "no unit", zero=True)
             require(self.name, value.shape == p.shape, f"{name} has shape {value.shape}, pressure {p.shape}")
         object.__setattr__(self, "pressure", _frozen(p))
         for name, value in columns.items():
@@ -216,7 +229,7 @@ def _column(cell: str, where: str) -> tuple[str, float]:
     if name != "pressure" and name not in QUANTITIES:
         known = ", ".join(("pressure", *QUANTITIES))
         raise ReadError(f'{where}: the column "{cell}" is unknown; known are {known}; {FORM}')
-    wanted = TabulatedLaw.parameters[name].unit
+    wanted = UNITS[name]
     if not wanted:
         if unit not in ("", "-", "1"):
             raise ReadError(f'{where}: the column "{cell}" has no unit; give plain numbers under "{name}"')

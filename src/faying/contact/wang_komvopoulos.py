@@ -18,7 +18,7 @@ class WangKomvopoulos(MajumdarBhushanBase):
 
     name: ClassVar[str] = "WK"
     source: ClassVar[str] = "doi:10.1115/1.2927035"
-    ground: ClassVar[str] = "real area up to 0.3, 2.1 <= D <= 2.9; bearing area, no interaction; plastic to elastic"
+    validity: ClassVar[str] = "real area up to 0.3, 2.1 <= D <= 2.9; bearing area, no interaction; plastic to elastic"
 
     @cached_property
     def _islands(self) -> Islands:

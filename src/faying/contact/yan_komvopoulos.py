@@ -1,14 +1,11 @@
 """Yan and Komvopoulos 1998: the fractal law of a surface in three dimensions."""
 
 from dataclasses import dataclass
-from functools import partial
-from math import inf, log, pi, sqrt
+from math import log, pi, sqrt
 from typing import ClassVar, final
 
-from faying.contact.bearing import PARAMETERS, BearingLaw
-from faying.contact.inputs import SurfaceInputs
-from faying.contact.law import Parameter, require
-from faying.materials import ContactPair
+from faying.contact.bearing import BearingLaw
+from faying.contact.parameter import FRACTAL, GAMMA
 
 
 @final
@@ -25,19 +22,9 @@ class YanKomvopoulos(BearingLaw):
 
     name: ClassVar[str] = "YK"
     source: ClassVar[str] = "doi:10.1063/1.368536"
-    ground: ClassVar[str] = "real area up to 0.3, 2.1 <= D <= 2.9; bearing area, no interaction; plastic to elastic"
-    parameters: ClassVar = PARAMETERS | {"gamma": Parameter("", "frequency index of the surface", "above 1")}
+    validity: ClassVar[str] = "real area up to 0.3, 2.1 <= D <= 2.9; bearing area, no interaction; plastic to elastic"
+    parameters: ClassVar = FRACTAL | GAMMA
     elastic_share: ClassVar[float] = 0.5
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        need = partial(require, self.name)
-        need(1 < self.gamma < inf, f"gamma = {self.gamma}; it must be above 1, for example 1.5")
-
-    @classmethod
-    def from_surface(cls, surface: SurfaceInputs, pair: ContactPair) -> "YanKomvopoulos":
-        """Return the law of a measured surface, from its D and G."""
-        return cls(D=surface.D, G=surface.G, pair=pair, scan_area=surface.scan_area, gamma=surface.gamma)
 
     @property
     def critical_area(self) -> float:

@@ -8,9 +8,9 @@ on the bounds and the mean. What the projection cuts off in one place it must no
 cost the most energy: so up to twice more the problem is solved on the cells that are left between their bounds. The
 point of least energy is kept; where none is below the start, the first step is halved. Where many cells sit at the
 upper bound, a projected-gradient step goes before it (More and Toraldo 1991, doi:10.1137/0801008; Bertsekas 1982,
-doi:10.1137/0320018). Gradient, energy and certificate are in double precision.
+doi:10.1137/0320018). Gradient, energy and error bound are in double precision.
 
-The certificate is the duality gap. With g = A x - b and any level d, and G = g + d,
+The error bound is the duality gap. With g = A x - b and any level d, and G = g + d,
 
     sum (x - lower) max(G, 0) + (upper - x) max(-G, 0)  >=  energy(x) - least energy  >=  |x - x*|_A^2 / 2,
 
@@ -108,33 +108,37 @@ def best_level(x: Array, gradient: Array, lower: Bound, upper: Bound) -> float:
     return -float(gradient[free].mean()) if free.any() else -float(np.median(gradient))
 
 
-def minimise(
-    kernel: Kernel,
-    load: Array,
-    *,
-    lower: Bound,
-    upper: Bound,
-    mean: float,
-    scale: float,
-    tol: float,
-    start: Array | None = None,
-    progress: Progress | None = None,
-) -> Minimum:
-    """Solve the problem of the module's text for one component. load b, bounds and start: flat arrays or numbers.
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Problem:
+    """The problem of the module's text for one component: load b, bounds (flat arrays or numbers) and mean.
 
-    `scale` is the displacement by which the certificate is measured: residual = gap/(sum |x| scale).
+    `scale` is the displacement by which the error bound is measured: residual = gap/(sum |x| scale).
+    """
+
+    kernel: Kernel
+    load: Array
+    lower: Bound
+    upper: Bound
+    mean: float
+    scale: float
+
+
+def minimise(problem: Problem, *, tol: float, start: Array | None = None, progress: Progress | None = None) -> Minimum:
+    """Solve the problem, from `start` (flat) where given.
+
     Raises NotConverged where the residual stays above tol after STEPS steps, or single precision can do no more.
     """
-    return _Search(kernel, load, lower, upper, mean * load.size, scale).run(tol, start, progress)
+    return _Search(problem).run(tol, start, progress)
 
 
 class _Search:
-    def __init__(self, kernel: Kernel, load: Array, lower: Bound, upper: Bound, total: float, scale: float) -> None:
-        self.kernel, self.load, self.lower, self.upper = kernel, load, lower, upper
-        self.total, self.scale = total, scale
-        self.pace = 1 / kernel.own
+    def __init__(self, problem: Problem) -> None:
+        self.kernel, self.load, self.lower, self.upper = problem.kernel, problem.load, problem.lower, problem.upper
+        self.total, self.scale = problem.mean * problem.load.size, problem.scale
+        self.pace = 1 / self.kernel.own
         self.applications = 0
-        self.bounded = isinstance(upper, np.ndarray) or isfinite(upper)
+        self.bounded = isinstance(self.upper, np.ndarray) or isfinite(self.upper)
 
     def apply(self, x: Array) -> Array:
         self.applications += 1
@@ -158,7 +162,7 @@ class _Search:
             if progress is not None:
                 progress(step, residual)
             if residual < tol:
-                # the gradient was updated step by step: certify the answer with a fresh one
+                # the gradient was updated step by step: bound the error with a fresh one
                 self.g = self.apply(self.x) - self.load
                 level = best_level(self.x, self.g, self.lower, self.upper)
                 residual = max(duality_gap(self.x, self.g, self.lower, self.upper, level) / size, self._imbalance())

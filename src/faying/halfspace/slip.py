@@ -7,7 +7,7 @@ from typing import final
 import numpy as np
 
 from faying.errors import InputError
-from faying.halfspace.bounded import minimise
+from faying.halfspace.bounded import Problem, minimise
 from faying.halfspace.kernels import shear_kernel
 from faying.halfspace.solution import HalfSpaceContact
 from faying.halfspace.tangent import stiffness_on
@@ -45,15 +45,7 @@ def slip_of(contact: HalfSpaceContact, shear_ratio: float, friction: float, *, t
 
     Raises InputError for a shear_ratio outside [0, 1) or a friction coefficient that is not positive.
     """
-    if not (isfinite(friction) and friction > 0):
-        raise InputError(f"friction = {friction}; the coefficient must be positive, for example 0.2")
-    if not shear_ratio >= 0:
-        raise InputError(f"shear_ratio = {shear_ratio}; it must be 0 or more, and below 1")
-    if shear_ratio >= 1:
-        raise InputError(
-            f"shear_ratio = {shear_ratio}: at T = mu F and above the joint slips as a whole; "
-            "lower the shear load or raise the preload"
-        )
+    _check(shear_ratio, friction)
     shape, dx = contact.heights.shape, contact.spacing[0]
     touching = contact.traction > 0
     kernel = shear_kernel(
@@ -73,16 +65,15 @@ def slip_of(contact: HalfSpaceContact, shear_ratio: float, friction: float, *, t
             loss_factor=0.0,
             residual=0.0,
         )
-    found = minimise(
-        kernel,
-        np.zeros(bound.size),
+    problem = Problem(
+        kernel=kernel,
+        load=np.zeros(bound.size),
         lower=-bound,
         upper=bound,
         mean=mean,
         scale=mean / stuck_stiffness,
-        tol=tol,
-        start=shear_ratio * bound,
     )
+    found = minimise(problem, tol=tol, start=shear_ratio * bound)
     sliding = touching.ravel() & (np.abs(found.x) >= bound)
     slipped = np.where(sliding, np.abs(found.gradient + found.level), 0.0)
     moved = -found.level
@@ -97,3 +88,15 @@ def slip_of(contact: HalfSpaceContact, shear_ratio: float, friction: float, *, t
         loss_factor=loss / (pi * mean * moved),
         residual=found.residual,
     )
+
+
+def _check(shear_ratio: float, friction: float) -> None:
+    if not (isfinite(friction) and friction > 0):
+        raise InputError(f"friction = {friction}; the coefficient must be positive, for example 0.2")
+    if not shear_ratio >= 0:
+        raise InputError(f"shear_ratio = {shear_ratio}; it must be 0 or more, and below 1")
+    if shear_ratio >= 1:
+        raise InputError(
+            f"shear_ratio = {shear_ratio}: at T = mu F and above the joint slips as a whole; "
+            "lower the shear load or raise the preload"
+        )

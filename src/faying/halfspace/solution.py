@@ -21,10 +21,20 @@ OPEN, ELASTIC, AT_HARDNESS = 0, 1, 2
 class HalfSpaceContact:
     """A height map pressed against a rigid plane.
 
-    Maps of shape (ny, nx): heights [m] as given; traction, the pressure at each point [Pa]; displacement, how far the
-    surface has gone down at each point [m] (of mean 0 for a periodic map). plane: height of the rigid plane [m].
-    residual: the certificate, duality gap over load times rms height [-]. iterations: Newton steps on the finest map;
-    applications: products with the half-space's operator or its inverse on it.
+    Args:
+        heights: as given [m], shape (ny, nx).
+        spacing: (dx, dy) [m].
+        E_star: contact modulus [Pa].
+        nu: Poisson's ratio for tangential loads [-].
+        hardness: [Pa], or None.
+        periodic: whether the map repeats.
+        traction: pressure at each point [Pa] (ny, nx).
+        displacement: how far the surface has gone down at each point [m] (ny, nx), of mean 0 for a periodic map.
+        plane: height of the rigid plane [m].
+        residual: the error bound, duality gap over load times rms height [-].
+        iterations: Newton steps on the finest map.
+        applications: products with the half-space's operator or its inverse on it.
+        workers: threads of the transforms.
     """
 
     heights: Array

@@ -1,12 +1,13 @@
 """Contact of a height map with a rigid plane, both taken as one elastic half-space, by `solve_half_space`."""
 
+from dataclasses import dataclass
 from math import isfinite, isnan
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.errors import InputError, NotConverged
-from faying.halfspace.bounded import Minimum, Progress, best_level, duality_gap, minimise
+from faying.halfspace.bounded import Minimum, Problem, Progress, best_level, duality_gap, minimise
 from faying.halfspace.kernels import normal_kernel, transform_shape
 from faying.halfspace.solution import HalfSpaceContact
 from faying.typing import Array
@@ -31,36 +32,45 @@ def solve_half_space(
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> HalfSpaceContact:
-    """Press a height map against a rigid plane and return the contact, with a certificate of its accuracy.
+    """Press a height map against a rigid plane and return the contact, with a bound on its error.
 
-    heights [m], shape (ny, nx), pointing towards the plane; spacing [m], one number or (dx, dy); E_star contact
-    modulus of the pair [Pa]; nu the Poisson's ratio used for tangential loads [-]. Give either pressure, the mean over
-    the map [Pa], or displacement, how far the plane comes down from first touch [m]. hardness [Pa]: no point carries
-    more (0 <= p <= H); None is elastic. periodic=False takes the map as a patch on an unbounded flat half-space that
-    nothing else loads. start: an earlier contact of the same map, to begin from. workers: threads of the transforms.
-    progress: called with (step, residual) on the finest map; whatever it raises, as KeyboardInterrupt does, leaves no
-    trace.
+    The discrete problem is that of Polonsky and Keer; hardness bounds the pressure from above as in Almqvist et al.
 
-    `tol` bounds `.residual`, the duality gap over load times rms height: an upper bound on the relative excess of
-    energy whatever the iteration did (see `bounded`). The discrete problem is that of Polonsky and Keer 1999
-    (doi:10.1016/S0043-1648(99)00113-1), with the upper bound of Almqvist et al. 2007
-    (doi:10.1016/j.jtribo.2007.01.014).
+    Args:
+        heights: [m], shape (ny, nx), pointing towards the plane.
+        spacing: between points [m], one number or (dx, dy).
+        E_star: contact modulus of the pair [Pa], positive.
+        pressure: mean over the map [Pa], from 0 to below hardness; or
+        displacement: how far the plane comes down from first touch [m], 0 or more. Give one of the two.
+        hardness: the most that a point carries [Pa]; None is elastic.
+        nu: Poisson's ratio for tangential loads [-], in (-1, 0.5].
+        periodic: False takes the map as a patch on an unbounded flat half-space that nothing else loads.
+        tol: bounds `.residual`, the duality gap over load times rms height: an upper bound on the relative excess of
+            energy whatever the iteration did; in (0, 1).
+        start: an earlier contact of the same map, to begin from.
+        workers: threads of the transforms.
+        progress: called with (step, residual) on the finest map; it may raise to stop the solution.
 
-    Raises InputError for maps that are not two-dimensional, hold missing points or do not fit into memory, for
-    non-positive moduli, for negative loads and loads at or beyond hardness; NotConverged where tol is not reached.
+    Returns:
+        HalfSpaceContact.
+
+    Raises:
+        InputError: for maps that are not two-dimensional, hold missing points or do not fit into memory, for
+            non-positive moduli, for negative loads and loads at or beyond hardness.
+        NotConverged: where tol is not reached.
+
+    Source:
+        Polonsky and Keer 1999, doi:10.1016/S0043-1648(99)00113-1; Almqvist et al. 2007,
+        doi:10.1016/j.jtribo.2007.01.014.
     """
     h, (dx, dy) = _checked_map(heights, spacing)
     _check_numbers(E_star, nu, hardness, tol)
     _check_memory(h.shape, periodic)
     if (pressure is None) == (displacement is None):
         raise InputError("give either pressure or displacement to solve_half_space, one of the two")
-    problem = _Problem(h, dx, dy, E_star, hardness, nu, periodic, tol, workers, progress)
-    if start is not None and start.heights.shape != h.shape:
-        raise InputError(
-            f"start: a contact of shape {start.heights.shape}, but the map has shape {h.shape}; "
-            "start from a contact of the same map"
-        )
-    first = None if start is None else start.traction / E_star
+    options = _Options(E_star=E_star, hardness=hardness, nu=nu, periodic=periodic, tol=tol, workers=workers)
+    problem = _Pressing(h, (dx, dy), options, progress)
+    first = None if start is None else _first(start, h.shape) / E_star
     if displacement is not None:
         return _at_displacement(problem, displacement, first)
     assert pressure is not None
@@ -68,87 +78,88 @@ def solve_half_space(
     return problem.at(pressure / E_star, first)
 
 
-class _Problem:
-    """One map, scaled: lengths by dx, stresses by E*."""
+def _first(start: HalfSpaceContact, shape: tuple[int, ...]) -> Array:
+    if start.heights.shape != shape:
+        raise InputError(
+            f"start: a contact of shape {start.heights.shape}, but the map has shape {shape}; "
+            "start from a contact of the same map"
+        )
+    return start.traction
 
-    def __init__(
-        self,
-        h: Array,
-        dx: float,
-        dy: float,
-        E_star: float,
-        hardness: float | None,
-        nu: float,
-        periodic: bool,
-        tol: float,
-        workers: int | None,
-        progress: Progress | None,
-    ) -> None:
-        self.heights, self.spacing, self.E_star, self.hardness, self.nu = h, (dx, dy), E_star, hardness, nu
-        self.periodic, self.tol, self.workers, self.progress = periodic, tol, workers, progress
+
+@dataclass(frozen=True, kw_only=True)
+class _Options:
+    """What a solution takes beside the map and the load."""
+
+    E_star: float
+    hardness: float | None
+    nu: float
+    periodic: bool
+    tol: float
+    workers: int | None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Map:
+    """Heights at one coarseness, lengths in cells: `unit`, the cell over the finest one, and `aspect` dy/dx."""
+
+    h: Array
+    unit: float
+    aspect: float
+
+    def coarser(self) -> "_Map":
+        """The map on half as many points each way."""
+        small = _halved(self.h)
+        across, down = self.h.shape[1] / small.shape[1], self.h.shape[0] / small.shape[0]
+        return _Map(h=small / across, unit=self.unit * across, aspect=self.aspect * down / across)
+
+
+class _Pressing:
+    """One map under one set of options, scaled: lengths by dx, stresses by E*."""
+
+    def __init__(self, h: Array, spacing: tuple[float, float], options: _Options, progress: Progress | None) -> None:
+        self.heights, self.spacing, self.options, self.progress = h, spacing, options, progress
         self.top = float(h.max())
-        self.scaled = (h - self.top) / dx
-        self.rms = float(self.scaled.std())
-        self.limit = np.inf if hardness is None else hardness / E_star
+        self.map = _Map(h=(h - self.top) / spacing[0], unit=1.0, aspect=spacing[1] / spacing[0])
+        self.rms = float(self.map.h.std())
+        self.limit = np.inf if options.hardness is None else options.hardness / options.E_star
 
     def at(self, mean: float, start: Array | None) -> HalfSpaceContact:
+        """The contact at a mean pressure, scaled."""
         if mean == 0:
             return self._solution(None)
-        if start is not None and start.any():
-            start = start * (mean / start.mean())
-            return self._solution(
-                self._minimise(
-                    self.scaled, 1.0, self.spacing[1] / self.spacing[0], mean, start, self.tol, self.progress
-                )
-            )
-        return self._solution(self._nested(self.scaled, 1.0, self.spacing[1] / self.spacing[0], mean, True))
+        if start is None or not start.any():
+            return self._solution(self._nested(self.map, mean))
+        return self._solution(self._minimise(self.map, mean, start * (mean / start.mean())))
 
-    def _nested(self, h: Array, unit: float, aspect: float, mean: float, finest: bool) -> Minimum:
+    def _nested(self, on: _Map, mean: float) -> Minimum:
         """Solve coarse maps first; each gives the next one's start."""
         start = None
-        if min(h.shape) >= 2 * COARSEST:
-            small = _halved(h)
-            stretch = h.shape[1] / small.shape[1], h.shape[0] / small.shape[0]
+        if min(on.h.shape) >= 2 * COARSEST:
+            small = on.coarser()
             try:
-                coarse = self._nested(
-                    small / stretch[0], unit * stretch[0], aspect * stretch[1] / stretch[0], mean, False
-                )
-                start = _spread(coarse.x.reshape(small.shape), h.shape)
+                start = _spread(self._nested(small, mean).x.reshape(small.h.shape), on.h.shape)
             except NotConverged:
                 start = None  # a coarse map only gives a start; do without
-        return self._minimise(
-            h,
-            unit,
-            aspect,
-            mean,
-            start,
-            self.tol if finest else max(self.tol, COARSE_TOLERANCE),
-            self.progress if finest else None,
-        )
+        return self._minimise(on, mean, start)
 
-    def _minimise(
-        self,
-        h: Array,
-        unit: float,
-        aspect: float,
-        mean: float,
-        start: Array | None,
-        tol: float,
-        progress: Progress | None,
-    ) -> Minimum:
-        kernel = normal_kernel(h.shape, aspect, periodic=self.periodic, workers=self.workers)
-        # a smooth flat has no roughness to measure by: take what its own load does to one cell
-        scale = self.rms / unit if self.rms > 0 else mean
-        return minimise(
-            kernel,
-            h.ravel(),
+    def _minimise(self, on: _Map, mean: float, start: Array | None) -> Minimum:
+        finest = on is self.map
+        options = self.options
+        problem = Problem(
+            kernel=normal_kernel(on.h.shape, on.aspect, periodic=options.periodic, workers=options.workers),
+            load=on.h.ravel(),
             lower=0.0,
             upper=self.limit,
             mean=mean,
-            scale=scale,
-            tol=tol,
+            # a smooth flat has no roughness to measure by: take what its own load does to one cell
+            scale=self.rms / on.unit if self.rms > 0 else mean,
+        )
+        return minimise(
+            problem,
+            tol=options.tol if finest else max(options.tol, COARSE_TOLERANCE),
             start=None if start is None else start.ravel(),
-            progress=progress,
+            progress=self.progress if finest else None,
         )
 
     def _solution(self, found: Minimum | None) -> HalfSpaceContact:
@@ -159,28 +170,28 @@ class _Problem:
         if found is not None:
             # less than this is what the projection's rounding leaves, not contact
             x = np.where(found.x > ROUNDING * found.x.mean(), found.x, 0.0)
-            traction = x.reshape(shape) * self.E_star
-            displacement = (found.gradient.reshape(shape) + self.scaled) * length
+            traction = x.reshape(shape) * self.options.E_star
+            displacement = (found.gradient.reshape(shape) + self.map.h) * length
             plane = self.top + found.level * length
             residual, steps, applications = found.residual, found.steps, found.applications
         return HalfSpaceContact(
             heights=self.heights,
             spacing=self.spacing,
-            E_star=self.E_star,
-            nu=self.nu,
-            hardness=self.hardness,
-            periodic=self.periodic,
+            E_star=self.options.E_star,
+            nu=self.options.nu,
+            hardness=self.options.hardness,
+            periodic=self.options.periodic,
             traction=_frozen(traction),
             displacement=_frozen(displacement),
             plane=plane,
             residual=residual,
             iterations=steps,
             applications=applications,
-            workers=self.workers,
+            workers=self.options.workers,
         )
 
 
-def certify(
+def error_bound(
     heights: ArrayLike,
     spacing: float | tuple[float, float],
     traction: ArrayLike,
@@ -207,7 +218,7 @@ def certify(
     return gap / float(x.sum() * h.std() / dx)
 
 
-def _at_displacement(problem: _Problem, displacement: float, start: Array | None) -> HalfSpaceContact:
+def _at_displacement(problem: _Pressing, displacement: float, start: Array | None) -> HalfSpaceContact:
     """Find the pressure whose approach is the one asked for, by bracketing in ln(pressure)."""
     from scipy.optimize import brentq
 
@@ -216,7 +227,7 @@ def _at_displacement(problem: _Problem, displacement: float, start: Array | None
     if displacement == 0:
         return problem.at(0.0, None)
     deepest = problem.top - float(problem.heights.mean())
-    if problem.periodic and problem.hardness is None and displacement >= deepest:
+    if problem.options.periodic and problem.options.hardness is None and displacement >= deepest:
         raise InputError(
             f"displacement {displacement:.4g} m closes every gap of this periodic map; its full contact comes "
             f"at {deepest:.4g} m; give less, or give the pressure"
@@ -229,7 +240,7 @@ def _at_displacement(problem: _Problem, displacement: float, start: Array | None
         contact = problem.at(float(np.exp(log_p)), last)
         contacts.clear()
         contacts[log_p] = contact
-        last = contact.traction / problem.E_star
+        last = contact.traction / problem.options.E_star
         return (contact.approach - displacement) / displacement
 
     ceiling = np.log(problem.limit * (1 - 1e-9))
@@ -241,7 +252,7 @@ def _at_displacement(problem: _Problem, displacement: float, start: Array | None
     while above < 0:
         if high >= ceiling:
             raise InputError(
-                f"displacement {displacement:.4g} m lies beyond what the hardness {problem.hardness:.4g} Pa "
+                f"displacement {displacement:.4g} m lies beyond what the hardness {problem.options.hardness:.4g} Pa "
                 "resists: the whole map is at hardness; give less"
             )
         low, below = high, above

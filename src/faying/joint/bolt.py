@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -97,6 +97,7 @@ class Bolt:
         washers: Washers under head and nut together.
         head_mass: Mass of the head [kg]; that of a hexagon head where None.
         nut_mass: Mass of the nut [kg]; that of a hexagon nut where None.
+        preload: Forces [N] that it is tightened to, one load after another.
 
     Raises:
         InputError: Diameter without material or the other way round, a diameter of 0 or less, a ring without width.
@@ -114,6 +115,8 @@ class Bolt:
     washers: tuple[Washer, ...] = ()
     head_mass: float | None = None
     nut_mass: float | None = None
+    preload: tuple[float, ...] = ()
+    part: ClassVar[None] = None  # it is no part of the mesh
 
     def __post_init__(self) -> None:
         if (self.diameter is None) != (self.material is None):

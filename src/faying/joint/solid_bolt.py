@@ -24,12 +24,14 @@ class SolidBolt:
         part: Name of the part.
         faces: Faces of the bolt itself under its head and under its nut, or round its thread.
         at: A point (3,) [m] of the plane in which the shank is drawn in; half-way between the faces where None.
+        preload: Forces [N] that it is tightened to, one load after another.
     """
 
     name: str
     part: str
     faces: tuple[str, str]
     at: tuple[float, float, float] | None = None
+    preload: tuple[float, ...] = ()
     diameter: ClassVar[None] = None  # it has no shank but that of the mesh
 
     def fitted(self, mesh: Mesh, stiffness: Any, joined: Sequence[str] = ()) -> "FittedSolidBolt":

@@ -22,11 +22,20 @@ ALIKE = 0.9
 class ModalComparison:
     """A test beside a model.
 
-    test, model: the modes; dofs (d,): degrees of freedom of the test that found a node; nodes (d,), axes (d, 3): where and
-    along what in the model; mac (t, m); pairs (k, 2): indices (test, model); point_map: nodes, distances, points without
-    partner; frf: the measured FRFs between such degrees of freedom, predicted (o, i, f) the model's, NaN at lines that it
-    does not reach, full (o, i): whether that is its full response or its elastic modes superposed, frac (o, i), or None;
-    notes: sentences for the reader.
+    Args:
+        test: its modes.
+        model: its modes.
+        dofs: degrees of freedom of the test that lie on the model (d,).
+        nodes: where they are in the model (d,).
+        axes: along what in the model (d, 3).
+        mac: MAC (t, m) [-].
+        pairs: indices (test, model), (k, 2).
+        point_map: nodes, distances, points that were left out.
+        frf: the measured FRFs between such degrees of freedom, or None.
+        predicted: the model's (o, i, f), NaN at spectral lines that it does not cover.
+        frac: (o, i) [-].
+        full: (o, i), whether the model's is its full response or its elastic modes superposed.
+        notes: sentences for the reader.
     """
 
     test: ModeSet
@@ -191,21 +200,31 @@ def compare_modes(
 ) -> ModalComparison:
     """Set a test beside a model: map its points, compute MAC at what both know, pair the modes, predict the FRFs.
 
-    An FRF is predicted by the full response of the model where that is known, else by its elastic modes. transform: test frame to model frame (default: the same frame); tolerance [m] between point and node; least_mac and
-    greatest_shift: what a pair must have (`pair_modes`). Raises InputError where no point finds a node or a direction is
-    no translation.
+    An FRF is predicted by the full response of the model where that is known, else by its elastic modes.
+
+    Args:
+        test: modes of the test, with positions of its points.
+        model: modes of the model.
+        transform: from the frame of the test to that of the model (default: the same frame).
+        tolerance: largest distance between a point and the model [m] (default: 2 % of the model's diagonal).
+        frf: the measured FRFs, to set the model's beside.
+        least_mac: smallest MAC of a pair, in (0, 1].
+        greatest_shift: largest difference in frequency of a pair, relative to the test, positive.
+
+    Returns:
+        ModalComparison.
+
+    Raises:
+        InputError: where no point lies on the model, or a direction is no translation.
+
+    Source:
+        Allemang 2003, Sound and Vibration 37(8) (MAC); Heylen and Lammens 1996 (FRAC).
     """
     known = {d.point for d in test.dofs}
-    nowhere = sorted(known - set(test.positions))
-    notes = []
-    if test.positions and nowhere:
-        notes.append(f"points {', '.join(map(str, nowhere))} have modes but no position; they are left out")
     points = map_points(
         {p: x for p, x in test.positions.items() if p in known}, model.points, transform=transform, tolerance=tolerance
     )
-    if points.missing:
-        far = ", ".join(f"{p} ({d * 1e3:.3g} mm away)" for p, d in points.missing.items())
-        notes.append(f"points without a node within {points.tolerance * 1e3:.3g} mm, left out: {far}")
+    notes = _left_out(test, points)
     used = tuple(d for d in test.dofs if d.point in points.nodes)
     nodes = np.array([points.nodes[d.point] for d in used])
     axes = points.transform.directions([d.axis() for d in used])
@@ -231,6 +250,18 @@ def compare_modes(
     )
 
 
+def _left_out(test: ModeSet, points: PointMap) -> list[str]:
+    """Say which points of the test are not compared."""
+    notes = []
+    nowhere = sorted({d.point for d in test.dofs} - set(test.positions))
+    if test.positions and nowhere:
+        notes.append(f"points {', '.join(map(str, nowhere))} have modes but no position; they are left out")
+    if points.missing:
+        far = ", ".join(f"{p} ({d * 1e3:.3g} mm away)" for p, d in points.missing.items())
+        notes.append(f"points without a node within {points.tolerance * 1e3:.3g} mm, left out: {far}")
+    return notes
+
+
 def _alike(shapes: Array, pairs: Index, count: int) -> list[str]:
     """Say which of the paired model modes the points of the test cannot tell from another."""
     own = mac(shapes, shapes)
@@ -240,8 +271,8 @@ def _alike(shapes: Array, pairs: Index, count: int) -> list[str]:
         if same:
             others = ", ".join(str(k + 1) for k in same)
             words.append(
-                f"at the {count} degrees of freedom of the test, model mode {m + 1} looks like {others} (MAC above {ALIKE}); "
-                "the pair rests on frequency"
+                f"at the {count} degrees of freedom of the test, model mode {m + 1} looks like {others} (MAC above "
+                f"{ALIKE}); the pair rests on frequency"
             )
     return words
 
@@ -295,6 +326,7 @@ def _kind_of_response(frf: FRF, predicted: Complex, full: Mask, model: ModelMode
     lines = frf.frequency[np.isfinite(predicted[pair])]
     if lines[0] > frf.frequency[frf.frequency > 0][0] or lines[-1] < frf.frequency[-1]:
         out.append(
-            f"the full response reaches from {lines[0]:g} to {lines[-1]:g} Hz; the lines beyond do not count in FRAC"
+            f"the full response reaches from {lines[0]:g} to {lines[-1]:g} Hz; the spectral lines beyond do not count "
+            "in FRAC"
         )
     return out

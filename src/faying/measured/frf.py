@@ -32,8 +32,8 @@ class Dof(NamedTuple):
         sign, name = (-1.0, self.direction[1:]) if self.direction.startswith("-") else (1.0, self.direction)
         if name not in AXES:
             raise InputError(
-                f"point {self.point} has the direction {self.direction!r}, which is no translation; give x, y or z, for "
-                'example .directed("z"), or on the command line --direction z'
+                f"point {self.point} has the direction {self.direction!r}, which is no translation; give x, y or z, "
+                'for example .directed("z"), or on the command line --direction z'
             )
         return sign * np.array(AXES[name])
 
@@ -56,11 +56,21 @@ def dofs(pairs: object) -> tuple[Dof, ...]:
 class FRF:
     """Frequency response functions from inputs to outputs.
 
-    frequency [Hz] (f,), rising; values (o, i, f) complex in the SI unit of `quantity` (receptance m/N, mobility
-    m/(N s), accelerance m/(N s2)), NaN where a pair of output and input was not measured; outputs (o,) and inputs (i,):
-    degrees of freedom as (point, direction); coherence (o, i, f) [-] or None; positions: point -> x, y, z [m];
-    window_decay [1/s]: decay of an exponential window that the records were multiplied by, which adds to the damping.
-    Made from plain arrays; raises InputError where their shapes do not fit.
+    Args:
+        frequency: of the spectral lines [Hz], shape (f,), rising from 0 or more.
+        values: complex, in the SI unit of `quantity`, shape (o, i, f); NaN where a pair was not measured.
+        outputs: degrees of freedom as (point, direction), (o,).
+        inputs: the same of the forces (i,).
+        quantity: "receptance" [m/N], "mobility" [m/(N s)] or "accelerance" [m/(N s2)].
+        coherence: [-], shape (o, i, f), or None.
+        positions: point -> x, y, z [m].
+        window_decay: decay [1/s] of an exponential window that the records were multiplied by, which adds to the
+            damping.
+        source: the file.
+        warnings: what a reader should know.
+
+    Raises:
+        InputError: where shapes do not fit, frequencies do not rise, or a function is NaN at some lines only.
     """
 
     frequency: Array
@@ -90,7 +100,9 @@ class FRF:
             raise InputError("the frequencies of an FRF must be two or more, not negative, and rise")
         measured = np.isfinite(values)
         if np.any(measured.any(axis=2) != measured.all(axis=2)) or not measured.any():
-            raise InputError("an FRF holds NaN at some of its frequencies only; leave such lines out, or the whole FRF")
+            raise InputError(
+                "an FRF holds NaN at some of its frequencies only; leave such spectral lines out, or the whole FRF"
+            )
         if self.coherence is not None and np.shape(self.coherence) != shape:
             raise InputError(
                 f"coherence has the shape {np.shape(self.coherence)}; it needs that of the values, {shape}"
@@ -106,11 +118,11 @@ class FRF:
 
     @property
     def step(self) -> float:
-        """Spacing of the frequency lines [Hz]. InputError where they are not evenly spaced."""
+        """Spacing of the spectral lines [Hz]. InputError where they are not evenly spaced."""
         gaps = np.diff(self.frequency)
         if np.ptp(gaps) > 1e-3 * gaps.mean():
             raise InputError(
-                f"the frequency lines are {gaps.min():g} to {gaps.max():g} Hz apart; this needs evenly spaced lines"
+                f"the spectral lines are {gaps.min():g} to {gaps.max():g} Hz apart; this needs evenly spaced lines"
             )
         return float(gaps.mean())
 
@@ -124,7 +136,7 @@ class FRF:
         return np.array([self.values[pair] for pair in self.measured])
 
     def to(self, quantity: str) -> Self:
-        """The same functions as another quantity; a line at 0 Hz is left out where it would be divided by zero."""
+        """The same functions as another quantity; the line at 0 Hz is left out where it would be divided by zero."""
         if quantity not in QUANTITIES:
             raise InputError(f"quantity {quantity!r}: use one of {', '.join(QUANTITIES)}")
         power = QUANTITIES[quantity] - QUANTITIES[self.quantity]
@@ -140,11 +152,11 @@ class FRF:
         return replace(self, outputs=outputs, inputs=inputs)
 
     def band(self, low: float, high: float) -> Self:
-        """Only the lines from low to high [Hz]. InputError where fewer than two are left."""
+        """Only the spectral lines from low to high [Hz]. InputError where fewer than two are left."""
         keep = (self.frequency >= low) & (self.frequency <= high)
         if keep.sum() < 2:
             raise InputError(
-                f"no two lines between {low:g} and {high:g} Hz; the FRFs reach from {self.frequency[0]:g} to "
+                f"no two spectral lines between {low:g} and {high:g} Hz; the FRFs reach from {self.frequency[0]:g} to "
                 f"{self.frequency[-1]:g} Hz"
             )
         coherence = None if self.coherence is None else self.coherence[:, :, keep]

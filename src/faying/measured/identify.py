@@ -32,12 +32,27 @@ class Identified:
 def identify_modes(
     frf: FRF, *, band: tuple[float, float] | None = None, rule: Rule | None = None, refined: bool = True
 ) -> Identified:
-    """Identify the modes of a test in `band` [Hz] (default: all lines above 0 Hz) by the rule (default: Rule.fitting).
+    """Identify the modes of a test from its FRFs, with 95 % intervals.
 
-    The poles of each mode are the medians over its track; then, unless refined=False, poles and residues are moved together
-    to the best fit. Intervals (95 %) take the wider of twice the scatter over the track and twice the standard error of that
-    fit, and reach at least to the median, so that they tell where the two estimates part. Shapes are those of the outputs, or of the inputs where there are more of them (a roving hammer; reciprocity).
-    Raises InputError where no mode is found.
+    The poles of each mode are the medians over its track in the stabilisation diagram; then poles and residues are
+    moved together to the best fit. Intervals take the wider of twice the scatter over the track and twice the standard
+    error of that fit, and reach at least to the median, so that they show where the two estimates differ.
+
+    Args:
+        frf: the measured functions, at evenly spaced spectral lines.
+        band: lowest and highest frequency [Hz] to use (default: all lines above 0 Hz).
+        rule: what makes a pole stable (default: `Rule.fitting`).
+        refined: do the last fit; without it the medians stand.
+
+    Returns:
+        Identified: the modes, all poles, and the fit. Shapes are those of the outputs, or of the inputs where there are
+        more of them (a roving hammer; reciprocity).
+
+    Raises:
+        InputError: where no mode is found, or the spectral lines are too few or uneven.
+
+    Source:
+        Guillaume et al. 2003 (LSCF poles); Golub and Pereyra 1973, doi:10.1137/0710036 (the fit).
     """
     low, high = band or (0.0, np.inf)
     used = frf.band(max(low, np.nextafter(0, 1)), high)
@@ -46,42 +61,15 @@ def identify_modes(
     if not found:
         raise InputError(
             f"no pole stays over {rule.orders} of {rule.highest_order} orders between {used.frequency[0]:g} and "
-            f"{used.frequency[-1]:g} Hz; loosen the rule (fewer orders, wider tolerances), raise the highest order, or look at "
-            "the stabilisation diagram"
+            f"{used.frequency[-1]:g} Hz; loosen the rule (fewer orders, wider tolerances), raise the highest order, or "
+            "look at the stabilisation diagram"
         )
-    frequencies = np.array([np.median(np.abs(track)) for track in found]) / (2 * np.pi)
-    damping = np.array([np.median(-track.real / np.abs(track)) for track in found])
-    f_spread = np.array([np.std(np.abs(track)) for track in found]) / np.pi  # 2 standard deviations
-    z_spread = 2 * np.array([np.std(-track.real / np.abs(track)) for track in found])
-    poles = 2 * np.pi * frequencies * (-damping + 1j * np.sqrt(1 - damping**2))
-    rows = used.rows()
-    medians = (frequencies, damping)
-    notes: list[list[str]] = [[] for _ in found]
-    if refined:
-        better = refine(poles, used.frequency, rows, used.quantity, reach=rule.frequency)
-        if better.converged:
-            poles = better.poles
-            f_spread = np.maximum(f_spread, 2 * better.frequency_error)
-            z_spread = np.maximum(z_spread, 2 * better.damping_error)
-        else:
-            for note in notes:
-                note.append(
-                    "the fit of poles and residues together did not come to rest; the value is the median over orders"
-                )
-    f_now, z_now = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
-    f_interval = _interval(f_now, f_spread, medians[0])
-    z_interval = _interval(z_now, z_spread, medians[1])
-    constants, fit = residues(poles, used.frequency, rows, used.quantity)
+    poles, f_interval, z_interval, note = _fitted(used, found, rule.frequency if refined else None)
+    constants, fit = residues(poles, used.frequency, used.rows(), used.quantity)
     # an exponential window moves every pole left by its decay
     z_interval = z_interval - (used.window_decay / np.abs(poles))[:, None]
     poles = poles + used.window_decay
     frequencies, damping = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
-    step = float(np.median(np.diff(used.frequency)))
-    for k, note in enumerate(notes):
-        if 2 * damping[k] * frequencies[k] < step:
-            note.append(f"the resonance is narrower than the {step:g} Hz between lines: its damping rests on few lines")
-        if damping[k] <= 0:
-            note.append("no damping is left after the decay of the window is taken off")
     shapes, dofs = _shapes(used, constants)
     modes = ModeSet(
         frequencies=frequencies,
@@ -92,11 +80,45 @@ def identify_modes(
         frequency_interval=f_interval,
         loss_interval=2 * np.maximum(z_interval, 0),
         found_in=np.array([len(track) for track in found], dtype=np.int64),
-        notes=tuple(tuple(note) for note in notes),
+        notes=tuple(note + _narrow(used, f, z) for f, z in zip(frequencies, damping, strict=True)),
         source=frf.source,
     )
-    misfit = float(np.linalg.norm(rows - fit) / np.linalg.norm(rows))
+    misfit = float(np.linalg.norm(used.rows() - fit) / np.linalg.norm(used.rows()))
     return Identified(modes=modes, poles=diagram, frf=used, fit=fit, residues=constants, misfit=misfit, rule=rule)
+
+
+def _fitted(frf: FRF, found: list[Complex], search: float | None) -> tuple[Complex, Array, Array, tuple[str, ...]]:
+    """Poles of the tracks, moved to the best fit unless `search` is None; intervals of frequency and damping ratio;
+    notes that hold for every mode."""
+    frequencies = np.array([np.median(np.abs(track)) for track in found]) / (2 * np.pi)
+    damping = np.array([np.median(-track.real / np.abs(track)) for track in found])
+    f_spread = np.array([np.std(np.abs(track)) for track in found]) / np.pi  # 2 standard deviations
+    z_spread = 2 * np.array([np.std(-track.real / np.abs(track)) for track in found])
+    poles = 2 * np.pi * frequencies * (-damping + 1j * np.sqrt(1 - damping**2))
+    notes: tuple[str, ...] = ()
+    if search is not None:
+        better = refine(poles, frf.frequency, frf.rows(), frf.quantity, search=search)
+        if better.converged:
+            poles = better.poles
+            f_spread = np.maximum(f_spread, 2 * better.frequency_error)
+            z_spread = np.maximum(z_spread, 2 * better.damping_error)
+        else:
+            notes = ("the fit of poles and residues together did not converge; the value is the median over orders",)
+    f_now, z_now = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
+    return poles, _interval(f_now, f_spread, frequencies), _interval(z_now, z_spread, damping), notes
+
+
+def _narrow(frf: FRF, frequency: float, damping: float) -> tuple[str, ...]:
+    """Notes on a mode whose damping the spectral lines hardly show."""
+    step = float(np.median(np.diff(frf.frequency)))
+    out = []
+    if 2 * damping * frequency < step:
+        out.append(
+            f"the resonance is narrower than the {step:g} Hz between spectral lines: its damping rests on few of them"
+        )
+    if damping <= 0:
+        out.append("no damping is left after the decay of the window is taken off")
+    return tuple(out)
 
 
 def _interval(value: Array, spread: Array, other: Array) -> Array:

@@ -24,7 +24,7 @@ def basis(poles: Complex, frequency: Array, quantity: str) -> Complex:
 
 
 def residues(poles: Complex, frequency: Array, rows: Complex, quantity: str) -> tuple[Complex, Complex]:
-    """Residues (m, n) of n FRFs `rows` (n, f) for poles [rad/s] (m,) with positive imaginary part, and the fit (n, f)."""
+    """Residues (m, n) of FRFs `rows` (n, f) for poles [rad/s] (m,) with positive imaginary part, and the fit (n, f)."""
     b = basis(poles, frequency, quantity)
     stacked, target = _stack(b), _stack(rows.T)
     size = np.linalg.norm(stacked, axis=0)
@@ -34,7 +34,7 @@ def residues(poles: Complex, frequency: Array, rows: Complex, quantity: str) -> 
 
 
 def compressed(rows: Complex, rank: int) -> Complex:
-    """The rows (n, f) turned into at most `rank` rows that hold their strongest parts; lengths and angles of residues stay.
+    """Turn the rows (n, f) into at most `rank` rows that hold their strongest parts; residues keep lengths and angles.
 
     A real rotation of the pairs, by singular values: m modes and two residuals fill 2 m + 2 of them, what is cut is
     noise.
@@ -51,7 +51,7 @@ def _stack(values: Complex) -> Array:
 
 @dataclass(frozen=True, kw_only=True)
 class Refined:
-    """Poles [rad/s] (m,), standard errors of their frequencies [Hz] and damping ratios [-] (m,), and whether it came to rest."""
+    """Poles [rad/s] (m,), standard errors of their frequencies [Hz] and damping ratios [-] (m,), and convergence."""
 
     poles: Complex
     frequency_error: Array
@@ -59,12 +59,13 @@ class Refined:
     converged: bool
 
 
-def refine(poles: Complex, frequency: Array, rows: Complex, quantity: str, *, reach: float = 0.01) -> Refined:
-    """Move the poles to where residues and poles together fit the FRFs best, each by no more than `reach` in frequency.
+def refine(poles: Complex, frequency: Array, rows: Complex, quantity: str, *, search: float = 0.01) -> Refined:
+    """Move the poles to where residues and poles together fit the FRFs best, each by at most `search` in frequency.
 
-    Variable projection (Golub and Pereyra 1973, doi:10.1137/0710036): at every step the residues are the linear solution,
-    only frequencies and damping ratios are sought. Standard errors from the Jacobian and the residual, as if the error
-    of the lines were independent and alike. Unlike the linear estimators it has no bias from noise in the FRFs.
+    Variable projection (Golub and Pereyra 1973, doi:10.1137/0710036): at every step the residues are the linear
+    solution, only frequencies and damping ratios are sought. Standard errors from the Jacobian and the residual, as if
+    the errors of the spectral lines were independent and alike. Unlike the linear estimators it has no bias from noise
+    in the FRFs.
     """
     from scipy.optimize import least_squares
 
@@ -78,7 +79,7 @@ def refine(poles: Complex, frequency: Array, rows: Complex, quantity: str, *, re
         q, _ = np.linalg.qr(stacked / np.linalg.norm(stacked, axis=0))
         return np.asarray(((target - q @ (q.T @ target)) / scale).ravel())
 
-    bound = np.concatenate([np.minimum(reach / z0, 30.0), np.full(m, np.log(10.0))])
+    bound = np.concatenate([np.minimum(search / z0, 30.0), np.full(m, np.log(10.0))])
     found: Any = least_squares(miss, np.zeros(2 * m), bounds=(-bound, bound), method="trf", xtol=1e-8, ftol=1e-10)
     x = found.x
     f, z = f0 * (1 + x[:m] * z0), z0 * np.exp(x[m:])

@@ -1,4 +1,4 @@
-"""How alike shapes and functions are: MAC, FRAC, FDAC."""
+"""How alike shapes and functions are: MAC, FRAC."""
 
 from typing import Any
 
@@ -11,8 +11,8 @@ from faying.typing import Array
 def mac(a: Any, b: Any) -> Array:
     """Modal assurance criterion |a* . b|2 / (a* . a)(b* . b) of shapes a (m, d) and b (k, d), complex or real: (m, k).
 
-    Allemang 2003, Sound and Vibration 37(8), eq. (5). Scale and phase of a shape do not matter. A shape without motion has a MAC
-    of 0 with all. Raises InputError where the degrees of freedom differ in number.
+    Allemang 2003, Sound and Vibration 37(8), eq. (5). Scale and phase of a shape do not matter. A shape without motion
+    has a MAC of 0 with all. Raises InputError where the degrees of freedom differ in number.
     """
     a, b = np.atleast_2d(a), np.atleast_2d(b)
     if a.shape[1] != b.shape[1]:
@@ -29,23 +29,14 @@ def _unit(a: Any) -> Any:
 
 
 def frac(measured: Any, predicted: Any) -> Array:
-    """Frequency response assurance criterion of two sets of FRFs over the same lines (..., f): (...).
+    """Frequency response assurance criterion of two sets of FRFs over the same spectral lines (..., f): (...).
 
     The MAC along frequency, one number for each FRF (Heylen and Lammens 1996, Proc. Int. Conf. Identification in
     Engineering Systems). It sees the height of the peaks only relative to each other.
     """
     x, a = np.asarray(measured), np.asarray(predicted)
     if x.shape != a.shape:
-        raise InputError(f"FRFs of the shapes {x.shape} and {a.shape}; give both at the same pairs and lines")
+        raise InputError(f"FRFs of the shapes {x.shape} and {a.shape}; give both at the same pairs and spectral lines")
     top = np.abs(np.sum(x.conj() * a, axis=-1)) ** 2
     size = np.sum(np.abs(x) ** 2, axis=-1) * np.sum(np.abs(a) ** 2, axis=-1)
     return np.asarray(np.divide(top, size, out=np.zeros_like(top), where=size > 0))
-
-
-def fdac(measured: Any, predicted: Any) -> Array:
-    """Frequency domain assurance criterion (f, g): the MAC of operating shapes at every pair of frequencies.
-
-    measured (n, f), predicted (n, g): n FRFs of one input (Pascual, Golinval and Razeto 1997, Proc. IMAC XV). A model that
-    is too soft by one factor shows a line of ones beside the diagonal.
-    """
-    return mac(np.asarray(measured).T, np.asarray(predicted).T)

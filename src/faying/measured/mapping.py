@@ -75,7 +75,7 @@ def fit_transform(test: Any, model: Any) -> Transform:
 
 @dataclass(frozen=True, kw_only=True)
 class PointMap:
-    """Which node each point of the test sits on. nodes: point -> node; distance: point -> [m]; missing: points without."""
+    """Where the points of a test lie. nodes: point -> nearest node; distance: point -> [m]; missing: points without."""
 
     nodes: Mapping[int, int]
     distance: Mapping[int, float]
@@ -87,7 +87,7 @@ class PointMap:
 def map_points(
     positions: Mapping[int, Position], nodes: Any, *, transform: Transform | None = None, tolerance: float | None = None
 ) -> PointMap:
-    """Find the nearest node (n, 3) [m] of each point, no farther than tolerance [m] (default: 2 % of the model's diagonal).
+    """Find the nearest node (n, 3) [m] of each point, within tolerance [m] (default: 2 % of the model's diagonal).
 
     Points farther away are listed as missing with their distance. Raises InputError where no point finds a node.
     """
@@ -96,30 +96,31 @@ def map_points(
     transform = transform or Transform()
     cloud = np.asarray(nodes, float)
     size = float(np.linalg.norm(np.ptp(cloud, axis=0)))
-    reach = 0.02 * size if tolerance is None else tolerance
-    if not reach > 0:
-        raise InputError(f"tolerance = {reach}: the distance allowed between point and node must be positive")
+    limit = 0.02 * size if tolerance is None else tolerance
+    if not limit > 0:
+        raise InputError(f"tolerance = {limit}: the distance allowed between point and node must be positive")
     if not positions:
         raise InputError(
-            "the test states no positions of its points; give them in a table: --points points.csv (point,x [mm],y [mm],z [mm])"
+            "the test states no positions of its points; give them in a table: --points points.csv (point,x [mm],"
+            "y [mm],z [mm])"
         )
     labels = list(positions)
     there = transform.points([positions[k] for k in labels])
     distance, nearest = KDTree(cloud).query(there)
-    here = distance <= reach
+    here = distance <= limit
     if not here.any():
         own = float(np.linalg.norm(np.ptp(there, axis=0)))
         raise InputError(
-            f"no point of the test lies within {reach * 1e3:.3g} mm of the model; the nearest is {distance.min() * 1e3:.3g} mm away. "
-            f"The test spans {own:.3g} m, the model {size:.3g} m: check the unit (--length-unit), give the frame "
-            "(--frame pairs.csv), or raise the tolerance"
+            f"no point of the test lies within {limit * 1e3:.3g} mm of the model; the nearest is "
+            f"{distance.min() * 1e3:.3g} mm away. The test spans {own:.3g} m, the model {size:.3g} m: check the unit "
+            "(--length-unit), give the frame (--frame pairs.csv), or raise the tolerance"
         )
     return PointMap(
         nodes={k: int(n) for k, n, ok in zip(labels, nearest, here, strict=True) if ok},
         distance={k: float(d) for k, d, ok in zip(labels, distance, here, strict=True) if ok},
         missing={k: float(d) for k, d, ok in zip(labels, distance, here, strict=True) if not ok},
         transform=transform,
-        tolerance=reach,
+        tolerance=limit,
     )
 
 

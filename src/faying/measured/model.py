@@ -28,16 +28,28 @@ class FullResponse:
         shape = (len(self.outputs[0]), len(self.inputs[0]), len(self.frequency))
         if self.receptance.shape != shape:
             raise InputError(
-                f"a full response of the shape {self.receptance.shape}; its outputs, inputs and frequencies need {shape}"
+                f"a full response of the shape {self.receptance.shape}; its outputs, inputs and frequencies need "
+                f"{shape}"
             )
 
 
 @dataclass(frozen=True, kw_only=True)
 class ModelModes:
-    """Elastic modes of a model: frequencies [Hz] and loss_factors [-] (m,), shapes (m, n, 3) [kg^-1/2] at points [m] (n, 3)
+    """Elastic modes of a model at the points of its outline.
 
-    of its outline with triangles (t, 3) to draw; load [N]: the preload they belong to; full: its full response at some
-    points, where that is known.
+    Args:
+        frequencies: [Hz], shape (m,).
+        loss_factors: [-] (m,).
+        shapes: of unit modal mass [kg^-1/2], (m, n, 3).
+        points: of the outline [m] (n, 3).
+        triangles: of the outline (t, 3), between which shapes are interpolated; may be empty.
+        load: the preload [N] that the modes belong to.
+        title: of the study.
+        source: the file.
+        full: the full response at some points, where that is known.
+
+    Raises:
+        InputError: where the arrays do not fit together.
     """
 
     frequencies: Array
@@ -61,8 +73,8 @@ class ModelModes:
         """Receptance [m/N] (o, i, f) by superposition of the elastic modes with hysteretic loss.
 
         outputs, inputs: nodes (k,) and directions (k, 3). H = sum phi_o phi_i / (w_r2 (1 + i eta_r) - w2) (Ewins, Modal
-        Testing, 2nd ed. 2000, eq. (2.65)). Rigid motion and modes beyond the last are left out: far below the first mode
-        and near the last, and between peaks, H is not to be trusted.
+        Testing, 2nd ed. 2000, eq. (2.65)). Rigid motion and modes beyond the last are left out: far below the first
+        mode and near the last, and between peaks, H is not to be trusted.
         """
         o, i = (np.einsum("mkx,kx->mk", self.shapes[:, nodes], axes) for nodes, axes in (outputs, inputs))
         square = (2 * np.pi * self.frequencies) ** 2 * (1 + 1j * self.loss_factors)
@@ -80,11 +92,11 @@ class ModelModes:
     def full_frf(
         self, frequency: Array, outputs: tuple[Array, Array], inputs: tuple[Array, Array], quantity: str
     ) -> Complex:
-        """FRFs (o, i, f) of the full response where it is known, NaN elsewhere; nodes and directions as in `receptance`.
+        """FRFs (o, i, f) of the full response where it is known, NaN elsewhere; arguments as in `receptance`.
 
         Known is a pair whose two nodes are the nearest to the positions of the full response, in directions less than a
-        degree apart, either way round (reciprocity), at lines within its frequencies. Between its frequencies, what it
-        has beyond the elastic modes is interpolated, as accelerance, in which rigid motion is constant.
+        degree apart, either way round (reciprocity), at spectral lines within its frequencies. Between its frequencies,
+        what it has beyond the elastic modes is interpolated, as accelerance, in which rigid motion is constant.
         """
         frequency = np.asarray(frequency, float)
         out = np.full((len(outputs[0]), len(inputs[0]), len(frequency)), np.nan, dtype=complex)
@@ -116,7 +128,7 @@ class ModelModes:
 
 
 def _match(wanted: tuple[Array, Array], known: tuple[Array, Array]) -> list[tuple[int, float] | None]:
-    """For each node and direction, the known one that is the same, and 1 or -1 for its sense; None where there is none."""
+    """For each node and direction, the known one that is the same, and 1 or -1 for its sense; None where none is."""
     out: list[tuple[int, float] | None] = []
     length = np.linalg.norm(known[1], axis=1)
     for node, axis in zip(*wanted, strict=True):
@@ -127,30 +139,23 @@ def _match(wanted: tuple[Array, Array], known: tuple[Array, Array]) -> list[tupl
 
 
 def read_model_modes(path: str | Path, *, load: float | None = None) -> ModelModes:
-    """Read the modes of a result file (result.nc of `faying run`) at a preload [N], by default the greatest.
+    """Read the modes of a result file (result.nc of `faying run`), and the frequency response that it may hold.
 
-    The frequency response that the file may hold comes with them as `full`.
+    Args:
+        path: of the file.
+        load: the preload [N] whose modes are wanted; by default the greatest.
 
-    Raises ReadError where the file is no such result, InputError where it has no such load.
+    Returns:
+        ModelModes of that preload.
+
+    Raises:
+        ReadError: where the file is no such result.
+        InputError: where it has no such load.
     """
-    from scipy.io import netcdf_file
-
     file = Path(path)
     if not file.is_file():
         raise ReadError(f"{file}: no such file; write one with: faying run STUDY.toml")
-    try:
-        with netcdf_file(file, "r", mmap=False) as nc:
-            data = {
-                name: np.array(nc.variables[name][:], float)
-                for name in ("loads", "frequencies", "loss_factors", "outline", "shapes", "triangles")
-            }
-            response = {name: np.array(nc.variables[name][:], float) for name in RESPONSE if name in nc.variables}
-            title = nc.title.decode("utf-8", errors="replace") if isinstance(nc.title, bytes) else str(nc.title)
-    except (TypeError, ValueError, KeyError, AttributeError, OSError, IndexError) as fault:
-        raise ReadError(
-            f"{file}: no result of Faying, or damaged ({type(fault).__name__}: {fault}); write one with: faying run "
-            "STUDY.toml"
-        ) from None
+    data, title = _variables(file)
     loads = data["loads"]
     index = len(loads) - 1 if load is None else int(np.argmin(np.abs(loads - load)))
     if load is not None and abs(loads[index] - load) > 1e-3 * abs(loads[index]):
@@ -166,7 +171,7 @@ def read_model_modes(path: str | Path, *, load: float | None = None) -> ModelMod
         load=float(loads[index]),
         title=title,
         source=str(file),
-        full=_full(response, index) if len(response) == len(RESPONSE) else None,
+        full=_full(data, index) if all(name in data for name in RESPONSE) else None,
     )
 
 
@@ -179,6 +184,23 @@ RESPONSE = (
     "input_points",
     "input_directions",
 )
+
+
+def _variables(file: Path) -> tuple[dict[str, Array], str]:
+    """The arrays of a result file by name, and its title. ReadError where it is none."""
+    from scipy.io import netcdf_file
+
+    needed = ("loads", "frequencies", "loss_factors", "outline", "shapes", "triangles")
+    try:
+        with netcdf_file(file, "r", mmap=False) as nc:
+            names = [*needed, *(name for name in RESPONSE if name in nc.variables)]
+            data = {name: np.array(nc.variables[name][:], float) for name in names}
+            return data, nc.title.decode("utf-8", errors="replace") if isinstance(nc.title, bytes) else str(nc.title)
+    except (TypeError, ValueError, KeyError, AttributeError, OSError, IndexError) as fault:
+        raise ReadError(
+            f"{file}: no result of Faying, or damaged ({type(fault).__name__}: {fault}); write one with: faying run "
+            "STUDY.toml"
+        ) from None
 
 
 def _full(data: dict[str, Array], load: int) -> FullResponse:

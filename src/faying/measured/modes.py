@@ -15,10 +15,21 @@ from faying.typing import Array, Complex, Index
 class ModeSet:
     """Modes at the degrees of freedom of a test.
 
-    frequencies [Hz] (m,), undamped: |pole| / 2 pi; loss_factors [-] (m,): twice the damping ratio; shapes (m, d), complex, of
-    any scale; dofs (d,): (point, direction); positions: point -> x, y, z [m]; frequency_interval, loss_interval (m, 2): 95 %
-    intervals, or None; found_in (m,): at how many orders a mode was found, or None; notes (m,): what a reader should know
-    of each mode; lines: pairs of points to join in a drawing. Raises InputError where shapes do not fit.
+    Args:
+        frequencies: undamped, |pole| / 2 pi [Hz], shape (m,), positive.
+        loss_factors: twice the damping ratio [-] (m,).
+        shapes: (m, d), complex, of any scale.
+        dofs: (point, direction) of each column (d,).
+        positions: point -> x, y, z [m].
+        frequency_interval: 95 % intervals [Hz] (m, 2), or None.
+        loss_interval: 95 % intervals [-] (m, 2), or None.
+        found_in: at how many orders each mode was found (m,), or None.
+        notes: what a reader should know of each mode (m,).
+        lines: pairs of points to join in a drawing.
+        source: the file.
+
+    Raises:
+        InputError: where shapes do not fit, or a value is not finite.
     """
 
     frequencies: Array
@@ -47,7 +58,7 @@ class ModeSet:
             object.__setattr__(self, "notes", ((),) * count)
 
     def at(self, wanted: tuple[Dof, ...]) -> Complex:
-        """Shapes at some of the degrees of freedom, in their order (m, d). InputError where one is not held."""
+        """Shapes at some of the degrees of freedom, in their order (m, d). InputError where one is not known."""
         missing = [str(d) for d in wanted if d not in self.dofs]
         if missing:
             raise InputError(
@@ -58,8 +69,3 @@ class ModeSet:
     def directed(self, direction: str) -> Self:
         """The same modes, with this direction where the test states none."""
         return replace(self, dofs=tuple(d if d.direction else Dof(d.point, direction) for d in self.dofs))
-
-    def turned_real(self) -> Array:
-        """Shapes with their phase turned so that as much as can be is real, and that real part (m, d)."""
-        phase = np.angle(np.sum(self.shapes**2, axis=1)) / 2
-        return np.asarray((self.shapes * np.exp(-1j * phase)[:, None]).real)

@@ -20,8 +20,8 @@ def pair_modes(
     """
     if not (0 < least_mac <= 1 and greatest_shift > 0 and 0 <= weight < least_mac):
         raise InputError(
-            f"least_mac = {least_mac}, greatest_shift = {greatest_shift}, weight = {weight}: give 0 < least_mac <= 1, a "
-            "positive shift and a weight from 0 to below least_mac"
+            f"least_mac = {least_mac}, greatest_shift = {greatest_shift}, weight = {weight}: "
+            "give 0 < least_mac <= 1, a positive shift and a weight from 0 to below least_mac"
         )
     from scipy.optimize import linear_sum_assignment
 

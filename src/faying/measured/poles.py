@@ -34,7 +34,7 @@ class Rule:
 
     @classmethod
     def fitting(cls, lines: int, *, highest_order: int | None = None, orders: int | None = None) -> Self:
-        """The rule for FRFs of so many lines: an order for eight lines, 80 at most; a mode stays over a fifth of the orders."""
+        """The rule for FRFs of so many spectral lines: an order for eight, 80 at most; a mode stays over a fifth."""
         highest = highest_order or max(4, min(cls.highest_order, lines // 8))
         return cls(highest_order=highest, orders=orders or max(3, highest // 5))
 
@@ -63,22 +63,22 @@ class Poles:
 def poles_by_order(frf: FRF, highest_order: int) -> list[Complex]:
     """Poles [rad/s] of orders 1 to highest_order, those with positive frequency, by least-squares complex frequency.
 
-    LSCF of sdypy-EMA (Guillaume et al. 2003; Verboven 2002), without its windows. The lines must be evenly spaced and at
-    multiples of their spacing, else InputError.
+    LSCF of sdypy-EMA (Guillaume et al. 2003; Verboven 2002), without its windows. The spectral lines must be evenly
+    spaced and at multiples of their spacing, else InputError.
     """
     step = frf.step
     first = frf.frequency[0] / step
     if abs(first - round(first)) > 0.01:
         raise InputError(
-            f"the first line, {frf.frequency[0]:g} Hz, is no multiple of the spacing {step:g} Hz; interpolate the "
-            "FRFs to lines at multiples of the spacing"
+            f"the first spectral line, {frf.frequency[0]:g} Hz, is no multiple of the spacing {step:g} Hz; interpolate "
+            "the FRFs to lines at multiples of the spacing"
         )
     lines = round(first)
     rows = compressed(frf.rows(), 2 * highest_order)
     if len(rows[0]) < 4 * highest_order:
         raise InputError(
-            f"{len(rows[0])} lines are too few for order {highest_order}; widen the band or take an order of at most "
-            f"{len(rows[0]) // 4}"
+            f"{len(rows[0])} spectral lines are too few for order {highest_order}; widen the band or take an order of "
+            f"at most {len(rows[0]) // 4}"
         )
     # zeros below the band and one more line above, which the library cuts off again
     rows = np.concatenate([np.zeros((len(rows), lines)), rows, rows[:, -1:]], axis=1)

@@ -1,4 +1,4 @@
-"""FRFs from records in time: H1, H2, coherence (Bendat and Piersol, Random Data, 4th ed. 2010, doi:10.1002/9781118032428)."""
+"""FRFs from records in time: H1, H2, coherence (Bendat and Piersol, Random Data, 4th ed. 2010)."""
 
 from typing import Any, Literal
 
@@ -21,36 +21,40 @@ def frf_from_records(
     window: Literal["none", "hann", "exponential"] = "none",
     decay: float = 0.0,
 ) -> FRF:
-    """FRFs of one input from the records of its hits (or of a stretch of random force each).
+    """Return the FRFs of one input from the records of its hits (or of a stretch of random force each).
 
-    force [N] (a, n); response (a, o, n), SI, of `quantity`'s kind: a records of n samples at `sampling_rate` [1/s] from o
-    outputs. H1 = Sfx/Sff keeps clear of noise on the response, H2 = Sxx/Sxf of noise on the force; with noise-to-signal
-    ratios q they come out as H/(1 + q_force) and H (1 + q_response) (Bendat and Piersol, section 6.1.4). The coherence
-    |Sfx|2/(Sff Sxx) is 1 for a single record, and is then left out.
+    H1 = Sfx/Sff is free of bias from noise on the response, H2 = Sxx/Sxf from noise on the force; with noise-to-signal
+    ratios q they come out as H/(1 + q_force) and H (1 + q_response).
 
-    window "exponential" multiplies force and response by exp(-decay t): every pole then moves left by exactly `decay`
-    [1/s], which the FRF notes and the identification takes off again. "hann" is for random force.
-    Raises InputError where shapes do not fit, a value is not finite, or a record of the force is empty.
+    Args:
+        force: [N], shape (records, samples), 8 samples or more.
+        response: in the SI unit of `quantity`'s motion, shape (records, outputs, samples).
+        sampling_rate: samples per second [1/s], positive.
+        outputs: (point, direction) of each output.
+        input: (point, direction) of the force.
+        quantity: "receptance", "mobility" or "accelerance".
+        estimator: "H1" or "H2".
+        window: "exponential" multiplies force and response by exp(-decay t), which moves every pole left by exactly
+            `decay`; the FRF notes it, and the identification takes it off again. "hann" is for random force.
+        decay: of the exponential window [1/s], positive with it and 0 without.
+
+    Returns:
+        FRF of one input, with its coherence |Sfx|2/(Sff Sxx) where there are two records or more.
+
+    Raises:
+        InputError: where shapes do not fit, a value is not finite, or a record of the force is zero throughout.
+
+    Source:
+        Bendat and Piersol, doi:10.1002/9781118032428, section 6.1.4.
     """
     f, x = np.asarray(force, float), np.asarray(response, float)
     places = tuple(Dof(*pair) for pair in outputs)
-    if f.ndim != 2 or x.shape != (f.shape[0], len(places), f.shape[1]) or f.shape[1] < 8:
+    _check(f, x, len(places), sampling_rate)
+    if estimator not in ("H1", "H2") or (window == "exponential") != (decay > 0):
         raise InputError(
-            f"force has the shape {f.shape} and response {x.shape}; give (records, samples) and (records, outputs, samples) "
-            f"with {len(places)} outputs and 8 samples or more"
+            f"estimator = {estimator!r}, window = {window!r}, decay = {decay}: use H1 (noise on the response) or H2 "
+            '(noise on the force); give decay > 0 [1/s] with window="exponential", and only then'
         )
-    if not (np.all(np.isfinite(f)) and np.all(np.isfinite(x))):
-        raise InputError("the records hold NaN or infinite values; leave such hits out")
-    if not np.all(np.any(f != 0, axis=1)):
-        raise InputError(
-            f"the force of record {int(np.argmin(np.any(f != 0, axis=1))) + 1} is zero throughout; leave that hit out"
-        )
-    if not sampling_rate > 0:
-        raise InputError(f"sampling_rate = {sampling_rate}: samples per second must be positive")
-    if estimator not in ("H1", "H2"):
-        raise InputError(f"estimator {estimator!r}: use H1 (noise on the response) or H2 (noise on the force)")
-    if (window == "exponential") != (decay > 0):
-        raise InputError('give decay > 0 [1/s] with window="exponential", and only then')
     weight = _window(window, f.shape[1], decay / sampling_rate)
     F, X = np.fft.rfft(f * weight), np.fft.rfft(x * weight)
     s_ff = np.mean(np.abs(F) ** 2, axis=0)
@@ -69,6 +73,21 @@ def frf_from_records(
         coherence=coherence[:, None, keep] if len(f) > 1 else None,
         window_decay=decay,
     )
+
+
+def _check(force: Array, response: Array, outputs: int, sampling_rate: float) -> None:
+    if force.ndim != 2 or response.shape != (force.shape[0], outputs, force.shape[1]) or force.shape[1] < 8:
+        raise InputError(
+            f"force has the shape {force.shape} and response {response.shape}; give (records, samples) and (records, "
+            f"outputs, samples) with {outputs} outputs and 8 samples or more"
+        )
+    if not (np.all(np.isfinite(force)) and np.all(np.isfinite(response))):
+        raise InputError("the records hold NaN or infinite values; leave such hits out")
+    if not np.all(np.any(force != 0, axis=1)):
+        empty = int(np.argmin(np.any(force != 0, axis=1))) + 1
+        raise InputError(f"the force of record {empty} is zero throughout; leave that hit out")
+    if not 0 < sampling_rate < np.inf:
+        raise InputError(f"sampling_rate = {sampling_rate}: samples per second must be positive")
 
 
 def _window(name: str, n: int, decay: float) -> Array:

@@ -11,7 +11,7 @@ from faying.measured.modes import ModeSet
 
 @dataclass(frozen=True, kw_only=True)
 class Tested:
-    """modes and frf (or None) of a test; identified: whether the modes come out of the FRFs; notes: what to tell a reader."""
+    """modes and frf (or None) of a test; identified: whether the modes come out of the FRFs; notes for a reader."""
 
     modes: ModeSet
     frf: FRF | None

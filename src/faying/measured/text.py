@@ -17,10 +17,10 @@ def read_frf_text(
 ) -> FRF:
     """Read one FRF from each file; the outputs are points 1, 2, ... in the order of the files, all in SI.
 
-    A file holds either one complex number on each line, as "(-0.07+2.6e-08j)", with lines `frequency_step` [Hz] apart from
-    0 Hz on, or columns: frequency [Hz], then real and imaginary part of one FRF or more, split by commas, semicolons or
-    blanks, with or without a line of names. Raises ReadError where a line is neither, InputError where files do not fit
-    together or the step is missing.
+    A file holds either one complex number on each line, as "(-0.07+2.6e-08j)", with spectral lines `frequency_step`
+    [Hz] apart from 0 Hz on, or columns: frequency [Hz], then real and imaginary part of one FRF or more, split by
+    commas, semicolons or blanks, with or without a line of names. Raises ReadError where a line is neither, InputError
+    where files do not fit together or the step is missing.
     """
     frequency: Array | None = None
     rows: list[Complex] = []

@@ -74,12 +74,14 @@ class UniversalFile:
         """All FRFs as one object in SI, with the coherence of the same pairs.
 
         quantity: what was measured, where the file does not say it. Raises ReadError where there is no FRF, the
-        quantities or the frequency lines differ, or the directions of a point are turned against the axes.
+        quantities or the spectral lines differ, or the directions of a point are turned against the axes.
         """
         found = [f for f in self.functions if f.kind == "FRF"]
         if not found:
-            held = ", ".join(sorted({f.kind for f in self.functions})) or f"data sets {', '.join(map(str, self.kinds))}"
-            raise ReadError(f"{self.source}: no FRF (function type 4) in it, only {held}; export the FRFs of the test")
+            kinds = (
+                ", ".join(sorted({f.kind for f in self.functions})) or f"data sets {', '.join(map(str, self.kinds))}"
+            )
+            raise ReadError(f"{self.source}: no FRF (function type 4) in it, only {kinds}; export the FRFs of the test")
         notes: list[str] = list(self.warnings)
         nameless = len({(f.output, f.input) for f in found}) < len(found) and all(f.output.point == 0 for f in found)
         if nameless:
@@ -92,16 +94,17 @@ class UniversalFile:
             pair = (Dof(n + 1, f.output.direction) if nameless else self._straight(f.output), self._straight(f.input))
             if not np.array_equal(f.x, found[0].x):
                 raise ReadError(
-                    f"{f.where}: its lines are not those of the first FRF; split the file into tests of one set of lines"
+                    f"{f.where}: its spectral lines are not those of the first FRF; split the file into tests of one "
+                    "set of lines"
                 )
             if pair in pairs:
                 notes.append(f"{f.where}: {pair[0]} / {pair[1]} stands twice; the first is taken")
             else:
                 pairs[pair] = (kind, np.asarray(f.values, complex) * factor)
-        kinds = {kind for kind, _ in pairs.values()}
-        if len(kinds) > 1:
+        quantities = {kind for kind, _ in pairs.values()}
+        if len(quantities) > 1:
             raise ReadError(
-                f"{self.source}: {' and '.join(sorted(kinds))} stand together; split the file, or convert them"
+                f"{self.source}: {' and '.join(sorted(quantities))} stand together; split the file, or convert them"
             )
         outputs = tuple(dict.fromkeys(o for o, _ in pairs))
         inputs = tuple(dict.fromkeys(i for _, i in pairs))
@@ -113,7 +116,7 @@ class UniversalFile:
             values=values,
             outputs=outputs,
             inputs=inputs,
-            quantity=kinds.pop(),
+            quantity=quantities.pop(),
             coherence=self._coherence(outputs, inputs, values.shape),
             positions=self.positions,
             source=self.source,
@@ -180,15 +183,25 @@ class UniversalFile:
 
 
 def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFile:
-    """Read a universal file, ascii or binary.
+    """Read a universal file (UFF, UNV) of a modal test, ascii or binary.
 
-    length_unit: of the positions, where the file states no units (data set 164). Raises ReadError where the file is missing,
-    no universal file, cut short, or a data set cannot be read.
+    Args:
+        path: of the file.
+        length_unit: of the positions, where the file states no units (data set 164), for example "mm".
+
+    Returns:
+        UniversalFile; its `modes()` and `frf()` give the mode shapes and the FRFs.
+
+    Raises:
+        ReadError: where the file is missing, no universal file, cut short, or a data set cannot be read.
+        InputError: where `length_unit` is given against the file.
+
+    Source:
+        University of Cincinnati, Structural Dynamics Research Lab, https://www.ceas3.uc.edu/sdrluff.
     """
     file = Path(path)
     sets = _sets(file)
     units = FileUnits.of(sets, str(file))
-    notes: list[str] = []
     if length_unit is not None and units is not None:
         raise InputError(
             f"{file}: the file states its units ({units.words.strip() or 'data set 164'}); leave out length_unit"
@@ -207,16 +220,6 @@ def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFi
         for label, kind in zip(s["CS_sys_labels"], s["CS_types"], strict=True)
     }
     positions, rotations = _points(file, sets, systems, kinds, metre)
-    if positions:
-        size = float(np.linalg.norm(np.ptp(np.array(list(positions.values())), axis=0)))
-        if units is None and length_unit is None:
-            notes.append(
-                f"{file}: the file states no unit of length; metres are assumed (the points span {size:.3g} m)"
-            )
-        if size > 100:
-            notes.append(
-                f'{file}: the points span {size:.3g} m; are they in mm? Then give length_unit="mm" (--length-unit mm)'
-            )
     return UniversalFile(
         source=str(file),
         title=next((s["model_name"] for s in sets if s["type"] == 151), ""),
@@ -227,8 +230,23 @@ def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFi
         rotations=rotations,
         lines=_lines(sets),
         kinds=tuple(s["type"] for s in sets),
-        warnings=tuple(notes),
+        warnings=_about_lengths(file, positions, stated=units is not None or length_unit is not None),
     )
+
+
+def _about_lengths(file: Path, positions: Mapping[int, Position], *, stated: bool) -> tuple[str, ...]:
+    """Notes on the unit of length, where the file states none or the points lie far apart."""
+    if not positions:
+        return ()
+    notes = []
+    size = float(np.linalg.norm(np.ptp(np.array(list(positions.values())), axis=0)))
+    if not stated:
+        notes.append(f"{file}: the file states no unit of length; metres are assumed (the points span {size:.3g} m)")
+    if size > 100:
+        notes.append(
+            f'{file}: the points span {size:.3g} m; are they in mm? Then give length_unit="mm" (--length-unit mm)'
+        )
+    return tuple(notes)
 
 
 def _sets(file: Path) -> list[dict[str, Any]]:
@@ -260,8 +278,8 @@ def _sets(file: Path) -> list[dict[str, Any]]:
                 data = uff.read_sets(number)
         except Exception as fault:
             raise ReadError(
-                f"{file}: data set {number + 1} (type {kind}) cannot be read ({fault}); it is damaged or of a variant that pyuff "
-                "does not know: export it again, as ascii where it is binary"
+                f"{file}: data set {number + 1} (type {kind}) cannot be read ({fault}); it is damaged or of a variant "
+                "that pyuff does not know: export it again, as ascii where it is binary"
             ) from None
         out.append({**data, "type": kind, "number": number + 1})
     return out
@@ -303,8 +321,8 @@ def _shape(data: dict[str, Any], where: str) -> dict[str, Any]:
     parts = [np.asarray(data[r]) for r in ("r1", "r2", "r3")]
     if any(len(p) != len(points) for p in parts):
         raise ReadError(
-            f"{where}: {len(points)} points but {[len(p) for p in parts]} values in x, y, z; export translations in three "
-            "directions"
+            f"{where}: {len(points)} points but {[len(p) for p in parts]} values in x, y, z; export translations in "
+            "three directions"
         )
     if kind == 2:
         frequency, loss = data["freq"], 2 * data["modal_damp_vis"] or data["modal_damp_his"]

@@ -16,12 +16,22 @@ TYPES = {"receptance": (8, "m"), "mobility": (11, "m/s"), "accelerance": (12, "m
 
 
 def write_uff(path: str | Path, *contents: ModeSet | FRF, title: str = "Faying") -> Path:
-    """Write modes (55) and FRFs (58) with units (164) and the positions of the points (2411); SI.
+    """Write modes (data set 55) and FRFs (58) with units (164) and the positions of the points (2411), in SI.
 
     The format keeps six digits of frequencies and shapes, twelve of FRFs. A loss factor is written as a viscous damping
     ratio of half its size; complex shapes with their pole. Modes are written in x, y, z, with zeros where a direction
-    is not known; intervals stand in the header. The file appears whole or not at all. Raises InputError for modes in
-    rotations or in no direction.
+    is not known; intervals stand in the header. The file appears whole or not at all.
+
+    Args:
+        path: of the file.
+        contents: modes and FRFs, in the order in which they are written.
+        title: of the model, 80 characters at most.
+
+    Returns:
+        The path.
+
+    Raises:
+        InputError: for modes in rotations or in no direction, and where the file cannot be written.
     """
     import pyuff
 

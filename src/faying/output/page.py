@@ -2,10 +2,8 @@
 
 from html import escape
 from io import BytesIO, StringIO
-from pathlib import Path
 from typing import Any
 
-from faying.files import write_atomically
 from faying.output.table import Rows
 
 STYLE = """
@@ -53,6 +51,7 @@ def facts(known: dict[str, Any]) -> str:
     return f'<table class="words">{rows}</table>'
 
 
-def save(figure: Any, path: Path) -> Path:
-    """Write a figure in the format of the ending of `path`; it appears whole or not at all."""
-    return write_atomically(path, lambda temporary: figure.savefig(temporary, format=path.suffix[1:].lower(), dpi=150))
+def document(title: str, body: str) -> str:
+    """Return a whole page."""
+    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title)}</title>'
+    return f"<!doctype html><html lang='en'><head>{head}<style>{STYLE}</style></head><body>{body}</body></html>\n"

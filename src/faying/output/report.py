@@ -1,5 +1,7 @@
 """One self-contained HTML file from a result: tables, figures, flags, sources."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -7,7 +9,8 @@ from typing import Any
 from faying import __version__
 from faying.files import write_atomically
 from faying.output import page, report_measured, table
-from faying.output.page import STYLE
+from faying.output.figures import response, structure
+from faying.output.figures.save import new_figure, save
 from faying.result import Result
 
 
@@ -23,8 +26,8 @@ def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
     parts += [
         "<h2>Modes</h2>",
         page.table(table.modes(result)),
-        f"<p>Loss factors come from complex modes with {result.damping} loss in the joints. Free: faces apart. Tied: "
-        f"faces grown together. Rigid-body values: up to {result.rigid.max():.1e} Hz.</p>",
+        f"<p>Loss factors come from complex modes with {result.damping} loss in the joints. Free: faces apart. Bonded: "
+        f"faces grown together.{_rigid(result)}</p>",
     ]
     if result.comparison is not None:
         parts += [
@@ -46,68 +49,83 @@ def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
     parts.append("<h2>Figures</h2>")
     for name, figure in drawn.items():
         if not name.startswith(TEST):
-            parts.append(f"<figure>{page.picture(name, figure)}<figcaption>{CAPTIONS[name]}</figcaption></figure>")
+            parts.append(
+                f"<figure>{page.picture(name, figure)}<figcaption>{FIGURES[name].caption}</figcaption></figure>"
+            )
     parts += _contact(result)
     parts += ["<h2>Sources</h2>", "<ul>", *(f"<li>{escape(line)}</li>" for line in result.sources), "</ul>"]
-    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(result.title)}</title>'
-    return f"<!doctype html><html lang='en'><head>{head}<style>{STYLE}</style></head><body>{''.join(parts)}</body></html>\n"
+    return page.document(result.title, "".join(parts))
+
+
+def _rigid(result: Result) -> str:
+    """The values of the rigid motions; nothing where supports leave none."""
+    return f" Rigid-body values: up to {result.rigid.max():.1e} Hz." if len(result.rigid) else ""
 
 
 def _contact(result: Result) -> list[str]:
-    """Surface and law; with several joints those of the first, which is what the result holds, and the names of all laws."""
-    whose = f" of {escape(result.joints[0])}" if len(result.joints) > 1 else ""
-    parts = [f"<h2>Surface{whose}</h2>", page.facts(result.surface)]
-    parts += [f"<h2>Contact law{whose}</h2>", page.facts(result.law)]
-    laws = [line.removeprefix(LAW) for line in result.sources if line.startswith(LAW)]
-    if len(laws) > 1:
-        parts.append(
-            f"<p>The joints have several laws: {escape(', '.join(laws))}. Their parameters stand in the study.</p>"
-        )
-    return parts
+    """Surface and law of every joint; joints that share both have one section."""
+    shared: dict[str, list[str]] = {}
+    for name, surface, law in zip(result.joints, result.surfaces, result.laws, strict=True):
+        text = f"<h3>Surface</h3>{page.facts(surface)}<h3>Contact law</h3>{page.facts(law)}"
+        shared.setdefault(text, []).append(name)
+    return [f"<h2>Contact of {escape(', '.join(names))}</h2>{text}" for text, names in shared.items()]
 
 
-LAW = "contact law "  # so begin the sources of laws
 TEST = "test_"  # the figures of the hammer test begin with it
-CAPTIONS = {
-    "frequencies": "Frequency against preload, relative to the tied value of each mode.",
-    "comparison": "Error against the test.",
-    "pressure": "Pressure on each joint at the least and the greatest preload.",
-    "modes": "Mode shapes at the greatest preload.",
-    "mac": "MAC of the modes at the first preload (rows) with those at another: modes that change places or mix.",
-    "response": "Accelerance at every preload: response over force, at the points and along the directions of the study.",
-    "law": "Stiffness per area over the pressures that the joints reach at the greatest preload.",
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReportFigure:
+    """A figure of the report: what draws it, its caption, and which results have it."""
+
+    draw: Callable[[Result], Any]
+    caption: str
+    applies: Callable[[Result], bool] = lambda result: True
+
+
+def _on_axes(draw: Callable[[Any, Result], Any]) -> Callable[[Result], Any]:
+    def drawn(result: Result) -> Any:
+        fig = new_figure(7.0, 4.2)
+        draw(fig.add_subplot(), result)
+        return fig
+
+    return drawn
+
+
+FIGURES = {
+    "frequencies": ReportFigure(
+        draw=_on_axes(structure.frequencies),
+        caption="Frequency against preload, relative to the bonded value of each mode.",
+    ),
+    "comparison": ReportFigure(
+        draw=_on_axes(structure.comparison),
+        caption="Error against the test.",
+        applies=lambda result: result.comparison is not None,
+    ),
+    "pressure": ReportFigure(
+        draw=structure.pressures, caption="Pressure on each joint at the least and the greatest preload."
+    ),
+    "law": ReportFigure(
+        draw=structure.law_curves,
+        caption="Stiffness per area over the pressures that the joints reach at the greatest preload.",
+    ),
+    "modes": ReportFigure(draw=structure.mode_shapes, caption="Mode shapes at the greatest preload."),
+    "mac": ReportFigure(
+        draw=response.macs,
+        caption="MAC of the modes at the first preload (rows) with those at another: modes that change places or mix.",
+        applies=lambda result: len(result.loads) > 1,
+    ),
+    "response": ReportFigure(
+        draw=response.responses,
+        caption="Accelerance at every preload: response over force, at the points and along the directions of the study.",
+        applies=lambda result: result.response is not None,
+    ),
 }
 
 
 def figures(result: Result) -> dict[str, Any]:
     """Return every figure of the report by name."""
-    from matplotlib.figure import Figure
-
-    from faying.output.figures import response, structure
-
-    out: dict[str, Any] = {}
-
-    def single(name: str, draw: Any, width: float = 7.0) -> None:
-        fig = Figure(figsize=(width, 4.2), layout="constrained")
-        draw(fig.add_subplot(), result)
-        out[name] = fig
-
-    single("frequencies", structure.frequencies)
-    if result.comparison is not None:
-        single("comparison", structure.comparison)
-    loads = sorted({0, len(result.loads) - 1})
-    fig = Figure(figsize=(5.2 * len(loads), 3.8 * len(result.joints)), layout="constrained")
-    for row in range(len(result.joints)):
-        for column, load in enumerate(loads):
-            ax = fig.add_subplot(len(result.joints), len(loads), row * len(loads) + column + 1)
-            structure.pressure_map(ax, result, load, row)
-    out["pressure"] = fig
-    out["law"] = structure.law_curves(result)
-    out["modes"] = structure.mode_shapes(result)
-    if len(result.loads) > 1:
-        out["mac"] = response.macs(result)
-    if result.response:
-        out["response"] = response.responses(result)
+    out = {name: figure.draw(result) for name, figure in FIGURES.items() if figure.applies(result)}
     if result.hammer is not None:
         out |= {TEST + name: figure for name, figure in report_measured.figures(result.hammer).items()}
     return out
@@ -126,7 +144,7 @@ def write(result: Result, folder: Path) -> list[Path]:
     for name, figure in drawn.items():
         if name.startswith(TEST):
             continue
-        made.append(page.save(figure, folder / f"{name}.{'png' if name == 'modes' else 'svg'}"))
+        made.append(save(figure, folder / f"{name}.{'png' if name == 'modes' else 'svg'}"))
     made.append(
         write_atomically(folder / "report.html", lambda path: path.write_text(html(result, drawn), encoding="utf-8"))
     )

@@ -7,7 +7,8 @@ from typing import Any
 from faying import __version__
 from faying.files import write_atomically
 from faying.measured.compare import ModalComparison
-from faying.output.page import BITMAPS, STYLE, picture, save, table
+from faying.output.figures.save import new_figure, save
+from faying.output.page import BITMAPS, document, picture, table
 
 CAPTIONS = {
     "mac": "MAC of the modes of the test against those of the model, at the points and directions of the test. Pairs are framed.",
@@ -19,17 +20,15 @@ MOST_FRFS = 4
 
 def figures(comparison: ModalComparison) -> dict[str, Any]:
     """Return the figures of a comparison by name; FRFs only where there are some."""
-    from matplotlib.figure import Figure
-
     from faying.output.figures import measured
 
     t, m = comparison.mac.shape
-    mac = Figure(figsize=(2.6 + 0.42 * m, 1.8 + 0.42 * t), layout="constrained")
+    mac = new_figure(2.6 + 0.42 * m, 1.8 + 0.42 * t)
     measured.mac_map(mac.add_subplot(), comparison)
     out = {"mac": mac}
     if comparison.frf is not None:
         pairs = comparison.frf.measured[:MOST_FRFS]
-        fig = Figure(figsize=(8.0, 2.9 * len(pairs)), layout="constrained")
+        fig = new_figure(8.0, 2.9 * len(pairs))
         for k, (o, i) in enumerate(pairs):
             measured.frf_overlay(fig.add_subplot(len(pairs), 1, k + 1), comparison, o, i)
         out["frf"] = fig
@@ -73,10 +72,7 @@ def write(comparison: ModalComparison, folder: Path) -> list[Path]:
     """Write comparison.csv, the figures as SVG (shapes as PNG) and comparison.html into a folder that exists."""
     drawn = figures(comparison)
     made = write_parts(comparison, drawn, folder)
-    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Hammer test</title><style>{STYLE}</style>'
-    page = (
-        f"<!doctype html><html lang='en'><head>{head}</head><body><h1>{escape(comparison.model.title)}</h1>"
-        f"{section(comparison, drawn)}<p>Faying {__version__}.</p></body></html>\n"
-    )
+    title = escape(comparison.model.title)
+    page = document("Hammer test", f"<h1>{title}</h1>{section(comparison, drawn)}<p>Faying {__version__}.</p>")
     made.append(write_atomically(folder / "comparison.html", lambda path: path.write_text(page, encoding="utf-8")))
     return made

@@ -8,14 +8,14 @@ Rows = list[list[str]]
 
 
 def modes(result: Result) -> Rows:
-    """One row per mode: free, then each preload with its loss factor, then tied."""
+    """One row per mode: free, then each preload with its loss factor, then bonded."""
     heads = [f"{load / 1e3:g} kN [Hz] (loss)" for load in result.loads]
-    rows: Rows = [["mode", "free [Hz]", *heads, "tied [Hz]"]]
-    for j in range(len(result.tied)):
+    rows: Rows = [["mode", "free [Hz]", *heads, "bonded [Hz]"]]
+    for j in range(len(result.bonded)):
         cells = [
             f"{f:.2f} ({eta:.1e})" for f, eta in zip(result.frequencies[:, j], result.loss_factors[:, j], strict=True)
         ]
-        rows.append([str(j + 1), f"{result.free[j]:.2f}", *cells, f"{result.tied[j]:.2f}"])
+        rows.append([str(j + 1), f"{result.free[j]:.2f}", *cells, f"{result.bonded[j]:.2f}"])
     return rows
 
 
@@ -62,7 +62,6 @@ def joints(result: Result) -> Rows:
     shares = np.bincount(result.joint_of_point, result.weights, len(result.joints)) / area
     for i, load in enumerate(result.loads):
         mean = float(result.weights @ result.pressure[i]) / area
-        facts = result.convergence[i]
         rows.append(
             [
                 f"{load / 1e3:g} kN",
@@ -70,9 +69,9 @@ def joints(result: Result) -> Rows:
                 f"{mean * 1e-6:.3g}",
                 f"{100 * result.open_share()[i]:.1f}",
                 *[f"{100 * float(result.slipping[i] @ shares):.1f}"] * slips,
-                f"{facts['total_k_n [N/m]']:.4g}",
-                f"{facts['total_k_t [N/m]']:.4g}",
-                f"{facts['imbalance']:.0e}",
+                f"{result.total_k_n[i].sum():.4g}",
+                f"{result.total_k_t[i].sum():.4g}",
+                f"{result.imbalance[i]:.0e}",
             ]
         )
     return rows

@@ -1,7 +1,7 @@
 """The study file and the one pipeline that runs it."""
 
-from faying.study.build import build
+from faying.study.case import build
 from faying.study.run import run
-from faying.study.schema import Study
+from faying.study.study import Study
 
 __all__ = ["Study", "build", "run"]

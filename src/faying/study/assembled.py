@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 
 from faying.decks.matrices import read_pair
-from faying.errors import InputError
-from faying.files import write_atomically
+from faying.files import make_folder, write_atomically
 from faying.joint.support_check import checked_preload
-from faying.study.build import build_all, checked_mesh
-from faying.study.schema import Study
+from faying.study.case import build
+from faying.study.study import Study
 from faying.typing import Index
 
 
@@ -32,9 +31,9 @@ class Assembled:
     @classmethod
     def of_study(cls, study: Study) -> "Assembled":
         """Assemble a study with the springs of its joints at its first preload."""
-        structure = build_all(study, mesh=checked_mesh(study)).structure
-        assembly = structure.assembly(solver=study.solver)
-        found = checked_preload(structure, assembly, [bolt.preload[0] for bolt in study.bolts], order=study.order)
+        structure = build(study)
+        assembly = structure.assembly(solver=study.modes.solver)
+        found = checked_preload(structure, assembly, study.forces(0), order=study.order)
         stiffness, _ = structure.joined(structure.springs(found.pressures))
         numbers = structure.mesh.numbers
         dofs = np.column_stack([np.repeat(numbers, 3), np.tile([1, 2, 3], len(numbers))])
@@ -42,8 +41,8 @@ class Assembled:
             stiffness=stiffness,
             mass=structure.vibrating[1],
             dofs=dofs,
-            still=structure.rigid.shape[1],
-            shift_frequency=study.shift_frequency or structure.shift_frequency,
+            still=structure.rigid_count,
+            shift_frequency=study.modes.shift_frequency or structure.shift_frequency,
             source=study.title,
         )
 
@@ -57,10 +56,7 @@ class Assembled:
         """Write stiffness.npz, mass.npz (SciPy) and dofs.txt, each whole or not at all."""
         from scipy.sparse import csr_matrix, save_npz
 
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as fault:
-            raise InputError(f"cannot make the folder {folder}: {fault.strerror}; give another with --export") from None
+        make_folder(folder, "give another with --export")
         out = []
         for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
 

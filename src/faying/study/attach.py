@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal
 
@@ -16,18 +17,18 @@ from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.joint.joint_law import JointLaw
 from faying.joint.pairs import NodePairs, consistent, lumped
-from faying.materials import RIGID, ContactPair, Material
-from faying.study.build import build_all, checked_mesh, surfaces_of
-from faying.study.connections import JointSpec
-from faying.study.geometry import GeometrySpec
+from faying.materials import Material
+from faying.study.case import checked_mesh, joint_law, structure_of, surfaces_of
+from faying.study.keys.geometry import GeometryChoice
+from faying.study.keys.joint import JointChoice
 from faying.study.pressure import read_pressure
-from faying.study.schema import Study
-from faying.study.surface import law_of
+from faying.study.study import Study
 from faying.typing import Array
 
 SMALLEST, LARGEST = 1e-7, 10.0  # areas of a joint [m2] beyond which the unit is doubted
 TOUCHING = 1e-6  # of the structure's size: a gap above it is told
 UNKNOWN_FRICTION = 0.2
+VALID = "validity: the law is within its validity range everywhere"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,8 +91,8 @@ def attach(
     if solving:
         moved = replace(
             study,
-            geometry=GeometrySpec(mesh=file, unit=unit, sets=study.geometry.sets),
-            joints=tuple(replace(j, faces=faces, reach=tolerance) if j is spec else j for j in study.joints),
+            geometry=GeometryChoice(mesh=file, unit=unit, sets=study.geometry.sets),
+            joints=tuple(replace(j, faces=faces, search_distance=tolerance) if j is spec else j for j in study.joints),
         )
         mesh = checked_mesh(moved)
     else:
@@ -112,37 +113,24 @@ def attach(
             "the meshes of the faces do not match: springs per area, exact, between all nodes that share an overlap; "
             "some of them are negative"
         )
-    flags = _flags(law, used, pairs.area if pairs.lumped else interface.weights)
+    area = pairs.area if pairs.lumped else interface.weights
+    flags = _flags(law, used, area)
     system = System(unit, force_unit)
     viscous = None
     if damping == "paper":
         viscous = _paper_dampers(pairs, mesh, materials)
     elif frequency is not None:
         viscous = pairs.loss / (2 * np.pi * frequency)
-    k_n, k_t = pairs.totals()
-    from importlib.metadata import version
-
-    weights = pairs.area if pairs.lumped else interface.weights
-    mean = float(weights @ used / weights.sum())
-    facts = (
-        f"Joint of {faces[0]} and {faces[1]} in {file.name}, written by Faying {version('faying')}",
-        system.describe(),
-        f"law: {law.model.name}, {getattr(law.model, 'source', 'no source')}",
-        f"pressure: {said}; least {used.min() * system.pressure:.6g}, mean {mean * system.pressure:.6g}, "
-        f"greatest {used.max() * system.pressure:.6g} {force_unit}/{unit}2",
-        f"area {interface.area * system.metre**2:.8g} {unit}2; sum of normal springs {k_n * system.stiffness:.8g}, of tangential springs "
-        f"{k_t * system.stiffness:.8g} {force_unit}/{unit}",
-        "shares of the area after the diagonal of the consistent mass of the face (HRZ, doi:10.1002/eqe.4290040305)"
-        if pairs.lumped
-        else "springs per area, consistent with the shape functions of both faces: pairs within a face are negative",
-        *(flags or ["validity: the law stands on its own ground everywhere"]),
-    )
+    mean = float(area @ used / area.sum())
+    p, force = system.pressure, f"{force_unit}/{unit}2"
+    said = f"pressure: {said}; least {used.min() * p:.6g}, mean {mean * p:.6g}, greatest {used.max() * p:.6g} {force}"
+    head = f"Joint of {faces[0]} and {faces[1]} in {file.name}, written by Faying {version('faying')}"
     deck = JointDeck(
         pairs=pairs,
         mesh=mesh,
         faces=faces,
         system=system,
-        facts=facts,
+        facts=(head, *_facts(law, pairs, interface, system, said), *(flags or [VALID])),
         viscous=viscous,
         paper=damping == "paper",
         frequency=frequency,
@@ -152,7 +140,26 @@ def attach(
     return Attachment(deck=deck, interface=interface, materials=materials, notes=tuple(dict.fromkeys([*notes, *flags])))
 
 
-def _joint(study: Study, faces: tuple[str, str], name: str | None) -> JointSpec:
+def _facts(law: JointLaw, pairs: NodePairs, interface: Interface, system: System, pressure: str) -> tuple[str, ...]:
+    """What the head of a deck says of its joint."""
+    k_n, k_t = (total * system.stiffness for total in pairs.totals())
+    unit, force = system.length, system.force
+    sums = f"sum of normal springs {k_n:.8g}, of tangential springs {k_t:.8g} {force}/{unit}"
+    shares = (
+        "shares of the area after the diagonal of the consistent mass of the face (HRZ, doi:10.1002/eqe.4290040305)"
+        if pairs.lumped
+        else "springs per area, consistent with the shape functions of both faces: pairs within a face are negative"
+    )
+    return (
+        system.describe(),
+        f"law: {law.model.name}, {law.model.source}",
+        pressure,
+        f"area {interface.area * system.metre**2:.8g} {unit}2; {sums}",
+        shares,
+    )
+
+
+def _joint(study: Study, faces: tuple[str, str], name: str | None) -> JointChoice:
     for spec in study.joints:
         if spec.name == name or (name is None and set(spec.faces) == set(faces)):
             return spec
@@ -221,20 +228,18 @@ def _materials(study: Study, mesh: Mesh, faces: tuple[str, str]) -> dict[str, Ma
 
 
 def _joint_law(
-    study: Study, spec: JointSpec, mesh: Mesh, faces: tuple[str, str], materials: Mapping[str, Material]
+    study: Study, spec: JointChoice, mesh: Mesh, faces: tuple[str, str], materials: Mapping[str, Material]
 ) -> JointLaw:
     surface = surfaces_of(replace(study, joints=(spec,)))[0]
     rough, other = (materials[mesh.face_part[face]] for face in faces)
-    law = spec.law or study.law
-    pair = ContactPair(rough, RIGID if law.counterbody == "rigid" else other)
-    return JointLaw(model=law_of(law, surface, pair), tangential=spec.tangential, nu=rough.nu)
+    return joint_law(spec, study.law_of(spec), surface, rough, other)
 
 
 def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | None) -> tuple[JointLaw, Array, str]:
     """JointLaw and pressure [Pa] at the points of the interface under the study's bolts."""
     from faying.joint.support_check import checked_preload
 
-    loads = study.bolts[0].preload
+    loads = study.loads
     number = 0
     if preload is not None:
         wanted = units.parse(preload, "N", name="--preload")
@@ -244,11 +249,11 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
         number = near[0]
     elif len(loads) > 1:
         raise InputError(f"the study has the preloads {_kilo(loads)}; say which with --preload")
-    structure = build_all(study, mesh=mesh).structure
+    structure = structure_of(study, mesh, surfaces_of(study))
     found = checked_preload(
         structure,
-        structure.assembly(solver=study.solver),
-        [bolt.preload[number] for bolt in study.bolts],
+        structure.assembly(solver=study.modes.solver),
+        study.forces(number),
         order=study.order,
     )
     place = next(i for i, joint in enumerate(structure.joints) if joint.faces == faces)
@@ -278,7 +283,7 @@ def _pairs(interface: Interface, law: JointLaw, pressure: Array, coupling: str) 
 
 
 def _flags(law: JointLaw, pressure: Array, area: Array) -> list[str]:
-    """Where the law has left its ground."""
+    """Where the law has left its validity range."""
     out = []
     model, total = law.model, float(area.sum())
     beyond = pressure > model.greatest_pressure
@@ -287,10 +292,10 @@ def _flags(law: JointLaw, pressure: Array, area: Array) -> list[str]:
             f"validity: on {float(area @ beyond) / total:.2%} of the joint the pressure exceeds the "
             f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends; stiffness is held there"
         )
-    for text, mask in getattr(law.answer(pressure), "reasons", {}).items():
+    for text, mask in law.answer(pressure).reasons.items():
         share = float(area @ mask) / total
         if share > 0:
-            out.append(f"validity: {model.name} is outside its ground on {share:.0%} of the joint: {text}")
+            out.append(f"validity: {model.name} is outside its validity range on {share:.0%} of the joint: {text}")
     if not np.any(pressure > 0):
         out.append("validity: the joint carries no pressure, so it has no stiffness")
     return out
@@ -315,9 +320,9 @@ def _paper_dampers(pairs: NodePairs, mesh: Mesh, materials: Mapping[str, Materia
     return np.asarray(np.einsum("pik,pi,pil->pkl", pairs.frames, c, pairs.frames))
 
 
-def _contact(law: JointLaw, spec: JointSpec, greatest: float, mean: float) -> Contact | None:
+def _contact(law: JointLaw, spec: JointChoice, greatest: float, mean: float) -> Contact | None:
     """Sample the law from a ten-thousandth of the end of the table, three times the greatest pressure."""
-    if mean <= law.least_pressure or spec.gap_map is not None:
+    if mean <= law.least_pressure or spec.gap is not None:
         return None
     end = min(law.model.greatest_pressure, 3 * greatest)
     pressure = np.geomspace(max(1e-4 * end, law.least_pressure), end, 199)

@@ -7,17 +7,38 @@ from typing import Any
 import numpy as np
 
 from faying import units
-from faying.contact.compare import law_class
-from faying.contact.tabulated import TabulatedLaw
+from faying.contact.build import check_entries, find, kinds
+from faying.contact.parameter import FILE, TABLE, Parameter
 from faying.errors import InputError
-from faying.study.contact import JK_NUMBERS, LawSpec, own_numbers
-from faying.study.schema import Study
-from faying.study.surface import Surface
+from faying.study.keys.law import OF_SURFACE
+from faying.study.keys.surface import Surface
+from faying.study.study import Study
 from faying.typing import Array
 
-# what a sweep may vary, with its SI unit ("" for a plain number): all of it acts on the joints alone
-NUMBERS = {"surface.D": "", "surface.G": "m", "surface.scan_area": "m^2", "bolt.preload": "N", "joint.friction": ""}
-TEXTS = ("law.model", "law.counterbody")
+# what a sweep may vary beside the entries of laws: all of it acts on the joints alone
+OWN = {
+    "surface.D": Parameter("", "fractal dimension", 2, 3),
+    "surface.G": Parameter("m", "fractal roughness", 0),
+    "surface.scan_area": Parameter("m^2", "area that the scan covers", 0),
+    "bolt.preload": Parameter("N", "preload of the bolts", 0),
+    "joint.friction": Parameter("", "coefficient of friction", 0, 10, "[)"),
+    "law.counterbody": Parameter("text", "what the rough face presses on", choices=("part", "rigid")),
+}
+MODEL = "law.model"
+MOST = 1_000_000  # points of a grid
+
+
+def _swept(key: str) -> Parameter | None:
+    """What a sweep key declares, for any law that has it; None where there is no such key."""
+    parts = key.split(".")
+    if parts[0] == "bolt" and parts[-1] == "preload" and len(parts) in (2, 3):
+        return OWN["bolt.preload"]
+    if key in OWN:
+        return OWN[key]
+    if parts[0] != "law" or len(parts) != 2 or parts[1] in OF_SURFACE:
+        return None
+    entries = [kind.law.entries().get(parts[1]) for kind in kinds().values()]
+    return next((p for p in entries if p is not None and p.unit not in (FILE, TABLE)), None)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +52,7 @@ class Axis:
     @property
     def numeric(self) -> bool:
         """Whether the values are numbers."""
-        return self.key not in TEXTS
+        return not any(isinstance(value, str) for value in self.values)
 
     def read(self) -> str:
         """What the axis spans, for people."""
@@ -53,55 +74,43 @@ def axis_of(text: str) -> Axis:
         raise InputError(
             f'--set {text}: give key=first:last:count, for example surface.D=2.2:2.6:40 or bolt.preload="1 kN:20 kN:30"'
         )
-    if key in TEXTS:
-        return Axis(key=key, unit="", values=tuple(word.strip() for word in given.split(",")))
-    parts = key.split(".")
-    known_units = NUMBERS | _law_units()
-    unit = known_units.get("bolt.preload" if parts[0] == "bolt" and parts[-1] == "preload" and len(parts) == 3 else key)
-    if unit is None:
-        known = ", ".join((*NUMBERS, "bolt.NAME.preload", "law.NAME (a parameter of the law)", *TEXTS))
+    if key == MODEL:
+        return Axis(key=key, unit="", values=tuple(find(word).label for word in given.split(",")))
+    parameter = _swept(key)
+    if parameter is None:
+        known = ", ".join((*OWN, "bolt.NAME.preload", MODEL, "law.NAME (a parameter of the law)"))
         raise InputError(
             f"--set {key}: a sweep varies what acts on the joints alone, which is {known}; anything else changes "
             "the parts, and takes a study of its own"
         )
+    unit = parameter.unit if parameter.is_number else ""
     words = given.split(":")
     if len(words) in (3, 4):
-        if not words[2].strip().isdigit() or int(words[2]) < 2 or words[3:] not in ([], ["log"]):
-            raise InputError(f"--set {text}: after the two ends comes a whole number of 2 or more, and log if wanted")
-        first, last = (_value(word, unit, key) for word in words[:2])
+        count = words[2].strip()
+        if not count.isdigit() or not 2 <= int(count) <= MOST or words[3:] not in ([], ["log"]):
+            raise InputError(
+                f"--set {text}: after the two ends comes a whole number from 2 to {MOST:,}, and log if wanted"
+            )
+        first, last = (_number(parameter, word, key) for word in words[:2])
         if first == last or (words[3:] and min(first, last) <= 0):
             raise InputError(f"--set {text}: the ends must differ, and be positive for log")
         spread = np.geomspace if words[3:] else np.linspace
-        return Axis(key=key, unit=unit, values=tuple(float(v) for v in spread(first, last, int(words[2]))))
+        return Axis(key=key, unit=unit, values=tuple(float(v) for v in spread(first, last, int(count))))
     if len(words) == 1:
-        return Axis(key=key, unit=unit, values=tuple(_value(word, unit, key) for word in given.split(",")))
+        return Axis(key=key, unit=unit, values=tuple(_value(parameter, word, key) for word in given.split(",")))
     raise InputError(f"--set {text}: give first:last:count, first:last:count:log, or values with commas between")
 
 
-def _law_units() -> dict[str, str]:
-    """SI unit of every number that some law states as its own parameter, by `law.NAME`."""
-    from faying.contact.registry import laws
-
-    taken = (own_numbers(law) for law in laws().values() if law is not TabulatedLaw)
-    return {f"law.{name}": unit for numbers in taken for name, unit in numbers.items()}
+def _value(parameter: Parameter, text: str, name: str) -> float | str:
+    value = parameter.read(text.strip(), name)
+    return value if isinstance(value, str) else float(value)  # type: ignore[arg-type]
 
 
-def _law_takes(law: LawSpec) -> tuple[str, ...]:
-    """Numbers under [law] that a sweep can vary, for the law that the study has."""
-    if law.model.lower() == "jk":
-        return JK_NUMBERS
-    if law.heights is not None or law.table is not None:
-        return ()
-    return tuple(own_numbers(law_class(law.model)))
-
-
-def _value(text: str, unit: str, name: str) -> float:
-    if unit:
-        return units.parse(text.strip(), unit, name=name)
-    try:
-        return float(text)
-    except ValueError:
-        raise InputError(f"{name}: {text.strip()!r} should be a plain number, for example 2.4") from None
+def _number(parameter: Parameter, text: str, name: str) -> float:
+    value = _value(parameter, text, name)
+    if isinstance(value, str):
+        raise InputError(f"{name}: {value!r} is a word; give words with commas between")
+    return value
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,35 +137,39 @@ class Grid:
         keys = [axis.key for axis in self.axes]
         if not keys or len(set(keys)) < len(keys):
             raise InputError(f"a sweep needs each axis once; --set gave {', '.join(keys) or 'none'}")
-        names = [bolt.name for bolt in self.study.bolts]
+        if self.size > MOST:
+            raise InputError(f"the axes have {self.size:,} combinations; a sweep takes up to {MOST:,}")
         for key in keys:
-            parts = key.split(".")
-            if parts[0] == "bolt" and len(parts) == 3 and parts[1] not in names:
-                raise InputError(f"--set {key}: no bolt is called {parts[1]!r}; the bolts are {', '.join(names)}")
-            if parts[0] == "surface" and all(joint.surface is not None for joint in self.study.joints):
-                raise InputError(
-                    f"--set {key}: every joint has a surface of its own; a sweep varies the study's [surface]"
-                )
-            if parts[0] == "surface" and not any(
-                joint.surface is None and (joint.law or self.study.law).needs_surface for joint in self.study.joints
-            ):
-                raise InputError(f"--set {key}: no joint takes its law from [surface]; it would change nothing")
-            if parts[0] == "law" and all(joint.law is not None for joint in self.study.joints):
-                raise InputError(f"--set {key}: every joint has a law of its own; a sweep varies the study's [law]")
-            law = self.study.law
-            if key in TEXTS[:1] and not law.needs_surface:
-                raise InputError(
-                    f'--set {key}: [law] gives "{law.model}" in full; other laws would lack their surface. Vary them on a '
-                    "study with [surface]"
-                )
-            if parts[0] == "law" and key not in TEXTS and "law.model" not in keys and parts[1] not in _law_takes(law):
-                raise InputError(
-                    f'--set {key}: the law "{law.model}" takes {", ".join(_law_takes(law)) or "no numbers"}'
-                )
+            self._check_key(key, models="law.model" in keys)
         if self.study.order is not None:
             raise InputError("a sweep pulls all bolts at once; leave out [tightening], or run studies one by one")
         self.point(0)
         self.point(self.size - 1)
+
+    def _check_key(self, key: str, *, models: bool) -> None:
+        """InputError where the study has nothing that this key could vary; models: whether the law varies, too."""
+        study, parts = self.study, key.split(".")
+        if parts[0] == "bolt" and len(parts) == 3:
+            names = [bolt.name for bolt in study.bolts]
+            if parts[1] not in names:
+                raise InputError(f"--set {key}: no bolt is called {parts[1]!r}; the bolts are {', '.join(names)}")
+        if parts[0] == "surface":
+            if all(joint.surface is not None for joint in study.joints):
+                raise InputError(
+                    f"--set {key}: every joint has a surface of its own; a sweep varies the study's [surface]"
+                )
+            if not any(joint.surface is None and study.law_of(joint).needs_surface for joint in study.joints):
+                raise InputError(f"--set {key}: no joint takes its law from [surface]; it would change nothing")
+        if parts[0] == "law":
+            if all(joint.law is not None for joint in study.joints):
+                raise InputError(f"--set {key}: every joint has a law of its own; a sweep varies the study's [law]")
+            if key == MODEL and not study.law.needs_surface:
+                raise InputError(
+                    f'--set {key}: [law] gives "{study.law.model}" in full; other laws would lack their surface. Vary them '
+                    "on a study with [surface]"
+                )
+            if key not in (MODEL, "law.counterbody") and not models:
+                check_entries(study.law.kind, [parts[1]])
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -178,17 +191,15 @@ class Grid:
             room, _, name = axis.key.partition(".")
             if room == "surface":
                 surfaces = tuple(
-                    replace(surface, **{name: value}) if joint.surface is None else surface
+                    _with(surface, name, value) if joint.surface is None else surface
                     for joint, surface in zip(study.joints, surfaces, strict=True)
                 )
-                if name == "D" and not 2 < value < 3:
-                    raise InputError(f"surface.D = {value:g}: the dimension of a surface lies between 2 and 3")
             elif room == "law":
                 law = study.law
                 if name in ("model", "counterbody"):
                     law = replace(law, **{name: value})
                 else:
-                    law = replace(law, options=law.options | {name: value})
+                    law = replace(law, given={**law.given, name: value})
                 study = replace(study, law=law)
             elif room == "joint":
                 study = replace(study, joints=tuple(replace(j, friction=value) for j in study.joints))
@@ -196,10 +207,6 @@ class Grid:
                 forces = np.full(len(forces), value)
             else:
                 forces[[bolt.name for bolt in study.bolts].index(name.split(".")[0])] = value
-        if np.any(forces <= 0):
-            raise InputError(
-                f"bolt.preload: {forces.min():g} N; a preload pulls the joint together and must be positive"
-            )
         return Point(study=study, surfaces=surfaces, forces=forces)
 
     def corners(self, most: int) -> list[int]:
@@ -220,3 +227,11 @@ class Grid:
                 for i in (range(size) if k % 2 == 0 else reversed(range(size)))
             ]
         return [int(np.ravel_multi_index(place, self.shape)) for place in order]
+
+
+def _with(surface: Surface, name: str, value: float) -> Surface:
+    """The surface with one of D, G and scan_area changed."""
+    if surface.rough is None:
+        return surface
+    inputs = replace(surface.rough.inputs, **{name: value})
+    return replace(surface, rough=replace(surface.rough, inputs=inputs))

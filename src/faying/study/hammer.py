@@ -10,11 +10,12 @@ from faying.joint.structure import Structure
 from faying.measured.compare import ModalComparison, compare_modes
 from faying.measured.frf import Dof
 from faying.measured.mapping import PointMap, Transform, map_points
-from faying.measured.model import FullResponse, ModelModes
+from faying.measured.model import FullResponse
 from faying.measured.tested import Tested, read_test
+from faying.notes import Note
 from faying.result import Result
-from faying.study.response import Solved
-from faying.study.test import HammerSpec
+from faying.study.keys.test import HammerChoice
+from faying.study.response import LoadedStructure
 from faying.typing import Array, Index
 
 Places = tuple[NDArray[Any], Array]
@@ -24,23 +25,28 @@ Places = tuple[NDArray[Any], Array]
 class Hammer:
     """What a study knows of its test before it is solved. tested: modes and FRFs; transform: test frame to model frame."""
 
-    spec: HammerSpec
+    choice: HammerChoice
     tested: Tested
     transform: Transform | None
 
     @classmethod
-    def read(cls, spec: HammerSpec) -> "Hammer":
+    def read(cls, choice: HammerChoice) -> "Hammer":
         """Read the file, identify where it holds FRFs alone, fit the frame. Raises ReadError and InputError."""
         tested = read_test(
-            spec.file,
-            points=spec.points,
-            length_unit=spec.length_unit,
-            direction=spec.direction,
-            quantity=spec.quantity,
+            choice.file,
+            points=choice.points,
+            length_unit=choice.length_unit,
+            direction=choice.direction,
+            quantity=choice.quantity,
         )
-        if spec.source:
-            tested = replace(tested, modes=replace(tested.modes, source=spec.source))
-        return cls(spec=spec, tested=tested, transform=tested.transform(spec.frame) if spec.frame else None)
+        if choice.source:
+            tested = replace(tested, modes=replace(tested.modes, source=choice.source))
+        return cls(choice=choice, tested=tested, transform=tested.transform(choice.frame) if choice.frame else None)
+
+    @property
+    def has_frf(self) -> bool:
+        """Whether the test holds FRFs beside its modes."""
+        return self.tested.frf is not None
 
     def points(self, structure: Structure) -> PointMap:
         """Where the test's points lie on the outline. InputError where none of them does."""
@@ -48,10 +54,10 @@ class Hammer:
         known = {d.point for d in self.tested.modes.dofs}
         positions = {p: x for p, x in self.tested.modes.positions.items() if p in known}
         return map_points(
-            positions, structure.mesh.points[nodes], transform=self.transform, tolerance=self.spec.tolerance
+            positions, structure.mesh.points[nodes], transform=self.transform, tolerance=self.choice.tolerance
         )
 
-    def response(self, solved: Solved, points: PointMap) -> tuple[FullResponse | None, list[str]]:
+    def response(self, solved: LoadedStructure, points: PointMap) -> tuple[FullResponse | None, list[Note]]:
         """The full response at the test's own points, directions and lines, None where its FRFs meet no point; notes."""
         frf = self.tested.frf
         if frf is None:
@@ -71,26 +77,15 @@ class Hammer:
 
     def beside(self, result: Result, full: FullResponse | None) -> ModalComparison:
         """The comparison at the preload of the test."""
-        load = self.spec.load
-        model = ModelModes(
-            frequencies=result.frequencies[load],
-            loss_factors=result.loss_factors[load],
-            shapes=result.shapes[load],
-            points=result.outline,
-            triangles=result.triangles,
-            load=float(result.loads[load]),
-            title=result.title,
-            source="this study",
-            full=full,
-        )
+        model = result.modes_at(float(result.loads[self.choice.load]))
         found = compare_modes(
             self.tested.modes,
-            model,
+            replace(model, full=full),
             transform=self.transform,
-            tolerance=self.spec.tolerance,
+            tolerance=self.choice.tolerance,
             frf=self.tested.frf,
-            least_mac=self.spec.least_mac,
-            greatest_shift=self.spec.greatest_shift,
+            least_mac=self.choice.least_mac,
+            greatest_shift=self.choice.greatest_shift,
         )
         first = ("the test's modes are identified from its FRFs",) if self.tested.identified else ()
         return replace(found, notes=(*first, *self.tested.notes, *found.notes))

@@ -12,15 +12,25 @@ from faying.fe.response import Response, Vibration, frequency_response
 from faying.joint.attachments import nearest_node
 from faying.joint.structure import Structure
 from faying.measured.model import FullResponse
-from faying.result import Receptance
-from faying.study.schema import Study
-from faying.typing import Array
+from faying.notes import Note
+from faying.study.keys.solution import ResponseChoice
+from faying.study.study import Study
+from faying.typing import Array, Complex
 
 POOR = 0.02  # residual beyond which a note is due
 
 
 @dataclass(frozen=True, kw_only=True)
-class Solved:
+class ResponseAtLoad:
+    """Receptance [m/N] (frequency, output, input) at frequencies [Hz]; error: the largest residual checked [-]."""
+
+    frequencies: Array
+    values: Complex
+    error: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadedStructure:
     """A structure at one preload: its modes, and the matrices that they belong to."""
 
     study: Study
@@ -31,30 +41,23 @@ class Solved:
     mass: Any
     loss: Any
 
-    def response(self) -> tuple[Receptance, list[str]]:
+    def response(self, choice: ResponseChoice) -> tuple[ResponseAtLoad, list[Note]]:
         """The response that [response] of the study asks for, and a note where its residual is large."""
-        spec = self.study.response
-        assert spec is not None
         mesh = self.structure.mesh
         inputs, outputs = (
             (
                 np.array([nearest_node(mesh, place, "point of the response") for place, _ in side]),
                 np.array([np.array(axis) / np.linalg.norm(axis) for _, axis in side]),
             )
-            for side in (spec.inputs, spec.outputs)
+            for side in (choice.inputs, choice.outputs)
         )
-        found = self._at(np.linspace(spec.first, spec.last, spec.points), outputs, inputs)
-        return Receptance(
-            frequencies=found.frequencies,
-            values=found.receptance,
-            inputs=spec.inputs,
-            outputs=spec.outputs,
-            error=float(found.error.max()),
-        ), poor(found.checked, found.error, "of the study")
+        found = self._at(np.linspace(choice.first, choice.last, choice.points), outputs, inputs)
+        answer = ResponseAtLoad(frequencies=found.frequencies, values=found.receptance, error=float(found.error.max()))
+        return answer, poor(found.checked, found.error, "of the study")
 
     def at_test(
         self, frequencies: Array, outputs: tuple[Array, Array], inputs: tuple[Array, Array]
-    ) -> tuple[FullResponse, list[str]]:
+    ) -> tuple[FullResponse, list[Note]]:
         """The full response between nodes of the mesh and directions, and a note where its residual is large.
 
         The matrices are symmetric: the fewer of inputs and outputs are solved for.
@@ -78,7 +81,7 @@ class Solved:
             mass=self.mass,
             loss=self.loss,
             rigid=self.structure.rigid_count,
-            kind=self.study.damping,
+            kind=self.study.modes.damping,
             structural_loss=eta,
             parts=constrain(self.structure.matrices[0], self.structure.fixed, 0.0) if eta else None,
         )
@@ -96,12 +99,13 @@ class Solved:
         return columns
 
 
-def poor(frequencies: Array, error: Array, which: str) -> list[str]:
+def poor(frequencies: Array, error: Array, which: str) -> list[Note]:
     """Say where a response leaves more than POOR of the full equations unanswered."""
     worst = int(np.argmax(error))
     if error[worst] <= POOR:
         return []
-    return [
-        f"the frequency response {which} leaves a residual of {error[worst]:.1%} at {frequencies[worst]:g} Hz, where modes beyond "
-        "those computed count; raise modes.count, or end at a lower frequency"
-    ]
+    text = (
+        f"the frequency response {which} leaves a residual of {error[worst]:.1%} at {frequencies[worst]:g} Hz, where modes "
+        "beyond those computed count; raise modes.count, or end at a lower frequency"
+    )
+    return [Note(code="response-residual", text=text)]

@@ -10,16 +10,16 @@ from typing import Any
 
 import numpy as np
 
+from faying import __version__
 from faying.errors import FayingError, InputError
 from faying.joint.joint_law import JointLaw
 from faying.joint.reduce import STATIC_SHARE, Reduction
 from faying.joint.reduced import ReducedModel
 from faying.joint.structure import Structure
-from faying.materials import RIGID, ContactPair, Material
+from faying.materials import Material
 from faying.study.axes import Axis, Grid
-from faying.study.build import build_all, checked_mesh, surfaces_of
-from faying.study.schema import Study
-from faying.study.surface import law_of
+from faying.study.case import checked_mesh, joint_law, materials_of, structure_of, surfaces_of
+from faying.study.study import Study
 from faying.study.sweep_files import Store, Sweep
 from faying.typing import Array
 
@@ -49,14 +49,12 @@ class Recipe:
         point = self.grid.point(index)
         laws = []
         for number, (joint, surface) in enumerate(zip(point.study.joints, point.surfaces, strict=True)):
-            spec = joint.law or point.study.law
-            key = (number, repr(spec), surface.D, surface.G, surface.scan_area)
+            choice = point.study.law_of(joint)
+            key = (number, repr(choice), repr(surface.rough and surface.rough.inputs))
             if key not in self._lately:
-                rough, other = self.pairs[number]
-                law = law_of(spec, surface, ContactPair(rough, RIGID if spec.counterbody == "rigid" else other))
                 if len(self._lately) >= LATELY:
                     self._lately.pop(next(iter(self._lately)))
-                self._lately[key] = JointLaw(model=law, tangential=joint.tangential, nu=rough.nu)
+                self._lately[key] = joint_law(joint, choice, surface, *self.pairs[number])
             laws.append(self._lately[key])
         return laws, point.forces, [joint.friction for joint in point.study.joints]
 
@@ -118,31 +116,36 @@ def sweep(
 ) -> Sweep:
     """Evaluate a study at all combinations of the values of `axes` and write them to `out` (NetCDF).
 
-    tolerance: relative error of a frequency that the bases are made for; jobs: processes on this machine; dask: address
-    of a Dask scheduler instead; report: called with a sentence and the points just done. What is done is kept beside
-    `out` until all is: a sweep that was interrupted goes on where it stopped. Raises InputError for axes that do not fit
-    the study and for leftovers of another sweep.
+    What is done is kept beside `out` until all is: a sweep that was interrupted goes on where it stopped.
+
+    Args:
+        study: a Study or the path of its TOML file.
+        axes: what varies, from `axis_of`.
+        out: the file to write, ending in .nc.
+        tolerance: relative error of a frequency that the bases are made for, 1e-10 to 1e-2.
+        jobs: processes on this machine.
+        dask: address of a Dask scheduler, in place of processes.
+        report: called with a stage and the number of points just done.
+
+    Returns:
+        The finished sweep.
+
+    Raises:
+        InputError: axes that do not fit the study, leftovers of another sweep.
     """
-    study = study if isinstance(study, Study) else Study.read(study)
-    tell = report or (lambda _text, _done: None)
-    if not 1e-10 <= tolerance <= 1e-2:
-        raise InputError(f"tolerance {tolerance:g} should lie between 1e-10 and 1e-2, for example 1e-6")
-    if study.damping == "viscous":
-        raise InputError("a sweep gives hysteretic loss; leave out modes.damping, or run studies one by one")
-    if any(joint.springs == "per-node" for joint in study.joints):
-        raise InputError('a sweep takes springs per area; leave out springs = "per-node", or run studies one by one')
-    tell("surface", 0)
+    study = Study.read(study)
+    report = report or (lambda _stage, _done: None)
+    _check(study, tolerance)
+    report("surface", 0)
     grid = Grid(study=study, surfaces=surfaces_of(study), axes=tuple(axes))
-    store = Store(Path(out), _fingerprint(study, axes, tolerance), grid.size, study.mode_count)
-    tell("mesh", 0)
+    store = Store(Path(out), fingerprint(study, axes, tolerance), grid.size, study.modes.count)
+    report("mesh", 0)
     try:
         mesh = checked_mesh(study)
-        structure = build_all(study, mesh=mesh, surfaces=grid.surfaces).structure
-        pairs = [
-            tuple(study.materials[study.parts[mesh.face_part[face]]] for face in joint.faces) for joint in study.joints
-        ]
+        materials = materials_of(study, mesh)
+        pairs = [tuple(materials[mesh.face_part[face]] for face in joint.faces) for joint in study.joints]
         recipe = Recipe(grid=grid, pairs=tuple(pairs))  # type: ignore[arg-type]
-        trainer = _Trainer(study, structure, recipe, tolerance, tell)
+        trainer = _Trainer(study, structure_of(study, mesh, grid.surfaces), recipe, tolerance, report)
         model = store.model()
         if model is None:
             model = trainer.trained().model
@@ -150,18 +153,33 @@ def sweep(
     except FayingError:
         store.forget()
         raise
-    tell("evaluations", int(store.done.sum()))
+    report("evaluations", int(store.done.sum()))
     todo = [i for i in grid.winding() if not store.done[i]]
     chunks = [todo[i : i + CHUNK] for i in range(0, len(todo), CHUNK)]
     for indices, rows in _each(model, recipe, chunks, jobs, dask):
         store.keep(indices, rows)
-        tell("evaluations", len(indices))
+        report("evaluations", len(indices))
+    model = _enriched(model, trainer, store, recipe)
+    return store.finish(grid, title=study.title, tolerance=tolerance, unknowns=mesh.unknowns, model=model)
+
+
+def _check(study: Study, tolerance: float) -> None:
+    if not 1e-10 <= tolerance <= 1e-2:
+        raise InputError(f"tolerance {tolerance:g} should lie between 1e-10 and 1e-2, for example 1e-6")
+    if study.modes.damping == "viscous":
+        raise InputError("a sweep gives hysteretic loss; leave out modes.damping, or run studies one by one")
+    if any(joint.springs == "per-node" for joint in study.joints):
+        raise InputError('a sweep takes springs per area; leave out springs = "per-node", or run studies one by one')
+
+
+def _enriched(model: ReducedModel, trainer: "_Trainer", store: Store, recipe: Recipe) -> ReducedModel:
+    """Train on the points whose estimate is far beyond the tolerance, until none is left or nothing is gained."""
     for _ in range(20):
-        far = np.flatnonzero(store.rows["estimate"] > FAR * tolerance)
+        far = np.flatnonzero(store.rows["estimate"] > FAR * trainer.tolerance)
         if not len(far):
             break
         worst = far[np.argsort(-store.rows["estimate"][far])][:4]
-        tell(f"enrichment: {len(far)} points", 0)
+        trainer.report(f"enrichment: {len(far)} points", 0)
         model = trainer.trained(worst.tolist()).model
         store.keep_model(model)
         before = store.rows["estimate"][far].copy()
@@ -169,16 +187,17 @@ def sweep(
             store.keep(indices, rows)
         if not np.any(store.rows["estimate"][far] < before):
             break
-    return store.finish(grid, title=study.title, tolerance=tolerance, unknowns=structure.mesh.unknowns, model=model)
+    return model
 
 
 class _Trainer:
     """Makes the bases when they are first needed, and enriches them at points of the grid."""
 
     def __init__(
-        self, study: Study, structure: Structure, recipe: Recipe, tolerance: float, tell: Callable[[str, int], None]
+        self, study: Study, structure: Structure, recipe: Recipe, tolerance: float, report: Callable[[str, int], None]
     ) -> None:
-        self.study, self.structure, self.recipe, self.tolerance, self.tell = study, structure, recipe, tolerance, tell
+        self.study, self.structure, self.recipe, self.tolerance = study, structure, recipe, tolerance
+        self.report = report
         self.reduction: Reduction | None = None
 
     def trained(self, more: Sequence[int] = ()) -> Reduction:
@@ -202,16 +221,16 @@ class _Trainer:
         """Bases from the first of the points that has an answer; raises what the first of them met where none has."""
         fault: FayingError | None = None
         for index in dict.fromkeys(points):
-            self.tell("reference solution", 0)
+            self.report("reference solution", 0)
             try:
                 laws, forces, _ = self.recipe.laws(index)
                 return Reduction.of(
                     self.structure,
                     laws,
                     forces,
-                    count=self.study.mode_count,
-                    shift_frequency=self.study.shift_frequency,
-                    solver=self.study.solver,
+                    count=self.study.modes.count,
+                    shift_frequency=self.study.modes.shift_frequency,
+                    solver=self.study.modes.solver,
                 )
             except FayingError as met:
                 fault = fault or met
@@ -222,7 +241,7 @@ class _Trainer:
         fault: FayingError | None = None
         start: Array | None = None
         for number, index in enumerate(points):
-            self.tell(f"{what} {number + 1}", 0)
+            self.report(f"{what} {number + 1}", 0)
             try:
                 start = reduction.train(*self.recipe.laws(index), tolerance=self.tolerance, start=start)
             except FayingError as met:  # a point without an answer is reported when it is evaluated
@@ -235,7 +254,7 @@ class _Trainer:
         """Look at points that were not trained on by their full residual; train on those that are not good enough."""
         poor = []
         for index in points:
-            self.tell("check", 0)
+            self.report("check", 0)
             try:
                 laws, forces, friction = self.recipe.laws(index)
                 found = reduction.model.equilibrium(laws, forces, friction)
@@ -260,7 +279,7 @@ def _each(
         try:
             distributed: Any = import_module("distributed")
         except ImportError:
-            raise InputError("--dask needs the package distributed: pip install 'faying[dask]'") from None
+            raise InputError("--dask needs the package distributed: add --extra dask to uv run") from None
         try:
             client = distributed.Client(dask, timeout="10s")
         except OSError as fault:
@@ -287,17 +306,10 @@ def _evaluate_there(there: tuple[ReducedModel, Recipe], indices: Sequence[int]) 
     return evaluate(*there, indices)
 
 
-def _fingerprint(study: Study, axes: Sequence[Axis], tolerance: float) -> str:
-    """What tells one sweep from another: the study, the bytes of its files, the axes and the tolerance."""
-    digest = hashlib.sha256(repr(study).encode())
-    files = [study.geometry.file]
-    specs = (study.surface, *(joint.surface for joint in study.joints))
-    files += [spec.scan for spec in specs if spec is not None and spec.scan is not None]
-    laws = (study.law, *(joint.law for joint in study.joints if joint.law is not None))
-    files += [law.table for law in laws if law.table is not None]
-    files += [law.heights.file for law in laws if law.heights is not None]
-    files += [joint.gap_map.file for joint in study.joints if joint.gap_map is not None]
-    for file in files:
-        digest.update(file.read_bytes())
+def fingerprint(study: Study, axes: Sequence[Axis], tolerance: float) -> str:
+    """What tells one sweep from another: Faying's version, the study, the bytes of its files, axes and tolerance."""
+    digest = hashlib.sha256(f"{__version__} {study!r}".encode())
+    for file in study.files:
+        digest.update(hashlib.sha256(file.read_bytes()).digest())
     digest.update(json.dumps([[a.key, list(a.values)] for a in axes] + [tolerance]).encode())
     return digest.hexdigest()

@@ -9,9 +9,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from faying import netcdf
 from faying.errors import InputError
 from faying.files import write_atomically
 from faying.joint.reduced import ReducedModel
+from faying.netcdf import Variable
 from faying.study.axes import Axis, Grid
 from faying.typing import Array
 
@@ -164,7 +166,7 @@ class Store:
             path=self.out,
             **shaped,
         )
-        write_atomically(self.out, lambda temporary: _netcdf(done, temporary))
+        _netcdf(done)
         shutil.rmtree(self.folder)
         return done
 
@@ -180,27 +182,21 @@ def _save(path: Path, arrays: dict[str, Any]) -> None:
 UNITS = {"frequencies": "Hz", "greatest_pressure": "Pa"}
 
 
-def _netcdf(sweep: Sweep, path: Path) -> None:
-    from scipy.io import netcdf_file
-
-    with netcdf_file(path, "w", version=2) as nc:
-        nc.title, nc.tolerance, nc.unknowns = sweep.title, sweep.tolerance, sweep.unknowns
-        nc.without_answer = "\n".join(f"{n} points: {text}" for text, n in sweep.reasons.items()) or " "
-        names = []
-        for axis in sweep.axes:
-            name = axis.key.replace(".", "_")
-            nc.createDimension(name, len(axis.values))
-            names.append(name)
-            variable = nc.createVariable(name, "f8" if axis.numeric else "i4", (name,))
-            variable[:] = np.array(axis.values) if axis.numeric else np.arange(len(axis.values))
-            variable.units = axis.unit or "1"
-            variable.key = axis.key
-            if not axis.numeric:
-                variable.names = "\n".join(map(str, axis.values))
-        nc.createDimension("mode", sweep.frequencies.shape[-1])
-        for column in Store.COLUMNS:
-            values = getattr(sweep, column)
-            dims = (*names, "mode") if column in ("frequencies", "loss_factors") else tuple(names)
-            variable = nc.createVariable(column, "f8", dims)
-            variable[:] = values
-            variable.units = UNITS.get(column, "1")
+def _netcdf(sweep: Sweep) -> Path:
+    """Write the file: one dimension for each axis, called after its key."""
+    names = tuple(axis.key.replace(".", "_") for axis in sweep.axes)
+    modes = np.arange(1, sweep.frequencies.shape[-1] + 1)
+    variables = {"mode": Variable(dims=("mode",), values=modes, long_name="elastic mode")}
+    for name, axis in zip(names, sweep.axes, strict=True):
+        values = np.array(axis.values, dtype=float if axis.numeric else object)
+        variables[name] = Variable(dims=(name,), values=values, unit=axis.unit or "1", long_name=axis.key)
+    for column in Store.COLUMNS:
+        dims = (*names, "mode") if column in ("frequencies", "loss_factors") else names
+        variables[column] = Variable(dims=dims, values=getattr(sweep, column), unit=UNITS.get(column, "1"))
+    attributes: dict[str, str | int | float] = {
+        "title": sweep.title or " ",
+        "tolerance": sweep.tolerance,
+        "unknowns": sweep.unknowns,
+        "without_answer": "\n".join(f"{n} points: {text}" for text, n in sweep.reasons.items()) or " ",
+    }
+    return netcdf.write(sweep.path, netcdf.Group(variables=variables, attributes=attributes))

@@ -10,14 +10,14 @@ from faying.measured.frf import FRF, Dof
 from faying.measured.modes import ModeSet
 from faying.measured.uff_write import write_uff
 from faying.result import Receptance, Result
-from faying.study.schema import ResponseSpec
+from faying.study.keys.solution import ResponseChoice
 from faying.typing import Array
 
 MOST_POINTS = 400
 TEST_FILES = ("test_modes.uff", "test_frf.uff")
 
 
-def check(spec: ResponseSpec | None) -> None:
+def check(spec: ResponseChoice | None) -> None:
     """Raise InputError for a response along a direction that no universal file can state."""
     for point, axis in (*spec.inputs, *spec.outputs) if spec else ():
         if _name(axis) is None:
@@ -34,13 +34,15 @@ def write(result: Result, folder: Path) -> list[Path]:
     outline. frf.uff: accelerance at the last preload, points numbered alike. Both lie in the frame of the model.
     test_modes.uff and test_frf.uff: the model at the preload of the test, in the test's numbers and frame.
     """
-    response = result.response[-1] if result.response else None
+    response = result.response
     labels = _labels(response)
     nodes = _spread(result.outline, [_nearest(result.outline, p) for p in labels])
     positions = {k + 1: tuple(float(v) for v in result.outline[node]) for k, node in enumerate(nodes)}
     positions |= {k: p for p, k in labels.items()}
     title = f"{result.title}, {result.loads[-1] / 1e3:g} kN"
-    modes = _modes(result.frequencies[-1], result.loss_factors[-1], result.shapes[-1][:, nodes], positions)
+    modes = _modes(
+        result.frequencies[-1], result.loss_factors[-1], result.shapes[-1][:, nodes].astype(float), positions
+    )
     made = [write_uff(folder / "modes.uff", modes, title=title)]
     if response is not None:
         made.append(write_uff(folder / "frf.uff", _frf(response, labels), title=title))
@@ -104,7 +106,7 @@ def _frf(response: Receptance, labels: dict[tuple[float, ...], int]) -> FRF:
     for side, known in ((response.outputs, rows), (response.inputs, columns)):
         for k, (point, axis) in enumerate(side):
             known.setdefault(Dof(labels[tuple(point)], _name(axis) or ""), k)
-    values = response.values[:, list(rows.values())][:, :, list(columns.values())].transpose(1, 2, 0)
+    values = response.values[-1][:, list(rows.values())][:, :, list(columns.values())].transpose(1, 2, 0)
     receptance = FRF(
         frequency=response.frequencies,
         values=values,

@@ -7,9 +7,10 @@ import numpy as np
 
 from faying.errors import InputError, NotConverged
 from faying.surface.convention import prefactor
-from faying.surface.estimate import clean_spectrum, with_intervals
+from faying.surface.estimators.base import with_intervals
+from faying.surface.estimators.spectral import clean_spectrum
 from faying.surface.form import Prepared, prepared
-from faying.surface.fractal import FractalFit, result
+from faying.surface.fractal import Facts, FractalFit, result
 from faying.surface.powerlaw import estimate_from, fit, fit_band, smearing, supported_band
 from faying.surface.scan import Scan
 from faying.surface.spectrum import Spectrum
@@ -22,10 +23,15 @@ from faying.typing import Array
 class Combined:
     """The equivalent surface of two unrelated rough surfaces.
 
-    `fit` holds D and G [m] with intervals from the sum of the two spectra over the wavelengths that both scans cover;
-    `Rq` [m], `m0` [m2], `m2` [-] and `m4` [1/m2] are the root of the sum of squares, and the sums (m2 and m4 at the
-    shortest wavelength of each scan: `spacings` [m] tells whether they belong together). `frequency` [1/m] and
-    `density` [m3] are the summed spectrum.
+    Args:
+        fit: D and G with intervals, from the sum of the two spectra over the wavelengths that both scans cover.
+        Rq: root of the sum of the squares of the rms heights [m].
+        m0: sum of the mean square heights [m2].
+        m2: sum of the mean square slopes [-], each at the shortest wavelength of its scan.
+        m4: sum of the mean square curvatures [1/m2], in the same way.
+        spacings: of the two scans [m]; they show whether m2 and m4 belong together.
+        frequency: of the summed spectrum [1/m].
+        density: of the summed spectrum [m3].
     """
 
     fit: FractalFit
@@ -45,33 +51,15 @@ def _whole(ready: Prepared) -> tuple[Spectrum, Array]:
     return s, s.density / smearing(s, s.frequency, law.slope)[0]
 
 
-def combine(
-    scan_a: Scan, scan_b: Scan, *, degree: int = 1, convention: str = "yan-komvopoulos", gamma: float = 1.5
-) -> Combined:
-    """Return the equivalent rough surface of two scans in contact: spectra and moments add, heights being unrelated.
-
-    The scans may differ in size and spacing; D and G come from the band that both cover. Both are levelled by a
-    polynomial of `degree`, spikes out. Raises InputError for anything but two areal scans, and for scans whose bands of
-    wavelength do not overlap by a factor of 4.
-    """
-    for name, scan in (("scan_a", scan_a), ("scan_b", scan_b)):
-        if not isinstance(scan, Scan):
-            raise InputError(f"{name} is a {type(scan).__name__}: two areal scans (faying.Scan) can be combined")
-    c = prefactor(convention, gamma)
-    ready_a, ready_b = prepared(scan_a, degree=degree), prepared(scan_b, degree=degree)
-    (sa, da), (sb, db) = _whole(ready_a), _whole(ready_b)
-    bands = [supported_band(s, resolution=r.scan.instrument.resolution) for s, r in ((sa, ready_a), (sb, ready_b))]
-    low, high = max(b[0] for b in bands), min(b[1] for b in bands)
-    if high < 4 * low:
-        raise InputError(
-            f"the scans share no band of wavelengths ({1 / high:.3g} .. {1 / low:.3g} m); measure both over like sizes"
-        )
+def _summed(a: tuple[Spectrum, Array], b: tuple[Spectrum, Array]) -> Spectrum:
+    """The sum of two spectra on the bins of the first, where the second reaches too."""
+    (sa, da), (sb, db) = a, b
     inside = (sa.frequency >= sb.frequency[0]) & (sa.frequency <= sb.frequency[-1])
     f = sa.frequency[inside]
     other = np.exp(np.interp(np.log(f), np.log(sb.frequency), np.log(np.maximum(db, 1e-300))))
     total = da[inside] + other
     spread_b = np.interp(f, sb.frequency, sb.spread)
-    joint = replace(
+    return replace(
         sa,
         frequency=f,
         density=total,
@@ -82,6 +70,45 @@ def combine(
         spread=np.sqrt((sa.spread[inside] * da[inside]) ** 2 + (spread_b * other) ** 2) / total,
         curvature=0.0,
     )
+
+
+def _check(**scans: object) -> None:
+    for name, scan in scans.items():
+        if not isinstance(scan, Scan):
+            raise InputError(f"{name} is a {type(scan).__name__}: two areal scans (faying.Scan) can be combined")
+
+
+def combine(
+    scan_a: Scan, scan_b: Scan, *, degree: int = 1, convention: str = "yan-komvopoulos", gamma: float = 1.5
+) -> Combined:
+    """Return the equivalent rough surface of two scans in contact: spectra and moments add, heights being unrelated.
+
+    Args:
+        scan_a: one surface; levelled, freed of spikes and filled in first.
+        scan_b: the other; its size and spacing may differ.
+        degree: of the polynomial that levels both, 0 to 8.
+        convention: of D and G, as in `fit_fractal`.
+        gamma: ratio of neighbouring frequencies in that series, above 1.
+
+    Returns:
+        Combined. D and G come from the wavelengths that both scans cover.
+
+    Raises:
+        InputError: for anything but two areal scans, and where the bands of wavelength do not overlap by a factor of 4.
+    """
+    _check(scan_a=scan_a, scan_b=scan_b)
+    c = prefactor(convention, gamma)
+    ready = prepared(scan_a, degree=degree), prepared(scan_b, degree=degree)
+    wholes = _whole(ready[0]), _whole(ready[1])
+    bands = [
+        supported_band(s, resolution=r.scan.instrument.resolution) for (s, _), r in zip(wholes, ready, strict=True)
+    ]
+    low, high = max(b[0] for b in bands), min(b[1] for b in bands)
+    if high < 4 * low:
+        raise InputError(
+            f"the scans share no band of wavelengths ({1 / high:.3g} .. {1 / low:.3g} m); measure both over like sizes"
+        )
+    joint = _summed(*wholes)
     try:
         law, notes = fit_band(joint, low, high)
     except NotConverged as fault:
@@ -94,27 +121,19 @@ def combine(
         misfit=law.misfit,
         notes=notes,
     )
-    parts = [summits(r) for r in (ready_a, ready_b)]
+    parts = [summits(r) for r in ready]
     m0, m2, m4 = (sum(getattr(p, name) for p in parts) for name in ("m0", "m2", "m4"))
     length = max(min(scan_a.size), min(scan_b.size))
+    missing, spikes = (sum(getattr(r, name) for r in ready) for name in ("missing", "spikes"))
+    Ra = float((2 / np.pi * m0) ** 0.5)
+    facts = Facts(Rq=m0**0.5, Ra=Ra, length=length, missing=missing, spikes=spikes, areal=True)
     return Combined(
-        fit=result(
-            estimate,
-            method="psd",
-            convention=convention,
-            gamma=gamma,
-            Rq=m0**0.5,
-            Ra=float((2 / np.pi * m0) ** 0.5),
-            length=length,
-            missing=ready_a.missing + ready_b.missing,
-            spikes=ready_a.spikes + ready_b.spikes,
-            areal=True,
-        ),
+        fit=result(estimate, facts, method="psd", convention=convention, gamma=gamma),
         Rq=m0**0.5,
         m0=m0,
         m2=m2,
         m4=m4,
         spacings=(max(scan_a.spacing), max(scan_b.spacing)),
-        frequency=f,
-        density=total,
+        frequency=joint.frequency,
+        density=joint.density,
     )

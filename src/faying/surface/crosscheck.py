@@ -66,9 +66,9 @@ def cross_check(
 ) -> list[Opinion]:
     """Read `path` by every other reader at hand and compare with `scan` (as returned by read_scan for that path).
 
-    Readers: surfalize where installed, SurfaceTopography for X3P (all other formats come through it in the first place),
-    NumPy for x,y,z text. `agrees` is None where the reader
-    does not know the format. Points must be equal, spacings within 0.1 %, the heights' standard deviation within 1 %.
+    Readers: surfalize where installed, SurfaceTopography for X3P (all other formats come through it in the first
+    place), NumPy for x,y,z text. `agrees` is None where the reader does not know the format. Points must be equal,
+    spacings within 0.1 %, the heights' standard deviation within 1 %.
     Raises InputError where no other reader is installed.
     """
     from faying.units import scale

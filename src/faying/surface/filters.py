@@ -7,7 +7,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.surface.form import Lines
-from faying.surface.scan import Profile, Scan
+from faying.surface.scan import Profile
 
 ALPHA = (log(2) / pi) ** 0.5  # half the amplitude passes at the cut-off
 
@@ -36,16 +36,3 @@ def gaussian_lowpass(scan: Lines, cutoff: float) -> Lines:
     weight = gaussian_filter(known.astype(float), sigma, mode="constant", truncate=6)
     heights = np.where(known, smooth / np.maximum(weight, 1e-300) + offset, np.nan)
     return cast("Lines", scan.with_heights(heights, f"Gaussian low-pass, cut-off {cutoff:.4g} m"))
-
-
-def gaussian_highpass(scan: Lines, cutoff: float) -> Lines:
-    """Return the waves shorter than `cutoff` [m]: the heights less `gaussian_lowpass`; errors as there."""
-    low = gaussian_lowpass(scan, cutoff)
-    return cast("Lines", scan.with_heights(scan.heights - low.heights, f"Gaussian high-pass, cut-off {cutoff:.4g} m"))
-
-
-def bandpass(scan: Scan, shortest: float, longest: float) -> Scan:
-    """Return the waves between `shortest` and `longest` [m] by two Gaussian filters (S- and L-filter)."""
-    if not shortest < longest:
-        raise InputError(f"shortest = {shortest}, longest = {longest}: the first is the smaller wavelength")
-    return gaussian_highpass(gaussian_lowpass(scan, shortest), longest)

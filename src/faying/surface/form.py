@@ -114,9 +114,9 @@ def _pyramid(values: Array, weight: Array) -> Array:
 def find_spikes(scan: Scan | Profile, threshold: float = SPIKE) -> Mask:
     """Mark single points that stand out from the median of their neighbours (5 points of a line, 3 x 3 of a scan).
 
-    A point is a spike where it differs from that median by more than `threshold` times the robust standard
-    deviation (1.4826 times the median of the absolute differences, or a quarter of the median step if more) and by more than `threshold`
-    times the mean difference in the 15 points (15 x 15) around it. Missing points are never spikes.
+    A point is a spike where it differs from that median by more than `threshold` times the robust standard deviation
+    (1.4826 times the median of the absolute differences, or a quarter of the median step if more) and by more than
+    `threshold` times the mean difference in the 15 points (15 x 15) around it. Missing points are never spikes.
     """
     from scipy.ndimage import median_filter, uniform_filter
 

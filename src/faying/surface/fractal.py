@@ -7,23 +7,11 @@ import numpy as np
 
 from faying.errors import FayingError, InputError
 from faying.surface.convention import NAMES, check_dimension, cut_factor, implied_Rq, prefactor
-from faying.surface.estimate import Estimate, by_fpenn, by_moments, by_psd
+from faying.surface.estimators.base import Estimate
+from faying.surface.estimators.table import ESTIMATORS, METHODS
 from faying.surface.form import Prepared, prepared
 from faying.surface.roughness import roughness
-from faying.surface.scaling import by_box, by_higuchi, by_mfdfa, by_roughness_length, by_structure
 from faying.surface.scan import Profile, Scan
-
-ESTIMATORS = {
-    "psd": by_psd,
-    "structure": by_structure,
-    "roughness-length": by_roughness_length,
-    "box": by_box,
-    "higuchi": by_higuchi,
-    "mfdfa": by_mfdfa,
-    "moments": by_moments,
-    "fpenn": by_fpenn,
-}
-METHODS = tuple(ESTIMATORS)
 
 
 @final
@@ -31,13 +19,23 @@ METHODS = tuple(ESTIMATORS)
 class FractalFit:
     """What one estimator says of a surface.
 
-    `D` is the dimension of the surface (2 < D < 3), `G` the fractal roughness [m] in the convention that `convention`
-    states; `D_interval` and `G_interval` [m] are 95 % intervals. `band` is the shortest and the longest wavelength
-    used [m]. `Rq` and `Ra` [m] are the scan's own after levelling, `implied_Rq` and `implied_Ra` [m] what D and G say
-    of all wavelengths up to the side of the scan (Ra for Gaussian heights). `noise` [m] is the rms of the white part
-    found, `misfit` the mean squared residual over its expectation (1 for a true power law). `missing` and `spikes`
-    count the points that were filled in. `bias` is what a self-test took off D, None without one. `warnings` says
-    what the user ought to know.
+    Args:
+        method: name of the estimator.
+        D: dimension of the surface [-]; 2 < D < 3 where the surface is fractal.
+        G: fractal roughness [m], in the convention that `convention` states.
+        D_interval: 95 % interval [-].
+        G_interval: 95 % interval [m].
+        band: shortest and longest wavelength used [m].
+        Rq: rms height of the levelled scan [m].
+        Ra: mean absolute height of the levelled scan [m].
+        implied_Rq: what D and G say of all wavelengths up to the side of the scan [m].
+        convention: of D and G, in words.
+        noise: rms of the white part found [m].
+        misfit: mean squared residual over its expectation [-], 1 for a true power law.
+        missing: missing points that were filled in.
+        spikes: spikes that were filled in.
+        bias: what a self-test took off D [-], None without one.
+        warnings: what the user ought to know.
     """
 
     method: str
@@ -63,6 +61,33 @@ class FractalFit:
         return float(self.implied_Rq * (2 / np.pi) ** 0.5)
 
 
+@final
+@dataclass(frozen=True, kw_only=True)
+class Facts:
+    """What prepared heights say by themselves: `Rq`, `Ra` and `length` [m] (the side), counts of filled points, and
+    whether they are a scan's (`areal`) or a profile's."""
+
+    Rq: float
+    Ra: float
+    length: float
+    missing: int
+    spikes: int
+    areal: bool
+
+    @classmethod
+    def of(cls, scan: Scan | Profile, ready: Prepared) -> "Facts":
+        """Return the facts of a scan and of its prepared heights."""
+        rough = roughness(ready)
+        return cls(
+            Rq=rough.Rq,
+            Ra=rough.Ra,
+            length=scan.length if isinstance(scan, Profile) else float(np.prod(scan.size)) ** 0.5,
+            missing=ready.missing,
+            spikes=ready.spikes,
+            areal=isinstance(scan, Scan),
+        )
+
+
 def fit_fractal(
     scan: Scan | Profile,
     method: str = "psd",
@@ -74,24 +99,37 @@ def fit_fractal(
     gamma: float = 1.5,
     self_test: bool = False,
 ) -> FractalFit:
-    """Estimate D and G of a scan (or a profile) with 95 % intervals.
+    """Estimate the fractal dimension D and the fractal roughness G of a scan or profile, with 95 % intervals.
 
-    `method`: "psd" (power law with white noise fitted to the spectrum; the recommended one), "moments" (ratio of the
-    spectral moments m2 and m0 over the band), "fpenn" (the paper's network on moments), "structure" (structure
-    function), "roughness-length", "higuchi", "mfdfa" (multifractal detrended fluctuation), "box" (box counting).
-    `band` = (shortest, longest) wavelength [m] to use instead of what the data support. The heights are levelled by a
-    polynomial of `degree`, spikes are taken out unless spikes=False, missing points filled in.
-    `convention` is "yan-komvopoulos" (the JK model's, c = 1) or "majumdar-bhushan" (c = 1/ln gamma). For a scan G is
-    that of the surface: the power of all directions together. For a profile it is the profile's own, as if cut across
-    parallel ridges; `convention` states the factor for a cut from an isotropic surface.
-    `self_test` corrects D and G by what the method makes of synthetic surfaces like this one; not with `band`.
-    Raises InputError for unknown methods, bands outside the scan, and heights that carry no statistic.
+    Args:
+        scan: heights [m] with their spacing; levelled, freed of spikes and filled in before the fit.
+        method: "psd" (power law with white noise fitted to the spectrum; recommended), "moments" (ratio of the
+            spectral moments m2 and m0), "fpenn" (a network on moments), "structure" (structure function),
+            "roughness-length", "higuchi", "mfdfa" (detrended fluctuation) or "box" (box counting).
+        band: shortest and longest wavelength [m] to use instead of what the data support, from twice the spacing to
+            the side.
+        degree: of the polynomial that levels the heights, 0 to 8.
+        spikes: take single outlying points out.
+        convention: "yan-komvopoulos" (that of the JK model, c = 1) or "majumdar-bhushan" (c = 1/ln gamma).
+        gamma: ratio of neighbouring frequencies in that series, above 1.
+        self_test: correct D and G by what the method finds on synthetic surfaces like this one; not with `band`.
+
+    Returns:
+        FractalFit. For a scan G is that of the surface, the power of all directions together. For a profile G is the
+        profile's own; `FractalFit.convention` states the factor for a cut from an isotropic surface.
+
+    Raises:
+        InputError: for unknown methods, bands outside the scan, and heights that carry no statistic.
+        NotConverged: where the method finds no power law.
+
+    Source:
+        Yan and Komvopoulos 1998, doi:10.1063/1.368536, eq. (5), for the meaning of D and G.
     """
     if not isinstance(scan, (Scan, Profile)):
         raise InputError(f"fit_fractal needs a Scan or a Profile, not {type(scan).__name__}; build faying.Scan first")
     if method not in ESTIMATORS:
         raise InputError(f"method = {method!r}; allowed: {', '.join(METHODS)}")
-    c = prefactor(convention, gamma)
+    prefactor(convention, gamma)
     if self_test:
         from faying.surface import selftest
 
@@ -99,26 +137,19 @@ def fit_fractal(
             raise InputError("self_test chooses the band itself; leave out band or self_test")
         return selftest.self_test(scan, method, degree=degree, spikes=spikes, convention=convention, gamma=gamma)
     ready = prepared(scan, degree=degree, spikes=spikes)
-    limits = _limits(ready, band)
+    estimate = _estimated(ready, method, _limits(ready, band), prefactor(convention, gamma))
+    return result(estimate, Facts.of(scan, ready), method=method, convention=convention, gamma=gamma)
+
+
+def _estimated(ready: Prepared, method: str, limits: tuple[float, float] | None, c: float) -> Estimate:
     try:
-        estimate = ESTIMATORS[method](ready, limits, c)
+        return ESTIMATORS[method].estimate(ready, limits, c)
     except FayingError:
         raise
     except (np.linalg.LinAlgError, FloatingPointError, ValueError, ZeroDivisionError, OverflowError) as fault:
-        raise InputError(f"{scan.source}: the heights obey no power law that {method} can fit ({fault})") from fault
-    rough = roughness(ready)
-    return result(
-        estimate,
-        method=method,
-        convention=convention,
-        gamma=gamma,
-        Rq=rough.Rq,
-        Ra=rough.Ra,
-        length=scan.length if isinstance(scan, Profile) else float(np.prod(scan.size)) ** 0.5,
-        missing=ready.missing,
-        spikes=ready.spikes,
-        areal=isinstance(scan, Scan),
-    )
+        raise InputError(
+            f"{ready.scan.source}: the heights obey no power law that {method} can fit ({fault})"
+        ) from fault
 
 
 def _limits(ready: Prepared, band: tuple[float, float] | None) -> tuple[float, float] | None:
@@ -137,23 +168,11 @@ def _limits(ready: Prepared, band: tuple[float, float] | None) -> tuple[float, f
 
 
 def result(
-    e: Estimate,
-    *,
-    method: str,
-    convention: str,
-    gamma: float,
-    Rq: float,
-    Ra: float,
-    length: float,
-    missing: int,
-    spikes: int,
-    areal: bool,
-    bias: float | None = None,
+    e: Estimate, facts: Facts, *, method: str, convention: str, gamma: float, bias: float | None = None
 ) -> FractalFit:
-    """Dress an estimate with what it implies over `length` [m], its convention in words, and its warnings."""
+    """Complete an estimate by what it implies over the side, its convention in words, and its warnings."""
     c = prefactor(convention, gamma)
     sound = 2 < e.D < 3 and 0 < e.G < float("inf")
-    implied = implied_Rq(e.D, e.G, length, c) if sound else float("nan")
     words = list(e.notes)
     if not 2 < e.D < 3:
         words.append(f"D = {e.D:.3f} lies outside 2 .. 3: over this band the surface is not fractal, G means nothing")
@@ -161,15 +180,7 @@ def result(
         words.append(f"D = {e.D:.3f} lies outside 2.1 .. 2.9, where G is very uncertain and the JK model is unproven")
     if e.misfit > 3:
         words.append(f"the spectrum strays from a power law (misfit {e.misfit:.1f}); the intervals are widened for it")
-    words += consistency(e.D, e.G, Rq=Rq, length=length, c=c) if sound else []
-    name = "Yan-Komvopoulos (JK), c = 1" if convention == NAMES[0] else f"Majumdar-Bhushan, c = 1/ln(gamma) = {c:.4f}"
-    text = name + "; S(f) = c G^(2Ds-2)/2 f^-(5-2Ds), D = Ds + 1"
-    text += "; G of the surface, power summed over all directions" if areal else "; G of the profile itself"
-    if sound and areal:
-        text += f" (a profile cut from it has {cut_factor(e.D):.3f} of its S)"
-    elif sound:
-        factor = cut_factor(e.D) ** (-1 / (2 * e.D - 4))
-        text += f" (times {factor:.3f} for the isotropic surface it is cut from, cut factor {cut_factor(e.D):.3f})"
+    words += consistency(e.D, e.G, Rq=facts.Rq, length=facts.length, c=c) if sound else []
     return FractalFit(
         method=method,
         D=e.D,
@@ -177,17 +188,30 @@ def result(
         D_interval=e.D_interval,
         G_interval=e.G_interval,
         band=e.band,
-        Rq=Rq,
-        Ra=Ra,
-        implied_Rq=implied,
-        convention=text,
+        Rq=facts.Rq,
+        Ra=facts.Ra,
+        implied_Rq=implied_Rq(e.D, e.G, facts.length, c) if sound else float("nan"),
+        convention=_in_words(e.D if sound else None, convention, c, facts.areal),
         noise=e.noise,
         misfit=e.misfit,
-        missing=missing,
-        spikes=spikes,
+        missing=facts.missing,
+        spikes=facts.spikes,
         bias=bias,
         warnings=tuple(words),
     )
+
+
+def _in_words(D: float | None, convention: str, c: float, areal: bool) -> str:
+    """The convention of D and G, with the factor between a surface and its profiles where D is sound."""
+    name = "Yan-Komvopoulos (JK), c = 1" if convention == NAMES[0] else f"Majumdar-Bhushan, c = 1/ln(gamma) = {c:.4f}"
+    text = name + "; S(f) = c G^(2Ds-2)/2 f^-(5-2Ds), D = Ds + 1"
+    text += "; G of the surface, power summed over all directions" if areal else "; G of the profile itself"
+    if D is None:
+        return text
+    if areal:
+        return text + f" (a profile cut from it has {cut_factor(D):.3f} of its S)"
+    factor = cut_factor(D) ** (-1 / (2 * D - 4))
+    return text + f" (times {factor:.3f} for the isotropic surface it is cut from, cut factor {cut_factor(D):.3f})"
 
 
 def consistency(D: float, G: float, *, Rq: float, length: float, c: float = 1.0) -> list[str]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from faying.errors import NotConverged
 from faying.surface.spectrum import Spectrum
-from faying.typing import Array
+from faying.typing import Array, Mask
 
 LINES = 8.0  # misfit and
 GAPS = 0.8  # rms of ln(density) about a parabola above which a spectrum is taken as one of separate lines
@@ -58,47 +58,80 @@ def smearing(spectrum: Spectrum, frequency: Array, slope: float) -> tuple[Array,
     return 1 + slope * (slope + 1) * x, (2 * slope + 1) * x
 
 
-def fit(spectrum: Spectrum, low: float, high: float, *, white: bool = True) -> PowerLaw:
-    """Fit the bins with low <= frequency <= high [1/m]. NotConverged where the band holds too few bins or no law."""
-    use = (spectrum.frequency >= low) & (spectrum.frequency <= high) & (spectrum.density > 0)
-    f, density, spread = spectrum.frequency[use], spectrum.density[use], spectrum.spread[use]
-    if len(f) < 5:
-        raise NotConverged(f"only {len(f)} bins of frequency lie in the band {low:.4g} .. {high:.4g} 1/m; widen it")
-    # work on the two-sided density (areal for a scan), where white noise is flat
-    shape = 2 * pi * f if spectrum.axes == 2 else np.full(len(f), 2.0)
-    y = density / shape
-    weight = 1 / spread**2
-    pivot = float(np.exp(np.average(np.log(f), weights=weight)))
-    x = np.log(f / pivot)
-    extra = 1.0 if spectrum.axes == 2 else 0.0
-    # start: weighted straight line in the logarithm
-    line = np.polyfit(x, np.log(y), 1, w=np.minimum(weight, np.median(weight)) ** 0.5)
-    theta = np.array([line[1], max(-line[0] - extra, 0.2), 0.0])
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Bins:
+    """The bins of one fit: frequency, ln(f/pivot), two-sided density y (white noise is flat in it), weight."""
 
-    def model(t: Array) -> tuple[Array, Array, Array]:
-        smear, dsmear = smearing(spectrum, f, t[1])
-        power = np.exp(t[0] - (t[1] + extra) * x)
+    spectrum: Spectrum
+    f: Array
+    x: Array
+    y: Array
+    weight: Array
+    shape: Array
+    pivot: float
+
+    @classmethod
+    def of(cls, spectrum: Spectrum, low: float, high: float) -> "_Bins":
+        use = (spectrum.frequency >= low) & (spectrum.frequency <= high) & (spectrum.density > 0)
+        f = spectrum.frequency[use]
+        if len(f) < 5:
+            raise NotConverged(f"only {len(f)} bins of frequency lie in the band {low:.4g} .. {high:.4g} 1/m; widen it")
+        shape = 2 * pi * f if spectrum.axes == 2 else np.full(len(f), 2.0)
+        weight = 1 / spectrum.spread[use] ** 2
+        pivot = float(np.exp(np.average(np.log(f), weights=weight)))
+        return cls(
+            spectrum=spectrum,
+            f=f,
+            x=np.log(f / pivot),
+            y=spectrum.density[use] / shape,
+            weight=weight,
+            shape=shape,
+            pivot=pivot,
+        )
+
+    @property
+    def extra(self) -> float:
+        """What the areal density falls by more than the radial one."""
+        return 1.0 if self.spectrum.axes == 2 else 0.0
+
+    def start(self) -> Array:
+        """A weighted straight line in the logarithm: ln level, slope, noise/level."""
+        w = np.minimum(self.weight, np.median(self.weight)) ** 0.5
+        line = np.polyfit(self.x, np.log(self.y), 1, w=w)
+        return np.array([line[1], max(-line[0] - self.extra, 0.2), 0.0])
+
+    def model(self, t: Array) -> tuple[Array, Array, Array]:
+        """Expected density, its derivatives (bins, 3), and the power law alone."""
+        smear, dsmear = smearing(self.spectrum, self.f, t[1])
+        power = np.exp(t[0] - (t[1] + self.extra) * self.x)
         level = np.exp(t[0])
         mu = power * smear + t[2] * level
-        jac = np.stack([mu, power * (dsmear - smear * x), np.full(len(f), level)], axis=1)
-        return mu, jac, power
+        return mu, np.stack([mu, power * (dsmear - smear * self.x), np.full(len(self.f), level)], axis=1), power
+
+    def scoring(self, t: Array, free: Mask) -> tuple[Array, Array, Array]:
+        """Expected density, relative derivatives by the free parameters, and their Fisher matrix."""
+        mu, jac, _ = self.model(t)
+        scaled = (jac / mu[:, None])[:, free]
+        return mu, scaled, scaled.T @ (self.weight[:, None] * scaled)
+
+
+def _scored(bins: _Bins, free: Mask) -> Array:
+    """Maximise the quasi-likelihood by Fisher scoring with step halving."""
+    theta = bins.start()
 
     def objective(t: Array) -> float:
         if abs(t[1]) > 20 or abs(t[0] - theta[0]) > 20:
             return float("inf")
-        mu, _, power = model(t)
+        mu, _, power = bins.model(t)
         if (mu <= 0.02 * power).any():
             return float("inf")
-        return float(np.sum(weight * (np.log(mu) + y / mu)))
+        return float(np.sum(bins.weight * (np.log(mu) + bins.y / mu)))
 
-    free = np.array([True, True, white])
     best = objective(theta)
     for _ in range(200):
-        mu, jac, _ = model(theta)
-        scaled = (jac / mu[:, None])[:, free]
-        fisher = scaled.T @ (weight[:, None] * scaled)
+        mu, scaled, fisher = bins.scoring(theta, free)
         step = np.zeros(3)
-        step[free] = np.linalg.lstsq(fisher, scaled.T @ (weight * (y / mu - 1)), rcond=1e-14)[0]
+        step[free] = np.linalg.lstsq(fisher, scaled.T @ (bins.weight * (bins.y / mu - 1)), rcond=1e-14)[0]
         length = 1.0
         while length > 1e-8:
             trial = theta + length * step
@@ -112,23 +145,29 @@ def fit(spectrum: Spectrum, low: float, high: float, *, white: bool = True) -> P
         theta, best = trial, value
         if gain < 1e-9 * max(1.0, abs(best)) and np.all(np.abs(step) < 1e-8):
             break
-    mu, jac, _ = model(theta)
-    scaled = (jac / mu[:, None])[:, free]
-    fisher = scaled.T @ (weight[:, None] * scaled)
+    return theta
+
+
+def fit(spectrum: Spectrum, low: float, high: float, *, white: bool = True) -> PowerLaw:
+    """Fit the bins with low <= frequency <= high [1/m]. NotConverged where the band holds too few bins or no law."""
+    bins = _Bins.of(spectrum, low, high)
+    free = np.array([True, True, white])
+    theta = _scored(bins, free)
+    mu, scaled, fisher = bins.scoring(theta, free)
     covariance = np.zeros((3, 3))
     covariance[np.ix_(free, free)] = np.linalg.pinv(fisher)
-    response = covariance[:, free] @ (scaled * weight[:, None]).T
+    response = covariance[:, free] @ (scaled * bins.weight[:, None]).T
     response[2] = np.exp(theta[0]) * (response[2] + theta[2] * response[0])
-    misfit = float(np.sum(weight * (y / mu - 1) ** 2)) / max(len(f) - int(free.sum()), 1)
+    misfit = float(np.sum(bins.weight * (bins.y / mu - 1) ** 2)) / max(len(bins.f) - int(free.sum()), 1)
     return PowerLaw(
-        log_level=float(theta[0]) + (np.log(2 * pi * pivot) if extra else np.log(2.0)),
+        log_level=float(theta[0]) + (np.log(2 * pi * bins.pivot) if bins.extra else np.log(2.0)),
         slope=float(theta[1]),
         noise=float(theta[2] * np.exp(theta[0])),
-        pivot=pivot,
+        pivot=bins.pivot,
         covariance=covariance * max(1.0, misfit),
         misfit=misfit,
-        used=f,
-        expected=mu * shape,
+        used=bins.f,
+        expected=mu * bins.shape,
         response=response,
     )
 

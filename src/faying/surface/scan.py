@@ -56,10 +56,15 @@ def _positive(value: Any, name: str) -> float:
 class Scan:
     """An areal scan.
 
-    `heights[iy, ix]` in metres (shape ny, nx; copied and made read-only), NaN where a point is missing; `spacing` =
-    (dx, dy) in metres. `source` names the file or recipe, `instrument` carries the limits that the file states,
-    `history` lists what was done to the heights since.
-    Raises InputError for heights that are not two-dimensional, infinite heights, and spacings that are not positive.
+    Args:
+        heights: heights[iy, ix] [m], shape (ny, nx), NaN where a point is missing; copied and made read-only.
+        spacing: (dx, dy) [m], positive.
+        source: the file or recipe.
+        instrument: the limits that the file states.
+        history: what was done to the heights since.
+
+    Raises:
+        InputError: for heights that are not two-dimensional or not finite, and spacings that are not positive.
     """
 
     heights: Array
@@ -93,6 +98,30 @@ class Scan:
         """Return the same scan with other heights [m] and one more line of history."""
         return replace(self, heights=heights, history=(*self.history, note) if note else self.history)
 
+    def cropped(self, share: float) -> Self:
+        """Return the middle part of the scan.
+
+        Args:
+            share: length of each side of the part over that of the scan, 0 < share <= 1.
+
+        Returns:
+            The part, of whole points; its spacing is that of the scan.
+
+        Raises:
+            InputError: for a share outside 0 .. 1, and where fewer than 5 points a side are left.
+        """
+        if not 0 < share <= 1:
+            raise InputError(f"share = {share}: the middle part has a share of each side above 0 and at most 1")
+        rows, columns = (max(1, round(share * n)) for n in self.shape)
+        if min(rows, columns) < 5:
+            raise InputError(
+                f"share = {share} of {self.shape} points leaves {rows} x {columns}; at least 5 points a side are "
+                "needed: give a larger share"
+            )
+        top, left = (self.shape[0] - rows) // 2, (self.shape[1] - columns) // 2
+        part = self.heights[top : top + rows, left : left + columns]
+        return self.with_heights(part, f"cropped to the middle {rows} x {columns} points")
+
     def profile(self, along: str, index: int) -> "Profile":
         """Return one row (along="x") or one column (along="y") as a Profile."""
         if along not in ("x", "y"):
@@ -113,7 +142,18 @@ class Scan:
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Profile:
-    """A line scan: `heights` in metres (shape n, NaN where missing), one `spacing` in metres; else as Scan."""
+    """A line scan.
+
+    Args:
+        heights: [m], shape (n,), NaN where a point is missing; copied and made read-only.
+        spacing: [m], positive.
+        source: the file or recipe.
+        instrument: the limits that the file states.
+        history: what was done to the heights since.
+
+    Raises:
+        InputError: as for Scan.
+    """
 
     heights: Array
     spacing: float

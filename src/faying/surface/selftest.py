@@ -7,9 +7,9 @@ import numpy as np
 
 from faying.errors import FayingError, NotConverged
 from faying.surface.convention import prefactor
-from faying.surface.estimate import Z95, with_intervals
+from faying.surface.estimators.base import Z95, with_intervals
 from faying.surface.form import prepared
-from faying.surface.fractal import FractalFit, fit_fractal, result
+from faying.surface.fractal import Facts, FractalFit, fit_fractal, result
 from faying.surface.lay import find_lay
 from faying.surface.scan import Profile, Scan
 from faying.surface.synthesize import spectral, with_missing, with_noise
@@ -127,7 +127,7 @@ def _corrected(
     leverage = 1 / len(rows) + (D - middle) ** 2 / float(np.sum((rows[:, 0] - middle) ** 2))
     widen = (float(student.ppf(0.975, free)) / Z95) ** 2 * (scale**2 + leverage)
     level = _log_density(raw, pivot, c) - shift
-    ready = prepared(scan, degree=options["degree"], spikes=options["spikes"])
+    facts = Facts.of(scan, prepared(scan, degree=options["degree"], spikes=options["spikes"]))
     estimate = with_intervals(
         D,
         level,
@@ -141,14 +141,9 @@ def _corrected(
     )
     return result(
         estimate,
+        facts,
         method=raw.method,
         convention=options["convention"],
         gamma=options["gamma"],
-        Rq=raw.Rq,
-        Ra=raw.Ra,
-        length=scan.length if isinstance(scan, Profile) else float(np.prod(scan.size)) ** 0.5,
-        missing=ready.missing,
-        spikes=ready.spikes,
-        areal=isinstance(scan, Scan),
         bias=raw.D - D,
     )

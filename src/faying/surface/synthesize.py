@@ -46,58 +46,81 @@ def spectral(
 ) -> Scan | Profile:
     """Return Gaussian heights whose spectrum is S(f) = c G^(2Ds-2)/2 f^-(5-2Ds) (see `faying.surface.convention`).
 
-    `shape` = (ny, nx) for a Scan, n for a Profile; `spacing` [m]. Give `G` [m], or `Rq` [m]: then the heights are
-    scaled to that rms value. `longest` and `shortest` [m] are the wavelengths where the law rolls off to a plateau and
-    where it ends (default: none; the Nyquist wavelength of the grid, in a circle). `lay` = (angle [rad], stretch >= 1):
-    wavelengths along the angle (from x) are longer by the stretch than those across it, the power of all directions
-    together being that of G.
-    `periodic` makes a surface that repeats over the window; else it is cut from one twice as long each way.
-    Raises InputError for D outside (2, 3), both or neither of G and Rq, and values that are not positive.
+    Args:
+        shape: (ny, nx) for a Scan, n for a Profile.
+        spacing: distance between points [m], one number or (dx, dy).
+        D: dimension of the surface, 2 < D < 3; a profile has Ds = D - 1.
+        G: fractal roughness [m]; or
+        Rq: rms height [m] to which the heights are scaled. Give one of the two.
+        longest: wavelength [m] beyond which the spectrum is a plateau (default: none).
+        shortest: wavelength [m] where the spectrum ends (default: the Nyquist wavelength, in a circle).
+        lay: (angle [rad] from x, stretch >= 1); wavelengths along the angle are longer by the stretch than those
+            across it, the power of all directions together being that of G.
+        periodic: repeat over the window; else the heights are cut from a surface twice as long each way.
+        convention: of G, as in `fit_fractal`.
+        gamma: ratio of neighbouring frequencies in that series, above 1.
+        seed: of the random phases, or a generator.
+
+    Returns:
+        Scan, or Profile where `shape` is one number.
+
+    Raises:
+        InputError: for D outside (2, 3), both or neither of G and Rq, and values that are not positive.
     """
     check_dimension(D)
     counts, steps = _grid(shape, spacing)
-    if (G is None) == (Rq is None):
-        raise InputError("give either G (fractal roughness, metres) or Rq (rms height, metres), one of them")
+    _scale_of(G, Rq)
     for name, value in (("G", G), ("Rq", Rq), ("longest", longest), ("shortest", shortest)):
         if value is not None and not 0 < value < float("inf"):
             raise InputError(f"{name} = {value}: give a positive length in metres")
-    angle, stretch = lay if lay is not None else (0.0, 1.0)
-    if not 1 <= stretch < float("inf"):
-        raise InputError(f"lay = {lay!r}: give (angle in radians, stretch), the stretch 1 or more")
-    rng = np.random.default_rng(seed)
-    total = counts if periodic else tuple(2 * n for n in counts)
-    from scipy import fft
-
-    frequencies = [np.fft.fftfreq(n, d) for n, d in zip(total[:-1], steps[:-1], strict=True)]
-    frequencies.append(np.fft.rfftfreq(total[-1], steps[-1]))
     c = prefactor(convention, gamma)
     level = density(D, G, c) if G is not None else density(D, G_from_Rq(D, 1e-6, 1e-3, c), c)
-    exponent = 7 - 2 * D
-    uneven = 1.0
-    if len(counts) == 2:
-        # mean over directions, so that the power of all directions together is that of G
-        turn = (np.arange(720) + 0.5) * pi / 720
-        uneven = float(np.mean((stretch * np.cos(turn) ** 2 + np.sin(turn) ** 2 / stretch) ** (D - 4)))
-        fy, fx = frequencies[0][:, None], frequencies[1][None, :]
-        along, across = fx * cos(angle) + fy * sin(angle), -fx * sin(angle) + fy * cos(angle)
-        f = np.hypot(along * stretch**0.5, across / stretch**0.5)
-        real = np.hypot(fx, fy)
-    else:
-        f = real = frequencies[0]
+    total = counts if periodic else tuple(2 * n for n in counts)
+    f, real, uneven = _frequencies(total, steps, D, lay)
     cut = 0.5 / max(steps) if shortest is None else 1 / shortest
     effective = np.maximum(f, 1 / longest) if longest is not None else f
     with np.errstate(divide="ignore"):
-        power = level / uneven * effective**-exponent / (2 * pi * effective if len(counts) == 2 else 2.0)
+        power = level / uneven * effective ** -(7 - 2 * D) / (2 * pi * effective if len(counts) == 2 else 2.0)
     power[(real > cut * (1 + 1e-12)) | (real == 0)] = 0.0
-    noise = rng.standard_normal(total)
-    area = float(np.prod(steps))
-    z = fft.irfftn(fft.rfftn(noise) * np.sqrt(power / area), total)
+    z = _coloured(power, total, steps, np.random.default_rng(seed))
     z = np.ascontiguousarray(z[tuple(slice(0, n) for n in counts)])
     z -= z.mean()
     if Rq is not None:
         z *= Rq / z.std()
-    what = f"G {G:.4g} m" if G is not None else f"Rq {Rq:.4g} m"
-    return _output(z, steps, f"spectral surface, D {D}, {what}, {convention}")
+    return _output(z, steps, f"spectral surface, D {D}, {_scale_of(G, Rq)}, {convention}")
+
+
+def _scale_of(G: float | None, Rq: float | None) -> str:
+    """The scale of the heights in words; InputError unless one of the two is given."""
+    if (G is None) == (Rq is None):
+        raise InputError("give either G (fractal roughness, metres) or Rq (rms height, metres), one of them")
+    return f"G {G:.4g} m" if G is not None else f"Rq {Rq:.4g} m"
+
+
+def _frequencies(
+    total: tuple[int, ...], steps: tuple[float, ...], D: float, lay: tuple[float, float] | None
+) -> tuple[Array, Array, float]:
+    """Frequencies [1/m] of the half-plane as the spectrum sees them (stretched by the lay) and as they are, and the
+    mean over directions that keeps the power of all directions together that of G."""
+    angle, stretch = lay if lay is not None else (0.0, 1.0)
+    if not 1 <= stretch < float("inf"):
+        raise InputError(f"lay = {lay!r}: give (angle in radians, stretch), the stretch 1 or more")
+    last = np.asarray(np.fft.rfftfreq(total[-1], steps[-1]), np.float64)
+    if len(total) == 1:
+        return last, last, 1.0
+    turn = (np.arange(720) + 0.5) * pi / 720
+    uneven = float(np.mean((stretch * np.cos(turn) ** 2 + np.sin(turn) ** 2 / stretch) ** (D - 4)))
+    fy, fx = np.asarray(np.fft.fftfreq(total[0], steps[0]), np.float64)[:, None], last[None, :]
+    along, across = fx * cos(angle) + fy * sin(angle), -fx * sin(angle) + fy * cos(angle)
+    return np.hypot(along * stretch**0.5, across / stretch**0.5), np.hypot(fx, fy), uneven
+
+
+def _coloured(power: Array, total: tuple[int, ...], steps: tuple[float, ...], rng: np.random.Generator) -> Array:
+    """White noise given the two-sided power [m4 or m3]."""
+    from scipy import fft
+
+    area = float(np.prod(steps))
+    return np.asarray(fft.irfftn(fft.rfftn(rng.standard_normal(total)) * np.sqrt(power / area), total))
 
 
 def weierstrass_mandelbrot(
@@ -113,14 +136,31 @@ def weierstrass_mandelbrot(
     convention: str = "yan-komvopoulos",
     seed: int | np.random.Generator | None = 0,
 ) -> Scan | Profile:
-    """Return the Weierstrass-Mandelbrot surface of Yan and Komvopoulos (doi:10.1063/1.368536, eq. 5), or its profile.
+    """Return the Weierstrass-Mandelbrot surface of Yan and Komvopoulos, or its profile.
 
     z = L (G/L)^(D-2) (ln gamma / M)^(1/2) sum_m sum_n gamma^((D-3)n) {cos phi_mn - cos[2 pi gamma^n r/L cos(theta -
-    pi m/M) + phi_mn]}, L = `length` [m] (default: the longest side), M = `ridges`, n from 0 to
-    log(L/shortest)/log(gamma), `shortest` [m] twice the coarser spacing unless given. A profile (shape an int) has one
-    ridge, and `D` = Ds + 1 still. Phases are uniform from `seed`, all zero with seed=None.
-    convention="majumdar-bhushan" leaves out the factor (ln gamma)^(1/2).
-    Raises InputError for D outside (2, 3), gamma <= 1, and lengths that are not positive.
+    pi m/M) + phi_mn]}, n from 0 to log(L/shortest)/log(gamma).
+
+    Args:
+        shape: (ny, nx) for a Scan, n for a Profile.
+        spacing: distance between points [m], one number or (dx, dy).
+        D: dimension of the surface, 2 < D < 3; a profile has Ds = D - 1.
+        G: fractal roughness [m].
+        gamma: ratio of neighbouring frequencies, above 1.
+        ridges: M, the number of directions, 1 or more; a profile has one.
+        length: L [m], the longest wavelength (default: the longest side).
+        shortest: shortest wavelength [m] (default: twice the coarser spacing).
+        convention: "majumdar-bhushan" leaves out the factor (ln gamma)^(1/2).
+        seed: of the uniform phases, or a generator; None sets all phases to zero.
+
+    Returns:
+        Scan, or Profile where `shape` is one number.
+
+    Raises:
+        InputError: for D outside (2, 3), gamma <= 1, and lengths that are not positive.
+
+    Source:
+        doi:10.1063/1.368536, eq. (5).
     """
     check_dimension(D)
     c = prefactor(convention, gamma)
@@ -132,28 +172,28 @@ def weierstrass_mandelbrot(
             f"G = {G}, length = {L}, shortest = {end}, ridges = {ridges}: all positive, shortest below length"
         )
     M = ridges if len(counts) == 2 else 1
-    terms = floor(log(L / end) / log(gamma) + 1e-12) + 1
-    n = np.arange(terms)
+    n = np.arange(floor(log(L / end) / log(gamma) + 1e-12) + 1)
     rng = np.random.default_rng(seed if seed is not None else 0)
-    phase = rng.uniform(0, 2 * pi, (M, terms)) if seed is not None else np.zeros((M, terms))
-    # eq. (5); c ln(gamma) is ln(gamma) for Yan-Komvopoulos and 1 for Majumdar-Bhushan
-    amplitude = L * (G / L) ** (D - 2) * (c * log(gamma) / M) ** 0.5 * gamma ** ((D - 3) * n)
-    k = (2 * pi / L * gamma**n)[None, :]
-    direction = pi * np.arange(M)[:, None] / M
+    phase = rng.uniform(0, 2 * pi, (M, len(n))) if seed is not None else np.zeros((M, len(n)))
+    # c ln(gamma) is ln(gamma) for Yan-Komvopoulos and 1 for Majumdar-Bhushan
+    amplitude = L * (G / L) ** (D - 2) * (c * log(gamma) / M) ** 0.5 * gamma ** ((D - 3) * n)  # eq. (5)
+    k = np.asarray(2 * pi / L * gamma**n, np.float64)
+    z = float(np.sum(amplitude * np.cos(phase))) - _waves(k, amplitude, phase, counts, steps)
+    what = "surface" if len(counts) == 2 else "profile"
+    return _output(z, steps, f"Weierstrass-Mandelbrot {what}, D {D}, G {G:.4g} m, gamma {gamma}, {convention}")
+
+
+def _waves(k: Array, amplitude: Array, phase: Array, counts: tuple[int, ...], steps: tuple[float, ...]) -> Array:
+    """Sum of cosines of wave numbers k [rad/m] in as many directions as `phase` (directions, waves) has rows."""
+    weight, shift = np.broadcast_to(amplitude, phase.shape).ravel(), phase.ravel()
     x = np.arange(counts[-1]) * steps[-1]
-    constant = float(np.sum(amplitude * np.cos(phase)))
-    weight = np.broadcast_to(amplitude, (M, terms)).ravel()
-    shift = phase.ravel()
-    kx = (k * np.cos(direction)).ravel() if len(counts) == 2 else k.ravel()
     if len(counts) == 1:
-        z = constant - np.cos(np.outer(x, kx) + shift) @ weight
-        return _output(z, steps, f"Weierstrass-Mandelbrot profile, D {D}, G {G:.4g} m, gamma {gamma}, {convention}")
-    y = np.arange(counts[0]) * steps[0]
-    ky = (k * np.sin(direction)).ravel()
+        return np.asarray(np.cos(np.outer(x, k) + shift) @ weight)
+    direction = pi * np.arange(len(phase))[:, None] / len(phase)
+    kx, ky = (k * np.cos(direction)).ravel(), (k * np.sin(direction)).ravel()
     # cos(a + b) = cos a cos b - sin a sin b makes the double sum two matrix products
-    a, b = np.outer(y, ky) + shift, np.outer(kx, x)
-    z = constant - (np.cos(a) * weight) @ np.cos(b) + (np.sin(a) * weight) @ np.sin(b)
-    return _output(z, steps, f"Weierstrass-Mandelbrot surface, D {D}, G {G:.4g} m, gamma {gamma}, {convention}")
+    a, b = np.outer(np.arange(counts[0]) * steps[0], ky) + shift, np.outer(kx, x)
+    return np.asarray((np.cos(a) * weight) @ np.cos(b) - (np.sin(a) * weight) @ np.sin(b))
 
 
 def with_noise(scan: Scan, *, rms: float, seed: int = 0) -> Scan:

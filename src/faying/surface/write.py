@@ -15,10 +15,23 @@ def write_scan(
     xy_unit: str | None = None,
     z_unit: str | None = None,
 ) -> Path:
-    """Write a scan as X3P (suffix .x3p) or as text (.csv, .txt, .xyz), and return the path.
+    """Write a scan as X3P (suffix .x3p) or as text (.csv, .txt, .xyz).
 
-    X3P heights take 4 bytes ("F"), 8 ("D"), or integer steps of 2 or 4 bytes ("I", "L"). Text needs both units and
-    holds no heading. Raises InputError for other suffixes, precisions and missing units.
+    Args:
+        scan: what to write.
+        path: of the file; its suffix decides the format.
+        precision: of X3P heights: 4 bytes ("F"), 8 ("D"), or integer steps of 2 or 4 bytes ("I", "L").
+        xy_unit: unit of x and y in text, for example "mm".
+        z_unit: unit of the heights in text, for example "um".
+
+    Returns:
+        The path.
+
+    Raises:
+        InputError: for other suffixes and precisions, missing units, and where the file cannot be written.
+
+    Source:
+        ISO 25178-72 (X3P).
     """
     from faying.units import scale
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from faying.errors import InputError, ReadError
 from faying.surface.scan import Instrument, Profile, Scan
+from faying.typing import Array
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,6 +26,36 @@ NUMBERS = {"I": "<i2", "L": "<i4", "F": "<f4", "D": "<f8"}
 LARGEST_XML = 64 * 2**20
 LARGEST_HEIGHTS = 4 * 2**30
 NAMESPACE = "http://www.opengps.eu/2008/ISO5436_2"
+TEMPLATE = """<?xml version="1.0" encoding="UTF-8" standalone="no" ?>
+<p:ISO5436_2 xmlns:p="{namespace}" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" \
+xsi:schemaLocation="{namespace} {namespace}/ISO5436_2.xsd">
+  <Record1>
+    <Revision>ISO5436 - 2000</Revision>
+    <FeatureType>{kind}</FeatureType>
+    <Axes>
+      <CX><AxisType>I</AxisType><DataType>D</DataType><Increment>{dx!r}</Increment><Offset>0</Offset></CX>
+      <CY><AxisType>I</AxisType><DataType>D</DataType><Increment>{dy!r}</Increment><Offset>0</Offset></CY>
+      <CZ><AxisType>A</AxisType><DataType>{precision}</DataType>{z_axis}</CZ>
+    </Axes>
+  </Record1>
+  <Record2>
+    <Date>1980-01-01T00:00:00</Date>
+    <Instrument>\
+<Manufacturer>none</Manufacturer><Model>Faying</Model><Serial>0</Serial><Version>0</Version></Instrument>
+    <CalibrationDate>1980-01-01T00:00:00</CalibrationDate>
+    <ProbingSystem><Type>Software</Type><Identification>Faying</Identification></ProbingSystem>
+    <Comment>{comment}</Comment>
+  </Record2>
+  <Record3>
+    <MatrixDimension><SizeX>{nx}</SizeX><SizeY>{ny}</SizeY><SizeZ>1</SizeZ></MatrixDimension>
+    <DataLink>
+      <PointDataLink>bindata/data.bin</PointDataLink>
+      <MD5ChecksumPointData>{digest}</MD5ChecksumPointData>
+    </DataLink>
+  </Record3>
+  <Record4><ChecksumFile>md5checksum.hex</ChecksumFile></Record4>
+</p:ISO5436_2>
+"""
 
 
 def _member(archive: zipfile.ZipFile, name: str, limit: int, path: Path) -> bytes:
@@ -177,61 +208,41 @@ def write(scan: Scan | Profile, path: Path, *, precision: str = "F") -> None:
     """
     if precision not in NUMBERS:
         raise InputError(f'precision = {precision!r}; allowed: "F", "D", "I", "L"')
-    z = scan.heights
-    ny, nx = z.shape if z.ndim == 2 else (1, len(z))
-    step, offset = 1.0, 0.0
-    if precision in "IL":
-        if np.isnan(z).any():
-            raise InputError("integer heights cannot mark missing points; write the scan with precision F or D")
-        span = np.iinfo(np.dtype(NUMBERS[precision])).max
-        offset = float(z.min() + z.max()) / 2
-        step = max(float(np.ptp(z)) / (2 * span - 2), 1e-300)
-        data = np.rint((z - offset) / step).astype(NUMBERS[precision]).tobytes()
-    else:
-        data = z.astype(NUMBERS[precision]).tobytes()
+    data, z_axis = _packed(scan.heights, precision)
     dx, dy = scan.spacing if isinstance(scan, Scan) else (scan.spacing, scan.spacing)
-    digest = hashlib.md5(data, usedforsecurity=False).hexdigest().upper()
-    z_axis = f"<Increment>{step!r}</Increment><Offset>{offset!r}</Offset>" if precision in "IL" else ""
-    xml = f"""<?xml version="1.0" encoding="UTF-8" standalone="no" ?>
-<p:ISO5436_2 xmlns:p="{NAMESPACE}" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" \
-xsi:schemaLocation="{NAMESPACE} {NAMESPACE}/ISO5436_2.xsd">
-  <Record1>
-    <Revision>ISO5436 - 2000</Revision>
-    <FeatureType>{"SUR" if z.ndim == 2 else "PRF"}</FeatureType>
-    <Axes>
-      <CX><AxisType>I</AxisType><DataType>D</DataType><Increment>{dx!r}</Increment><Offset>0</Offset></CX>
-      <CY><AxisType>I</AxisType><DataType>D</DataType><Increment>{dy!r}</Increment><Offset>0</Offset></CY>
-      <CZ><AxisType>A</AxisType><DataType>{precision}</DataType>{z_axis}</CZ>
-    </Axes>
-  </Record1>
-  <Record2>
-    <Date>1980-01-01T00:00:00</Date>
-    <Instrument><Manufacturer>none</Manufacturer><Model>Faying</Model><Serial>0</Serial><Version>0</Version></Instrument>
-    <CalibrationDate>1980-01-01T00:00:00</CalibrationDate>
-    <ProbingSystem><Type>Software</Type><Identification>Faying</Identification></ProbingSystem>
-    <Comment>{_escape(scan.source)}</Comment>
-  </Record2>
-  <Record3>
-    <MatrixDimension><SizeX>{nx}</SizeX><SizeY>{ny}</SizeY><SizeZ>1</SizeZ></MatrixDimension>
-    <DataLink>
-      <PointDataLink>bindata/data.bin</PointDataLink>
-      <MD5ChecksumPointData>{digest}</MD5ChecksumPointData>
-    </DataLink>
-  </Record3>
-  <Record4><ChecksumFile>md5checksum.hex</ChecksumFile></Record4>
-</p:ISO5436_2>
-""".encode()
+    xml = TEMPLATE.format(
+        namespace=NAMESPACE,
+        kind="SUR" if isinstance(scan, Scan) else "PRF",
+        dx=dx,
+        dy=dy,
+        precision=precision,
+        z_axis=z_axis,
+        comment=_escape(scan.source),
+        nx=scan.heights.shape[-1],
+        ny=len(scan.heights) if isinstance(scan, Scan) else 1,
+        digest=hashlib.md5(data, usedforsecurity=False).hexdigest().upper(),
+    ).encode()
     total = hashlib.md5(xml, usedforsecurity=False).hexdigest()
+    members = {"main.xml": xml, "bindata/data.bin": data, "md5checksum.hex": f"{total} *main.xml\n".encode()}
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-        for name, content in (
-            ("main.xml", xml),
-            ("bindata/data.bin", data),
-            ("md5checksum.hex", f"{total} *main.xml\n".encode()),
-        ):
+        for name, content in members.items():
             # a fixed date keeps the file the same from run to run
             info = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
             info.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(info, content)
+
+
+def _packed(z: Array, precision: str) -> tuple[bytes, str]:
+    """The heights as bytes, and the z axis's increment and offset where they are whole numbers."""
+    if precision not in "IL":
+        return z.astype(NUMBERS[precision]).tobytes(), ""
+    if np.isnan(z).any():
+        raise InputError("integer heights cannot mark missing points; write the scan with precision F or D")
+    span = np.iinfo(np.dtype(NUMBERS[precision])).max
+    offset = float(z.min() + z.max()) / 2
+    step = max(float(np.ptp(z)) / (2 * span - 2), 1e-300)
+    data = np.rint((z - offset) / step).astype(NUMBERS[precision]).tobytes()
+    return data, f"<Increment>{step!r}</Increment><Offset>{offset!r}</Offset>"
 
 
 def _escape(text: str) -> str:

@@ -4,8 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.asperity_fe.cases import AsperityCase
-from faying.asperity_fe.drive import AsperityResult
+from faying.asperity_fe.drive import AsperityCase, AsperityResult
 from faying.materials import RIGID, ContactPair
 from faying.output.figures.law import figure
 

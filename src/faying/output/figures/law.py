@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from faying.contact.law import Response
+from faying.output.figures.save import new_figure
 
 PANELS = (
     ("area", "real area / nominal area", 1.0),
@@ -15,26 +16,13 @@ PANELS = (
 
 def figure(columns: int, rows: int = 1, *, width: float = 4.4, height: float = 3.6) -> Any:
     """Return a figure with rows x columns axes that needs no display."""
-    from matplotlib.figure import Figure
-
-    fig = Figure(figsize=(width * columns, height * rows), layout="constrained")
+    fig = new_figure(width * columns, height * rows)
     fig.subplots(rows, columns, squeeze=False)
     return fig
 
 
-def save(fig: Any, path: str) -> None:
-    """Write a figure; the ending of `path` says the kind (png, pdf, svg). InputError for others."""
-    from faying.errors import InputError
-
-    kinds = fig.canvas.get_supported_filetypes()
-    ending = str(path).rpartition(".")[2].lower()
-    if ending not in kinds:
-        raise InputError(f"{path}: figures can be written as {', '.join(sorted(kinds))}; end the name in one of them")
-    fig.savefig(path, dpi=150)
-
-
 def panel(ax: Any, responses: Mapping[str, Response], name: str, label: str, scale: float = 1.0) -> Any:
-    """Draw one quantity of the laws that have it into `ax`; thin and dotted where a law leaves its ground."""
+    """Draw one quantity of the laws that have it into `ax`; thin and dotted where a law leaves its validity range."""
     import numpy as np
     from matplotlib import colormaps
 
@@ -71,6 +59,6 @@ def curves(responses: Mapping[str, Response]) -> Any:
             loc="outside lower center",
             ncols=4,
             frameon=False,
-            title="thick: on the model's ground; thin and dotted: outside it",
+            title="thick: within the validity range; thin and dotted: outside it",
         )
     return fig

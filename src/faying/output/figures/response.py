@@ -4,21 +4,26 @@ from typing import Any
 
 import numpy as np
 
+from faying.output.figures.save import new_figure
 from faying.result import Result
 
 
 def _curves(ax: Any, result: Result, output: int, input: int, of: Any) -> None:
-    for k, (load, one) in enumerate(zip(result.loads, result.response, strict=True)):
-        values = -((2 * np.pi * one.frequencies) ** 2) * one.values[:, output, input]
-        ax.plot(one.frequencies, of(values), color=f"C{k % 10}", lw=1.1, label=f"{load / 1e3:g} kN")
-    ax.set(xlabel="frequency [Hz]", xlim=(result.response[0].frequencies[0], result.response[0].frequencies[-1]))
+    response = result.response
+    assert response is not None
+    f = response.frequencies
+    for k, (load, receptance) in enumerate(zip(result.loads, response.values, strict=True)):
+        values = -((2 * np.pi * f) ** 2) * receptance[:, output, input]
+        ax.plot(f, of(values), color=f"C{k % 10}", lw=1.1, label=f"{load / 1e3:g} kN")
+    ax.set(xlabel="frequency [Hz]", xlim=(f[0], f[-1]))
     ax.grid(alpha=0.3)
 
 
 def amplitude(ax: Any, result: Result, output: int = 0, input: int = 0) -> Any:
     """Draw the size of the accelerance between an output and an input of the response, at every preload."""
     _curves(ax, result, output, input, np.abs)
-    (at, along), (place, push) = result.response[0].outputs[output], result.response[0].inputs[input]
+    assert result.response is not None
+    (at, along), (place, push) = result.response.outputs[output], result.response.inputs[input]
     ax.set(yscale="log", ylabel="|accelerance| [m/s²/N]")
     ax.set_title(f"{_words(at, along)} / {_words(place, push)}", fontsize=9)
     ax.legend(fontsize=7)
@@ -49,10 +54,9 @@ def _words(point: Any, axis: Any) -> str:
 
 def responses(result: Result, most: int = 4) -> Any:
     """Return a figure of the first pairs of output and input: amplitude, with the phase below it."""
-    from matplotlib.figure import Figure
-
-    pairs = list(np.ndindex(*result.response[0].values.shape[1:]))[:most]
-    fig = Figure(figsize=(8.0, 4.6 * len(pairs)), layout="constrained")
+    assert result.response is not None
+    pairs = list(np.ndindex(*result.response.values.shape[2:]))[:most]
+    fig = new_figure(8.0, 4.6 * len(pairs))
     axes = fig.subplots(2 * len(pairs), 1, squeeze=False, height_ratios=[2, 1] * len(pairs))[:, 0]
     for k, (o, i) in enumerate(pairs):
         amplitude(axes[2 * k], result, o, i)
@@ -85,11 +89,9 @@ def mac_between_loads(ax: Any, result: Result, load: int = -1) -> Any:
 
 def macs(result: Result, most: int = 4) -> Any:
     """Return a figure of the MAC between the first preload and the last of the others."""
-    from matplotlib.figure import Figure
-
     loads = range(1, len(result.loads))[-most:]
-    size = 1.8 + 0.32 * len(result.tied)
-    fig = Figure(figsize=(size * len(loads), size * 0.85), layout="constrained")
+    size = 1.8 + 0.32 * len(result.bonded)
+    fig = new_figure(size * len(loads), size * 0.85)
     for column, load in enumerate(loads):
         mac_between_loads(fig.add_subplot(1, len(loads), column + 1), result, load)
     return fig

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from faying.output.figures.save import new_figure
 from faying.result import Result
 
 
@@ -34,11 +35,11 @@ def pressure_map(ax: Any, result: Result, load: int = -1, joint: int = 0) -> Any
 
 
 def frequencies(ax: Any, result: Result, modes: int = 8) -> Any:
-    """Draw frequency against preload, each mode relative to its tied value; free bounds lie far below and are listed."""
+    """Draw frequency against preload, each mode relative to its bonded value; free bounds lie far below and are listed."""
     load = result.loads * 1e-3
-    count = min(modes, len(result.tied))
+    count = min(modes, len(result.bonded))
     for mode in range(count):
-        ratio = result.frequencies[:, mode] / result.tied[mode]
+        ratio = result.frequencies[:, mode] / result.bonded[mode]
         ax.plot(
             load,
             ratio,
@@ -46,13 +47,13 @@ def frequencies(ax: Any, result: Result, modes: int = 8) -> Any:
             color=f"C{mode % 10}",
             ms=4,
             lw=1.4,
-            label=f"{mode + 1}: {result.free[mode]:.0f} / {result.frequencies[-1, mode]:.0f} / {result.tied[mode]:.0f} Hz",
+            label=f"{mode + 1}: {result.free[mode]:.0f} / {result.frequencies[-1, mode]:.0f} / {result.bonded[mode]:.0f} Hz",
         )
     ax.axhline(1, color="k", lw=0.8, ls="--")
     ax.set(
         xlabel="preload per bolt [kN]",
-        ylabel="frequency / tied frequency [-]",
-        title="free / predicted at the last load / tied",
+        ylabel="frequency / bonded frequency [-]",
+        title="free / predicted at the last load / bonded",
     )
     ax.legend(fontsize=7, loc="best")
     ax.grid(alpha=0.3)
@@ -77,6 +78,17 @@ def comparison(ax: Any, result: Result) -> Any:
     ax.legend(fontsize=7)
     ax.grid(alpha=0.3)
     return ax
+
+
+def pressures(result: Result) -> Any:
+    """Return a figure of the pressure on each joint at the least and the greatest preload."""
+    loads = sorted({0, len(result.loads) - 1})
+    fig = new_figure(5.2 * len(loads), 3.8 * len(result.joints))
+    for joint in range(len(result.joints)):
+        for column, load in enumerate(loads):
+            ax = fig.add_subplot(len(result.joints), len(loads), joint * len(loads) + column + 1)
+            pressure_map(ax, result, load, joint)
+    return fig
 
 
 def mode_shape(ax: Any, result: Result, mode: int, load: int = -1) -> Any:
@@ -108,12 +120,10 @@ def mode_shape(ax: Any, result: Result, mode: int, load: int = -1) -> Any:
 
 def mode_shapes(result: Result, modes: int = 8, load: int = -1) -> Any:
     """Return a figure of the first mode shapes."""
-    from matplotlib.figure import Figure
-
-    count = min(modes, len(result.tied))
+    count = min(modes, len(result.bonded))
     columns = min(4, count)
     rows = -(-count // columns)
-    fig = Figure(figsize=(2.6 * columns, 3.2 * rows), layout="constrained")
+    fig = new_figure(2.6 * columns, 3.2 * rows)
     for mode in range(count):
         mode_shape(fig.add_subplot(rows, columns, mode + 1, projection="3d"), result, mode, load)
     return fig
@@ -121,9 +131,7 @@ def mode_shapes(result: Result, modes: int = 8, load: int = -1) -> Any:
 
 def law_curves(result: Result) -> Any:
     """Return k_n, k_t of the joints' points against pressure, open points left out, at the greatest load."""
-    from matplotlib.figure import Figure
-
-    fig = Figure(figsize=(7.0, 4.2), layout="constrained")
+    fig = new_figure(7.0, 4.2)
     ax = fig.add_subplot()
     pressure = result.pressure[-1]
     for joint, name in enumerate(result.joints):

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.errors import InputError
+from faying.output.figures.save import new_figure, save
 from faying.surface.convention import density
 from faying.surface.form import Prepared
 from faying.surface.fractal import FractalFit
@@ -94,13 +94,9 @@ def overview(scan: Scan | Profile, ready: Prepared, fits: Mapping[str, FractalFi
 
     Raises InputError for a suffix that matplotlib does not know or a folder that cannot be written.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     from faying.surface.spectrum import spectrum
 
-    figure = Figure(figsize=(11, 7.5), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(11, 7.5)
     axes = figure.subplots(2, 2)
     if isinstance(scan, Scan):
         height_map(ready.scan, axes[0, 0])
@@ -114,8 +110,4 @@ def overview(scan: Scan | Profile, ready: Prepared, fits: Mapping[str, FractalFi
     power_spectrum(spectrum(ready.scan), fits, axes[1, 0])
     estimators(fits, axes[1, 1])
     figure.suptitle(Path(scan.source).name)
-    try:
-        figure.savefig(path, dpi=130)
-    except (ValueError, OSError) as fault:
-        raise InputError(f"{path}: the figure cannot be written ({fault}); use .png, .pdf or .svg") from fault
-    return Path(path)
+    return save(figure, path)

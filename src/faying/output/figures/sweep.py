@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
+from faying.output.figures.save import check_ending, new_figure
 from faying.study.axes import Axis
 from faying.study.sweep_files import Sweep
 
@@ -16,8 +17,7 @@ _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, 
 def check(path: str | Path, axes: int) -> None:
     """Raise InputError, before anything is computed, for a figure that cannot be drawn or written."""
     file = Path(path)
-    if file.suffix.lower() not in (".svg", ".png", ".pdf"):
-        raise InputError(f"{file}: a figure is written as .svg, .png or .pdf; end the name in one of them")
+    check_ending(file)
     if not file.parent.is_dir():
         raise InputError(f"no folder {file.parent} to write {file.name} in; make it first")
     if axes > 2:
@@ -104,26 +104,14 @@ def frequency_map(ax: Any, sweep: Sweep, mode: int = 0) -> Any:
 
 def figure(sweep: Sweep) -> Any:
     """Return the figure of a sweep: changes along one axis, or maps of modes 1 to 4 over two."""
-    from matplotlib.figure import Figure
-
     if len(sweep.axes) == 1:
-        fig = Figure(figsize=(7.0, 4.4), layout="constrained")
+        fig = new_figure(7.0, 4.4)
         relative_change(fig.add_subplot(), sweep)
         return fig
     count = min(MAPS, sweep.frequencies.shape[-1])
     columns = min(2, count)
     rows = -(-count // columns)
-    fig = Figure(figsize=(4.8 * columns, 3.7 * rows), layout="constrained")
+    fig = new_figure(4.8 * columns, 3.7 * rows)
     for mode in range(count):
         frequency_map(fig.add_subplot(rows, columns, mode + 1), sweep, mode)
     return fig
-
-
-def save(sweep: Sweep, path: str | Path) -> Path:
-    """Write the figure of a sweep; the ending says svg, png or pdf. It appears whole or not at all."""
-    from faying.files import write_atomically
-
-    file = Path(path)
-    check(file, len(sweep.axes))
-    drawn = figure(sweep)
-    return write_atomically(file, lambda temporary: drawn.savefig(temporary, format=file.suffix[1:].lower(), dpi=150))

@@ -5,11 +5,11 @@ from pathlib import Path
 
 from faying.errors import InputError
 from faying.fe.mesh import Mesh
-from faying.study.reader import Faults, Table, existing_path, point
+from faying.study.keys.reader import Faults, Table, point
 
 
 @dataclass(frozen=True, kw_only=True)
-class GeometrySpec:
+class GeometryChoice:
     """A STEP file and how finely to mesh it, lengths [m]; or a mesh file, its unit, and the element sets of the parts."""
 
     step: Path | None = None
@@ -29,30 +29,28 @@ class GeometrySpec:
         return found
 
 
-def read_geometry(top: Table, folder: Path) -> GeometrySpec:
+def read_geometry(top: Table) -> GeometryChoice:
     """Take the table [geometry] of a study; its faults are noted."""
     table = top.table("geometry", required=True) or Table({}, "geometry", Faults())
     if "mesh" in table.data:
-        return _meshed(table, folder)
-    step = table.take("step", existing_path(folder))
+        return _meshed(table)
+    step = table.file("step")
     size = table.quantity("size", "m")
     sizes: dict[str, float] = {}
     inner = table.table("face_size")
     for name in list(inner.data) if inner else []:
         sizes[name] = inner.quantity(name, "m") if inner else 0.0
     at: dict[str, tuple[str, tuple[float, float, float]]] = {}
-    inner = table.table("face_at")
-    for name in list(inner.data) if inner else []:
-        one = inner.table(name) if inner else None
-        if one is not None:
-            at[name] = (one.text("part"), one.take("point", point))
-            one.close()
+    places = table.table("face_at")
+    for name, one in places.each().items() if places else ():
+        at[name] = (one.text("part"), one.take("point", point))
+        one.close()
     table.close()
-    return GeometrySpec(step=step, size=size, face_size=sizes, face_at=at)
+    return GeometryChoice(step=step, size=size, face_size=sizes, face_at=at)
 
 
-def _meshed(table: Table, folder: Path) -> GeometrySpec:
-    mesh = table.take("mesh", existing_path(folder))
+def _meshed(table: Table) -> GeometryChoice:
+    mesh = table.file("mesh")
     if "unit" not in table.data:
         table.faults.add('geometry.unit is missing: a mesh file does not say its unit; write for example unit = "mm"')
     unit = table.text("unit", None)
@@ -63,10 +61,10 @@ def _meshed(table: Table, folder: Path) -> GeometrySpec:
     inner = table.table("sets")
     sets = {name: inner.text(name) for name in list(inner.data)} if inner else {}
     table.close()
-    return GeometrySpec(mesh=mesh, unit=unit, sets=sets)
+    return GeometryChoice(mesh=mesh, unit=unit, sets=sets)
 
 
-def mesh_of(spec: GeometrySpec) -> Mesh:
+def mesh_of(spec: GeometryChoice) -> Mesh:
     """Mesh the STEP file, or read the mesh file. Raises ReadError and InputError as those do."""
     if spec.mesh is not None:
         from faying.decks.meshfile import read_mesh

@@ -5,14 +5,13 @@ from pathlib import Path
 from typing import Any
 
 from faying.errors import InputError
-from faying.study.connections import direction
-from faying.study.reader import Table, existing_path, point, quantity
+from faying.study.keys.reader import Table, direction, point, quantity
 
 QUANTITIES = ("receptance", "mobility", "accelerance")
 
 
 @dataclass(frozen=True, kw_only=True)
-class TestSpec:
+class TestChoice:
     """Measured frequencies [Hz] per load, the published model's where there is one, and what the test can see.
 
     A mode is seen where its motion along `direction` at one of `points` [m] is at least `threshold` of the largest
@@ -29,7 +28,7 @@ class TestSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
-class HammerSpec:
+class HammerChoice:
     """A universal file of modes or FRFs, and what `faying compare` takes with it.
 
     points, frame: tables of positions; length_unit, direction (x, y or z), quantity: what the file does not say;
@@ -50,19 +49,19 @@ class HammerSpec:
     greatest_shift: float = 0.3
 
 
-def read_test(top: Table, folder: Path, loads: tuple[float, ...]) -> tuple[TestSpec | None, HammerSpec | None]:
+def read_test(top: Table, loads: tuple[float, ...]) -> tuple[TestChoice | None, HammerChoice | None]:
     """Read [test]: frequencies for each of `loads` [N], or a file; whichever it is, the other is None."""
     table = top.table("test")
     if table is None:
         return None, None
     if "file" in table.data and "frequencies" in table.data:
         top.faults.add("test has both file and frequencies; give one of them")
-    listed, hammer = (None, _file(table, folder, loads)) if "file" in table.data else (_listed(table, len(loads)), None)
+    listed, hammer = (None, _file(table, loads)) if "file" in table.data else (_listed(table, len(loads)), None)
     table.close()
     return listed, hammer
 
 
-def _listed(table: Table, loads: int) -> TestSpec:
+def _listed(table: Table, loads: int) -> TestChoice:
     def rows(value: Any, name: str) -> tuple[tuple[float, ...], ...]:
         if not isinstance(value, list) or not all(isinstance(row, list) for row in value):
             raise InputError(f"{name} should be one list of frequencies for each preload")
@@ -75,7 +74,7 @@ def _listed(table: Table, loads: int) -> TestSpec:
             raise InputError(f"{name} should be a list of points, each three lengths")
         return tuple(point(v, name) for v in value)
 
-    return TestSpec(
+    return TestChoice(
         source=table.text("source", ""),
         frequencies=table.take("frequencies", rows) or (),
         published=table.take("published", rows, None),
@@ -86,7 +85,7 @@ def _listed(table: Table, loads: int) -> TestSpec:
     )
 
 
-def _file(table: Table, folder: Path, loads: tuple[float, ...]) -> HammerSpec:
+def _file(table: Table, loads: tuple[float, ...]) -> HammerChoice:
     def load(value: Any, name: str) -> int:
         wanted = quantity(value, "N", name)
         near = [i for i, known in enumerate(loads) if abs(known - wanted) <= 1e-3 * known]
@@ -101,14 +100,13 @@ def _file(table: Table, folder: Path, loads: tuple[float, ...]) -> HammerSpec:
             raise InputError(f"{name} = {value!r} should be a plain number above 0{end}, for example 0.3")
         return float(value)
 
-    path = existing_path(folder)
     table.take("frequencies", lambda _value, _name: None, None)
-    return HammerSpec(
-        file=table.take("file", path) or folder,
+    return HammerChoice(
+        file=table.file("file") or Path(),
         load=table.take("load", load, len(loads) - 1),
         source=table.text("source", ""),
-        points=table.take("points", path, None),
-        frame=table.take("frame", path, None),
+        points=table.file("points", None),
+        frame=table.file("frame", None),
         length_unit=table.text("length_unit", None),
         direction=table.text("direction", None, ("x", "y", "z")),
         quantity=table.text("quantity", None, QUANTITIES),

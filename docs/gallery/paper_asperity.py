@@ -5,6 +5,7 @@ doi:10.3390/fractalfract8100611, sections 2.2 to 2.4: R 15 um, h_a 0.1 um, E 100
 
 from dataclasses import dataclass
 from math import pi, sqrt
+from pathlib import Path
 from typing import Any, final
 
 import numpy as np
@@ -16,7 +17,7 @@ from faying.contact.asperity.lin_lin import LinLin
 from faying.contact.asperity.zx import ZX
 from faying.contact.substrate import asperity_share
 from faying.materials import RIGID, ContactPair, Material
-from faying.output.figures.law import figure
+from faying.output.figures.law import figure, save
 from faying.typing import Array
 
 R, HEIGHT, DIMENSION = 15e-6, 0.1e-6, 2.9961
@@ -227,3 +228,10 @@ def figure_7() -> Any:
 def xi(radius: float, height: float) -> float:
     """Return the paper's geometric coefficient 1.5 sqrt(R)/r_a [m^-0.5], r_a = sqrt(2 R h - h^2)."""
     return 1.5 * sqrt(radius) / sqrt(2 * radius * height - height**2)
+
+
+FIGURES = {"figure-03": figure_3, "figure-06": figure_6, "figure-07": figure_7}
+
+if __name__ == "__main__":  # python docs/gallery/paper_asperity.py writes them to docs/figures
+    for name, draw in FIGURES.items():
+        save(draw(), str(Path(__file__).parents[1] / "figures" / f"{name}.png"))

@@ -1,7 +1,7 @@
 """The JK paper's figures 8 to 13, and measured steel joints beside the models: data first, then one drawing each.
 
 doi:10.3390/fractalfract8100611, with its parameters: E 200 GPa, nu 0.3, H 994 MPa against a rigid plane, scanned side
-4 mm, friction 0.25, alpha 0.2, the printed closure, lam 1. Figures 3, 6 and 7 are in `paper_asperity`.
+4 mm, friction 0.25, alpha 0.2, the printed closure, lam 1. Figures 3, 6 and 7 are in `paper_asperity.py`.
 """
 
 from collections.abc import Mapping
@@ -16,7 +16,8 @@ from faying.contact.jk import JK
 from faying.contact.law import Response
 from faying.contact.power_law import PowerLaw
 from faying.materials import CATALOGUE, RIGID, ContactPair
-from faying.output.figures.law import figure, save
+from faying.output.figures.law import figure
+from faying.output.figures.save import save
 from faying.typing import Array
 
 STEEL = CATALOGUE["45 steel"]
@@ -214,31 +215,23 @@ def figure_s45c() -> Any:
         yscale="log",
         xlabel="nominal pressure [MPa]",
         ylabel="normal stiffness k_n [MPa/um]",
-        title="grey: single specimens; dashed: model outside its ground somewhere",
+        title="grey: single specimens; dashed: model outside its validity range somewhere",
     )
     ax.grid(alpha=0.3)
     ax.legend(fontsize=8)
     return fig
 
 
-def gallery(folder: str | Path) -> list[Path]:
-    """Write every figure of the gallery as PNG into an existing folder; return the files."""
-    from faying.output.figures import paper_asperity as one
+FIGURES = {
+    "figure-08": figure_8,
+    "figure-09": figure_9,
+    "figure-10": figure_10,
+    "figure-11": figure_11,
+    "figure-12": figure_12,
+    "figure-13": figure_13,
+    "s45c": figure_s45c,
+}
 
-    figures = {
-        "figure-03": one.figure_3,
-        "figure-06": one.figure_6,
-        "figure-07": one.figure_7,
-        "figure-08": figure_8,
-        "figure-09": figure_9,
-        "figure-10": figure_10,
-        "figure-11": figure_11,
-        "figure-12": figure_12,
-        "figure-13": figure_13,
-        "s45c": figure_s45c,
-    }
-    out = []
-    for name, draw in figures.items():
-        out.append(Path(folder) / f"{name}.png")
-        save(draw(), str(out[-1]))
-    return out
+if __name__ == "__main__":  # python docs/gallery/paper.py writes them to docs/figures
+    for name, draw in FIGURES.items():
+        save(draw(), str(Path(__file__).parents[1] / "figures" / f"{name}.png"))

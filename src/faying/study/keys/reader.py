@@ -4,19 +4,23 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from faying import units
+from faying.contact.parameter import FILE, Parameter
 from faying.errors import InputError
 
 MISSING: Any = object()
+Made = TypeVar("Made")
 
 
 @dataclass
 class Faults:
-    """The faults found so far."""
+    """The faults found so far, and the files that the study names, which lie relative to `folder`."""
 
     lines: list[str] = field(default_factory=list)
+    folder: Path = field(default_factory=Path)
+    files: list[Path] = field(default_factory=list)
 
     def add(self, text: str) -> None:
         """Note one fault."""
@@ -104,6 +108,44 @@ class Table:
         """Whether this key has been asked for."""
         return key in self._known
 
+    def file(self, key: str, default: Any = MISSING) -> Any:
+        """Take the name of a file, relative to the study's folder; the study depends on that file from then on."""
+
+        def existing(value: Any, name: str) -> Path:
+            if not isinstance(value, str):
+                raise InputError(f"{name} = {value!r} should be a file name in quotes")
+            path = self.faults.folder / value
+            if not path.is_file():
+                raise InputError(f"{name}: no file {path}")
+            self.faults.files.append(path)
+            return path
+
+        return self.take(key, existing, default)
+
+    def parameter(self, key: str, parameter: Parameter) -> Any:
+        """Take the parameter of a law, checked against its range; None where it is not given."""
+        if parameter.unit == FILE:
+            return self.file(key, None)
+        return self.take(key, parameter.read, None)
+
+    def each(self) -> "dict[str, Table]":
+        """Take every table within this one, by name."""
+        found = {name: self.table(name) for name in self.data}
+        return {name: table for name, table in found.items() if table is not None}
+
+    def named(self, key: str, *, required: bool = False) -> "dict[str, Table]":
+        """Take the tables [key.NAME], by name."""
+        outer = self.table(key, required=required)
+        return outer.each() if outer is not None else {}
+
+    def made(self, make: Callable[[], Made]) -> Made | None:
+        """What `make` makes; an InputError of it is noted as a fault of this table."""
+        try:
+            return make()
+        except InputError as fault:
+            self.faults.add(f"{self.where}: {fault}")
+            return None
+
     def close(self) -> None:
         """Note every key that was not asked for, with the nearest known one."""
         for key in self.data:
@@ -121,25 +163,21 @@ def quantity(value: Any, unit: str, name: str, *, positive: bool = True) -> floa
     return number
 
 
-def existing_path(folder: Path) -> Any:
-    """Return a converter of file names relative to `folder`; InputError where there is no such file."""
-
-    def convert(value: Any, name: str) -> Path:
-        if not isinstance(value, str):
-            raise InputError(f"{name} = {value!r} should be a file name in quotes")
-        path = folder / value
-        if not path.is_file():
-            raise InputError(f"{name}: no file {path}")
-        return path
-
-    return convert
-
-
 def point(value: Any, name: str) -> tuple[float, float, float]:
     """Convert three lengths with units; InputError that shows the form."""
     if not isinstance(value, list) or len(value) != 3:
         raise InputError(f'{name} = {value!r} should be three lengths, for example ["0 mm", "10 mm", "0 mm"]')
     x, y, z = (quantity(v, "m", name, positive=False) for v in value)
+    return x, y, z
+
+
+def direction(value: Any, name: str) -> tuple[float, float, float]:
+    """Convert three numbers that are not all zero; InputError that shows the form."""
+    if not isinstance(value, list) or len(value) != 3:
+        raise InputError(f"{name} = {value!r} should be three numbers, for example [1, 0, 0]")
+    x, y, z = (number(v, name) for v in value)
+    if x == y == z == 0:
+        raise InputError(f"{name} = {value!r} has no length")
     return x, y, z
 
 

@@ -1,0 +1,143 @@
+"""What one parameter of a contact law is, and how a value for it is read and checked."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from math import inf
+from pathlib import Path
+from typing import Literal, final
+
+from faying import units
+from faying.errors import InputError
+
+TEXT, FILE, TABLE = "text", "file", "table"  # in place of a unit: a word, the name of a file, an array
+
+
+@final
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of a law.
+
+    Args:
+        unit: SI unit; "" for a plain number, "text", "file" or "table" for what is no number.
+        meaning: a few words for people.
+        least, greatest: the allowed range in SI units; ends tells which ends belong to it: "()", "[)", "(]", "[]".
+        choices: the words that are allowed, also beside numbers.
+        whole: whether only whole numbers are allowed.
+        surface: the number of a rough surface that gives this parameter where nobody else does, an attribute of
+            `SurfaceInputs`, or "scan"; "" where no surface gives it.
+    """
+
+    unit: str
+    meaning: str
+    least: float = -inf
+    greatest: float = inf
+    ends: Literal["()", "[)", "(]", "[]"] = "()"
+    choices: tuple[str, ...] = ()
+    whole: bool = False
+    surface: str = ""
+
+    @property
+    def is_number(self) -> bool:
+        """Whether values are numbers (a choice of words may be allowed besides)."""
+        return self.unit not in (TEXT, FILE, TABLE)
+
+    @property
+    def allowed(self) -> str:
+        """The allowed values in words."""
+        words = {TEXT: "" if self.choices else "any text", FILE: "the name of a file", TABLE: "an array"}
+        text = self._range if self.is_number else words[self.unit]
+        if self.whole:
+            text = f"a whole number, {text}"
+        return ", or ".join(filter(None, (text, " or ".join(f'"{word}"' for word in self.choices))))
+
+    @property
+    def _range(self) -> str:
+        if self.least > -inf and self.greatest < inf and self.ends == "()":
+            return f"between {self.least:g} and {self.greatest:g}"
+        if self.least == 0 and self.greatest == inf and self.ends[0] == "(":
+            return "positive"
+        low = {"(": "above", "[": "at least"}[self.ends[0]] + f" {self.least:g}" if self.least > -inf else ""
+        high = {")": "below", "]": "at most"}[self.ends[1]] + f" {self.greatest:g}" if self.greatest < inf else ""
+        return " and ".join(filter(None, (low, high))) or "any number"
+
+    def check(self, value: object, name: str) -> None:
+        """Raise InputError unless a value in SI units is allowed."""
+        if not self.is_number or isinstance(value, str):
+            if self.choices and value not in self.choices:
+                near = get_close_matches(str(value), self.choices, n=1)
+                hint = f"; did you mean {near[0]}?" if near else ""
+                raise InputError(f"{name} = {value!r}; allowed is {self.allowed}{hint}")
+            return
+        if not isinstance(value, int | float):
+            raise InputError(f"{name} = {value!r}; allowed is {self.allowed}")
+        above = value >= self.least if self.ends[0] == "[" else value > self.least
+        below = value <= self.greatest if self.ends[1] == "]" else value < self.greatest
+        if not (above and below and abs(value) < inf) or (self.whole and value != int(value)):
+            unit = f" {self.unit}" if self.unit else ""
+            raise InputError(f"{name} = {value:.12g}{unit}; it must be {self.allowed}")
+
+    def read(self, value: object, name: str, folder: Path | None = None) -> object:
+        """Turn what a user wrote (TOML or text) into a value in SI units; InputError where it is not allowed.
+
+        Args:
+            value: text with a unit for a quantity, a number or its text for a plain one, a word, a file name.
+            name: what the error calls it.
+            folder: where file names start from.
+        """
+        if self.unit == TABLE:
+            raise InputError(f"{name}: an array cannot be written here; give it in Python")
+        out: object = value
+        if self.unit in (TEXT, FILE):
+            if not isinstance(value, str):
+                raise InputError(f"{name} = {value!r} should be text in quotes")
+            if self.unit == FILE:
+                out = (folder or Path()) / value
+                if not out.is_file():
+                    raise InputError(f"{name}: no file {out}")
+        elif isinstance(value, str) and value in self.choices:
+            pass
+        elif self.unit:
+            out = units.parse(value, self.unit, name=name)
+        else:
+            out = _plain(value, name, self.choices)
+        self.check(out, name)
+        return int(out) if self.whole and isinstance(out, float) else out
+
+
+def _plain(value: object, name: str, choices: tuple[str, ...]) -> float:
+    words = f" or {', '.join(choices)}" if choices else ""
+    try:
+        if isinstance(value, bool) or not isinstance(value, int | float | str):
+            raise ValueError
+        number = float(value)
+    except ValueError:
+        raise InputError(f"{name} = {value!r} should be a plain number, for example 0.3{words}") from None
+    if not abs(number) < inf:
+        raise InputError(f"{name} = {value!r} should be a plain finite number, for example 0.3{words}")
+    return number
+
+
+def check_all(law: str, parameters: Mapping[str, Parameter], values: Mapping[str, object]) -> None:
+    """Raise InputError, with the law's name before it, for the first of the values that is not allowed."""
+    for name, parameter in parameters.items():
+        value = values.get(name)
+        if value is None or parameter.unit == TABLE:
+            continue
+        try:
+            parameter.check(value, name)
+        except InputError as fault:
+            raise InputError(f"{law}: {fault}") from None
+
+
+# what the laws of fractal surfaces share
+FRACTAL = {
+    "D": Parameter("", "fractal dimension of the surface", 2, 3, surface="D"),
+    "G": Parameter("m", "fractal roughness", 0, surface="G"),
+    "scan_area": Parameter(
+        "m^2", "area that the scan covers, to which the largest spot belongs", 0, surface="scan_area"
+    ),
+}
+GAMMA = {"gamma": Parameter("", "frequency index of the surface", 1, surface="gamma")}
+# G in the convention of Majumdar and Bhushan
+FRACTAL_MB = FRACTAL | {"G": Parameter("m", "fractal roughness", 0, surface="G_majumdar_bhushan")}

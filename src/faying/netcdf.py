@@ -1,0 +1,145 @@
+"""Trees of named arrays as NetCDF-4 files: the one writer and the one reader."""
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.errors import ReadError
+from faying.files import write_atomically
+
+Attribute = str | int | float
+PARTS = ("_real", "_imaginary")  # NetCDF has no complex numbers: two variables stand for one
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variable:
+    """An array with the names of its dimensions, its unit and what it is. Text, integers, floats or complex numbers."""
+
+    dims: tuple[str, ...]
+    values: NDArray[Any]
+    unit: str = ""
+    long_name: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Group:
+    """Variables, attributes and groups by name. A group sees the dimensions of the groups around it."""
+
+    variables: Mapping[str, Variable] = field(default_factory=dict)
+    attributes: Mapping[str, Attribute] = field(default_factory=dict)
+    groups: Mapping[str, "Group"] = field(default_factory=dict)
+
+
+def write(path: Path, root: Group) -> Path:
+    """Write a tree; the file appears complete or not at all.
+
+    Args:
+        path: the file, whose folder exists.
+        root: what to write. Dimensions of one name have one size within a group and those in it.
+
+    Returns:
+        The path.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+
+    def fill(temporary: Path) -> None:
+        import h5netcdf
+
+        with h5netcdf.File(temporary, "w") as file:
+            _fill(file, root, {})
+
+    return write_atomically(path, fill)
+
+
+def _fill(target: Any, group: Group, known: Mapping[str, int]) -> None:
+    import h5py
+
+    sizes = dict(known)
+    for name, variable in _plain(group.variables).items():
+        for dim, size in zip(variable.dims, variable.values.shape, strict=True):
+            if dim not in sizes:
+                sizes[dim] = target.dimensions[dim] = size
+            assert sizes[dim] == size, f"{name}: dimension {dim} has {sizes[dim]} and {size} entries"
+        text = variable.values.dtype.kind in "OU"
+        data = variable.values.astype(object) if text else variable.values
+        kind = h5py.string_dtype() if text else data.dtype
+        packed = {} if text or data.size < 1000 else {"compression": "gzip", "compression_opts": 1, "shuffle": True}
+        made = target.create_variable(name, variable.dims, dtype=kind, data=data, **packed)
+        if variable.unit:
+            made.attrs["units"] = variable.unit
+        if variable.long_name:
+            made.attrs["long_name"] = variable.long_name
+    for name, value in group.attributes.items():
+        target.attrs[name] = value
+    for name, inner in group.groups.items():
+        _fill(target.create_group(name), inner, sizes)
+
+
+def _plain(variables: Mapping[str, Variable]) -> dict[str, Variable]:
+    """The variables with complex ones in two parts and truth values as small integers."""
+    out = {}
+    for name, v in variables.items():
+        if np.iscomplexobj(v.values):
+            for ending, values, part in zip(PARTS, (v.values.real, v.values.imag), ("real", "imaginary"), strict=True):
+                long_name = f"{v.long_name}, {part} part" if v.long_name else ""
+                out[name + ending] = Variable(dims=v.dims, values=values, unit=v.unit, long_name=long_name)
+        elif v.values.dtype == bool:
+            out[name] = Variable(dims=v.dims, values=v.values.astype(np.int8), unit=v.unit, long_name=v.long_name)
+        else:
+            out[name] = v
+    return out
+
+
+def read(path: Path) -> Group:
+    """Read a tree that `write` wrote. Raises ReadError where the file is missing, damaged or no NetCDF-4 file."""
+    if not path.is_file():
+        raise ReadError(f"{path}: no such file")
+    import h5netcdf
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            with h5netcdf.File(path, "r") as file:
+                return _taken(file)
+    except (OSError, KeyError, ValueError, TypeError, AttributeError, RuntimeError, IndexError) as fault:
+        raise ReadError(f"{path} is no NetCDF-4 file, or is damaged ({type(fault).__name__}: {fault})") from None
+
+
+def _taken(source: Any) -> Group:
+    found: dict[str, Variable] = {}
+    for name, variable in source.variables.items():
+        values = np.asarray(variable[...])
+        if values.dtype.kind in "OS":
+            values = np.array([v.decode() if isinstance(v, bytes) else v for v in values.ravel()], dtype=object)
+            values = values.reshape(variable.shape)
+        attributes = dict(variable.attrs)
+        found[name] = Variable(
+            dims=tuple(variable.dimensions),
+            values=values,
+            unit=str(attributes.get("units", "")),
+            long_name=str(attributes.get("long_name", "")),
+        )
+    for name in [n.removesuffix(PARTS[0]) for n in found if n.endswith(PARTS[0])]:
+        real, imaginary = (found.pop(name + ending) for ending in PARTS)
+        long_name = real.long_name.removesuffix(", real part")
+        values = real.values + 1j * imaginary.values
+        found[name] = Variable(dims=real.dims, values=values, unit=real.unit, long_name=long_name)
+    attributes = {name: _scalar(value) for name, value in source.attrs.items() if not name.startswith("_")}
+    groups = {name: _taken(inner) for name, inner in source.groups.items()}
+    return Group(variables=found, attributes=attributes, groups=groups)
+
+
+def _scalar(value: Any) -> Attribute:
+    if isinstance(value, bytes):
+        return value.decode()
+    if isinstance(value, np.ndarray | Sequence) and not isinstance(value, str):
+        value = np.asarray(value).ravel()[0]
+    out: Attribute = value.item() if isinstance(value, np.generic) else value
+    return out

@@ -1,0 +1,31 @@
+"""How every figure is made and written."""
+
+from pathlib import Path
+from typing import Any
+
+from faying.errors import InputError
+from faying.files import write_atomically
+
+
+def new_figure(width: float, height: float) -> Any:
+    """Return an empty figure [inches] that needs no display."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def check_ending(path: Path) -> None:
+    """Raise InputError unless figures can be written under this name."""
+    kinds = new_figure(1, 1).canvas.get_supported_filetypes()
+    if path.suffix[1:].lower() not in kinds:
+        raise InputError(f"{path}: figures can be written as {', '.join(sorted(kinds))}; end the name in one of them")
+
+
+def save(figure: Any, path: str | Path) -> Path:
+    """Write a figure in the format of the ending of `path`; the file appears complete or not at all.
+
+    Raises InputError for other endings and where the file cannot be written.
+    """
+    file = Path(path)
+    check_ending(file)
+    return write_atomically(file, lambda temporary: figure.savefig(temporary, format=file.suffix[1:].lower(), dpi=150))

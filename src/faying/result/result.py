@@ -1,0 +1,290 @@
+"""The result of a study: frozen arrays with names, dimensions and units, and the facts that they belong to."""
+
+import csv
+import io
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+
+from faying import netcdf
+from faying.errors import InputError, ReadError
+from faying.files import write_atomically
+from faying.measured.compare import ModalComparison
+from faying.measured.model import FullResponse, ModelModes
+from faying.netcdf import Group, Variable
+from faying.notes import Note
+from faying.result.fields import declared, from_group, same, to_group, variable
+from faying.typing import Array, Complex, Index
+
+Point = tuple[float, float, float]
+MAPS = ("point", "node", "triangle", "mode_other")  # dimensions of what only a file holds, not the JSON
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Comparison:
+    """Listed frequencies of a hammer test beside the study's, and the mode (from 0) that each was paired with."""
+
+    source: str
+    frequencies: Array = variable("load", "test_mode", unit="Hz", long_name="measured frequencies")
+    predicted: Array = variable("load", "test_mode", unit="Hz", long_name="frequencies of the paired modes")
+    modes: Index = variable("load", "test_mode", unit="1", long_name="index of the paired mode", dtype="i8")
+    published: Array | None = variable(
+        "load", "test_mode", unit="Hz", long_name="frequencies of a published model", default=None
+    )
+    published_name: str = "published"
+
+    def sensitivity(self, values: Array, loads: Array) -> Array:
+        """Change of frequency with preload, d f/d preload [Hz/N] (mode,), by a straight line through all loads."""
+        if len(loads) < 2:
+            return np.full(values.shape[1], np.nan)
+        return np.asarray(np.polyfit(loads, values, 1)[0])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Receptance:
+    """Frequency response at every load; error: the largest of the residuals that were checked [-]."""
+
+    frequencies: Array = variable("response_frequency", unit="Hz", long_name="frequencies of the response")
+    values: Complex = variable(
+        "load", "response_frequency", "output", "input", unit="m/N", long_name="receptance", dtype="c16"
+    )
+    input_points: Array = variable("input", "axis", unit="m", long_name="points of the forces")
+    input_directions: Array = variable("input", "axis", unit="1", long_name="directions of the forces")
+    output_points: Array = variable("output", "axis", unit="m", long_name="points of the motion")
+    output_directions: Array = variable("output", "axis", unit="1", long_name="directions of the motion")
+    error: Array = variable("load", unit="1", long_name="largest residual of the full equations that was checked")
+
+    @property
+    def inputs(self) -> tuple[tuple[Point, Point], ...]:
+        """Point [m] and direction of each force."""
+        return _pairs(self.input_points, self.input_directions)
+
+    @property
+    def outputs(self) -> tuple[tuple[Point, Point], ...]:
+        """Point [m] and direction of each motion."""
+        return _pairs(self.output_points, self.output_directions)
+
+
+def _pairs(points: Array, directions: Array) -> tuple[tuple[Point, Point], ...]:
+    return tuple((tuple(p), tuple(d)) for p, d in zip(points.tolist(), directions.tolist(), strict=True))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Provenance:
+    """What a result was made from: the study's text, the SHA-256 of each file that it names, versions, date (UTC)."""
+
+    study: str = ""
+    files: Mapping[str, str] = field(default_factory=dict)
+    versions: Mapping[str, str] = field(default_factory=dict)
+    date: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Result:
+    """What a study gives. Load [N] means the preload of the first bolt; modes are the elastic ones.
+
+    Frequencies, loss factors and shapes are those of the complex modes; "bonded" are the frequencies with the faces of
+    every joint grown together, "free" those with the faces apart. `surfaces` and `laws` hold, per joint, what the law
+    was made from and its own numbers. `tightening` names the bolts in the order in which they were pulled, and is empty
+    where all were pulled at once.
+    """
+
+    title: str
+    loads: Array = variable("load", unit="N", long_name="preload of the first bolt", name="load")
+    frequencies: Array = variable("load", "mode", unit="Hz", long_name="frequency")
+    loss_factors: Array = variable("load", "mode", unit="1", long_name="loss factor")
+    loss_error: Array = variable("load", "mode", unit="1", long_name="estimated relative error of the loss factor")
+    free: Array = variable("mode", unit="Hz", long_name="frequency with the faces apart")
+    bonded: Array = variable("mode", unit="Hz", long_name="frequency with the faces bonded")
+    rigid: Array = variable("rigid_motion", unit="Hz", long_name="largest frequency of each rigid motion, ideally 0")
+    mac: Array = variable(
+        "load", "mode", "mode_other", unit="1", long_name="MAC of the modes at the first load with those at each"
+    )
+    points: Array = variable("point", "axis", unit="m", long_name="points of the joints")
+    weights: Array = variable("point", unit="m2", long_name="area of each point")
+    joint_of_point: Index = variable("point", unit="1", long_name="joint of each point, from 0", dtype="i8")
+    pressure: Array = variable("load", "point", unit="Pa", long_name="contact pressure")
+    k_n: Array = variable("load", "point", unit="Pa/m", long_name="normal stiffness per area, as assembled")
+    k_t: Array = variable("load", "point", unit="Pa/m", long_name="tangential stiffness per area, as assembled")
+    slipping: Array = variable("load", "joint", unit="1", long_name="share of the area at the limit of friction")
+    total_k_n: Array = variable("load", "joint", unit="N/m", long_name="sum of the normal springs")
+    total_k_t: Array = variable("load", "joint", unit="N/m", long_name="sum of the tangential springs")
+    bolt_forces: Array = variable("load", "bolt", unit="N", long_name="force left when all bolts are tight")
+    imbalance: Array = variable("load", unit="1", long_name="residual force of the preload over the load")
+    newton_steps: Index = variable("load", unit="1", long_name="Newton steps of the preload", dtype="i8")
+    outline: Array = variable("node", "axis", unit="m", long_name="nodes of the outer surface")
+    triangles: Index = variable("triangle", "corner", unit="1", long_name="triangles between them", dtype="i8")
+    shapes: Any = variable(
+        "load", "mode", "node", "axis", unit="kg^-1/2", long_name="mass-normalised mode shapes", dtype="f4"
+    )
+    joints: tuple[str, ...]
+    bolts: tuple[str, ...]
+    unknowns: int
+    solver: str
+    factor_memory: float = 0.0
+    damping: str = "hysteretic"
+    tightening: tuple[str, ...] = ()
+    surfaces: tuple[dict[str, Any], ...] = ()
+    laws: tuple[dict[str, Any], ...] = ()
+    sources: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
+    response: Receptance | None = None
+    comparison: Comparison | None = None
+    hammer: ModalComparison | None = None
+    provenance: Provenance = field(default_factory=Provenance)
+
+    def __post_init__(self) -> None:
+        for name, meta in declared(type(self)).items():
+            value = np.asarray(getattr(self, name), dtype=meta.dtype)
+            if not np.all(np.isfinite(value)):
+                raise InputError(
+                    f"the study gave NaN in {name}; this is a fault of its input or of Faying, please report it"
+                )
+            value.setflags(write=False)
+            object.__setattr__(self, name, value)
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and all(
+            same(getattr(self, f.name), getattr(other, f.name)) for f in fields(self)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        lines = [f"Result {self.title!r}: {self.unknowns:,} unknowns, joints {', '.join(self.joints)}"]
+        lines.append(
+            "  " + "".join(f"{head:>12}" for head in ("free", *(f"{v / 1e3:g} kN" for v in self.loads), "bonded"))
+        )
+        for j in range(min(9, len(self.free))):
+            row = (self.free[j], *self.frequencies[:, j], self.bonded[j])
+            lines.append("  " + "".join(f"{value:>9.2f} Hz" for value in row))
+        if len(self.free) > 9:
+            lines.append(f"  and {len(self.free) - 9} modes more")
+        return "\n".join([*lines, f"  {len(self.notes)} notes"])
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        return f"<pre>{escape(repr(self))}</pre>"
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """The notes as sentences."""
+        return tuple(note.text for note in self.notes)
+
+    def open_share(self) -> Array:
+        """Share of the joints' area that carries nothing [-] (l,)."""
+        return np.asarray((self.pressure <= 0) @ self.weights / self.weights.sum())
+
+    def response_at(self, load: int) -> FullResponse | None:
+        """The frequency response at one load (its index) as a comparison with a test takes it."""
+        r = self.response
+        if r is None:
+            return None
+        return FullResponse(
+            frequency=r.frequencies,
+            receptance=r.values[load].transpose(1, 2, 0),
+            outputs=(r.output_points, r.output_directions),
+            inputs=(r.input_points, r.input_directions),
+        )
+
+    def modes_at(self, load: float | None = None, source: str = "this study") -> ModelModes:
+        """The modes at a preload [N], by default the greatest, for a comparison with a test.
+
+        Raises InputError where there is no such load.
+        """
+        index = len(self.loads) - 1 if load is None else int(np.argmin(np.abs(self.loads - load)))
+        if load is not None and abs(self.loads[index] - load) > 1e-3 * abs(self.loads[index]):
+            raise InputError(
+                f"{source}: no preload of {load / 1e3:g} kN; it holds {', '.join(f'{v / 1e3:g} kN' for v in self.loads)}"
+            )
+        return ModelModes(
+            frequencies=self.frequencies[index],
+            loss_factors=self.loss_factors[index],
+            shapes=self.shapes[index].astype(float),
+            points=self.outline,
+            triangles=self.triangles,
+            load=float(self.loads[index]),
+            title=self.title,
+            source=source,
+            full=self.response_at(index),
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the numbers a reader wants, ready for JSON: {"unit", "values"} in SI; maps and shapes are left out."""
+        out: dict[str, Any] = {"title": self.title, "unknowns": self.unknowns, "solver": self.solver}
+        out["factor_memory"] = {"unit": "B", "values": self.factor_memory}
+        for name, meta in declared(type(self)).items():
+            if not set(MAPS) & set(meta.dims):
+                out[name] = {"unit": meta.unit, "values": getattr(self, name).tolist()}
+        out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
+        out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
+        out |= {"joints": list(self.joints), "bolts": list(self.bolts), "tightening": list(self.tightening)}
+        out |= {"damping": self.damping, "surfaces": list(self.surfaces), "laws": list(self.laws)}
+        if self.comparison is not None:
+            c = self.comparison
+            names = [name for name in declared(Comparison) if getattr(c, name) is not None]
+            out["comparison"] = {"source": c.source, "published_name": c.published_name} | {
+                name: {"unit": declared(Comparison)[name].unit, "values": getattr(c, name).tolist()} for name in names
+            }
+        if self.hammer is not None:
+            out["hammer_test"] = self.hammer.to_dict()
+        out["sources"] = list(self.sources)
+        out["notes"] = [{f.name: getattr(note, f.name) for f in fields(note)} for note in self.notes]
+        return out
+
+    def to_netcdf(self, path: str | Path) -> Path:
+        """Write everything as NetCDF-4 that xarray opens, with named coordinates; the file appears complete or not at all."""
+        group = to_group(self)
+        names = {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
+        labels = {name: np.array(values, dtype=object) for name, values in names.items()}
+        labels["mode"] = np.arange(1, len(self.free) + 1)
+        coordinates = {name: Variable(dims=(name,), values=values) for name, values in labels.items()}
+        attributes = {"Conventions": "CF-1.11", **group.attributes}
+        return netcdf.write(
+            Path(path),
+            Group(variables={**coordinates, **group.variables}, attributes=attributes, groups=group.groups),
+        )
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """Read a result that `to_netcdf` wrote; it equals the one that was written.
+
+        Raises ReadError where the file is missing, damaged or no result of Faying.
+        """
+        file = Path(path)
+        if not file.is_file():
+            raise ReadError(f"{file}: no such file; write one with: faying run STUDY.toml")
+        try:
+            return from_group(cls, netcdf.read(file))
+        except (ReadError, TypeError, KeyError, ValueError, AttributeError) as fault:
+            raise ReadError(
+                f"{file}: no result of Faying, or damaged ({fault}); write one with: faying run STUDY.toml"
+            ) from None
+
+    def to_xarray(self) -> Any:
+        """Return the arrays as an xarray.Dataset, as xarray.open_dataset reads them from the file."""
+        import tempfile
+
+        import xarray
+
+        with tempfile.TemporaryDirectory() as folder:
+            return xarray.load_dataset(self.to_netcdf(Path(folder) / "result.nc"), engine="h5netcdf")
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write one row for each load and mode, units in the heading; the file appears complete or not at all."""
+        return write_atomically(Path(path), lambda temporary: temporary.write_text(self.csv_text(), encoding="utf-8"))
+
+    def csv_text(self) -> str:
+        """Return the rows of to_csv as text."""
+        out = io.StringIO()
+        rows = csv.writer(out, lineterminator="\n")
+        rows.writerow(["preload [N]", "mode", "frequency [Hz]", "loss factor [-]", "free [Hz]", "bonded [Hz]"])
+        for i, load in enumerate(self.loads):
+            for j in range(len(self.bonded)):
+                values = (self.frequencies[i, j], self.loss_factors[i, j], self.free[j], self.bonded[j])
+                rows.writerow([f"{load:.6g}", j + 1, *(f"{value:.8g}" for value in values)])
+        return out.getvalue()

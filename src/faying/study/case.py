@@ -1,0 +1,193 @@
+"""From a study to its case: mesh, joints with their laws, bolts, supports, all ready to be solved."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.fe.interface import join
+from faying.fe.mesh import Mesh
+from faying.joint.joint_law import JointLaw
+from faying.joint.structure import Joint, Structure
+from faying.materials import Material
+from faying.measured.mapping import PointMap
+from faying.notes import Note
+from faying.study.hammer import Hammer
+from faying.study.keys.geometry import mesh_of
+from faying.study.keys.joint import JointChoice
+from faying.study.keys.law import LawChoice
+from faying.study.keys.surface import NO_SURFACE, Surface, SurfaceChoice
+from faying.study.study import Study
+from faying.typing import Array
+
+Report = Callable[[str, int, int], None]
+SIZES = 3e-3, 30.0  # m: a structure smaller or larger than these is noted, for its unit may be wrong
+SPARE_MODES = 6  # beyond those asked for, so that the basis of the complex modes does not end at the last of them
+
+
+@dataclass
+class Progress:
+    """Counts the stages of long work and reports each as it begins: (stage, stages done, stages in all)."""
+
+    total: int
+    report: Report | None = None
+    done: int = field(default=0, init=False)
+
+    def begin(self, stage: str) -> None:
+        """Report the next stage."""
+        if self.report is not None:
+            self.report(stage, self.done, self.total)
+        self.done += 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """A study that is ready to be solved.
+
+    Args:
+        study, structure: what was asked, and what it is made into.
+        surfaces: the surface of each joint.
+        hammer, test_points: the hammer test where the study names a file, and where its points lie on the outline.
+        notes: what there is to say before anything is solved.
+    """
+
+    study: Study
+    structure: Structure
+    surfaces: tuple[Surface, ...]
+    hammer: Hammer | None = None
+    test_points: PointMap | None = None
+    notes: tuple[Note, ...] = ()
+
+    @classmethod
+    def of(cls, study: Study, progress: Progress | None = None) -> "Case":
+        """Read the surfaces, mesh the parts, lay the laws on the joints. Raises InputError and ReadError."""
+        progress = progress or Progress(0)
+        hammer = None
+        if study.hammer is not None:
+            progress.begin("hammer test")
+            hammer = Hammer.read(study.hammer)
+        progress.begin("surface")
+        surfaces = surfaces_of(study)
+        progress.begin("mesh")
+        structure = structure_of(study, checked_mesh(study), surfaces)
+        notes = [Note(code="surface", text=text) for surface in surfaces for text in surface.warnings]
+        size = structure.mesh.size
+        if not SIZES[0] <= size <= SIZES[1]:
+            text = (
+                f"the structure measures {size:.4g} m from corner to corner; if it should not, the unit of its geometry "
+                "is wrong"
+            )
+            notes.append(Note(code="size", text=text))
+        return cls(
+            study=study,
+            structure=structure,
+            surfaces=surfaces,
+            hammer=hammer,
+            test_points=None if hammer is None else hammer.points(structure),
+            notes=tuple(notes),
+        )
+
+    @property
+    def loads(self) -> Array:
+        """Preloads of the first bolt [N]."""
+        return np.array(self.study.loads)
+
+    @property
+    def shift_frequency(self) -> float:
+        """Where the modes are looked for [Hz]."""
+        return self.study.modes.shift_frequency or self.structure.shift_frequency
+
+    @property
+    def rigid_count(self) -> int:
+        """Rigid motions that nothing resists."""
+        return self.structure.rigid_count
+
+    @property
+    def mode_count(self) -> int:
+        """Real modes that are computed, rigid and spare ones included."""
+        return self.rigid_count + self.study.modes.count + SPARE_MODES
+
+
+def surfaces_of(study: Study) -> tuple[Surface, ...]:
+    """Return the surface of each joint; a scan that several joints share is read once."""
+    read: dict[SurfaceChoice, Surface] = {}
+    out = []
+    for joint in study.joints:
+        choice = joint.surface or study.surface
+        if choice is None:
+            if study.law_of(joint).needs_surface:
+                raise InputError(f"joint {joint.name!r} has no surface; add [surface] to the study or to the joint")
+            out.append(NO_SURFACE)
+            continue
+        if choice not in read:
+            read[choice] = choice.read()
+        out.append(read[choice])
+    return tuple(out)
+
+
+def joint_law(joint: JointChoice, law: LawChoice, surface: Surface, rough: Material, other: Material) -> JointLaw:
+    """Lay the law on a joint between the rough face's material and the other one, for run, sweep and attach alike."""
+    return JointLaw(model=law.make(surface, rough, other), tangential=joint.tangential, nu=rough.nu)
+
+
+def materials_of(study: Study, mesh: Mesh) -> dict[str, Material]:
+    """Material of every part of the mesh."""
+    return {name: study.materials[study.parts[name]] for name in mesh.parts}
+
+
+def checked_mesh(study: Study) -> Mesh:
+    """Return the mesh of a study; every name that does not fit the geometry is reported at once."""
+    file = study.geometry.file.name
+    mesh = mesh_of(study.geometry)
+    faults = [f"[part] says nothing of {name!r}, which {file} holds" for name in mesh.parts if name not in study.parts]
+    held = ", ".join(mesh.parts)
+    faults += [f"part {name!r} is not in {file}; it holds {held}" for name in study.parts if name not in mesh.parts]
+    for bolt in study.bolts:
+        if bolt.part is not None and bolt.part not in mesh.parts:
+            faults.append(f"bolt {bolt.name!r} is the part {bolt.part!r}, which is not in {file}; it holds {held}")
+    named = [("joint", item.name, face) for item in study.joints for face in item.faces]
+    named += [("bolt", item.name, face) for item in study.bolts for face in item.faces]
+    named += [("support", support.face, support.face) for support in study.supports]
+    named += [("mass", mass.face, mass.face) for mass in study.masses if mass.face is not None]
+    known = ", ".join(sorted(mesh.faces))
+    for what, name, face in named:
+        if face not in mesh.faces:
+            faults.append(f"{what} {name!r} names the face {face!r}, which does not exist; the faces are {known}")
+    if faults:
+        raise InputError("the study does not fit its geometry:\n" + "\n".join(f"  - {line}" for line in faults))
+    return mesh
+
+
+def structure_of(study: Study, mesh: Mesh, surfaces: tuple[Surface, ...]) -> Structure:
+    """Return the structure of a study on a mesh, with the surface of each joint."""
+    materials = materials_of(study, mesh)
+    joints = []
+    for joint, surface in zip(study.joints, surfaces, strict=True):
+        rough, other = (materials[mesh.face_part[face]] for face in joint.faces)
+        law = joint_law(joint, study.law_of(joint), surface, rough, other)
+        interface = join(mesh, *joint.faces, search_distance=joint.search_distance)
+        joints.append(
+            Joint(
+                name=joint.name,
+                faces=joint.faces,
+                interface=interface if joint.gap is None else joint.gap.on(interface),
+                law=law,
+                per_node=joint.springs == "per-node",
+                scan_area=surface.scan_area,
+                friction=joint.friction,
+            )
+        )
+    return Structure(
+        mesh=mesh,
+        materials=materials,
+        joints=tuple(joints),
+        bolts=study.bolts,
+        supports=study.supports,
+        masses=study.masses,
+    )
+
+
+def build(study: Study) -> Structure:
+    """Return the structure of a study, meshed and with its law on the joints, for work that goes on by hand."""
+    return structure_of(study, checked_mesh(study), surfaces_of(study))

@@ -1,0 +1,107 @@
+"""[law]: which contact law, and its parameters as the law declares them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from faying.contact.build import LawKind, build, check_entries, find
+from faying.contact.law import ContactLaw
+from faying.errors import InputError
+from faying.materials import CATALOGUE, RIGID, ContactPair, Material
+from faying.study.keys.reader import Table
+from faying.study.keys.surface import Surface
+
+# D, G and area of a surface are written under [surface], where a scan would give them
+OF_SURFACE = ("D", "G", "scan_area")
+
+
+@dataclass(frozen=True, kw_only=True)
+class LawChoice:
+    """The contact law of joints: its label, the values of its entries in SI units, what the rough face presses on."""
+
+    model: str = "JK"
+    counterbody: Literal["part", "rigid"] = "part"
+    given: Mapping[str, object] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, table: Table) -> "LawChoice":
+        """Read one [law] table."""
+        kind = table.take("model", lambda value, name: find(_text(value, name)), None)
+        counterbody = table.text("counterbody", "part", ("part", "rigid"))
+        if kind is None and "model" in table.data:
+            return cls()  # the fault is noted; the other keys cannot be judged
+        kind = kind or find(cls.model)
+        given = {}
+        for name, parameter in kind.law.entries().items():
+            if name in OF_SURFACE and name in table.data:
+                table.faults.add(f"{table.where}.{name} is not a key of the law; D, G and scan_area go under [surface]")
+                table.data.pop(name)
+            elif name in kind.fixed and name in table.data:
+                table.made(lambda name=name: check_entries(kind, [name]))  # type: ignore[misc]
+                table.data.pop(name)
+            elif (value := table.parameter(name, parameter)) is not None:
+                given[name] = value
+        _note_misplaced(table, kind)
+        table.close()
+        choice = cls(model=kind.label, counterbody=counterbody, given=given)
+        if not choice.needs_surface and not table.faults.lines:
+            steel = CATALOGUE["45 steel"]  # faults of a law that needs no surface show at once, whatever the material
+            table.made(lambda: build(kind, given, None, ContactPair(steel, steel)))
+        return choice
+
+    @property
+    def kind(self) -> LawKind:
+        """The law with its declarations."""
+        return find(self.model)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """Entries that are not given here, so that a surface must supply them."""
+        return self.kind.missing(self.given, None)
+
+    @property
+    def needs_surface(self) -> bool:
+        """Whether the law takes some of its inputs from [surface]."""
+        return bool(self.missing)
+
+    def fault_without(self, surface: str) -> str:
+        """What is wrong where this law finds "no" surface, one of "fractal" numbers, or a "scan"; "" where it is fine."""
+        entries = self.kind.law.entries()
+        rank = ("nothing", "fractal", "moments", "scan")
+        there = {"no": 0, "fractal": 1, "scan": 3}[surface]
+        wanted = {name: rank.index(_needed(entries[name].surface)) for name in self.missing}
+        short = [name for name in self.missing if not entries[name].surface or wanted[name] > there]
+        if not short:
+            return ""
+        if surface == "no" and all(entries[name].surface for name in short) and set(short) & {*OF_SURFACE, "scan"}:
+            return f'[surface] is missing; model = "{self.model}" takes its inputs from a surface there'
+        return f"law: {self.kind.describe_missing(short, with_scan=surface == 'scan')}"
+
+    def make(self, surface: Surface, rough: Material, other: Material) -> ContactLaw:
+        """Return the law between the rough material and the other one. Raises InputError as `build`."""
+        pair = ContactPair(rough, RIGID if self.counterbody == "rigid" else other)
+        return build(self.kind, self.given, surface.rough, pair)
+
+
+def _needed(number: str) -> str:
+    from faying.contact.inputs import RoughSurface
+
+    return RoughSurface.needed_for((number,))
+
+
+def _text(value: object, name: str) -> str:
+    if not isinstance(value, str):
+        raise InputError(f"{name} = {value!r} should be text in quotes")
+    return value
+
+
+def _note_misplaced(table: Table, kind: LawKind) -> None:
+    """Note keys that are entries of other laws, each with the laws that have it."""
+    from faying.contact.build import laws
+
+    for key in [key for key in table.data if not table.known(key)]:
+        owners = [law.name for law in laws().values() if key in law.entries() and key not in kind.law.entries()]
+        if owners:
+            names = " or ".join(f'"{name.lower()}"' for name in owners)
+            table.faults.add(f'{table.where}.{key} goes with model = {names}, not "{kind.label.lower()}"')
+            table.data.pop(key)

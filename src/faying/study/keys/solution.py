@@ -1,0 +1,87 @@
+"""[modes], [tightening] and [response]: what is computed, and how."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from faying.errors import InputError
+from faying.study.keys.reader import Table, direction, point
+
+Point = tuple[float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModesChoice:
+    """How many elastic modes, which kind of loss, which factorisation, which shift [Hz] (None: chosen)."""
+
+    count: int = 10
+    damping: Literal["hysteretic", "viscous"] = "hysteretic"
+    solver: str | None = None
+    shift_frequency: float | None = None
+
+    @classmethod
+    def of(cls, table: Table | None) -> "ModesChoice":
+        """Read [modes]."""
+        if table is None:
+            return cls()
+        choice = cls(
+            count=table.count("count", 10),
+            damping=table.text("damping", "hysteretic", ("hysteretic", "viscous")),
+            solver=table.text("solver", None, ("pardiso", "mumps", "cholmod", "superlu")),
+            shift_frequency=table.quantity("shift_frequency", "Hz", None),
+        )
+        table.close()
+        return choice
+
+
+@dataclass(frozen=True, kw_only=True)
+class ResponseChoice:
+    """Frequency response: inputs and outputs as (point [m], direction), from first to last [Hz] in so many points."""
+
+    inputs: tuple[tuple[Point, Point], ...]
+    outputs: tuple[tuple[Point, Point], ...]
+    first: float
+    last: float
+    points: int
+    structural_loss: float
+
+    @classmethod
+    def of(cls, table: Table | None) -> "ResponseChoice | None":
+        """Read [response]."""
+        if table is None:
+            return None
+        first, last = table.quantity("from", "Hz"), table.quantity("to", "Hz")
+        if first is not None and last is not None and not first < last:
+            table.faults.add(f"response: from = {first:g} Hz must lie below to = {last:g} Hz")
+        sides: list[tuple[tuple[Point, Point], ...]] = []
+        for key in ("input", "output"):
+            pairs = []
+            for one in table.tables(key, required=True):
+                pairs.append((one.take("point", point), one.take("direction", direction)))
+                one.close()
+            sides.append(tuple(pairs))
+        choice = cls(
+            inputs=sides[0],
+            outputs=sides[1],
+            first=first,
+            last=last,
+            points=table.count("points", 1000),
+            structural_loss=table.number("structural_loss", 0.0),
+        )
+        table.close()
+        return choice
+
+
+def read_order(table: Table | None, names: Sequence[str]) -> tuple[int, ...] | None:
+    """Read [tightening]: the order as indices of bolts, pass after pass; None where all are pulled at once."""
+    if table is None:
+        return None
+
+    def order(value: Any, name: str) -> tuple[int, ...]:
+        if not isinstance(value, list) or any(v not in names for v in value) or set(value) != set(names):
+            raise InputError(f"{name} = {value!r} should name every bolt: {', '.join(map(repr, names))}")
+        return tuple(names.index(v) for v in value)
+
+    found, passes = table.take("order", order), table.count("passes", 1)
+    table.close()
+    return None if found is None else found * passes

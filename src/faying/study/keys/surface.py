@@ -1,0 +1,117 @@
+"""[surface]: the scan of a rough face, or its D, G and area; read and fitted in one place."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from faying.contact.inputs import FractalSurface, RoughSurface, SurfaceInputs
+from faying.errors import InputError
+from faying.study.keys.reader import Table
+from faying.surface.form import prepared
+from faying.surface.fractal import FractalFit, fit_fractal
+from faying.surface.read import read_scan
+from faying.surface.scan import Scan
+
+
+@dataclass(frozen=True, kw_only=True)
+class SurfaceChoice:
+    """The rough surface: a scan with its units and estimator, or D, G [m] and scan_area [m2] as given."""
+
+    scan: Path | None = None
+    xy_unit: str | None = None
+    z_unit: str | None = None
+    method: str = "psd"
+    D: float | None = None
+    G: float | None = None
+    scan_area: float | None = None
+
+    @classmethod
+    def of(cls, table: Table) -> "SurfaceChoice":
+        """Read one [surface] table."""
+        choice = cls(
+            scan=table.file("scan", None),
+            xy_unit=table.text("xy_unit", None),
+            z_unit=table.text("z_unit", None),
+            method=table.text("method", "psd"),
+            D=table.number("D", None),
+            G=table.quantity("G", "m", None),
+            scan_area=table.quantity("scan_area", "m^2", None),
+        )
+        if "scan" not in table.data:
+            missing = [k for k in ("D", "G", "scan_area") if k not in table.data]
+            if missing:
+                table.faults.add(f"{table.where}: give scan, or D, G and scan_area ({', '.join(missing)} missing)")
+        if choice.D is not None and not 2 < choice.D < 3:
+            table.faults.add(
+                f"{table.where}.D = {choice.D}: the dimension of a surface lies between 2 and 3, for example 2.4"
+            )
+        table.close()
+        return choice
+
+    def read(self) -> "Surface":
+        """Read and fit the scan, or take D, G and the area as given. Raises ReadError and InputError."""
+        if self.scan is None:
+            inputs = FractalSurface(D=self.D or 0.0, G=self.G or 0.0, scan_area=self.scan_area or 0.0)
+            return Surface(rough=RoughSurface(inputs=inputs), origin="given in the study")
+        scan = read_scan(self.scan, xy_unit=self.xy_unit, z_unit=self.z_unit)
+        if not isinstance(scan, Scan) and self.scan_area is None:
+            raise InputError(f"{self.scan.name} is a line scan, which covers no area; give surface.scan_area as well")
+        fit = fit_fractal(scan, method=self.method)
+        fractal: dict[str, Any] = {
+            "D": self.D or fit.D,
+            "G": self.G or fit.G,
+            "scan_area": self.scan_area or (scan.size[0] * scan.size[1] if isinstance(scan, Scan) else 0.0),
+        }
+        rough = RoughSurface(inputs=FractalSurface(**fractal))
+        if isinstance(scan, Scan):
+            ready = prepared(scan)
+            # slopes and curvatures come from measured heights alone: points that were filled in would smooth them
+            measured = np.where(ready.known, ready.scan.heights, np.nan)
+            inputs = SurfaceInputs.from_heights(measured, ready.scan.spacing, **fractal)
+            rough = RoughSurface(inputs=inputs, scan=ready.scan)
+        source = f"scan {self.scan.name}: {' x '.join(map(str, scan.heights.shape))} points"
+        return Surface(rough=rough, origin=self.scan.name, fit=fit, source=source)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Surface:
+    """What a law is made from, whence it comes, and the fit of D and G where a scan gave them."""
+
+    rough: RoughSurface | None
+    origin: str
+    fit: FractalFit | None = None
+    source: str = ""
+
+    @property
+    def scan_area(self) -> float | None:
+        """Area of the scan [m2]; None without a surface."""
+        return None if self.rough is None else self.rough.inputs.scan_area
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the fit of the scan warns of."""
+        return () if self.fit is None else tuple(self.fit.warnings)
+
+    def facts(self) -> dict[str, Any]:
+        """Numbers of the surface by name with unit, for the result."""
+        if self.rough is None:
+            return {"origin": self.origin}
+        inputs = self.rough.inputs
+        given = {"D": inputs.D, "G [m]": inputs.G, "scan_area [m2]": inputs.scan_area}
+        if self.fit is None:
+            return given | {"origin": self.origin}
+        fitted = {
+            "D_interval": list(self.fit.D_interval),
+            "G_interval [m]": list(self.fit.G_interval),
+            "band [m]": list(self.fit.band),
+            "Rq [m]": self.fit.Rq,
+            "implied_Rq [m]": self.fit.implied_Rq,
+            "method": self.fit.method,
+            "convention": self.fit.convention,
+        }
+        return given | fitted | {"origin": self.origin}
+
+
+NO_SURFACE = Surface(rough=None, origin="none: the contact law brings its own heights")

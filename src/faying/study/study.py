@@ -1,0 +1,147 @@
+"""The study file: what a user writes in TOML, checked and in SI units."""
+
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Self
+
+from faying.errors import ReadError
+from faying.joint.attachments import PointMass, Support
+from faying.joint.bolt import Bolt
+from faying.joint.solid_bolt import SolidBolt
+from faying.materials import Material
+from faying.study.keys.bolt import read_bolt
+from faying.study.keys.geometry import GeometryChoice, read_geometry
+from faying.study.keys.joint import JointChoice
+from faying.study.keys.law import LawChoice
+from faying.study.keys.material import read_materials, read_parts
+from faying.study.keys.reader import Faults, Table
+from faying.study.keys.solution import ModesChoice, ResponseChoice, read_order
+from faying.study.keys.support import read_mass, read_support
+from faying.study.keys.surface import SurfaceChoice
+from faying.study.keys.test import HammerChoice, TestChoice, read_test
+
+
+@dataclass(frozen=True, kw_only=True)
+class Study:
+    """One whole study. Read it with Study.read(path); every fault of the file is reported in one InputError.
+
+    Args:
+        title, folder: what it is called; where file names start from.
+        text: the study file as it was read; files: all files that it names, so that a result depends on them.
+        materials, parts: materials by name; name of the material of each part.
+        geometry, surface, law, joints, bolts, supports, masses, modes, response, test, hammer: the tables of the file.
+        order: the order of tightening as indices of bolts, pass after pass; None where all are pulled at once.
+    """
+
+    title: str
+    folder: Path
+    materials: dict[str, Material]
+    geometry: GeometryChoice
+    parts: dict[str, str]
+    surface: SurfaceChoice | None
+    law: LawChoice
+    joints: tuple[JointChoice, ...]
+    bolts: tuple[Bolt | SolidBolt, ...]
+    supports: tuple[Support, ...] = ()
+    masses: tuple[PointMass, ...] = ()
+    modes: ModesChoice = field(default_factory=ModesChoice)
+    order: tuple[int, ...] | None = None
+    response: ResponseChoice | None = None
+    test: TestChoice | None = None
+    hammer: HammerChoice | None = None
+    text: str = field(default="", repr=False)
+    files: tuple[Path, ...] = ()
+
+    @property
+    def loads(self) -> tuple[float, ...]:
+        """Preloads of the first bolt [N], which name the loads."""
+        return self.bolts[0].preload
+
+    def forces(self, load: int) -> list[float]:
+        """Preload of every bolt [N] at one load."""
+        return [bolt.preload[load] for bolt in self.bolts]
+
+    def law_of(self, joint: JointChoice) -> LawChoice:
+        """The law of a joint: its own, or that of the study."""
+        return joint.law or self.law
+
+    @classmethod
+    def read(cls, path: "str | Path | Study") -> "Study":
+        """Read a study file. ReadError where there is none or it is not TOML, InputError with all faults otherwise.
+
+        A study that is read already comes back as it is.
+        """
+        if isinstance(path, Study):
+            return path
+        file = Path(path)
+        if not file.is_file():
+            raise ReadError(f"no file {file}; write one with: faying init {file}")
+        try:
+            text = file.read_text(encoding="utf-8")
+            data = tomllib.loads(text)
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError, ValueError) as fault:
+            raise ReadError(f"{file} is not TOML: {fault}") from None
+        return cls.from_dict(data, folder=file.resolve().parent, where=str(file), text=text)
+
+    @classmethod
+    def from_dict(cls, data: dict[str, Any], *, folder: Path, where: str = "study", text: str = "") -> Self:
+        """Check a study given as nested dictionaries (as TOML gives them); file names are relative to `folder`."""
+        faults = Faults(folder=folder)
+        top = Table(data, "", faults)
+        title = top.text("title", "untitled")
+        materials = read_materials(top)
+        geometry = read_geometry(top)
+        parts = read_parts(top, materials)
+        joints = tuple(JointChoice.of(t, i) for i, t in enumerate(top.tables("joint", required=True)))
+        law = LawChoice.of(top.table("law") or Table({}, "law", faults))
+        shared = top.table("surface")
+        surface = None if shared is None else SurfaceChoice.of(shared)
+        _note_lacking(faults, joints, law, surface)
+        read = [read_bolt(t, i, materials) for i, t in enumerate(top.tables("bolt", required=True))]
+        bolts = tuple(bolt for bolt in read if bolt is not None)
+        supports = [read_support(t) for t in top.tables("support")]
+        masses = [read_mass(t) for t in top.tables("mass")]
+        counts = {len(b.preload) for b in bolts if b.preload}
+        if len(counts) > 1:
+            faults.add(
+                f"the bolts have {' and '.join(map(str, sorted(counts)))} preloads; give each bolt the same number"
+            )
+        modes = ModesChoice.of(top.table("modes"))
+        order = read_order(top.table("tightening"), [bolt.name for bolt in bolts])
+        response = ResponseChoice.of(top.table("response"))
+        test, hammer = read_test(top, max((b.preload for b in bolts if b.preload), key=len, default=()))
+        top.close()
+        faults.raise_if_any(where)
+        return cls(
+            title=title,
+            folder=folder,
+            materials=materials,
+            geometry=geometry,
+            parts=parts,
+            surface=surface,
+            law=law,
+            joints=joints,
+            bolts=bolts,
+            supports=tuple(s for s in supports if s is not None),
+            masses=tuple(m for m in masses if m is not None),
+            modes=modes,
+            order=order,
+            response=response,
+            test=test,
+            hammer=hammer,
+            text=text,
+            files=tuple(dict.fromkeys(faults.files)),
+        )
+
+
+def _note_lacking(
+    faults: Faults, joints: tuple[JointChoice, ...], law: LawChoice, surface: SurfaceChoice | None
+) -> None:
+    """Note every joint's law that its surface does not supply, before anything is read or meshed."""
+    for joint in joints:
+        choice = joint.surface or surface
+        there = "no" if choice is None else "fractal" if choice.scan is None else "scan"
+        fault = (joint.law or law).fault_without(there)
+        if fault and fault not in faults.lines:
+            faults.add(fault)

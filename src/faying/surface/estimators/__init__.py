@@ -1,0 +1,1 @@
+"""One estimator of D and G a file; `table` lists them."""

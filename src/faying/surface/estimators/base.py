@@ -1,0 +1,82 @@
+"""What an estimator is, what it returns, and how the interval of G follows from those of D and the level."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import log
+from typing import final
+
+import numpy as np
+
+from faying.surface.convention import G_from_density
+from faying.surface.form import Prepared
+from faying.surface.scan import Profile, Scan
+from faying.typing import Array
+
+Z95 = 1.959963984540054  # two-sided 95 % point of the normal distribution
+Limits = tuple[float, float] | None
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class Estimate:
+    """D, G [m], 95 % intervals, band (shortest, longest wavelength [m]), rms white noise [m], misfit [-], remarks."""
+
+    D: float
+    G: float
+    D_interval: tuple[float, float]
+    G_interval: tuple[float, float]
+    band: tuple[float, float]
+    noise: float = 0.0
+    misfit: float = 1.0
+    notes: tuple[str, ...] = ()
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class Estimator:
+    """One way from heights to D and G.
+
+    `name` is what users write; `needs` says what the heights must offer and `bias` what is known of its error.
+    `estimate(ready, limits, c)` takes prepared heights, a band of wavelengths [m] or None, and the convention's c.
+    """
+
+    name: str
+    needs: str
+    bias: str
+    estimate: Callable[[Prepared, Limits, float], Estimate]
+
+
+def with_intervals(
+    D: float, log_level: float, covariance: Array, pivot: float, c: float, *, band: tuple[float, float], **rest: object
+) -> Estimate:
+    """Build an Estimate from D, ln S(pivot) [m3] and the covariance of (ln S(pivot), D).
+
+    The interval of G is the central 95 % of G over the joint normal law of ln S and D (no linearisation, since
+    ln G = ln(2 B/c)/(2D-4) is steep near D = 2); draws with D <= 2 count as G = 0.
+    """
+    sigma = max(float(covariance[1, 1]), 0.0) ** 0.5
+    rng = np.random.default_rng(12345)
+    root = np.linalg.svd(covariance)
+    draws = (root[0] * np.sqrt(root[1])) @ rng.standard_normal((2, 4000))
+    ds, levels = D + draws[1], log_level + draws[0]
+
+    def G_of(d: float, level: float) -> float:
+        # B = S(pivot) pivot^(7-2D)
+        return G_from_density(d, level + (7 - 2 * d) * log(pivot), c) if d > 2 else 0.0
+
+    many = np.array([G_of(d, v) for d, v in zip(ds, levels, strict=True)])
+    low, high = np.quantile(many, [0.025, 0.975], method="nearest")
+    return Estimate(
+        D=D,
+        G=G_of(D, log_level),
+        D_interval=(D - Z95 * sigma, D + Z95 * sigma),
+        G_interval=(float(low), float(high)),
+        band=band,
+        **rest,  # type: ignore[arg-type]
+    )
+
+
+def white_rms(scan: Scan | Profile, noise: float) -> float:
+    """Rms height [m] of a white level of the two-sided density."""
+    steps = scan.spacing if isinstance(scan, Scan) else (scan.spacing,)
+    return float((max(noise, 0.0) / float(np.prod(steps))) ** 0.5)
