@@ -33,8 +33,9 @@ MILLION = 1000
 
 
 def meshed(size):
-    from faying.study import Study
     from faying.study.build import checked_mesh
+
+    from faying.study import Study
 
     if size == MILLION:
         return bar()

@@ -42,9 +42,10 @@ def main():
     ask.add_argument("--size", type=int, default=150, choices=sorted(EDGES))
     ask.add_argument("--checks", type=int, default=20)
     given = ask.parse_args()
+    from faying.study.build import build_all, checked_mesh, surfaces_of
+
     from faying.study import Study
     from faying.study.axes import Grid, axis_of
-    from faying.study.build import build_all, checked_mesh, surfaces_of
     from faying.study.sweep import Recipe, _Trainer, evaluate
 
     plan = Study.read(ROOT / "examples/t-specimen/study.toml")

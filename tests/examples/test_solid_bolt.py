@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from faying.study.build import build_all, checked_mesh
 
 from faying.fe.faces import face_centre
 from faying.joint.tighten import tighten
 from faying.study import Study
-from faying.study.build import build_all, checked_mesh
 
 STUDY = Path(__file__).parents[2] / "examples/solid-bolt/study.toml"
 

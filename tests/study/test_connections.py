@@ -79,8 +79,9 @@ LAW_TABLE = "pressure [MPa],k_n [MPa/um],k_t [MPa/um]\n0.01,1,0.5\n50,900,400\n"
 
 
 def law_named(folder, **law):
-    from faying.materials import CATALOGUE, ContactPair
     from faying.study.surface import NO_SURFACE, law_of
+
+    from faying.materials import CATALOGUE, ContactPair
 
     made = study(folder, surface=None, law=law)
     steel = CATALOGUE["45 steel"]

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from faying.study.schema import LawSpec, SurfaceSpec
 
 import faying
 from faying.study import Study, build, run
-from faying.study.schema import LawSpec, SurfaceSpec
 from faying.study.template import write
 from tests.helpers.loads import bolt_load
 

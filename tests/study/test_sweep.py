@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from faying.study.build import surfaces_of
+from faying.study.contact import LawSpec
 from scipy.io import netcdf_file
 
 import faying
 from faying.study import Study, run
 from faying.study import sweep as module
 from faying.study.axes import Grid, axis_of
-from faying.study.build import surfaces_of
-from faying.study.contact import LawSpec
 from faying.study.sweep import sweep
 from faying.study.template import write
 

@@ -120,10 +120,11 @@ def test_calculix_runs_the_contact_table(tmp_path):
         scan_area=16e-6,
         pair=faying.ContactPair(faying.CATALOGUE["45 steel"], faying.CATALOGUE["45 steel"]),
     )
+    from faying.study.connections import JointSpec
+
     from faying.joint.joint_law import JointLaw
     from faying.joint.pairs import lumped
     from faying.study.attach import _contact
-    from faying.study.connections import JointSpec
 
     mesh = two(("hex8", "hex8"), ((3, 2), (3, 2)), numbers=False)
     joined = JointLaw(model=law)
@@ -376,9 +377,10 @@ def test_modes_of_matrices_that_calculix_stores(tmp_path):
 @needs_ccx
 def test_the_pressure_of_the_preload_in_calculix(tmp_path):
     """Blocks pressed together on half of their backs: our pressure against node-to-surface contact, 2 % in norm."""
+    from faying.study.build import build_all, checked_mesh
+
     from faying.fe.sides import sides_on
     from faying.study.attach import attach
-    from faying.study.build import build_all, checked_mesh
 
     made = two(("hex8", "hex8"), ((12, 8), (12, 8)), counts=(10, 8))
     faces, owner = dict(made.faces), dict(made.face_part)

@@ -11,8 +11,9 @@ from faying.decks.programs import MESHES, reader_of
 from faying.decks.raw import RawMesh
 from faying.errors import InputError, ReadError
 from faying.fe.elements import FACES, SOLIDS
-from faying.fe.mesh import Mesh, MeshNote, least_jacobian
+from faying.fe.mesh import Mesh, least_jacobian
 from faying.fe.sides import Blocks, nodes_of, side_key, skin
+from faying.notes import Note
 from faying.typing import Array, Index
 
 SMALLEST, LARGEST = 1e-3, 100.0  # sizes of a bolted structure [m] beyond which the unit is doubted
@@ -64,7 +65,7 @@ class _Builder:
     name: str
     unit: str
     scale: float
-    notes: list[MeshNote] = field(default_factory=list)
+    notes: list[Note] = field(default_factory=list)
 
     def mesh(self, wanted: Mapping[str, str] | Sequence[str] | None) -> Mesh:
         """Put it all together."""
@@ -140,7 +141,7 @@ class _Builder:
             )
         if len(loose):
             self.notes.append(
-                MeshNote(
+                Note(
                     code="reference-points",
                     text=f"{len(loose)} reference points are left out, with the couplings that name them: {_some(loose)}",
                 )
@@ -223,7 +224,7 @@ class _Builder:
                 self._by_key(label, key, skins, found)
                 continue
             text = f"{len(key)} shells {label!r} lie on no solid and are left out, with their stiffness and mass"
-            self.notes.append(MeshNote(code="left-out", text=text))
+            self.notes.append(Note(code="left-out", text=text))
         order = np.argsort(numbers)
         for label, pairs in self.raw.side_sets.items():
             place = np.minimum(np.searchsorted(numbers[order], pairs[:, 0]), len(numbers) - 1)
@@ -330,7 +331,7 @@ class _Builder:
             source=self.name,
             node_numbers=numbers,
             turned=np.isin(old_numbers, self.raw.turned),
-            notes=(*self.notes, *(MeshNote(code="file", text=text) for text in self.raw.notes)),
+            notes=(*self.notes, *(Note(code="file", text=text) for text in self.raw.notes)),
         )
 
     def _unmerged(self, points: Array, nodes: Index, numbers: Index, part: str) -> None:

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from faying.decks.deck import JointDeck, grouped, real, springs_of
-from faying.decks.raw import Matrices, RawMesh, face_blocks, gathered, index, read_text
+from faying.decks.raw import Matrices, RawMesh, both_triangles, face_blocks, gathered, index, once, read_text
 from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS, SOLIDS
 from faying.typing import Array, Index
@@ -324,8 +324,10 @@ def _loaded(loads: list[tuple[list[str], str]], where_of: dict[int, tuple[str, l
 
 def read_matrices(path: Path, names: tuple[str, str]) -> Matrices:
     """Read real DMIG entries: G and C of the column, then rows of G, C, value; form 6 gives one triangle."""
-    from scipy.sparse import coo_array, diags_array
+    from scipy.sparse import coo_array
 
+    if not read_text(path, "bulk data").endswith("\n"):
+        raise ReadError(f"{path} ends in the middle of a line; it is cut short")
     heads: dict[str, int] = {}
     entries: dict[str, list[tuple[tuple[int, int], tuple[int, int], float]]] = {}
     for card, fields, where in cards(path):
@@ -355,11 +357,11 @@ def read_matrices(path: Path, names: tuple[str, str]) -> Matrices:
     place = {key: i for i, key in enumerate(keys)}
     out = []
     for name, some in zip(names, found, strict=True):
-        i, j = [place[row] for row, _, _ in some], [place[column] for _, column, _ in some]
+        i, j = index(place[row] for row, _, _ in some), index(place[column] for _, column, _ in some)
+        one = heads.get(name.upper(), 6) == 6
+        once(f"{path.name}, DMIG {name}", np.minimum(i, j) if one else i, np.maximum(i, j) if one else j, len(keys))
         A = coo_array(([value for *_, value in some], (i, j)), shape=(len(keys), len(keys))).tocsr()
-        if heads.get(name.upper(), 6) == 6:
-            A = (A + A.T - diags_array(A.diagonal())).tocsr()
-        out.append(A)
+        out.append(both_triangles(A) if one else A)
     return out[0], out[1], np.array(keys, dtype=np.int64)
 
 

@@ -7,8 +7,9 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from faying.errors import ReadError
+from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS, SOLIDS
+from faying.fe.memory import available
 from faying.typing import Array, Index
 
 GREATEST = 10**12  # number of a node or an element
@@ -131,10 +132,62 @@ def read_text(path: Path, what: str) -> str:
         raise ReadError(f"cannot read the {what} {path}: {fault.strerror or fault}") from None
 
 
+def numbers_of(path: Path, text: str, count: int | None = None) -> Array:
+    """All numbers of a text. Raises ReadError where there are others than `count`, or a word or the last line is cut."""
+    import warnings
+
+    if text and not text.endswith("\n"):
+        raise ReadError(f"{path} ends in the middle of a line; it is cut short")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            values = np.fromstring(text.replace("D", "E").replace("d", "e"), sep=" ")
+        except (DeprecationWarning, ValueError):
+            raise ReadError(f"{path} holds words that are not numbers; is it whole?") from None
+    if count is not None and len(values) != count:
+        raise ReadError(f"{path} has {len(values):,} numbers where its head says {count:,}; is it whole?")
+    return values
+
+
+def whole(path: Path, values: Array, size: int) -> Index:
+    """Indices from 1 as whole numbers from 0. Raises ReadError for others than 1 to size."""
+    if len(values) and not (np.all(values == np.round(values)) and 1 <= values.min() <= values.max() <= size):
+        wrong = values[(values != np.round(values)) | (values < 1) | (values > size)][0]
+        raise ReadError(f"{path} has the row or column {wrong:g}; there are {size} unknowns, numbered from 1")
+    return values.astype(np.int64) - 1
+
+
+def once(name: str, rows: Index, columns: Index, width: int) -> None:
+    """Raise ReadError where an entry is given twice."""
+    key = np.sort(rows.astype(np.int64) * width + columns)
+    again = key[1:][key[1:] == key[:-1]]
+    if len(again):
+        raise ReadError(f"{name}: row {again[0] // width + 1}, column {again[0] % width + 1} is given twice")
+
+
+def both_triangles(half: Any) -> Any:
+    """The symmetric matrix of one triangle."""
+    from scipy.sparse import diags_array
+
+    return (half + half.T - diags_array(half.diagonal())).tocsr()
+
+
+def room(size: float, name: str) -> None:
+    """Raise InputError where what a file unpacks to [B], three times over, is more than the memory there is."""
+    free = available()
+    if free is not None and 3 * size > free:
+        raise InputError(
+            f"{name} unpacks to {size / 1e9:.3g} GB; about {3 * size / 1e9:.3g} GB of memory are needed to read it"
+        )
+
+
 def read_dofs(path: Path) -> Index:
     """Read a list of unknowns (n, 2): node and direction."""
     out = []
-    for k, line in enumerate(read_text(path, "list of unknowns").splitlines(), 1):
+    text = read_text(path, "list of unknowns")
+    if text and not text.endswith("\n"):
+        raise ReadError(f"{path} ends in the middle of a line; it is cut short")
+    for k, line in enumerate(text.splitlines(), 1):
         words = line.replace(".", " ").split()
         if not words:
             continue

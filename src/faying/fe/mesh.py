@@ -10,15 +10,8 @@ from faying.errors import InputError
 from faying.fe.elements import FACES, SOLIDS
 from faying.fe.sides import Blocks as Blocks
 from faying.fe.sides import nodes_of
+from faying.notes import Note
 from faying.typing import Array, Index, Mask
-
-
-@dataclass(frozen=True, kw_only=True)
-class MeshNote:
-    """What a user should know of a mesh: a code, such as reference-points, and a sentence."""
-
-    code: str
-    text: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,7 +42,7 @@ class Mesh:
     source: str = field(default="")
     node_numbers: Index | None = None
     turned: Mask | None = None
-    notes: tuple[MeshNote, ...] = ()
+    notes: tuple[Note, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.parts:

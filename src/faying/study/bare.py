@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 
+from faying.decks.matrices import arranged, read_matrices
 from faying.errors import InputError
 from faying.fe.damped import DampedModes, damped_modes
 from faying.fe.elasticity import rigid_motions
-from faying.decks.matrices import arranged, read_matrices
 from faying.fe.modes import lowest_modes
 from faying.study.attach import Attachment
 
