@@ -258,3 +258,14 @@ def test_numbers_fit_their_columns(value, width):
     assert "." in word
     if abs(value) > 1e-200:
         assert float(word) == pytest.approx(value, rel=10.0 ** (9 - width))
+
+
+def test_a_joint_on_nodes_with_directions_of_their_own_is_not_written(tmp_path):
+    """CD of a GRID, *TRANSFORM: a joint acts in the directions of the model."""
+    deck = deck_of(mesh())
+    turned = np.zeros(len(deck.mesh.points), dtype=bool)
+    turned[deck.pairs.second[0]] = True
+    deck = replace(deck, mesh=replace(deck.mesh, turned=turned))
+    with pytest.raises(faying.InputError, match="1 nodes of the joint have directions of their own in the model, node"):
+        write(deck, "nastran", tmp_path)
+    assert not list(tmp_path.iterdir())

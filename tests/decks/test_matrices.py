@@ -122,16 +122,174 @@ def test_faults(model, tmp_path):
     refused(r"files of the kind \.full are not known", tmp_path / "job.full")
     path = calculix(tmp_path, K, M, dofs)
     (tmp_path / "job.dof").write_text("50.1\n")
-    refused("has row 36, but the .dof file lists 1 unknowns", path)
+    refused("has the row or column 2; there are 1 unknowns, numbered from 1", path)
     path = calculix(tmp_path, K, M, dofs)
     path.write_text(path.read_text().rsplit(maxsplit=1)[0])
-    refused("is it whole", path)
+    refused("it is cut short", path)
     path = dmig(tmp_path, K, M, dofs)
     refused("holds no DMIG K2GG; it holds KAAX, MAAX", path, names=("K2GG", "MAAX"))
     path.write_text(path.read_text().replace(f"{6:8d}{2:8d}", f"{6:8d}{4:8d}"))
     refused("DMIG KAAX is complex", path)
     path.write_text("DMIG    KAAX           1       x\n")
     refused("cannot be read", path)
+
+
+@pytest.mark.parametrize("kind", ["sti", "mas", "dof", "mtx", "dmig", "dmig all"])
+def test_a_file_cut_short_is_refused_or_whole(model, tmp_path, kind):
+    """Cut at the end of every line, and inside some: an error, or all that was written."""
+    K, M, dofs = model[2]
+    order = np.lexsort((dofs[:, 1], dofs[:, 0])) if "dmig" in kind else np.arange(len(dofs))
+    K, M, dofs = K[order][:, order], M[order][:, order], dofs[order]
+    if kind in ("sti", "mas", "dof"):
+        given, file = {"path": calculix(tmp_path, K, M, dofs)}, tmp_path / f"job.{kind}"
+    elif kind == "mtx":
+        given = market(tmp_path, K, M, dofs)
+        file = given["mass"]
+    else:
+        given = {"path": dmig(tmp_path, K, M, dofs, form=6 if kind == "dmig" else 1)}
+        file = given["path"]
+    whole = file.read_bytes()
+    lines = np.flatnonzero(np.frombuffer(whole, dtype=np.uint8) == 10) + 1
+    cuts = [
+        *lines[:-1][:: max(1, len(lines) // 120)],
+        *lines[-12:-1],
+        *range(len(whole) - 40, len(whole) - 1),
+        *range(0, len(whole), 997),
+    ]
+    passed = []
+    for cut in cuts:
+        file.write_bytes(whole[:cut])
+        try:
+            read = read_matrices(**given, **UNITS)
+        except faying.InputError:
+            continue
+        passed.append((cut, abs(read[0] - K * 1e6).max() if read[0].shape == K.shape else np.inf))
+    assert not passed, f"{len(passed)} of {len(cuts)} cuts are read, for one {whole[passed[0][0] - 80 : passed[0][0]]}"
+
+
+@pytest.mark.parametrize(
+    ("text", "match"),
+    [
+        ("3 3 2\n1 1 1.0\n", "has 3 numbers where its head says 6"),
+        ("3 3 1\n4 1 1.0\n", "has the row or column 4; there are 3 unknowns"),
+        ("3 3 1\n0 1 1.0\n", "has the row or column 0"),
+        ("3 3 1\n1.7 1 1.0\n", r"has the row or column 1\.7"),
+        ("3 3 2\n1 1 1.0\n1 1 1.0\n", "row 1, column 1 is given twice"),
+        ("3 3 1\n1 2 1.0\n", "is symmetric, so that it should have the lower triangle alone"),
+        ("3 3 1\n1 1 1.0", "ends in the middle of a line"),
+        ("3 3 1\n1 1 1.0E\n", "holds words that are not numbers"),
+        ("3 3\n", "is no size of a matrix"),
+        ("3 3 1000000000\n1 1 1.0\n", "has 3 numbers where its head says 3,000,000,000"),
+    ],
+)
+def test_damaged_matrix_market(model, tmp_path, text, match):
+    good = market(tmp_path, *model[2])
+    good["path"].write_text("%%MatrixMarket matrix coordinate real symmetric\n" + text)
+    refused(match, **good)
+    good["path"].write_text("%%MatrixMarket matrix coordinate complex general\n" + text)
+    refused("is coordinate complex general; stiffness and mass are real", **good)
+
+
+def saved(folder, matrix, name="k.npz"):
+    from scipy.sparse import save_npz
+
+    save_npz(folder / name, matrix)
+    return folder / name
+
+
+@pytest.mark.parametrize("form", ["csr", "csc", "coo", "bsr"])
+@pytest.mark.parametrize("dtype", [float, complex])
+def test_npz_of_scipy(model, tmp_path, form, dtype):
+    from faying.decks.matrices import read_pair
+
+    K, M, _ = model[2]
+    paths = [saved(tmp_path, getattr(A.astype(dtype), f"to{form}")(), f"{k}.npz") for k, A in enumerate((K, M))]
+    read = read_pair(*paths, stiffness_unit="N/m", mass_unit="kg")
+    assert np.abs(read[0] - K).max() < 1e-12 * np.abs(K).max()
+    assert np.abs(read[1] - M).max() < 1e-12 * np.abs(M).max()
+
+
+def parts(matrix, **changes):
+    A = matrix.tocsr()
+    return {
+        "format": np.array(b"csr"),
+        "shape": np.array(A.shape),
+        "data": A.data,
+        "indices": A.indices,
+        "indptr": A.indptr,
+    } | changes
+
+
+@pytest.mark.parametrize(
+    ("change", "match"),
+    [
+        (lambda A: {"indices": A.indices + 1000}, "index 1035 of a matrix of 36 rows"),
+        (lambda A: {"indices": A.indices - 1}, "index -1 of a matrix of 36 rows"),
+        (lambda A: {"indices": A.indices + 0.7}, "its indices are float64, not a row of whole numbers"),
+        (lambda A: {"indptr": A.indptr[::-1]}, "do not fit each other"),
+        (lambda A: {"indptr": np.r_[0, 10**15, A.indptr[2:]]}, "the row pointers do not rise"),
+        (lambda A: {"indptr": A.indptr[:-1]}, "do not fit each other"),
+        (lambda A: {"data": A.data[:-1]}, "do not fit each other"),
+        (lambda A: {"data": A.data * (1 + 0.1j)}, "is complex; stiffness and mass are real"),
+        (lambda A: {"indices": np.r_[A.indices[1], A.indices[1:]]}, "is given twice"),
+        (lambda A: {"format": np.array(b"dia")}, "has the form dia; save it as csr"),
+        (lambda A: {"shape": np.array([36])}, "cannot be read as a sparse matrix of SciPy"),
+    ],
+)
+def test_damaged_npz(model, tmp_path, change, match):
+    from faying.decks.matrices import read_pair
+
+    K = model[2][0].tocsr()
+    mass = saved(tmp_path, model[2][1], "m.npz")
+    np.savez(tmp_path / "k.npz", **parts(K, **change(K)))
+    with pytest.raises(faying.InputError, match=match):
+        read_pair(tmp_path / "k.npz", mass, stiffness_unit="N/m", mass_unit="kg")
+
+
+def test_an_npz_that_says_more_than_it_has(model, tmp_path):
+    """A header of 1e9 numbers before a few of them: refused by the length of the member, before anything is made."""
+    import io
+    import zipfile
+
+    from faying.decks.matrices import read_pair
+
+    good = saved(tmp_path, model[2][0])
+    head = io.BytesIO()
+    np.lib.format.write_array_header_1_0(head, {"descr": "<f8", "fortran_order": False, "shape": (10**9,)})
+    with zipfile.ZipFile(good) as old, zipfile.ZipFile(tmp_path / "bad.npz", "w") as new:
+        for name in old.namelist():
+            new.writestr(name, head.getvalue() + b"0" * 80 if name == "data.npy" else old.read(name))
+    with pytest.raises(faying.ReadError, match="data.npy is not as long as it says"):
+        read_pair(tmp_path / "bad.npz", good, stiffness_unit="N/m", mass_unit="kg")
+    (tmp_path / "cut.npz").write_bytes(good.read_bytes()[:-40])
+    with pytest.raises(faying.ReadError, match="cannot be read as a sparse matrix"):
+        read_pair(tmp_path / "cut.npz", good, stiffness_unit="N/m", mass_unit="kg")
+
+
+def test_more_than_the_memory_is_said_first(model, tmp_path, monkeypatch):
+    from faying.decks.matrices import read_pair
+
+    path = saved(tmp_path, model[2][0])
+    monkeypatch.setenv("FAYING_MEMORY", "1e-6")
+    with pytest.raises(faying.InputError, match="k.npz unpacks to .* GB; about .* GB of memory are needed"):
+        read_pair(path, path, stiffness_unit="N/m", mass_unit="kg")
+
+
+def test_total_mass(model):
+    """Density times volume, along every axis."""
+    from faying.decks.matrices import total_mass
+
+    _, M, dofs = model[2]
+    assert total_mass(M, dofs) == pytest.approx(np.full(3, 7800 * 0.04 * 0.02 * 0.01 * 1e-3), rel=1e-12)
+
+
+def test_masses_that_differ_along_the_axes_are_refused(model, tmp_path):
+    K, M, dofs = model[2]
+    odd = M.tolil()
+    odd[3, 3] *= 1.5
+    refused(
+        "the mass that moves along x, y and z is .*; they should be equal", **market(tmp_path, K, odd.tocsr(), dofs)
+    )
 
 
 def test_matrices_of_another_mesh(model):

@@ -211,6 +211,13 @@ def test_units(tmp_path):
     assert faying.read_mesh(path, unit="inch").size == pytest.approx(25.4 * faying.read_mesh(path, unit="mm").size)
 
 
+@pytest.mark.parametrize("unit", ["5 mm", "mm*1000", "0.001", "mm 5", "9**9**9 mm", "", "mm, m", 1.0])
+def test_a_unit_is_a_name(tmp_path, unit):
+    path = written(tmp_path, meshfiles.abaqus(two(gap=1e-4)), "m.inp")
+    with pytest.raises(faying.InputError, match='is no unit; write one without a number, such as "mm"'):
+        faying.read_mesh(path, unit=unit)
+
+
 def fault(tmp_path, text, match, name="m.inp", kind=faying.InputError):
     with pytest.raises(kind, match=match):
         faying.read_mesh(written(tmp_path, text, name), unit="mm")
@@ -242,7 +249,7 @@ def test_faults_of_a_mesh_file(tmp_path):
     )
     fault(tmp_path, good.replace("_p0.left_S6, S6", "_p0.left_S6, S9"), "side 'S9'; the sides of solids are S1 to S6")
     fault(tmp_path, good.replace("_p0.left_S6, S6", "_p0.left_S6, S4"), "are no outer side of a solid")
-    fault(tmp_path, good + "*NSET, NSET=x\ny\n", "set 'x' names the set 'y', which the file does not hold above it")
+    fault(tmp_path, good + "*NSET, NSET=x\ny\n", r"set 'x' names the set 'y', which the file does not hold")
     fault(tmp_path, good + "*NSET, NSET=x\n5\n", "the set 'x' names node 5, which the file does not hold")
     fault(tmp_path, good + "*NSET\n5\n", r"\*NSET without a name")
     fault(tmp_path, good + "*INCLUDE, INPUT=none.inp\n", "cannot read .*none.inp")
@@ -268,7 +275,7 @@ def test_nodes_that_should_be_one(tmp_path):
 def test_faults_of_other_formats(tmp_path):
     mesh = two(MIXED, gap=1e-4)
     bulk = meshfiles.nastran(mesh, field="free")
-    fault(tmp_path, bulk.replace("GRID,100,,", "GRID,100,5,"), "GRID 100 is given in coordinate system 5", "m.bdf")
+    fault(tmp_path, bulk.replace("GRID,100,,", "GRID,100,5,"), "coordinate system 5 is not in the file", "m.bdf")
     fault(tmp_path, bulk.replace("CTETRA", "CTETRX"), "elements CTETRX are not known; known are CTETRA", "m.bdf")
     fault(tmp_path, bulk[: bulk.index("PLOAD4")].rsplit(",", 3)[0] + "\n", "has 7 nodes; 4 or 10 are known", "m.bdf")
     fault(tmp_path, bulk.replace("GRID,100,,", "GRID,100,,x"), "GRID 100 cannot be read", "m.bdf")
@@ -289,7 +296,7 @@ def test_faults_of_other_formats(tmp_path):
     fault(tmp_path, archive[: archive.index("EBLOCK") + 900], "is the archive whole", "m.cdb")
     fault(tmp_path, archive.replace("EBLOCK,19,SOLID", "EBLOCK,10,COMPACT"), "EBLOCK without the key SOLID", "m.cdb")
     line = next(line for line in archive.splitlines() if line.startswith("      100"))
-    fault(tmp_path, archive.replace(line, f"{line}\n{line}"), "node 100 is given twice", "m.cdb")
+    fault(tmp_path, archive.replace(line, f"{line}\n{line}"), "is the archive whole", "m.cdb")
     fault(tmp_path, "FINISH\n", "holds 0 nodes in NBLOCK", "m.cdb")
     if pytest.importorskip("meshio"):
         fault(tmp_path, "nonsense", "cannot be read as VTK", "m.vtu")
@@ -320,3 +327,47 @@ def test_vtk_needs_meshio(tmp_path, monkeypatch):
 def test_the_core_does_not_load_meshio():
     code = "import faying, sys; faying.read_mesh; assert 'meshio' not in sys.modules and 'scipy' not in sys.modules"
     assert subprocess.run([__import__("sys").executable, "-c", code], check=False).returncode == 0
+
+
+def test_an_archive_with_other_elements_and_turned_nodes(tmp_path):
+    """NBLOCK carries three angles behind the coordinates; masses and rigid spiders are left out by name."""
+    mesh = two(("hex8", "hex8"), gap=1e-4)
+    archive = meshfiles.ansys(mesh)
+    line = next(line for line in archive.splitlines() if line.startswith("      103"))
+    turned = line[:27].ljust(27) + "".join(
+        f"{x:21.13E}".replace("E+", "E+0").replace("E-", "E-0")[-21:] for x in (0, 0, 10, 0, 30.0, 0)
+    )
+    archive = archive.replace(line, turned)
+    found = faying.read_mesh(written(tmp_path, archive, "m.cdb"), unit="mm")
+    assert found.numbers[found.turned].tolist() == [103]
+    count = len(list(meshfiles.solids(mesh)))
+    spider = "".join(f"{w:9d}" for w in (1, 9, 1, 1, 0, 0, 0, 0, 2, 0, 9999, 100, 103))
+    more = archive.replace("/PREP7\n", "/PREP7\nET,9,MPC184\n").replace(f"{-1:9d}\n", f"{spider}\n{-1:9d}\n", 1)
+    with pytest.raises(
+        faying.ReadError, match=f"EBLOCK says {count} elements and holds {count + 1}; is the archive whole"
+    ):
+        faying.read_mesh(written(tmp_path, more, "m.cdb"), unit="mm")
+    head = next(line for line in more.splitlines() if line.startswith("EBLOCK"))
+    more = more.replace(head, head.replace(f",{count}", f",{count + 1}"))
+    notes = faying.read_mesh(written(tmp_path, more, "m.cdb"), unit="mm").notes
+    assert [note.text for note in notes] == ["1 elements of type 184 are left out, with their stiffness and mass"]
+    gone = "\n".join(one for one in archive.splitlines() if one != turned) + "\n"
+    with pytest.raises(faying.ReadError, match="NBLOCK says .* nodes and holds .*; is the archive whole"):
+        faying.read_mesh(written(tmp_path, gone, "m.cdb"), unit="mm")
+
+
+@pytest.mark.parametrize(("old", "new"), [("100 ", "-100 "), ("100 ", "1" + 30 * "0" + " "), ("100 ", "1e9 ")])
+def test_wild_numbers_in_gmsh(tmp_path, old, new):
+    text = meshfiles.gmsh(two(gap=1e-4))
+    at = text.index(old, text.index("$Nodes"))
+    with pytest.raises(faying.InputError):
+        faying.read_mesh(written(tmp_path, text[:at] + new + text[at + len(old) :], "m.msh"), unit="mm")
+
+
+def test_counts_below_zero_in_gmsh(tmp_path):
+    text = meshfiles.gmsh(two(gap=1e-4))
+    body = text[text.index("$Elements") :].splitlines()
+    row = body[2].split()
+    wild = text.replace(body[2], " ".join([*row[:2], "-5", *row[3:]]))
+    with pytest.raises(faying.ReadError, match="ends in the middle of a record"):
+        faying.read_mesh(written(tmp_path, wild, "m.msh"), unit="mm")

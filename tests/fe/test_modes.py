@@ -313,3 +313,59 @@ def test_strong_dampers_against_the_whole_problem(strength):
         ]
         assert abs(near) / 2 / np.pi == pytest.approx(frequency, rel=1e-6)
         assert -2 * near.real / abs(near) == pytest.approx(loss, rel=1e-3, abs=1e-7)
+
+
+def spectrum(values, size=60, seed=3):
+    """Sparse K and M with given eigenvalues: springs in turned axes of masses that differ."""
+    from scipy.sparse import csr_array
+
+    rng = np.random.default_rng(seed)
+    turn = np.linalg.qr(rng.standard_normal((size, size)))[0]
+    root = np.sqrt(rng.uniform(0.5, 2.0, size))
+    rest = np.linspace(2, 9, size - len(values)) * 1e9
+    K = root[:, None] * (turn * np.r_[values, rest]) @ turn.T * root
+    return csr_array((K + K.T) / 2), csr_array(np.diag(root**2))
+
+
+@pytest.mark.parametrize("solver", [name for name in available() if name in ("pardiso", "superlu")])
+def test_the_inertia_counts_the_modes_below(solver):
+    from faying.fe.solve import negative_eigenvalues
+
+    K, M = spectrum(np.array([0.0, 0.0, 1e6, 4e6, 4e6, 9e6]))
+    for below, count in ((-1.0, 0), (1.0, 2), (2e6, 3), (5e6, 5), (1e7, 6), (1e10, 60)):
+        assert negative_eigenvalues((K - below * M).tocsr(), solver) == count
+
+
+def test_a_missed_mode_is_counted():
+    """Modes from which one is taken away stand for an iteration that has missed it."""
+    from dataclasses import replace
+
+    from faying.fe.modes import missed_modes
+
+    K, M = spectrum(np.array([0.0, 0.0, 1e6, 4e6, 4.1e6, 9e6]))
+    found = lowest_modes(K, M, 6, shift_frequency=50.0)
+    assert missed_modes(K, M, found) == 0
+    keep = [0, 1, 2, 4, 5]
+    assert missed_modes(K, M, replace(found, frequencies=found.frequencies[keep])) == 1
+
+
+def test_an_unstable_structure_is_no_structure_with_modes():
+    K, M = spectrum(np.array([-2e4, 1e6, 4e6]))
+    with pytest.raises(
+        faying.InputError, match=r"is unstable: 1 eigenvalues are negative, the lowest -\(22\.51 Hz\)\^2"
+    ):
+        lowest_modes(K, M, 3, shift_frequency=500.0)
+
+
+@pytest.mark.parametrize("shift", [0.0, -1.0, np.nan, np.inf])
+def test_a_shift_is_a_frequency_above_zero(shift):
+    K, M = spectrum(np.array([1e6]))
+    with pytest.raises(faying.InputError, match="give one above 0, near the first elastic mode"):
+        lowest_modes(K, M, 1, shift_frequency=shift)
+
+
+def test_a_shift_above_all_modes_is_refused():
+    mesh = stack([0.1], [3], width=0.02, height=0.02)
+    K, M = assemble(mesh, dict.fromkeys(mesh.parts, BAR))
+    with pytest.raises(faying.InputError, match=r"a shift of 1e\+09 Hz lies above all modes of these matrices"):
+        lowest_modes(K, M, 9, shift_frequency=1e9)

@@ -1,7 +1,7 @@
 """Abaqus (and CalculiX) input files: read as meshes, and the joint written as keywords.
 
-Read: nodes, elements, sets, surfaces, includes, parts and instances; what is not geometry is passed over. Keywords after the
-Abaqus Analysis User's Guide and the CalculiX manual.
+Read: nodes in any system, elements, sets, surfaces, includes, parts and instances; what is not geometry is passed over.
+Keywords after the Abaqus Keywords Reference Guide and the CalculiX manual.
 
 Written: SPRING2 and DASHPOT2, connectors with structural damping, a matrix, and the law as a contact property. Keywords
 after the Abaqus Keywords Reference Guide 2016 and 2017: MATRIX INPUT (entries "node, direction, node, direction, value",
@@ -10,87 +10,48 @@ the tests by a reader of that grammar.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Mapping
+from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from faying.decks.deck import JointDeck, grouped, real
-from faying.decks.keywords import elements, orientations, table
-from faying.decks.raw import RawMesh, index
+from faying.decks.keywords import DATA, Block, blocks, elements, orientations, table
+from faying.decks.raw import RawMesh, index, ranged, read_text
 from faying.errors import ReadError
 from faying.typing import Array, Index
 
 _SOLID = {"C3D4": "tet4", "C3D10": "tet10", "C3D8": "hex8", "C3D20": "hex20", "C3D6": "wedge6", "C3D15": "wedge15"}
 _SHEET = re.compile(r"^(?:S|STRI|CPS|CPE|M3D|SFM3D|R3D)(\d+)")
 _SHEET_COUNT = {"3": 3, "4": 4, "6": 6, "8": 8, "65": 6}
-_LINE = {"T3D2": 2, "T3D3": 3, "B31": 2, "B32": 3}
+# elements that are left out, with their nodes; those that carry stiffness or mass are named in a note
+_LINE = re.compile(
+    r"^(T3D[23]|B3[123]|MASS|ROTARYI|SPRING[A12]|DASHPOT[A12]|CONN3D2|DCOUP3D|GAP\w*|JOINTC|PSI\w*|RB3D2)"
+)
+_MAKERS = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "IMPORT", "SYMMETRIC MODEL GENERATION")
+_REFERENCES = {"COUPLING", "RIGID BODY", "KINEMATIC COUPLING", "DISTRIBUTING COUPLING", "PRE-TENSION SECTION"}
 
-
-@dataclass(frozen=True)
-class Block:
-    """A keyword with its parameters and the data lines below it."""
-
-    keyword: str
-    options: dict[str, str]
-    lines: list[str]
-    where: str
-
-    def numbers(self) -> list[str]:
-        """All entries of the data lines."""
-        return [word for line in self.lines for word in (w.strip() for w in line.split(",")) if word]
+Items = list[tuple[str, "Index | str"]]
 
 
 @dataclass
 class Scope:
-    """What one part or the whole file holds."""
+    """What one part, instance or the whole file holds; sets are lists of (instance, numbers or the name of a set)."""
 
     nodes: dict[int, tuple[float, ...]] = field(default_factory=dict)
     elements: dict[str, list[tuple[Index, Index]]] = field(default_factory=dict)
     sheets: dict[str, list[Index]] = field(default_factory=dict)
     extra: list[Index] = field(default_factory=list)
-    element_sets: dict[str, list[Index]] = field(default_factory=dict)
-    node_sets: dict[str, list[Index]] = field(default_factory=dict)
+    element_sets: dict[str, Items] = field(default_factory=dict)
+    node_sets: dict[str, Items] = field(default_factory=dict)
     surfaces: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
     sections: list[str] = field(default_factory=list)
-
-
-def blocks(path: Path, seen: tuple[Path, ...] = ()) -> Iterator[Block]:
-    """Keyword blocks of a file and of the files it includes."""
-    if path.resolve() in seen:
-        raise ReadError(f"{path} includes itself")
-    try:
-        text = path.read_text(encoding="utf-8", errors="replace")
-    except OSError as fault:
-        raise ReadError(f"cannot read {path}: {fault.strerror or fault}") from None
-    current: Block | None = None
-    lines = iter(enumerate(text.splitlines(), 1))
-    for number, line in lines:
-        if line.startswith("**") or not line.strip():
-            continue
-        if not line.startswith("*"):
-            if current is None:
-                raise ReadError(f"{path}, line {number}: data before the first keyword; is this an Abaqus input file?")
-            current.lines.append(line)
-            continue
-        while line.rstrip().endswith(","):
-            line = line.rstrip() + next(lines, (0, ""))[1]
-        if current is not None:
-            yield current
-            current = None
-        name, *rest = line[1:].split(",")
-        pairs = (part.partition("=") for part in rest if part.strip())
-        options = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
-        keyword = re.sub(r"\s+", " ", name.strip().upper())
-        if keyword == "INCLUDE":
-            if "INPUT" not in options:
-                raise ReadError(f"{path}, line {number}: *INCLUDE without INPUT=file")
-            yield from blocks(path.parent / options["INPUT"], (*seen, path.resolve()))
-            continue
-        current = Block(keyword, options, [], f"{path.name}, line {number}")
-    if current is not None:
-        yield current
+    references: list[str] = field(default_factory=list)
+    turned: list[str] = field(default_factory=list)
+    frame: tuple[Array, Array] = field(default_factory=lambda: (np.eye(3), np.zeros(3)))
+    notes: list[str] = field(default_factory=list)
 
 
 def read(path: Path) -> RawMesh:
@@ -98,233 +59,310 @@ def read(path: Path) -> RawMesh:
     top = Scope()
     parts: dict[str, Scope] = {}
     instances: dict[str, Scope] = {}
-    scope, in_assembly = top, False
+    scope, opened = top, ""  # what END should close
+    assembled = False
+    last: Block | None = None
     for block in blocks(path):
-        options = block.options
+        options, last = block.options, block
         if block.keyword == "PART":
-            scope = parts.setdefault(options.get("NAME", ""), Scope())
+            scope, opened = parts.setdefault(options.get("NAME", ""), Scope()), block.keyword
         elif block.keyword in ("END PART", "END INSTANCE"):
-            scope = top
+            scope, opened = top, "ASSEMBLY" if block.keyword == "END INSTANCE" else ""
         elif block.keyword == "ASSEMBLY":
-            in_assembly = True
-        elif block.keyword == "INSTANCE" and in_assembly:
+            assembled, opened = True, block.keyword
+        elif block.keyword == "END ASSEMBLY":
+            opened = ""
+        elif block.keyword == "INSTANCE" and assembled:
             name, part = options.get("NAME", ""), options.get("PART", "")
             if part not in parts:
                 raise ReadError(
                     f"{block.where}: instance {name!r} of the part {part!r}, which the file does not hold; "
                     f"it holds {', '.join(parts) or 'none'}"
                 )
-            scope = instances[name] = _placed(parts[part], block)
+            scope, opened = _placed(parts[part], block), block.keyword
+            instances[name] = scope
         else:
             _take(block, scope)
-    if instances:
-        _merge(top, instances)
-    elif parts:
-        _merge(top, parts)
-    return _raw(path, top, tuple(instances or parts))
+    if opened or (parts and not assembled):
+        lost = f"*END {opened}" if opened else "*ASSEMBLY"
+        raise ReadError(f"{path} ends without {lost}; the file is cut short")
+    if last is not None and last.keyword in DATA and not read_text(path, "input file").endswith("\n"):
+        top.notes.append(
+            f"{path.name} ends in the middle of *{last.keyword} without an end of line: it may be cut short"
+        )
+    return _merged(path, top, instances)
 
 
 def _take(block: Block, scope: Scope) -> None:
-    options = block.options
+    options, keyword = block.options, block.keyword
     try:
-        if block.keyword == "NODE":
-            rows = [line.split(",") for line in block.lines]
-            for row in rows:
-                x = [float(word) if word.strip() else 0.0 for word in row[1:4]]
-                scope.nodes[int(row[0])] = (*x, *(0.0,) * (3 - len(x)))
-            if "NSET" in options:
-                _add(scope.node_sets, options["NSET"], index(int(row[0]) for row in rows))
-        elif block.keyword == "ELEMENT":
+        if keyword == "NODE":
+            _nodes(block, scope)
+        elif keyword == "SYSTEM":
+            scope.frame = _frame(block)
+        elif keyword == "ELEMENT":
             _elements(block, scope)
-        elif block.keyword in ("NSET", "ELSET"):
-            kind = scope.node_sets if block.keyword == "NSET" else scope.element_sets
-            _set(block, kind, options.get(block.keyword))
-        elif block.keyword == "SURFACE":
-            name, kind_of = options.get("NAME", ""), options.get("TYPE", "ELEMENT").upper()
-            rows = [[w.strip() for w in line.split(",")] for line in block.lines]
-            if kind_of == "NODE":
-                for row in rows:
-                    _set(
-                        Block("NSET", {"INSTANCE": options.get("INSTANCE", "")}, [row[0]], block.where),
-                        scope.node_sets,
-                        name,
-                    )
-            else:
-                scope.surfaces.setdefault(name, []).extend((row[0], (row[1:] or [""])[0].upper()) for row in rows)
-        elif block.keyword == "SOLID SECTION" and "ELSET" in options:
+        elif keyword in ("NSET", "ELSET"):
+            _set(block, scope.node_sets if keyword == "NSET" else scope.element_sets, options.get(keyword))
+        elif keyword == "SURFACE":
+            _surface(block, scope)
+        elif keyword == "SOLID SECTION" and "ELSET" in options:
             scope.sections.append(options["ELSET"])
+        elif keyword in _MAKERS:
+            raise ReadError(
+                f"{block.where}: *{keyword} makes nodes or elements, which is not done here; write them out"
+            )
+        elif keyword in _REFERENCES:
+            scope.references.extend(options[key] for key in ("REF NODE", "NODE") if key in options)
+        elif keyword == "TRANSFORM":
+            scope.turned.append(options.get("NSET", ""))
     except ReadError:
         raise
-    except (ValueError, IndexError) as fault:
+    except (ValueError, IndexError, OverflowError) as fault:
         raise ReadError(
-            f"{block.where}: *{block.keyword} holds something that is not a number ({fault}); is the file whole?"
+            f"{block.where}: *{keyword} holds something that is not a number ({fault}); is the file whole?"
         ) from None
 
 
-def _add(sets: dict[str, list[Index]], name: str, numbers: Index) -> None:
-    sets.setdefault(name, []).append(numbers)
+def _nodes(block: Block, scope: Scope) -> None:
+    """Nodes in the local system, cylindrical with SYSTEM=C, of *SYSTEM."""
+    system = block.options.get("SYSTEM", "R").upper()
+    if system not in ("R", "C"):
+        raise ReadError(f"{block.where}: *NODE, SYSTEM={system} is not known; write the nodes in R or C")
+    rows = block.rows()
+    numbers = [int(row[0]) for row in rows]
+    table = np.zeros((len(rows), 6))
+    for k, row in enumerate(rows):
+        given = [float(word) if word else 0.0 for word in row[1:]]
+        if len(given) > 6 or not np.all(np.isfinite(given)):
+            raise ReadError(
+                f"{block.where}: node {row[0]} has {len(given)} finite numbers; three coordinates are wanted"
+            )
+        table[k, : len(given)] = given
+    # three more numbers are the cosines of a normal
+    size = np.linalg.norm(table[:, 3:], axis=1)
+    wrong = np.flatnonzero((size > 0) & (np.abs(size - 1) > 0.01))
+    if len(wrong):
+        raise ReadError(
+            f"{block.where}: node {numbers[wrong[0]]} has more than three coordinates; a number has a decimal point, not a "
+            "comma"
+        )
+    x = table[:, :3]
+    if system == "C":
+        angle = np.deg2rad(x[:, 1])
+        x = np.column_stack([x[:, 0] * np.cos(angle), x[:, 0] * np.sin(angle), x[:, 2]])
+    turn, origin = scope.frame
+    for number, place in zip(numbers, x @ turn + origin, strict=True):
+        at = (float(place[0]), float(place[1]), float(place[2]))
+        if scope.nodes.setdefault(number, at) != at:
+            raise ReadError(f"{block.where}: node {number} is given twice, at different places")
+    if "NSET" in block.options:
+        _add(scope.node_sets, block.options["NSET"], "", index(numbers))
+
+
+def _frame(block: Block) -> tuple[Array, Array]:
+    """Axes (rows) and origin of *SYSTEM: none, the origin, a point of the x axis, a point of the xy plane."""
+    given = [float(word) for word in block.words()]
+    if len(given) not in (0, 3, 6, 9) or not np.all(np.isfinite(given)):
+        raise ReadError(f"{block.where}: *SYSTEM has {len(given)} numbers; it takes up to three points of three each")
+    points = np.zeros((3, 3))
+    points[: len(given) // 3] = np.reshape(given, (-1, 3))
+    origin, along, across = points
+    if len(given) < 6:
+        return np.eye(3), origin
+    x = along - origin
+    z = np.cross(x, across - origin) if len(given) == 9 else np.array([0.0, 0.0, 1.0])
+    if len(given) == 6:  # x turned about the global z axis
+        x = x - (x @ z) * z
+    size = np.linalg.norm(x), np.linalg.norm(z)
+    if min(size) < 1e-9 * max(1.0, float(np.abs(points).max())) ** 2:
+        raise ReadError(f"{block.where}: the points of *SYSTEM coincide or lie on one line")
+    x, z = x / size[0], z / size[1]
+    return np.stack([x, np.cross(z, x), z]), origin
+
+
+def _key(sets: Mapping[str, object], name: str) -> str:
+    """The name of a set as it was first written: Abaqus does not tell upper from lower case."""
+    return next((key for key in sets if key.upper() == name.upper()), name)
+
+
+def _add(sets: dict[str, Items], name: str, instance: str, what: Index | str) -> None:
+    sets.setdefault(_key(sets, name), []).append((instance, what))
 
 
 def _elements(block: Block, scope: Scope) -> None:
     kind = block.options.get("TYPE", "").upper()
     base = re.match(r"C3D\d+", kind)
     sheet = _SHEET.match(kind)
+    if _LINE.match(kind):
+        scope.extra.extend(index(word for word in row[1:] if word) for row in block.rows())
+        scope.notes.append(
+            f"{block.where}: {len(block.lines)} elements {kind} are left out, with their stiffness and mass"
+        )
+        return
     if base and base.group() in _SOLID:
         count = int(base.group()[3:])
     elif sheet and sheet.group(1) in _SHEET_COUNT:
         count = _SHEET_COUNT[sheet.group(1)]
-    elif kind in _LINE:
-        count = _LINE[kind]
     else:
         raise ReadError(
             f"{block.where}: elements of type {kind or 'none'} are not known; known are "
             f"{', '.join(_SOLID)} with their variants, and triangles and quadrangles as faces"
         )
-    words = block.numbers()
+    words = block.words()
     if len(words) % (count + 1):
         raise ReadError(
             f"{block.where}: {len(words)} numbers do not make elements of {count} nodes; is the file whole?"
         )
-    table = index(map(int, words)).reshape(-1, count + 1)
+    table = index(words).reshape(-1, count + 1)
     numbers, nodes = table[:, 0], table[:, 1:]
     if base:
         scope.elements.setdefault(_SOLID[base.group()], []).append((numbers, nodes))
     else:
         scope.extra.append(nodes.ravel())
-        if sheet:
-            scope.sheets.setdefault(block.options.get("ELSET", "faces"), []).append(nodes)
+        scope.sheets.setdefault(block.options.get("ELSET", "faces"), []).append(nodes)
     if "ELSET" in block.options and base:
-        _add(scope.element_sets, block.options["ELSET"], numbers)
+        _add(scope.element_sets, block.options["ELSET"], "", numbers)
 
 
-def _set(block: Block, sets: dict[str, list[Index]], name: str | None) -> None:
+def _set(block: Block, sets: dict[str, Items], name: str | None) -> None:
     if not name:
         raise ReadError(f"{block.where}: *{block.keyword} without a name")
     instance = block.options.get("INSTANCE", "")
-    words = block.numbers()
     if "GENERATE" in block.options:
-        for line in block.lines:
-            first, last, *step = (int(w) for w in line.split(",") if w.strip())
-            _add(sets, name, np.arange(first, last + 1, step[0] if step else 1))
+        for row in block.rows():
+            first, last, *step = (int(word) for word in row if word)
+            _add(sets, name, instance, ranged(first, last, step[0] if step else 1, block.where))
         return
     numbers = []
-    for word in words:
+    for word in block.words():
         if word.lstrip("-").isdigit():
-            numbers.append(int(word))
-            continue
-        known = {key.upper(): value for key, value in sets.items()}
-        if word.upper() not in known:
-            raise ReadError(
-                f"{block.where}: set {name!r} names the set {word!r}, which the file does not hold above it"
-            )
-        for some in known[word.upper()]:
-            _add(sets, name, some)
+            numbers.append(word)
+        else:
+            _add(sets, name, instance, word)
     if numbers:
-        # numbers of an instance are told apart when all are known
-        _add(sets, f"{name}\0{instance}" if instance else name, index(numbers))
+        _add(sets, name, instance, index(numbers))
+
+
+def _surface(block: Block, scope: Scope) -> None:
+    name, kind = block.options.get("NAME", ""), block.options.get("TYPE", "ELEMENT").upper()
+    if kind == "NODE":
+        words = [row[0] for row in block.rows()]
+        _set(Block("NSET", {"INSTANCE": block.options.get("INSTANCE", "")}, words, block.where), scope.node_sets, name)
+        return
+    if kind != "ELEMENT" or "COMBINE" in block.options:
+        raise ReadError(f"{block.where}: *SURFACE of this type is not known; write one of TYPE=ELEMENT or NODE")
+    rows = [(row[0], row[1].upper() if len(row) > 1 else "") for row in block.rows()]
+    scope.surfaces.setdefault(_key(scope.surfaces, name), []).extend(rows)
 
 
 def _placed(part: Scope, block: Block) -> Scope:
-    """A copy of a part, moved and turned as the data lines of *INSTANCE say."""
-    numbers = [[float(w) for w in line.split(",") if w.strip()] for line in block.lines]
-    points = np.array(list(part.nodes.values())).reshape(-1, 3)
-    if numbers and len(numbers[0]) == 3:
-        points = points + numbers[0]
-    if len(numbers) > 1 and len(numbers[1]) == 7:
+    """A copy of a part, moved and turned as the data lines of *INSTANCE say; so are nodes that the instance adds."""
+    numbers = [[float(word) for word in row if word] for row in block.rows()]
+    if any(len(row) != count for row, count in zip(numbers, (3, 7), strict=False)) or len(numbers) > 2:
+        raise ReadError(f"{block.where}: *INSTANCE takes a line of 3 numbers that move it and one of 7 that turn it")
+    turn, shift = np.eye(3), np.array(numbers[0] if numbers else [0.0] * 3)
+    if len(numbers) > 1:
         from scipy.spatial.transform import Rotation
 
         start, end, angle = np.array(numbers[1][:3]), np.array(numbers[1][3:6]), numbers[1][6]
-        axis = (end - start) / np.linalg.norm(end - start)
-        points = Rotation.from_rotvec(np.deg2rad(angle) * axis).apply(points - start) + start
-    nodes = {number: tuple(map(float, x)) for number, x in zip(part.nodes, points, strict=True)}
-    return Scope(
-        nodes=nodes,
-        elements={k: list(v) for k, v in part.elements.items()},
-        sheets={k: list(v) for k, v in part.sheets.items()},
-        extra=list(part.extra),
-        element_sets={k: list(v) for k, v in part.element_sets.items()},
-        node_sets={k: list(v) for k, v in part.node_sets.items()},
-        surfaces={k: list(v) for k, v in part.surfaces.items()},
-        sections=list(part.sections),
-    )
+        length = float(np.linalg.norm(end - start))
+        if not length > 0:
+            raise ReadError(f"{block.where}: the two points of the axis of *INSTANCE coincide")
+        turn = Rotation.from_rotvec(np.deg2rad(angle) * (end - start) / length).as_matrix().T
+        shift = (shift - start) @ turn + start
+    points = np.array(list(part.nodes.values())).reshape(-1, 3) @ turn + shift
+    copy = deepcopy(part)
+    copy.nodes = {number: tuple(map(float, x)) for number, x in zip(part.nodes, points, strict=True)}
+    copy.frame = turn, shift
+    return copy
 
 
-def _merge(top: Scope, scopes: dict[str, Scope]) -> None:
-    """Put parts or instances into one numbering; where numbers clash, those of the later ones are raised."""
-    node_shift, element_shift = 0, 0
-    shifts = {}
-    for name, one in scopes.items():
-        clash = not set(one.nodes).isdisjoint(top.nodes)
-        shift = node_shift if clash else 0
-        numbers = [n for rows in one.elements.values() for n, _ in rows]
-        have = [n for rows in top.elements.values() for n, _ in rows]
-        rise = (
-            element_shift
-            if numbers and have and np.intersect1d(np.concatenate(numbers), np.concatenate(have)).size
-            else 0
-        )
-        shifts[name] = (shift, rise)
+def _merged(path: Path, top: Scope, instances: dict[str, Scope]) -> RawMesh:
+    """Put instances into one numbering; where numbers clash, those of the later ones are raised."""
+    shifts: dict[str, tuple[int, int]] = {"": (0, 0)}
+    for name, one in instances.items():
+        have = _element_numbers(top)
+        raised = int(have.max(initial=0)) if np.intersect1d(_element_numbers(one), have).size else 0
+        shift = 0 if set(one.nodes).isdisjoint(top.nodes) else max(top.nodes)
+        shifts[name] = shift, raised
         top.nodes.update({n + shift: x for n, x in one.nodes.items()})
         for kind, rows in one.elements.items():
-            top.elements.setdefault(kind, []).extend((n + rise, nodes + shift) for n, nodes in rows)
+            top.elements.setdefault(kind, []).extend((n + raised, nodes + shift) for n, nodes in rows)
         for label, sheets in one.sheets.items():
             top.sheets.setdefault(f"{name}.{label}", []).extend(nodes + shift for nodes in sheets)
         top.extra.extend(nodes + shift for nodes in one.extra)
-        for label, several in one.element_sets.items():
-            top.element_sets[f"{name}.{label}"] = [some + rise for some in several]
-        for label, several in one.node_sets.items():
-            top.node_sets[f"{name}.{label}"] = [some + shift for some in several]
-        for label, rows_ in one.surfaces.items():
+        for mine, sets in ((one.element_sets, top.element_sets), (one.node_sets, top.node_sets)):
+            for label, items in mine.items():
+                sets[f"{name}.{label}"] = [(name, what) for _, what in items]
+        for label, some in one.surfaces.items():
             top.surfaces[f"{name}.{label}"] = [
-                (str(int(w) + rise) if w.isdigit() else f"{name}.{w}", s) for w, s in rows_
+                (str(int(what) + raised) if what.isdigit() else f"{name}.{what}", side) for what, side in some
             ]
-        top.element_sets[name] = [n + rise for n in numbers]
-        node_shift = max(top.nodes, default=0)
-        element_shift = max((int(n.max()) for rows in top.elements.values() for n, _ in rows), default=0)
-    top.sections = list(scopes)
-    for place, sets in enumerate((top.node_sets, top.element_sets)):
-        for label in [key for key in sets if "\0" in key]:
-            name, _, instance = label.partition("\0")
-            if instance not in shifts:
-                raise ReadError(f"set {name!r} is of the instance {instance!r}, which the file does not hold")
-            for numbered in sets.pop(label):
-                _add(sets, name, numbered + shifts[instance][place])
-
-
-def _raw(path: Path, top: Scope, instances: tuple[str, ...]) -> RawMesh:
+        top.references += [str(int(r) + shift) if r.isdigit() else f"{name}.{r}" for r in one.references]
+        top.turned += [f"{name}.{label}" for label in one.turned]
+        top.notes += one.notes
+        top.element_sets[name] = [("", _element_numbers(one) + raised)]
+    if instances:
+        top.sections = list(instances)
     if not top.nodes or not top.elements:
         raise ReadError(
             f"{path} holds {len(top.nodes)} nodes and {len(top.elements)} kinds of solid elements; write nodes "
             "and elements of the model into it"
         )
-    element_sets = {
-        name: np.unique(np.concatenate(some)) for name, some in top.element_sets.items() if "\0" not in name
-    }
-    node_sets = {name: np.unique(np.concatenate(some)) for name, some in top.node_sets.items() if "\0" not in name}
+    node_sets = _resolved(top.node_sets, {name: shift for name, (shift, _) in shifts.items()})
+    return _raw(path, top, node_sets, _resolved(top.element_sets, {name: shift for name, (_, shift) in shifts.items()}))
+
+
+def _element_numbers(scope: Scope) -> Index:
+    return np.concatenate([index([]), *(numbers for rows in scope.elements.values() for numbers, _ in rows)])
+
+
+def _resolved(sets: Mapping[str, Items], shifts: Mapping[str, int]) -> dict[str, Index]:
+    """Numbers of every set: those of instances shifted, those of sets it names filled in."""
+    upper = {name.upper(): items for name, items in sets.items()}
+    done: dict[str, Index] = {}
+
+    written = {name.upper(): name for name in sets}
+
+    def numbers(name: str, seen: tuple[str, ...]) -> Index:
+        if name in done:
+            return done[name]
+        found = [index([])]
+        for instance, what in upper[name]:
+            if instance not in shifts:
+                raise ReadError(f"set {written[name]!r} is of the instance {instance!r}, which the file does not hold")
+            if isinstance(what, str):
+                label = (f"{instance}.{what}" if instance else what).upper()
+                if label not in upper or label in (*seen, name):
+                    raise ReadError(
+                        f"set {written[name]!r} names the set {what!r}, which the file does not hold or is part of it"
+                    )
+                found.append(numbers(label, (*seen, name)))
+            else:
+                found.append(what + shifts[instance])
+        done[name] = np.unique(np.concatenate(found))
+        return done[name]
+
+    return {name: numbers(name.upper(), ()) for name in sets}
+
+
+def _raw(path: Path, top: Scope, node_sets: dict[str, Index], element_sets: dict[str, Index]) -> RawMesh:
     upper = {name.upper(): numbers for name, numbers in element_sets.items()}
+    nodes = {name.upper(): numbers for name, numbers in node_sets.items()}
     side_sets: dict[str, Index] = {}
-    skins: dict[str, Index] = {}
     for name, rows in top.surfaces.items():
         pairs: list[Index] = []
         for what, side in rows:
-            if what.upper() in upper:
-                numbers = upper[what.upper()]
-            elif what.isdigit():
-                numbers = index([what])
-            else:
+            numbers = index([what]) if what.isdigit() else upper.get(what.upper())
+            if numbers is None:
                 raise ReadError(f"surface {name!r} names the element set {what!r}, which {path.name} does not hold")
             if side and not re.fullmatch(r"S[1-6]", side):
                 raise ReadError(f"surface {name!r} names the side {side!r}; the sides of solids are S1 to S6")
-            if side:
-                pairs.append(np.column_stack([numbers, np.full(len(numbers), int(side[1:]) - 1)]))
-            else:
-                skins[name] = np.concatenate([skins[name], numbers]) if name in skins else numbers
-        if pairs:
-            side_sets[name] = np.concatenate(pairs)
-    for name, numbers in skins.items():
-        side_sets[name] = np.column_stack([numbers, np.full(len(numbers), -1)])
+            pairs.append(np.column_stack([numbers, np.full(len(numbers), int(side[1:]) - 1 if side else -1)]))
+        side_sets[name] = np.concatenate(pairs or [np.zeros((0, 2), dtype=np.int64)])
+    references = [index([r]) if r.isdigit() else nodes.get(r.upper(), index([])) for r in top.references]
     helpers = {what.upper() for rows in top.surfaces.values() for what, _ in rows}
-    wanted = [s for s in dict.fromkeys(top.sections) if s.upper() in upper]
     return RawMesh(
         numbers=index(top.nodes),
         points=np.array(list(top.nodes.values())),
@@ -332,12 +370,15 @@ def _raw(path: Path, top: Scope, instances: tuple[str, ...]) -> RawMesh:
             kind: (np.concatenate([n for n, _ in rows]), np.concatenate([c for _, c in rows]))
             for kind, rows in top.elements.items()
         },
-        bodies={name: upper[name.upper()] for name in wanted},
+        bodies={name: upper[name.upper()] for name in dict.fromkeys(top.sections) if name.upper() in upper},
         element_sets={name: some for name, some in element_sets.items() if name.upper() not in helpers},
         node_sets=node_sets,
         side_sets=side_sets,
         face_elements={name: tuple(rows) for name, rows in top.sheets.items()},
-        extra=np.concatenate(top.extra) if top.extra else np.zeros(0, dtype=np.int64),
+        extra=np.concatenate([index([]), *top.extra]),
+        turned=np.concatenate([index([]), *(nodes.get(name.upper(), index([])) for name in top.turned)]),
+        references=np.unique(np.concatenate([index([]), *references])),
+        notes=tuple(top.notes),
     )
 
 

@@ -5,38 +5,50 @@ points, pressure constant beyond. Surface-to-surface contact loses a TABULAR law
 """
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from faying.decks.deck import JointDeck, real
 from faying.decks.keywords import elements, orientations, table
-from faying.decks.raw import Matrices, read_dofs, read_text
+from faying.decks.raw import Matrices, both_triangles, numbers_of, once, read_dofs, read_text, whole
 from faying.errors import ReadError
+from faying.typing import Index
 
 MOST_POINTS = 200
 
 
 def read_matrices(path: Path, _names: tuple[str, str]) -> Matrices:
     """Read job.sti, .mas and .dof: rows of (row, column, value) of one triangle, and a list of "node.direction"."""
-    from scipy.sparse import coo_array, diags_array
+    from scipy.sparse import coo_array
 
-    table = read_dofs(path.with_suffix(".dof"))
+    dofs = read_dofs(path.with_suffix(".dof"))
+    n = len(dofs)
     out = []
     for suffix, what in ((".sti", "stiffness"), (".mas", "mass")):
         file = path.with_suffix(suffix)
-        words = read_text(file, what).replace("D", "E").split()
-        try:
-            rows = np.array(words, dtype=float).reshape(-1, 3)
-        except ValueError as fault:
-            raise ReadError(f"{file} is not rows of row, column and value ({fault}); is it whole?") from None
-        i, j = rows[:, 0].astype(np.int64) - 1, rows[:, 1].astype(np.int64) - 1
-        if len(rows) and max(i.max(), j.max()) >= len(table):
-            raise ReadError(
-                f"{file} has row {max(i.max(), j.max()) + 1}, but the .dof file lists {len(table)} unknowns"
-            )
-        half = coo_array((rows[:, 2], (i, j)), shape=(len(table), len(table))).tocsr()
-        out.append((half + half.T - diags_array(half.diagonal())).tocsr())
-    return out[0], out[1], table
+        values = numbers_of(file, read_text(file, what))
+        if len(values) % 3:
+            raise ReadError(f"{file} is not rows of row, column and value; is it whole?")
+        table = values.reshape(-1, 3)
+        i, j = whole(file, table[:, 0], n), whole(file, table[:, 1], n)
+        once(file.name, np.minimum(i, j), np.maximum(i, j), n)
+        out.append(both_triangles(coo_array((table[:, 2], (np.minimum(i, j), np.maximum(i, j))), shape=(n, n)).tocsr()))
+    # nodes that share mass share stiffness: a file cut short has lost pairs of them
+    pairs = [_node_pairs(matrix, dofs) for matrix in out]
+    lost = np.setdiff1d(pairs[1], pairs[0])
+    bare = np.setdiff1d(np.unique(dofs[:, 0]), dofs[out[1].diagonal() > 0, 0])
+    if len(lost) or len(bare):
+        where, what = (path, "stiffness") if len(lost) else (path.with_suffix(".mas"), "mass")
+        raise ReadError(f"{where} has no {what} for {len(lost) or len(bare)} nodes or pairs of nodes; it is cut short")
+    return out[0], out[1], dofs
+
+
+def _node_pairs(matrix: Any, dofs: Index) -> Index:
+    """One number for each pair of nodes between which a matrix has an entry."""
+    entries = matrix.tocoo()
+    _, node = np.unique(dofs[:, 0], return_inverse=True)
+    return np.unique(node[entries.row] * (node.max(initial=0) + 1) + node[entries.col])
 
 
 def decks(deck: JointDeck) -> dict[str, str]:

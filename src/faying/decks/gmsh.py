@@ -37,7 +37,7 @@ class _Words:
         self.words, self.at, self.name = words, 0, name
 
     def take(self, count: int) -> list[str]:
-        if self.at + count > len(self.words):
+        if count < 0 or self.at + count > len(self.words):
             raise ReadError(f"${self.name} ends in the middle of a record; is the file whole?")
         self.at += count
         return self.words[self.at - count : self.at]
@@ -93,7 +93,7 @@ def read(path: Path) -> RawMesh:
             rows = _elements_41(elements, groups)
     except ReadError:
         raise
-    except ValueError as fault:
+    except (ValueError, OverflowError) as fault:
         raise ReadError(f"{path} holds something that is not a number ({fault}); is the file whole?") from None
     solids: dict[str, list[tuple[int, list[int]]]] = {}
     bodies: dict[str, list[int]] = {}
@@ -123,8 +123,8 @@ def read(path: Path) -> RawMesh:
 
 def _nodes_22(words: _Words) -> tuple[np.ndarray, np.ndarray]:
     (count,) = words.whole(1)
-    table = np.array(words.take(4 * count), dtype=float).reshape(-1, 4)
-    return table[:, 0].astype(np.int64), table[:, 1:]
+    taken = words.take(4 * count)
+    return index(taken[::4]), np.array(taken, dtype=float).reshape(-1, 4)[:, 1:]
 
 
 def _nodes_41(words: _Words) -> tuple[np.ndarray, np.ndarray]:

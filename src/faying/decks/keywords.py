@@ -1,10 +1,81 @@
-"""What the decks of CalculiX and Abaqus share: orientations, spring elements, the law as a contact table."""
+"""What the decks of CalculiX and Abaqus share: keyword blocks, orientations, springs, the law as a contact table."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from faying.decks.deck import Contact, JointDeck, grouped, real
-from faying.errors import InputError
+from faying.decks.raw import read_text
+from faying.errors import InputError, ReadError
 from faying.typing import Array, Index
+
+DEEPEST, MOST_FILES = 20, 500  # of included files
+DATA = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE"}
+
+
+@dataclass(frozen=True)
+class Block:
+    """A keyword with its parameters and the data lines below it."""
+
+    keyword: str
+    options: dict[str, str]
+    lines: list[str]
+    where: str
+
+    def rows(self) -> list[list[str]]:
+        """The entries of each data line."""
+        return [[word.strip() for word in line.split(",")] for line in self.lines]
+
+    def words(self) -> list[str]:
+        """All entries that are not empty."""
+        return [word for row in self.rows() for word in row if word]
+
+
+def blocks(path: Path, seen: tuple[Path, ...] = (), count: list[int] | None = None) -> Iterator[Block]:
+    """Keyword blocks of a file and of the files it includes."""
+    count = [0] if count is None else count
+    count[0] += 1
+    if path.resolve() in seen:
+        raise ReadError(f"{path} includes itself")
+    if len(seen) > DEEPEST or count[0] > MOST_FILES:
+        raise ReadError(f"{path}: more than {MOST_FILES} files are included, or {DEEPEST} deep; write them into one")
+    current: Block | None = None
+    lines = iter(enumerate(read_text(path, "input file").splitlines(), 1))
+    for number, line in lines:
+        if line.startswith("**") or not line.strip():
+            continue
+        if not line.startswith("*"):
+            if current is None:
+                raise ReadError(f"{path}, line {number}: data before the first keyword; is this an Abaqus input file?")
+            current.lines.append(line)
+            continue
+        while line.rstrip().endswith(","):
+            more = next(lines, None)
+            if more is None:
+                raise ReadError(f"{path}, line {number}: the file ends in a keyword that goes on; is it whole?")
+            line = line.rstrip() + more[1]
+        if current is not None:
+            yield current
+            current = None
+        name, *rest = line[1:].split(",")
+        pairs = (part.partition("=") for part in rest if part.strip())
+        options = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
+        keyword = re.sub(r"\s+", " ", name.strip().upper())
+        where = f"{path.name}, line {number}"
+        if keyword == "INCLUDE":
+            if "INPUT" not in options:
+                raise ReadError(f"{path}, line {number}: *INCLUDE without INPUT=file")
+            yield from blocks(path.parent / options["INPUT"], (*seen, path.resolve()), count)
+            continue
+        current = Block(keyword, options, [], where)
+        if keyword in DATA and "INPUT" in options:
+            data = read_text(path.parent / options["INPUT"], "data").splitlines()
+            current.lines.extend(line for line in data if line.strip() and not line.startswith("**"))
+    if current is not None:
+        yield current
 
 
 def orientations(deck: JointDeck) -> tuple[list[str], Index]:

@@ -14,12 +14,14 @@ from pathlib import Path
 import numpy as np
 
 from faying.decks.deck import JointDeck, grouped, real
-from faying.decks.raw import RawMesh, gathered, index, undoubled
+from faying.decks.raw import RawMesh, gathered, index, ranged, undoubled
 from faying.errors import ReadError
-from faying.typing import Array
+from faying.typing import Array, Index
 
 _SOLIDS = {"185": 8, "186": 20, "187": 10, "285": 4, "45": 8, "95": 20, "92": 10}
-_SURFACE = ("154", "152", "170", "171", "172", "173", "174", "175", "200", "21", "14")
+_SURFACE = ("152", "154", "169", "170", "171", "172", "173", "174", "175", "200")
+# left out with their stiffness and mass: point masses, springs, beams, links, rigid spiders, matrices
+_LEFT_OUT = ("14", "21", "27", "180", "184", "188", "189", "214", "250")
 
 
 def read(path: Path) -> RawMesh:
@@ -31,6 +33,8 @@ def read(path: Path) -> RawMesh:
     rows: dict[str, list[tuple[int, list[int]]]] = {}
     sets: dict[str, dict[str, np.ndarray]] = {"NODE": {}, "ELEM": {}}
     extra: list[int] = []
+    turned: list[int] = []
+    left_out: list[str] = []
     k = 0
     try:
         while k < len(lines):
@@ -39,10 +43,10 @@ def read(path: Path) -> RawMesh:
             if name == "ET" and len(words) > 2:
                 kinds[int(words[1])] = re.sub(r"\D", "", words[2])
             elif name == "NBLOCK":
-                k = _nodes(lines, k, numbers, points)
+                k = _nodes(lines, k, words, numbers, points, turned)
                 continue
             elif name == "EBLOCK":
-                k = _elements(lines, k, words, kinds, rows, extra)
+                k = _elements(lines, k, words, kinds, rows, extra, left_out)
                 continue
             elif name == "CMBLOCK":
                 width = _widths(lines[k + 1])[0]
@@ -70,6 +74,11 @@ def read(path: Path) -> RawMesh:
         element_sets=sets["ELEM"],
         node_sets=sets["NODE"],
         extra=index(extra),
+        turned=index(turned),
+        notes=tuple(
+            f"{left_out.count(kind)} elements of type {kind} are left out, with their stiffness and mass"
+            for kind in dict.fromkeys(left_out)
+        ),
     )
 
 
@@ -81,17 +90,36 @@ def _widths(form: str) -> tuple[int, int, int]:
     return int(found.group(2)), int(found.group(1)), int(found.group(3) or 0)
 
 
-def _nodes(lines: list[str], k: int, numbers: list[int], points: list[list[float]]) -> int:
+def _nodes(
+    lines: list[str],
+    k: int,
+    words: list[str],
+    numbers: list[int],
+    points: list[list[float]],
+    turned: list[int],
+) -> int:
+    """Numbers, places and, where their directions are turned, names of the nodes of an NBLOCK."""
     width, count, real = _widths(lines[k + 1])
-    k += 2
+    head, k = k, k + 2
+    before = len(numbers)
     while not re.match(r"\s*(-1|N,)", lines[k], re.I):
         line = lines[k]
         start = width * count
-        cells = [line[start + i * real : start + (i + 1) * real].strip() for i in range(3)]
+        cells = [line[start + i * real : start + (i + 1) * real].strip() for i in range(6)]
+        values = [float(cell.replace("D", "E")) if cell else 0.0 for cell in cells]
         numbers.append(int(line[:width]))
-        points.append([float(cell.replace("D", "E")) if cell else 0.0 for cell in cells])
+        points.append(values[:3])
+        if any(values[3:]):
+            turned.append(numbers[-1])
         k += 1
+    _counted(head, words, len(numbers) - before, "nodes")
     return k + 1
+
+
+def _counted(head: int, words: list[str], found: int, what: str) -> None:
+    """Raise ReadError where a block has more or fewer lines than its head says."""
+    if len(words) > 4 and words[4].isdigit() and int(words[4]) not in (0, found):
+        raise ReadError(f"line {head + 1}: {words[0]} says {words[4]} {what} and holds {found}; is the archive whole?")
 
 
 def _elements(
@@ -101,23 +129,28 @@ def _elements(
     kinds: dict[int, str],
     rows: dict[str, list[tuple[int, list[int]]]],
     extra: list[int],
+    left_out: list[str],
 ) -> int:
     if len(words) < 3 or words[2].upper() != "SOLID":
         raise ReadError(f"line {k + 1}: EBLOCK without the key SOLID is not known; write the archive with CDWRITE,DB")
     width, _, _ = _widths(lines[k + 1])
+    begin, found = k, 0
     k += 2
     while True:
         head = _cut(lines[k], width)
         if head[0] == -1:
+            _counted(begin, words, found, "elements")
             return k + 1
+        found += 1
         count, number, nodes = head[8], head[10], head[11:]
         k += 1
         while len(nodes) < count:
             nodes += _cut(lines[k], width)
             k += 1
         which = kinds[head[1]]
-        if which in _SURFACE:
+        if which in _SURFACE or which in _LEFT_OUT:
             extra += nodes
+            left_out += [which] if which in _LEFT_OUT else []
             continue
         if which not in _SOLIDS:
             raise ReadError(f"element {number} is of type {which}; known are SOLID185, 186, 187 and 285")
@@ -142,10 +175,10 @@ def _block(lines: list[str], k: int, count: int, width: int) -> tuple[int, list[
 
 def _unrolled(values: list[int]) -> np.ndarray:
     """A negative number ends a range that begins with the number before it."""
-    out: list[int] = []
-    for value in values:
-        out += range(out[-1] + 1, -value + 1) if value < 0 else [value]
-    return index(out)
+    out: list[Index] = []
+    for before, value in zip([0, *values], values, strict=False):
+        out.append(ranged(before + 1, -value, 1, "CMBLOCK") if value < 0 else index([value]))
+    return np.concatenate([index([]), *out])
 
 
 TYPE = 9101  # of the stiffness; the next is that of the dampers

@@ -5,12 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from faying import units
 from faying.decks.programs import MATRICES, reader_of
-from faying.decks.raw import Matrices, read_dofs
+from faying.decks.raw import Matrices, both_triangles, numbers_of, once, read_dofs, read_text, room, unit_size, whole
 from faying.errors import InputError, ReadError
 from faying.fe.mesh import Mesh
-from faying.typing import Index
+from faying.typing import Array, Index
 
 SYMMETRIC = 1e-8  # largest difference from the transpose, relative to the largest entry
 
@@ -47,7 +46,7 @@ def read_matrices(
         raise InputError(
             f'{file.name} does not say its units; say them, for example stiffness_unit = "N/mm", mass_unit = "t"'
         )
-    scales = units.scale(stiffness_unit, "N/m", name="stiffness_unit"), units.scale(mass_unit, "kg", name="mass_unit")
+    scales = unit_size(stiffness_unit, "N/m", "stiffness_unit"), unit_size(mass_unit, "kg", "mass_unit")
     if file.suffix.lower() == ".mtx":
         if mass is None or dofs is None:
             raise InputError(
@@ -57,7 +56,27 @@ def read_matrices(
     else:
         K, M, table = reader_of(file, MATRICES, (".mtx",)).read_matrices(file, names)
     _check(file.name, K, M, table)
+    _check_mass(file.name, M, table)
     return (K * scales[0]).tocsr(), (M * scales[1]).tocsr(), table
+
+
+def total_mass(mass: Any, dofs: Index) -> Array:
+    """Total mass along x, y and z (3,), in the unit of the matrix: what a motion of all nodes as one meets."""
+    moved = (dofs[:, 1:] == np.array([1, 2, 3])).astype(float)
+    return np.asarray(np.einsum("ij,ij->j", moved, mass @ moved))
+
+
+def _check_mass(name: str, M: Any, dofs: Index) -> None:
+    """Where every node moves in x, y and z, all three meet one mass; a matrix cut short has different ones."""
+    _, count = np.unique(dofs[:, 0], return_counts=True)
+    if set(dofs[:, 1].tolist()) != {1, 2, 3} or not np.all(count == 3):
+        return
+    totals = total_mass(M, dofs)
+    if np.ptp(totals) > SYMMETRIC * 100 * totals.max():
+        raise InputError(
+            f"{name}: the mass that moves along x, y and z is {', '.join(f'{m:.6g}' for m in totals)}; they should be equal: is "
+            "the mass matrix whole?"
+        )
 
 
 def read_pair(
@@ -78,22 +97,11 @@ def read_pair(
     other = Path(mass)
     if other.suffix.lower() not in kinds:
         raise ReadError(f"{other}: the mass should be .mtx or .npz")
-    K = kinds[file.suffix.lower()](file) * units.scale(stiffness_unit, "N/m", name="stiffness unit")
-    M = kinds[other.suffix.lower()](other) * units.scale(mass_unit, "kg", name="mass unit")
+    K = kinds[file.suffix.lower()](file) * unit_size(stiffness_unit, "N/m", "stiffness unit")
+    M = kinds[other.suffix.lower()](other) * unit_size(mass_unit, "kg", "mass unit")
     table = np.column_stack([np.arange(1, K.shape[0] + 1), np.ones(K.shape[0], dtype=np.int64)])
     _check(file.name, K, M, table)
     return K.tocsr(), M.tocsr(), table
-
-
-def _npz(path: Path) -> Any:
-    from scipy.sparse import csr_array, load_npz
-
-    if not path.is_file():
-        raise ReadError(f"no file {path}")
-    try:
-        return csr_array(load_npz(path))
-    except Exception as fault:  # zip, pickle and key errors
-        raise ReadError(f"{path} cannot be read as a sparse matrix of SciPy ({fault})") from None
 
 
 def arranged(matrices: Matrices, mesh: Mesh) -> tuple[Any, Any]:
@@ -115,16 +123,123 @@ def arranged(matrices: Matrices, mesh: Mesh) -> tuple[Any, Any]:
     return K[order][:, order].tocsr(), M[order][:, order].tocsr()
 
 
-def _market(path: Path) -> Any:
-    from scipy.io import mmread
-    from scipy.sparse import csr_array
+def _npz(path: Path) -> Any:
+    """A matrix that SciPy has saved as csr, csc, coo or bsr; every index is checked before SciPy sees it."""
+    from scipy.sparse import bsr_array, csc_array, csr_array
+
+    arrays = _members(path)
+    try:
+        kind, shape = str(arrays["format"].item().decode("ascii")), tuple(map(int, arrays["shape"]))
+        data = arrays["data"]
+        if np.iscomplexobj(data):
+            if np.any(data.imag):
+                raise InputError(f"{path} is complex; stiffness and mass are real, a loss is a matrix of its own")
+            data = data.real
+        data = np.asarray(data, dtype=float)
+        if kind == "coo":
+            rows, columns = _places(path, arrays["row"], shape[0]), _places(path, arrays["col"], shape[1])
+            return _from_entries(path, rows, columns, data, shape)
+        if kind not in ("csr", "csc", "bsr"):
+            raise ReadError(f"{path} has the form {kind}; save it as csr: scipy.sparse.save_npz(name, matrix.tocsr())")
+        block = data.shape[1:] if kind == "bsr" else (1, 1)
+        major, minor = (shape[1], shape[0]) if kind == "csc" else (shape[0] // block[0], shape[1] // block[1])
+        pointer, indices = arrays["indptr"], _places(path, arrays["indices"], minor)
+        if len(indices) != len(data) or pointer.shape != (major + 1,) or pointer[0] != 0 or pointer[-1] != len(indices):
+            raise ReadError(f"{path}: rows, indices and data do not fit each other; save it again")
+        if np.any(np.diff(pointer.astype(np.int64)) < 0):
+            raise ReadError(f"{path}: the row pointers do not rise; save it again")
+        make = {"csr": csr_array, "csc": csc_array, "bsr": bsr_array}[kind]
+        made = make((data, indices, pointer.astype(np.int64)), shape=shape).tocoo()
+        return _from_entries(path, made.row, made.col, made.data, shape)
+    except (KeyError, ValueError, TypeError, IndexError, AttributeError, UnicodeDecodeError) as fault:
+        if isinstance(fault, InputError):
+            raise
+        raise ReadError(f"{path} cannot be read as a sparse matrix of SciPy ({fault!r})") from None
+
+
+def _members(path: Path) -> dict[str, Any]:
+    """The arrays of a .npz, after their sizes have been compared with the file and with the memory."""
+    import zipfile
 
     if not path.is_file():
         raise ReadError(f"no file {path}")
+    out = {}
     try:
-        return csr_array(mmread(path))
-    except Exception as fault:  # a reader in C++ that raises many kinds
-        raise ReadError(f"{path} cannot be read as Matrix Market ({fault})") from None
+        with zipfile.ZipFile(path) as archive:
+            room(sum(member.file_size for member in archive.infolist()), path.name)
+            for member in archive.infolist():
+                with archive.open(member) as stream:
+                    version = np.lib.format.read_magic(stream)
+                    read = (
+                        np.lib.format.read_array_header_1_0
+                        if version == (1, 0)
+                        else np.lib.format.read_array_header_2_0
+                    )
+                    shape, _, kind = read(stream)
+                    if int(np.prod(shape, dtype=object)) * kind.itemsize != member.file_size - stream.tell():
+                        raise ReadError(f"{path}: {member.filename} is not as long as it says; save it again")
+                with archive.open(member) as stream:
+                    name = member.filename.removesuffix(".npy")
+                    out[name] = np.lib.format.read_array(stream, allow_pickle=False)
+    except ReadError:
+        raise
+    except Exception as fault:  # zip, zlib and header errors
+        raise ReadError(f"{path} cannot be read as a sparse matrix of SciPy ({fault})") from None
+    return out
+
+
+def _places(path: Path, given: Any, size: int) -> Index:
+    """Indices from 0 as whole numbers below size."""
+    if given.ndim != 1 or not np.issubdtype(given.dtype, np.integer):
+        raise ReadError(f"{path}: its indices are {given.dtype}, not a row of whole numbers; save it again")
+    if len(given) and not 0 <= given.min() <= given.max() < size:
+        raise ReadError(f"{path}: index {given.min() if given.min() < 0 else given.max()} of a matrix of {size} rows")
+    return np.asarray(given, dtype=np.int64)
+
+
+def _from_entries(path: Path, rows: Index, columns: Index, values: Any, shape: tuple[int, ...]) -> Any:
+    from scipy.sparse import coo_array
+
+    once(path.name, rows, columns, shape[1])
+    return coo_array((values, (rows, columns)), shape=shape).tocsr()
+
+
+def _market(path: Path) -> Any:
+    """A real matrix as Matrix Market, coordinate or array; SciPy's own reader crashes on some that are cut short."""
+    text = read_text(path, "matrix") if path.is_file() else ""
+    if not path.is_file():
+        raise ReadError(f"no file {path}")
+    head, _, rest = text.partition("\n")
+    words = head.lower().split()
+    if len(words) != 5 or words[:2] != ["%%matrixmarket", "matrix"]:
+        raise ReadError(f"{path} cannot be read as Matrix Market: it does not begin with %%MatrixMarket matrix")
+    _, _, form, kind, symmetry = words
+    if (
+        form not in ("coordinate", "array")
+        or kind not in ("real", "integer")
+        or symmetry not in ("general", "symmetric")
+    ):
+        raise ReadError(f"{path} is {form} {kind} {symmetry}; stiffness and mass are real and general or symmetric")
+    while rest.startswith("%") or rest[:1] == "\n":
+        rest = rest.partition("\n")[2]
+    size, _, body = rest.partition("\n")
+    if not size.replace(" ", "").isdigit() or len(size.split()) != (3 if form == "coordinate" else 2):
+        raise ReadError(f"{path}: {size.strip()[:60]!r} is no size of a matrix; is the file whole?")
+    rows, columns, *entries = map(int, size.split())
+    if form == "array":
+        if symmetry != "general":
+            raise ReadError(f"{path} is an array of one triangle; write it as coordinate")
+        values = numbers_of(path, body, rows * columns).reshape(columns, rows).T
+        i, j = np.nonzero(values)
+        return _from_entries(path, i, j, values[i, j], (rows, columns))
+    table = numbers_of(path, body, 3 * entries[0]).reshape(-1, 3)
+    i, j = (whole(path, table[:, k], size) for k, size in ((0, rows), (1, columns)))
+    A = _from_entries(path, i, j, table[:, 2], (rows, columns))
+    if symmetry == "general":
+        return A
+    if np.any(i < j):
+        raise ReadError(f"{path} is symmetric, so that it should have the lower triangle alone")
+    return both_triangles(A)
 
 
 def _check(name: str, K: Any, M: Any, dofs: Index) -> None:
@@ -157,3 +272,13 @@ def _check(name: str, K: Any, M: Any, dofs: Index) -> None:
             )
     if M.nnz == 0 or M.diagonal().sum() <= 0:
         raise InputError(f"{name}: the mass matrix is zero; give the material a density")
+    for what, A in (("stiffness", K), ("mass", M)):
+        # no entry of a matrix that costs or stores energy is greater than the mean of its two diagonals
+        entries, diagonal = A.tocoo(), A.diagonal()
+        beyond = entries.data**2 > (1 + SYMMETRIC) * diagonal[entries.row] * diagonal[entries.col]
+        if np.any(beyond):
+            (a, b), (c, d) = dofs[entries.row[beyond][0]], dofs[entries.col[beyond][0]]
+            raise InputError(
+                f"{name}: {np.count_nonzero(beyond)} entries of the {what} matrix are greater than their diagonals allow, that "
+                f"of node {a} direction {b} and node {c} direction {d} for one: the matrix is cut short or not positive"
+            )

@@ -1,18 +1,18 @@
 """Meshes of other programs: from what a file holds to parts and faces, with the faults that such files have."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from faying import units
 from faying.decks.programs import MESHES, reader_of
-from faying.decks.raw import RawMesh
+from faying.decks.raw import RawMesh, unit_size
 from faying.errors import InputError, ReadError
 from faying.fe.elements import FACES, SOLIDS
 from faying.fe.mesh import Mesh, least_jacobian
 from faying.fe.sides import Blocks, nodes_of, side_key, skin
+from faying.notes import Note
 from faying.typing import Array, Index
 
 SMALLEST, LARGEST = 1e-3, 100.0  # sizes of a bolted structure [m] beyond which the unit is doubted
@@ -46,7 +46,7 @@ def read_mesh(
     module = reader_of(file, MESHES)
     if unit is None:
         raise InputError(f'{file.name} does not say in which unit its coordinates are; say it, for example unit = "mm"')
-    scale = units.scale(unit, "m", name="unit of the mesh")
+    scale = unit_size(unit, "m", "unit of the mesh")
     raw: RawMesh = module.read(file)
     return _Builder(raw, file.name, unit, scale).mesh(parts)
 
@@ -64,6 +64,7 @@ class _Builder:
     name: str
     unit: str
     scale: float
+    notes: list[Note] = field(default_factory=list)
 
     def mesh(self, wanted: Mapping[str, str] | Sequence[str] | None) -> Mesh:
         """Put it all together."""
@@ -128,10 +129,22 @@ class _Builder:
         used = np.zeros(len(points), dtype=bool)
         for block in cells:
             used[block] = True
-        known = np.isin(self.raw.numbers, self.raw.extra)
-        loose = self.raw.numbers[~used & ~known]
+        loose = self.raw.numbers[~used & ~np.isin(self.raw.numbers, self.raw.extra)]
+        points_of_reference = np.concatenate(
+            [self.raw.references, *(some for some in self.raw.node_sets.values() if len(some) == 1)]
+        )
+        lost = loose[~np.isin(loose, points_of_reference)]
+        if len(lost):
+            raise InputError(
+                f"{self.name}: {len(lost)} nodes belong to no element: {_some(lost)}; delete them, or is the file cut short?"
+            )
         if len(loose):
-            raise InputError(f"{self.name}: {len(loose)} nodes belong to no element: {_some(loose)}; delete them")
+            self.notes.append(
+                Note(
+                    code="reference-points",
+                    text=f"{len(loose)} reference points are left out, with the couplings that name them: {_some(loose)}",
+                )
+            )
 
     def _parts(
         self, numbers: Index, cells: list[Index], wanted: Mapping[str, str] | Sequence[str] | None
@@ -205,7 +218,12 @@ class _Builder:
                     found.setdefault(label, {})[part] = here
         for label, rows in self.raw.face_elements.items():
             given = [self._index(block.ravel(), f"the face {label!r}").reshape(block.shape) for block in rows]
-            self._by_key(label, np.concatenate([side_key(block, n) for block in given]), skins, found)
+            key = np.concatenate([side_key(block, n) for block in given])
+            if any(np.isin(side_key(faces, n), key).any() for outer in skins.values() for faces in outer):
+                self._by_key(label, key, skins, found)
+                continue
+            text = f"{len(key)} shells {label!r} lie on no solid and are left out, with their stiffness and mass"
+            self.notes.append(Note(code="left-out", text=text))
         order = np.argsort(numbers)
         for label, pairs in self.raw.side_sets.items():
             place = np.minimum(np.searchsorted(numbers[order], pairs[:, 0]), len(numbers) - 1)
@@ -289,7 +307,8 @@ class _Builder:
                     "one part of them"
                 )
         old = key % n
-        numbers = self.raw.numbers[old].copy()
+        old_numbers = self.raw.numbers[old]
+        numbers = old_numbers.copy()
         again = np.ones(len(key), dtype=bool)
         again[np.unique(old, return_index=True)[1]] = False
         numbers[again] = self.raw.numbers.max() + 1 + np.arange(np.count_nonzero(again))
@@ -310,6 +329,8 @@ class _Builder:
             face_part=face_part,
             source=self.name,
             node_numbers=numbers,
+            turned=np.isin(old_numbers, self.raw.turned),
+            notes=(*self.notes, *(Note(code="file", text=text) for text in self.raw.notes)),
         )
 
     def _unmerged(self, points: Array, nodes: Index, numbers: Index, part: str) -> None:

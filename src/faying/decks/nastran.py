@@ -1,8 +1,8 @@
 """Nastran bulk data: read as meshes and DMIG matrices, and the joint written as CBUSH, CELAS2 and DMIG.
 
-Read: GRID, CTETRA, CHEXA, CPENTA, PLOAD4 and SET1, in small, large and free fields, after the Nastran Quick Reference
-Guide. A body is what has one property number; faces are the element faces that PLOAD4 cards of one load set name, or the
-sets of nodes (SET1, or SET of the case control).
+Read: GRID in any system, CTETRA, CHEXA, CPENTA, skins of CTRIA and CQUAD, PLOAD4 and SET1, in small, large and free fields,
+after the Nastran Quick Reference Guide. A body is what has one property number; faces are skins of one property, the
+element faces that PLOAD4 cards of one load set name, or sets of nodes (SET1, or SET of the case control).
 
 Written, in fields of 16 columns, after the MSC Nastran Quick Reference Guide and OptiStruct's: PBUSH (K, B, GE), CBUSH
 with CID since its grids coincide, CELAS2 (K, G1, C1, G2, C2, GE), DMIG with one triangle of a symmetric matrix (form 6),
@@ -11,15 +11,16 @@ chosen in the case control by K2GG, B2GG and K42GG. MYSTRAN solves CBUSH and CEL
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from faying.decks.deck import JointDeck, grouped, real, springs_of
-from faying.decks.raw import Matrices, RawMesh, gathered, index
+from faying.decks.raw import Matrices, RawMesh, both_triangles, face_blocks, gathered, index, once, read_text
 from faying.errors import InputError, ReadError
-from faying.fe.elements import SOLIDS
-from faying.typing import Array
+from faying.fe.elements import KINDS, SOLIDS
+from faying.typing import Array, Index
 
 # Nastran puts the nodes of the upright edges before those of the top
 _ORDER = {
@@ -27,17 +28,42 @@ _ORDER = {
     15: [*range(9), *range(12, 15), *range(9, 12)],
 }
 _COUNTS = {"CTETRA": (4, 10), "CHEXA": (8, 20), "CPENTA": (6, 15)}
-_PASSED = ("CQUAD", "CTRIA", "CBAR", "CBEAM", "CROD", "CONROD", "PLOTEL")
+_SKINS = {"CTRIA3": (3, 3), "CTRIAR": (3, 3), "CTRIA6": (3, 6), "CQUAD4": (4, 4), "CQUADR": (4, 4), "CQUAD8": (4, 8)}
+# what is left out, by the places of the grids it names
+_LEFT_OUT = {
+    "CBAR": (2, 3),
+    "CBEAM": (2, 3),
+    "CROD": (2, 3),
+    "CONROD": (1, 2),
+    "PLOTEL": (1, 2),
+    "CONM1": (1,),
+    "CONM2": (1,),
+    "CELAS1": (2, 4),
+    "CELAS2": (2, 4),
+    "CBUSH": (2, 3),
+    "CDAMP1": (2, 4),
+    "CDAMP2": (2, 4),
+    "CMASS2": (2, 4),
+    "RBE2": (1,),
+    "RBE3": (2,),
+    "RBAR": (1, 2),
+    "RROD": (1, 2),
+}
+_MOST_FILES = 500
+
+Card = tuple[str, list[str], str]
+Field = int | float | str
 
 
-def cards(path: Path, seen: tuple[Path, ...] = ()) -> Iterator[tuple[str, list[str], str]]:
-    """Every card as (name, fields, where), its continuations joined; those of included files too."""
+def cards(path: Path, seen: tuple[Path, ...] = (), count: list[int] | None = None) -> Iterator[Card]:
+    """Every card as (name, fields, where), its continuations joined; those of included files too; ENDDATA last."""
+    count = [0] if count is None else count
+    count[0] += 1
     if path.resolve() in seen:
         raise ReadError(f"{path} includes itself")
-    try:
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError as fault:
-        raise ReadError(f"cannot read {path}: {fault.strerror or fault}") from None
+    if len(seen) > 20 or count[0] > _MOST_FILES:
+        raise ReadError(f"{path}: more than {_MOST_FILES} files are included, or 20 deep; write them into one")
+    lines = read_text(path, "bulk data").splitlines()
     bulk = not any(re.match(r"\s*BEGIN\s+BULK", line, re.I) for line in lines)
     name, fields, where = "", [""], ""
     for number, full in enumerate(lines, 1):
@@ -47,28 +73,33 @@ def cards(path: Path, seen: tuple[Path, ...] = ()) -> Iterator[tuple[str, list[s
         if not bulk:
             bulk = bool(re.match(r"\s*BEGIN\s+BULK", line, re.I))
             continue
-        if re.match(r"\s*ENDDATA", line, re.I):
-            break
         found = re.match(r"\s*INCLUDE\s+['\"]?([^'\"]+)['\"]?", line, re.I)
-        if found:
-            yield from cards(path.parent / found.group(1).strip(), (*seen, path.resolve()))
-            continue
-        first, rest = _fields(line)
-        if first == "" or first[0] in "+*":
+        ended = re.match(r"\s*ENDDATA", line, re.I)
+        first, rest = ("", []) if found or ended else _fields(line, f"{path.name}, line {number}")
+        if not found and not ended and (first == "" or first[0] in "+*"):
             fields += rest
             continue
         if name:
             yield name, fields, where
+            name = ""
+        if ended:
+            yield "ENDDATA", [], f"{path.name}, line {number}"
+            return
+        if found:
+            yield from (c for c in cards(path.parent / found.group(1).strip(), (*seen, path.resolve()), count))
+            continue
         name, fields, where = first.rstrip("*").upper(), rest, f"{path.name}, line {number}"
     if name:
         yield name, fields, where
 
 
-def _fields(line: str) -> tuple[str, list[str]]:
+def _fields(line: str, where: str) -> tuple[str, list[str]]:
     """First field, and the data fields of one line: eight small ones, four large ones, or those between commas."""
     if "," in line:
         first, *rest = (word.strip() for word in line.split(","))
         limit = 4 if first.endswith("*") or first.startswith("*") else 8
+        if len(rest) > limit + 1:
+            raise ReadError(f"{where}: {len(rest)} fields, {limit} fit; a number has a decimal point, not a comma")
         return first, rest[:limit] + [""] * (limit - len(rest))
     first = line[:8].strip()
     width = 16 if "*" in first else 8
@@ -81,107 +112,200 @@ def number(text: str) -> float:
     return float(re.sub(r"(?<=[\d.])([+-]\d+)$", r"E\1", text))
 
 
+@dataclass
+class _Bulk:
+    """What the cards of a file hold."""
+
+    grids: dict[int, tuple[int | None, tuple[float, float, float], int | None]] = field(default_factory=dict)
+    systems: dict[int, tuple[str, int, list[str]]] = field(default_factory=dict)
+    default: tuple[int, int] = (0, 0)  # the systems of places and directions that GRDSET gives
+    solids: dict[str, list[tuple[int, list[int]]]] = field(default_factory=dict)
+    solid: dict[int, tuple[str, list[int]]] = field(default_factory=dict)
+    bodies: dict[str, list[int]] = field(default_factory=dict)
+    skins: dict[str, list[list[int]]] = field(default_factory=dict)
+    loads: list[tuple[list[str], str]] = field(default_factory=list)
+    sets: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
+    left_out: dict[str, int] = field(default_factory=dict)
+    references: list[int] = field(default_factory=list)
+    ended: bool = False
+
+    def take(self, name: str, fields: list[str], where: str) -> None:
+        """Note one card."""
+        if name == "GRID":
+            self._grid(fields, where)
+        elif name == "GRDSET":
+            self.default = int(fields[1] or 0), int(fields[5] or 0)
+        elif re.fullmatch(r"CORD[12][RCS]", name):
+            halves = [fields] if name[4] == "2" or not any(fields[4:8]) else [fields[:4], fields[4:8]]
+            for half in halves:
+                self.systems[int(half[0])] = (name, int(half[1] or 0) if name[4] == "2" else 0, half)
+        elif re.match(r"CORD", name):
+            raise ReadError(f"{where}: {name} is not known; give the system as CORD2R, CORD2C or CORD2S")
+        elif name in _COUNTS:
+            self._solid(name, fields, where)
+        elif name in _SKINS:
+            few, many = _SKINS[name]
+            nodes = [int(word) for word in fields[2 : 2 + many] if word]
+            self.skins.setdefault(f"face{fields[1] or fields[0]}", []).append(
+                nodes if len(nodes) == many else nodes[:few]
+            )
+        elif name == "PLOAD4":
+            self.loads.append((fields, where))
+        elif name == "SET1":
+            self.sets[f"SET{fields[0]}"] = _listed([word for word in fields[1:] if word])
+        elif name in _LEFT_OUT:
+            self.left_out[name] = self.left_out.get(name, 0) + 1
+            self.references += [int(fields[k]) for k in _LEFT_OUT[name] if k < len(fields) and fields[k].isdigit()]
+        elif name == "ENDDATA":
+            self.ended = True
+        elif name.startswith("C") and not name.startswith(("CSET", "CEND")):
+            raise ReadError(f"{where}: elements {name} are not known; known are {', '.join(_COUNTS)}")
+
+    def _grid(self, fields: list[str], where: str) -> None:
+        x, y, z = (number(word) if word else 0.0 for word in fields[2:5])
+        if any(fields[6:8]) and any(word and "." not in word for word in fields[2:5]):
+            raise ReadError(
+                f"{where}: GRID {fields[0]} has more than three coordinates; a number has a decimal point, not a comma"
+            )
+        one = (int(fields[1]) if fields[1] else None, (x, y, z), int(fields[5]) if fields[5] else None)
+        if self.grids.setdefault(int(fields[0]), one) != one:
+            raise ReadError(f"{where}: GRID {fields[0]} is given twice, at different places")
+
+    def _solid(self, name: str, fields: list[str], where: str) -> None:
+        few, many = _COUNTS[name]
+        given = [int(word) for word in fields[2 : 2 + many] if word]
+        if len(given) not in (few, many):
+            raise ReadError(f"{where}: {name} {fields[0]} has {len(given)} nodes; {few} or {many} are known")
+        ordered = [given[i] for i in _ORDER.get(len(given), range(len(given)))]
+        kind = SOLIDS[len(given)].name
+        self.solids.setdefault(kind, []).append((int(fields[0]), ordered))
+        self.solid[int(fields[0])] = (kind, ordered)
+        self.bodies.setdefault(f"part{fields[1] or fields[0]}", []).append(int(fields[0]))
+
+    def place(self, grid: int, seen: tuple[str, ...] = ()) -> Array:
+        """Place of a grid in the basic system (3,)."""
+        if grid not in self.grids:
+            raise ReadError(f"GRID {grid} of a coordinate system is not in the file; is the file whole?")
+        system, at, _ = self.grids[grid]
+        return self._basic(np.array(at), self.default[0] if system is None else system, seen)
+
+    def _basic(self, at: Array, system: int, seen: tuple[str, ...]) -> Array:
+        """Coordinates in a system, brought to the basic one."""
+        if system == 0:
+            return at
+        label = f"coordinate system {system}"
+        if system not in self.systems or label in seen:
+            raise ReadError(f"{label} is not in the file, or is given by itself; is the file whole?")
+        name, reference, fields = self.systems[system]
+        if name[4] == "1":
+            origin, along, across = (self.place(int(word), (*seen, label)) for word in fields[1:4])
+        else:
+            nine = np.array([number(word) if word else 0.0 for word in fields[2:11]])
+            origin, along, across = (self._basic(p, reference, (*seen, label)) for p in nine.reshape(3, 3))
+        z = along - origin
+        y = np.cross(z, across - origin)
+        if np.linalg.norm(y) < 1e-9 * np.linalg.norm(z) * np.linalg.norm(across - origin) or not np.any(z):
+            raise ReadError(f"{label}: its three points coincide or lie on one line")
+        z, y = z / np.linalg.norm(z), y / np.linalg.norm(y)
+        if name[5] == "C":
+            angle = np.deg2rad(at[1])
+            at = np.array([at[0] * np.cos(angle), at[0] * np.sin(angle), at[2]])
+        elif name[5] == "S":
+            polar, angle = np.deg2rad(at[1:])
+            at = at[0] * np.array([np.sin(polar) * np.cos(angle), np.sin(polar) * np.sin(angle), np.cos(polar)])
+        return np.asarray(origin + at @ np.stack([np.cross(y, z), y, z]))
+
+
 def read(path: Path) -> RawMesh:
     """Read a bulk data file. Raises ReadError for what it cannot read, naming line and card."""
-    nodes: dict[int, tuple[float, float, float]] = {}
-    solids: dict[str, list[tuple[int, list[int]]]] = {}
-    bodies: dict[str, list[int]] = {}
-    loads: list[tuple[str, list[str], str]] = []
-    sets: dict[str, list[int]] = _case_sets(path)
-    where_of: dict[int, tuple[str, list[int]]] = {}
-    extra: list[int] = []
+    bulk = _Bulk(sets=_case_sets(path))
     for name, fields, where in cards(path):
         try:
-            if name == "GRID":
-                if fields[1] not in ("", "0"):
-                    raise ReadError(
-                        f"{where}: GRID {fields[0]} is given in coordinate system {fields[1]}; write the mesh in "
-                        "the basic system"
-                    )
-                x, y, z = (number(word) if word else 0.0 for word in fields[2:5])
-                nodes[int(fields[0])] = (x, y, z)
-            elif name in _COUNTS:
-                few, many = _COUNTS[name]
-                given = [int(word) for word in fields[2 : 2 + many] if word]
-                if len(given) not in (few, many):
-                    raise ReadError(f"{where}: {name} {fields[0]} has {len(given)} nodes; {few} or {many} are known")
-                ordered = [given[i] for i in _ORDER.get(len(given), range(len(given)))]
-                kind = SOLIDS[len(given)].name
-                solids.setdefault(kind, []).append((int(fields[0]), ordered))
-                where_of[int(fields[0])] = (kind, ordered)
-                bodies.setdefault(f"part{fields[1] or fields[0]}", []).append(int(fields[0]))
-            elif name == "PLOAD4":
-                loads.append((name, fields, where))
-            elif name == "SET1":
-                sets[f"SET{fields[0]}"] = _listed([word for word in fields[1:] if word])
-            elif name.startswith(_PASSED):
-                extra += [int(word) for word in fields[2:6] if word.isdigit()]
-            elif name.startswith("C") and not name.startswith(("CORD", "CSET", "CONM", "CELAS", "CBUSH", "CEND")):
-                raise ReadError(f"{where}: elements {name} are not known; known are {', '.join(_COUNTS)}")
+            bulk.take(name, fields, where)
         except ReadError:
             raise
         except (ValueError, IndexError) as fault:
             raise ReadError(f"{where}: {name} {fields[0]} cannot be read ({fault}); is the file whole?") from None
-    if not nodes or not solids:
-        raise ReadError(f"{path} holds {len(nodes)} GRID cards and {len(where_of)} solid elements; write both into it")
+    if not bulk.grids or not bulk.solids:
+        raise ReadError(
+            f"{path} holds {len(bulk.grids)} GRID cards and {len(bulk.solid)} solid elements; write both into it"
+        )
+    notes = [
+        f"{count} cards {name} are left out, with their stiffness and mass" for name, count in bulk.left_out.items()
+    ]
+    if not bulk.ended:
+        text = read_text(path, "bulk data")
+        if re.search(r"^\s*BEGIN\s+BULK", text, re.I | re.M):
+            raise ReadError(f"{path} ends without ENDDATA; the file is cut short")
+        notes.append(f"{path.name} has no ENDDATA: it may be cut short")
+    numbers = index(bulk.grids)
+    turned = [n for n, (_, _, cd) in bulk.grids.items() if (bulk.default[1] if cd is None else cd) != 0]
     return RawMesh(
-        numbers=index(nodes),
-        points=np.array(list(nodes.values())),
-        elements=gathered(solids),
-        bodies={key: index(some) for key, some in bodies.items()},
-        node_sets={key: index(some) for key, some in sets.items()},
-        side_sets=_loaded(loads, where_of),
-        extra=index(extra),
+        numbers=numbers,
+        points=np.array([bulk.place(grid) for grid in bulk.grids]),
+        elements=gathered(bulk.solids),
+        bodies={key: index(some) for key, some in bulk.bodies.items()},
+        node_sets={name: _within(some, numbers) for name, some in bulk.sets.items()},
+        side_sets=_loaded(bulk.loads, bulk.solid),
+        face_elements={name: face_blocks(some) for name, some in bulk.skins.items()},
+        extra=index(node for some in bulk.skins.values() for nodes in some for node in nodes),
+        references=index(bulk.references),
+        turned=index(turned),
+        notes=tuple(notes),
     )
 
 
-def _listed(words: list[str]) -> list[int]:
-    """Numbers with THRU ranges."""
-    out: list[int] = []
+def _listed(words: list[str]) -> list[tuple[int, int]]:
+    """Numbers and ranges with THRU as (first, last)."""
+    out: list[tuple[int, int]] = []
     k = 0
     while k < len(words):
         if words[k].upper() == "THRU":
-            out += range(out[-1] + 1, int(words[k + 1]) + 1)
+            out[-1] = out[-1][0], int(words[k + 1])
             k += 2
         else:
-            out.append(int(words[k]))
+            out.append((int(words[k]), int(words[k])))
             k += 1
     return out
 
 
-def _case_sets(path: Path) -> dict[str, list[int]]:
+def _within(ranges: list[tuple[int, int]], numbers: Index) -> Index:
+    """Numbers of a set: those given one by one, and those of a range that there are."""
+    ranked = np.sort(numbers)
+    found = [
+        index([first]) if first == last else ranked[slice(*np.searchsorted(ranked, [first, last + 1]))]
+        for first, last in ranges
+    ]
+    return np.unique(np.concatenate([index([]), *found]))
+
+
+def _case_sets(path: Path) -> dict[str, list[tuple[int, int]]]:
     """SET n = ... of the case control."""
-    text = path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
-    head = re.split(r"BEGIN\s+BULK", text, maxsplit=1, flags=re.I)
+    head = re.split(r"BEGIN\s+BULK", read_text(path, "bulk data"), maxsplit=1, flags=re.I)
     if len(head) < 2:
         return {}
     found = re.finditer(r"^\s*SET\s+(\d+)\s*=\s*((?:[^,\n]+,\s*)*[^,\n]+)$", head[0], re.I | re.M)
     sets = {}
     for one in found:
         words = re.sub(r",", " ", one.group(2)).split()
-        if all(word.isdigit() or word.upper() == "THRU" for word in words):
+        if words[0].isdigit() and words[-1].isdigit() and all(w.isdigit() or w.upper() == "THRU" for w in words):
             sets[f"SET{one.group(1)}"] = _listed(words)
     return sets
 
 
-def _loaded(
-    loads: list[tuple[str, list[str], str]], where_of: dict[int, tuple[str, list[int]]]
-) -> dict[str, np.ndarray]:
+def _loaded(loads: list[tuple[list[str], str]], where_of: dict[int, tuple[str, list[int]]]) -> dict[str, Index]:
     """Element faces that PLOAD4 cards name, by load set."""
-    from faying.fe.elements import KINDS
-
     out: dict[str, list[tuple[int, int]]] = {}
-    for _, fields, where in loads:
+    for fields, where in loads:
         element = int(fields[1])
         if element not in where_of:
             continue  # a load on a shell
         kind, nodes = where_of[element]
-        corners = KINDS[kind].corners
         if not fields[6]:
             raise ReadError(f"{where}: PLOAD4 on the solid {element} names no corner G1 of the face")
         first, other = int(fields[6]), int(fields[7]) if fields[7] else None
         for side, places in enumerate(KINDS[kind].sides):
-            here = {nodes[i] for i in places if i < corners}
+            here = {nodes[i] for i in places if i < KINDS[kind].corners}
             if first not in here:
                 continue
             if kind.startswith("tet"):
@@ -198,13 +322,12 @@ def _loaded(
     return {name: np.array(rows) for name, rows in out.items()}
 
 
-Field = int | float | str
-
-
 def read_matrices(path: Path, names: tuple[str, str]) -> Matrices:
     """Read real DMIG entries: G and C of the column, then rows of G, C, value; form 6 gives one triangle."""
-    from scipy.sparse import coo_array, diags_array
+    from scipy.sparse import coo_array
 
+    if not read_text(path, "bulk data").endswith("\n"):
+        raise ReadError(f"{path} ends in the middle of a line; it is cut short")
     heads: dict[str, int] = {}
     entries: dict[str, list[tuple[tuple[int, int], tuple[int, int], float]]] = {}
     for card, fields, where in cards(path):
@@ -234,11 +357,11 @@ def read_matrices(path: Path, names: tuple[str, str]) -> Matrices:
     place = {key: i for i, key in enumerate(keys)}
     out = []
     for name, some in zip(names, found, strict=True):
-        i, j = [place[row] for row, _, _ in some], [place[column] for _, column, _ in some]
+        i, j = index(place[row] for row, _, _ in some), index(place[column] for _, column, _ in some)
+        one = heads.get(name.upper(), 6) == 6
+        once(f"{path.name}, DMIG {name}", np.minimum(i, j) if one else i, np.maximum(i, j) if one else j, len(keys))
         A = coo_array(([value for *_, value in some], (i, j)), shape=(len(keys), len(keys))).tocsr()
-        if heads.get(name.upper(), 6) == 6:
-            A = (A + A.T - diags_array(A.diagonal())).tocsr()
-        out.append(A)
+        out.append(both_triangles(A) if one else A)
     return out[0], out[1], np.array(keys, dtype=np.int64)
 
 

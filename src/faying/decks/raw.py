@@ -1,5 +1,6 @@
 """What a file holds before it becomes a mesh or matrices: the file's own numbers, its own unit, its sets."""
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -7,9 +8,14 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from faying.errors import ReadError
+from faying import units
+from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS, SOLIDS
+from faying.fe.memory import available
 from faying.typing import Array, Index
+
+GREATEST = 10**12  # number of a node or an element
+MOST = 20_000_000  # numbers of a range
 
 Matrices: TypeAlias = tuple[Any, Any, Index]
 """Stiffness and mass (n, n), sparse, and dofs (n, 2): number of the node, direction 1, 2, 3."""
@@ -22,7 +28,8 @@ class RawMesh:
     numbers (n,), points (n, 3); elements: kind -> (numbers (e,), node numbers (e, a)) in VTK's order; bodies: name ->
     element numbers, the parts that the file itself makes of its elements; element_sets, node_sets: name -> numbers;
     side_sets: name -> rows of (element number, side); face_elements: name -> arrays of node numbers (f, a); extra:
-    numbers of nodes that only elements other than solids hold.
+    numbers of nodes that only elements other than solids hold; references: nodes that constraints alone name; turned:
+    nodes whose displacements are in directions of their own; notes: what was left out. Raises ReadError for numbers below 1 or without end, and places that are not finite.
     """
 
     numbers: Index
@@ -34,11 +41,42 @@ class RawMesh:
     side_sets: Mapping[str, Index] = field(default_factory=dict)
     face_elements: Mapping[str, tuple[Index, ...]] = field(default_factory=dict)
     extra: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    references: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    turned: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        named = {"node": [self.numbers], "element": [numbers for numbers, _ in self.elements.values()]}
+        for what, several in named.items():
+            for some in several:
+                wrong = some[(some < 1) | (some > GREATEST)]
+                if len(wrong):
+                    raise ReadError(
+                        f"{what} {wrong[0]}: numbers of {what}s lie between 1 and {GREATEST:,}; is the file whole?"
+                    )
+        if self.points.shape != (len(self.numbers), 3) or not np.all(np.isfinite(self.points)):
+            bad = self.numbers[~np.isfinite(self.points).all(axis=-1)] if self.points.ndim == 2 else self.numbers
+            raise ReadError(f"node {bad[0] if len(bad) else 1} has no three finite coordinates; is the file whole?")
 
 
-def index(values: Iterable[object]) -> Index:
-    """Whole numbers as an array."""
-    return np.array(list(values), dtype=np.int64)
+def index(values: Iterable[Any]) -> Index:
+    """Whole numbers, or their texts, as an array. Raises ValueError for others and ReadError for huge ones."""
+    numbers = [int(value) for value in values]
+    try:
+        return np.array(numbers, dtype=np.int64)
+    except OverflowError:
+        raise ReadError(
+            f"the number {max(numbers, key=abs):.3g} is none of a node or an element; is the file whole?"
+        ) from None
+
+
+def ranged(first: int, last: int, step: int, where: str) -> Index:
+    """Numbers from first to last. Raises ReadError where they do not rise or are more than any file holds."""
+    if step < 1 or last < first or first < 1 or (last - first) // step > MOST:
+        raise ReadError(
+            f"{where}: a range from {first} to {last} by {step}; ranges rise from 1 or more and have at most {MOST:,} numbers"
+        )
+    return np.arange(first, last + 1, step)
 
 
 def gathered(rows: Mapping[str, list[tuple[int, list[int]]]]) -> dict[str, tuple[Index, Index]]:
@@ -88,16 +126,80 @@ def from_edges(kind: str, edges: tuple[tuple[int, int], ...]) -> list[int]:
 
 def read_text(path: Path, what: str) -> str:
     """Text of a file; ReadError where it cannot be read."""
+    if path.exists() and not path.is_file():
+        raise ReadError(f"cannot read the {what} {path}: it is no regular file")
     try:
         return path.read_text(encoding="utf-8", errors="replace")
     except OSError as fault:
         raise ReadError(f"cannot read the {what} {path}: {fault.strerror or fault}") from None
 
 
+def numbers_of(path: Path, text: str, count: int | None = None) -> Array:
+    """All numbers of a text. Raises ReadError where there are others than `count`, or a word or the last line is cut."""
+    import warnings
+
+    if text and not text.endswith("\n"):
+        raise ReadError(f"{path} ends in the middle of a line; it is cut short")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            values = np.fromstring(text.replace("D", "E").replace("d", "e"), sep=" ")
+        except (DeprecationWarning, ValueError):
+            raise ReadError(f"{path} holds words that are not numbers; is it whole?") from None
+    if count is not None and len(values) != count:
+        raise ReadError(f"{path} has {len(values):,} numbers where its head says {count:,}; is it whole?")
+    return values
+
+
+def whole(path: Path, values: Array, size: int) -> Index:
+    """Indices from 1 as whole numbers from 0. Raises ReadError for others than 1 to size."""
+    if len(values) and not (np.all(values == np.round(values)) and 1 <= values.min() <= values.max() <= size):
+        wrong = values[(values != np.round(values)) | (values < 1) | (values > size)][0]
+        raise ReadError(f"{path} has the row or column {wrong:g}; there are {size} unknowns, numbered from 1")
+    return values.astype(np.int64) - 1
+
+
+def once(name: str, rows: Index, columns: Index, width: int) -> None:
+    """Raise ReadError where an entry is given twice."""
+    key = np.sort(rows.astype(np.int64) * width + columns)
+    again = key[1:][key[1:] == key[:-1]]
+    if len(again):
+        raise ReadError(f"{name}: row {again[0] // width + 1}, column {again[0] % width + 1} is given twice")
+
+
+def both_triangles(half: Any) -> Any:
+    """The symmetric matrix of one triangle."""
+    from scipy.sparse import diags_array
+
+    return (half + half.T - diags_array(half.diagonal())).tocsr()
+
+
+def unit_size(text: str, unit: str, name: str) -> float:
+    """How many of an SI unit one of a unit is; InputError where the text is more than names of units, such as 5 mm."""
+    one = r"[A-Za-zµμ]+(?:(?:\^|\*\*)-?\d)?"
+    if not isinstance(text, str) or not re.fullmatch(rf"{one}(?:\s*[*/]\s*{one}){{0,5}}", text.strip()):
+        raise InputError(
+            f'{name} = {text!r} is no unit; write one without a number, such as "{units.EXAMPLES[unit].split()[1]}"'
+        )
+    return units.scale(text, unit, name=name)
+
+
+def room(size: float, name: str) -> None:
+    """Raise InputError where what a file unpacks to [B], three times over, is more than the memory there is."""
+    free = available()
+    if free is not None and 3 * size > free:
+        raise InputError(
+            f"{name} unpacks to {size / 1e9:.3g} GB; about {3 * size / 1e9:.3g} GB of memory are needed to read it"
+        )
+
+
 def read_dofs(path: Path) -> Index:
     """Read a list of unknowns (n, 2): node and direction."""
     out = []
-    for k, line in enumerate(read_text(path, "list of unknowns").splitlines(), 1):
+    text = read_text(path, "list of unknowns")
+    if text and not text.endswith("\n"):
+        raise ReadError(f"{path} ends in the middle of a line; it is cut short")
+    for k, line in enumerate(text.splitlines(), 1):
         words = line.replace(".", " ").split()
         if not words:
             continue

@@ -15,6 +15,13 @@ def write(deck: JointDeck, solver: str, folder: Path) -> list[Path]:
     """Write the decks of `solver` and joint_pairs.csv (SI units). Raises InputError for a solver that is not known."""
     if solver not in SOLVERS:
         raise InputError(f"no exporter for {solver!r}; there are {', '.join(SOLVERS)}")
+    ends = np.union1d(deck.pairs.first, deck.pairs.second)
+    turned = ends[deck.mesh.turned[ends]] if deck.mesh.turned is not None else ends[:0]
+    if len(turned):
+        raise InputError(
+            f"{len(turned)} nodes of the joint have directions of their own in the model, node {deck.mesh.numbers[turned[0]]} "
+            "for one (CD, *TRANSFORM); a joint acts in the directions of the model: take these out"
+        )
     texts: dict[str, str] = module_of(solver).decks(deck)
     texts["joint_pairs.csv"] = pairs_csv(deck)
     try:

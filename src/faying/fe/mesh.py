@@ -10,7 +10,8 @@ from faying.errors import InputError
 from faying.fe.elements import FACES, SOLIDS
 from faying.fe.sides import Blocks as Blocks
 from faying.fe.sides import nodes_of
-from faying.typing import Array, Index
+from faying.notes import Note
+from faying.typing import Array, Index, Mask
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,6 +28,8 @@ class Mesh:
         face_part: Name of a face -> name of its part.
         source: File that the mesh came from.
         node_numbers: Numbers (n,) of the nodes in that file; 1, 2, ... where None.
+        turned: Whether each node's displacements are in directions of its own in the file (n,); None where none are.
+        notes: What the reader of the file left out.
 
     Raises:
         InputError: Empty parts, elements of negative volume, nodes of no element, coordinates that are not numbers.
@@ -38,6 +41,8 @@ class Mesh:
     face_part: Mapping[str, str]
     source: str = field(default="")
     node_numbers: Index | None = None
+    turned: Mask | None = None
+    notes: tuple[Note, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.parts:

@@ -6,11 +6,12 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError, NotConverged
-from faying.fe.solve import Factorisation, factorise
+from faying.fe.solve import Factorisation, factorise, negative_eigenvalues
 from faying.typing import Array
 
 SEED = 20240611
 WIDTH = 8  # of a block of vectors: a factor is read once for all of them
+TOO_HIGH = 30.0  # times the highest frequency of a single unknown: such a shift leaves few digits of the modes
 MOST_STEPS = 1200  # vectors of the basis
 SAME = 1e-6  # relative difference of eigenvalues of A^-1 M below which they may be one
 NOTHING = 1e-13  # of the size of a block: what the basis leaves of it is rounding, and the basis is whole
@@ -42,8 +43,10 @@ def lowest_modes(
 
     stiffness [N/m], mass [kg]: sparse and symmetric; shift_frequency [Hz] sets the shift -(2 pi f)^2, at which
     K + |shift| M is positive definite even for free bodies. Raises InputError where more modes are asked for than there are
-    masses, or memory is short, and NotConverged where the iteration stops short.
+    masses, the shift is above every mode, the structure is unstable, or memory is short, and NotConverged where the
+    iteration stops short.
     """
+    _check_shift(stiffness, mass, shift_frequency)
     shift = (2 * np.pi * shift_frequency) ** 2
     most = int(np.count_nonzero(mass.diagonal() > 0))
     if not 0 < count <= most:
@@ -57,6 +60,7 @@ def lowest_modes(
         # motions without mass have crept in, which the projection on the mass does not see: one more solve has none
         shapes, _, _ = _orthonormal(factor.solve(np.asfortranarray(mass @ shapes)), mass)
         values, shapes = _ritz(stiffness, mass, shapes)
+    _check_stable(stiffness, values, shapes, shift)
     order = np.argsort(np.abs(values))
     return Modes(
         frequencies=np.sqrt(np.abs(values[order])) / (2 * np.pi),
@@ -64,6 +68,47 @@ def lowest_modes(
         factorisation=factor,
         shift=shift,
     )
+
+
+def _check_shift(stiffness: Any, mass: Any, shift_frequency: float) -> None:
+    """Raise InputError for a shift that is no frequency, or above all modes that the mesh has."""
+    if not (np.isfinite(shift_frequency) and shift_frequency > 0):
+        raise InputError(f"a shift of {shift_frequency:g} Hz: give one above 0, near the first elastic mode")
+    heavy = mass.diagonal() > 0
+    ratio = stiffness.diagonal()[heavy] / mass.diagonal()[heavy]
+    highest = float(np.sqrt(ratio.max(initial=0.0))) / (2 * np.pi)
+    if shift_frequency > TOO_HIGH * highest > 0:
+        raise InputError(
+            f"a shift of {shift_frequency:.4g} Hz lies above all modes of these matrices, which end near {highest:.3g} Hz; "
+            "give one near the first elastic mode"
+        )
+
+
+def _check_stable(stiffness: Any, values: Array, shapes: Array, shift: float) -> None:
+    """Raise InputError where an eigenvalue is negative beyond rounding: its motion would grow, not vibrate."""
+    worst = int(np.argmin(values))
+    rounding = 1e-12 * float(np.abs(shapes[:, worst]) @ (abs(stiffness) @ np.abs(shapes[:, worst])))
+    if values[worst] < -max(1e-4 * shift, rounding):
+        rate = np.sqrt(-values[worst]) / (2 * np.pi)
+        raise InputError(
+            f"the structure is unstable: {np.count_nonzero(values < -max(1e-4 * shift, rounding))} eigenvalues are negative, "
+            f"the lowest -({rate:.4g} Hz)^2; check the signs of the stiffness matrix and of its springs"
+        )
+
+
+def missed_modes(stiffness: Any, mass: Any, modes: Modes, solver: str | None = None) -> int:
+    """Count the modes that `lowest_modes` has missed below the last of those found, 0 where it has found all.
+
+    The matrix K - s M has as many negative eigenvalues as there are modes below s (Sturm); s lies between the last two
+    modes found that differ, which costs one more factorisation.
+    """
+    values = np.sort((2 * np.pi * modes.frequencies) ** 2)
+    if len(values) < 2:
+        return 0
+    apart = (values[1:] - values[:-1]) / (values[1:] + 1e-3 * modes.shift)
+    place = int(np.flatnonzero(apart > 1e-3)[-1]) if np.any(apart > 1e-3) else len(apart) - 1
+    between = (values[place] + values[place + 1]) / 2
+    return negative_eigenvalues((stiffness - between * mass).tocsr(), solver) - (place + 1)
 
 
 def _ritz(stiffness: Any, mass: Any, shapes: Array) -> tuple[Array, Array]:

@@ -14,7 +14,7 @@ from faying.typing import Array
 ANALYSE, FACTORISE, SOLVE, FORGET = 11, 22, 33, -1
 BLOCK = 3  # unknowns of a node
 FILLED = 0.7  # least share of entries in the blocks for which blocks are worth it
-POSITIVE = 2  # the kind of matrix: real, symmetric, positive definite
+POSITIVE, INDEFINITE = 2, -2  # the kind of matrix: real, symmetric, positive definite or not
 SINGULAR = (-4, -7)  # a zero or negative pivot
 
 
@@ -51,7 +51,8 @@ class Pardiso:
 
     name = "PARDISO"
 
-    def __init__(self, matrix: Any) -> None:
+    def __init__(self, matrix: Any, kind: int = POSITIVE) -> None:
+        self._kind = kind
         matrix.sum_duplicates()  # and sorts the indices
         self._size = matrix.shape[0]
         self._block = BLOCK if _in_blocks(matrix) else 1
@@ -97,6 +98,11 @@ class Pardiso:
         self._call(FACTORISE)
         return self
 
+    @property
+    def negative(self) -> int:
+        """Number of negative eigenvalues of an indefinite matrix."""
+        return int(self._iparm[22])
+
     def _in_nodes(self, matrix: Any) -> Any:
         """The matrix in blocks of one node, in order."""
         blocks = matrix.tobsr((self._block, self._block))
@@ -116,7 +122,7 @@ class Pardiso:
             place(self._state),
             number(1),
             number(1),
-            number(POSITIVE),
+            number(self._kind),
             number(phase),
             number(self._size // self._block),
             place(self._values),

@@ -9,7 +9,7 @@ import numpy as np
 
 from faying.errors import InputError, NotConverged
 from faying.fe.memory import FILL_MINIMUM_DEGREE, check, guessed
-from faying.fe.pardiso import Pardiso
+from faying.fe.pardiso import INDEFINITE, Pardiso
 from faying.typing import Array
 
 
@@ -149,3 +149,24 @@ def chosen(name: str | None = None) -> str:
 def factorise(matrix: Any, name: str | None = None) -> Factorisation:
     """Factorise a sparse symmetric positive definite matrix. Raises NotConverged where it is singular."""
     return _BACKENDS[chosen(name)](matrix)
+
+
+def negative_eigenvalues(matrix: Any, name: str | None = None) -> int:
+    """Count the negative eigenvalues of a sparse symmetric matrix by the signs of its pivots (Sylvester).
+
+    Raises NotConverged where the factorisation gives no signs.
+    """
+    from scipy.sparse.linalg import splu
+
+    if chosen(name) == "pardiso":
+        return Pardiso(matrix.tocsr(), INDEFINITE).negative
+    check(guessed(matrix.shape[0], fill=FILL_MINIMUM_DEGREE, per_entry=2 * 10), matrix.shape[0], "SuperLU")
+    try:
+        factor = splu(
+            matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        )
+    except RuntimeError as fault:
+        raise NotConverged(f"the modes could not be counted ({fault})") from None
+    if not np.array_equal(factor.perm_r, factor.perm_c):
+        raise NotConverged("the modes could not be counted: the factorisation has left the diagonal; install PARDISO")
+    return int(np.count_nonzero(factor.U.diagonal() < 0))
