@@ -6,7 +6,8 @@ from typing import Any, Self, final
 
 import numpy as np
 
-from faying.errors import InputError
+from faying.errors import InputError, ReadError
+from faying.files import memory_free
 from faying.typing import Array
 
 
@@ -22,6 +23,19 @@ class Instrument:
     tip_radius: float | None = None
     resolution: float | None = None
     noise: float | None = None
+
+
+BYTES = 160.0  # at the peak of reading and preparing, for each point
+
+
+def check_points(source: str, count: float) -> None:
+    """Raise ReadError where a scan of so many points does not fit into the machine's free memory."""
+    need, free = BYTES * count, memory_free()
+    if need > 0.8 * free:
+        raise ReadError(
+            f"{source}: {count:.3g} points need about {need / 2**30:.1f} GiB and {free / 2**30:.1f} GiB are free; crop the "
+            "scan or take every second point before reading it"
+        )
 
 
 def _frozen(heights: Any, dimensions: int, name: str) -> Array:
