@@ -10,7 +10,7 @@ SOURCE = Path(__file__).parent.parent / "src" / "faying"
 # a room may import from rooms on earlier lines, and from itself; rooms on one line do not see each other
 ORDER = [
     {"errors"},
-    {"units", "files", "typing"},
+    {"units", "files", "memory", "typing"},
     {"materials"},
     {"surface", "fe", "halfspace"},
     {"contact", "asperity_fe"},

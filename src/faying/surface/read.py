@@ -171,21 +171,19 @@ def _resized(scan: Scan | Profile, lateral: Lateral) -> Scan | Profile:
     """The scan with the extent that the caller gives, where its own cannot be. InputError where it can."""
     if not lateral:
         return scan
-    if isinstance(scan, Profile):
-        steps = lateral.steps(len(scan.heights), 1)[:1]
-        own: tuple[float, ...] = (scan.spacing,)
-    else:
-        steps, own = lateral.steps(scan.shape[1], scan.shape[0]), scan.spacing
+    counts = scan.heights.shape
+    steps = lateral.steps(counts[-1], counts[0])
+    own = scan.spacing if isinstance(scan, Scan) else (scan.spacing, steps[1])
     if all(abs(a / b - 1) < 1e-6 for a, b in zip(steps, own, strict=True)):
         return scan
     sizes = scan.size if isinstance(scan, Scan) else (scan.length,)
     if _believable(sizes, own):
         shown = " x ".join(f"{s:.4g} m" for s in sizes)
         raise InputError(f"{scan.source}: the file states its size, {shown}; leave out size and spacing")
-    note = "size given by the caller, in place of what the file states"
-    if isinstance(scan, Profile):
-        return replace(scan, spacing=steps[0], history=(*scan.history, note))
-    return replace(scan, spacing=steps, history=(*scan.history, note))
+    history = (*scan.history, "size given by the caller, in place of what the file states")
+    if isinstance(scan, Scan):
+        return replace(scan, spacing=steps, history=history)
+    return replace(scan, spacing=steps[0], history=history)
 
 
 def _believable(sizes: tuple[float, ...], spacing: tuple[float, ...]) -> bool:

@@ -7,7 +7,7 @@ from typing import Any, Self, final
 import numpy as np
 
 from faying.errors import InputError, ReadError
-from faying.files import memory_free
+from faying.memory import GB, available
 from faying.typing import Array
 
 
@@ -30,11 +30,11 @@ BYTES = 160.0  # at the peak of reading and preparing, for each point
 
 def check_points(source: str, count: float) -> None:
     """Raise ReadError where a scan of so many points does not fit into the machine's free memory."""
-    need, free = BYTES * count, memory_free()
-    if need > 0.8 * free:
+    need, free = BYTES * count, available()
+    if free is not None and need > free:
         raise ReadError(
-            f"{source}: {count:.3g} points need about {need / 2**30:.1f} GiB and {free / 2**30:.1f} GiB are free; crop the "
-            "scan or take every second point before reading it"
+            f"{source}: {count:.3g} points need about {need / GB:.3g} GB and {free / GB:.3g} GB are free; crop the scan or "
+            "take every second point before reading it, or set FAYING_MEMORY to the GB that may be taken"
         )
 
 

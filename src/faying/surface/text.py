@@ -79,7 +79,9 @@ def _heading(line: str, path: Path) -> tuple[float, float, float] | None:
     names = [cell[1].lower() for cell in cells if cell]
     if len(names) != len(cells) or names not in (["x", "y", "z"], ["x", "z"]):
         return None
-    factors = [scale(cell[2].replace("µ", "u").replace("μ", "u"), "m", name=f"{path}, heading") for cell in cells if cell]
+    factors = [
+        scale(cell[2].replace("µ", "u").replace("μ", "u"), "m", name=f"{path}, heading") for cell in cells if cell
+    ]
     return factors[0], factors[-2], factors[-1]
 
 
