@@ -52,3 +52,11 @@ def test_files_that_do_not_fit_together(tmp_path):
         read_frf_text([], quantity="receptance")
     with pytest.raises(ReadError, match="cannot be read"):
         read_frf_text([tmp_path / "absent.csv"], quantity="receptance")
+
+
+@pytest.mark.parametrize("line", ["1,5;2,5;3,5", "1,5 2,5 3"])
+def test_decimal_commas_are_refused(tmp_path, line):
+    path = tmp_path / "frf.txt"
+    path.write_text(f"{line}\n" * 4)
+    with pytest.raises(ReadError, match="decimal commas; write decimal points"):
+        read_frf_text([path], quantity="accelerance")

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError, ReadError
+from faying.files import refuse_decimal_comma
 from faying.measured.frf import FRF, Dof
 from faying.typing import Array, Complex
 
@@ -61,6 +62,8 @@ def _read(path: Path, step: float | None) -> tuple[Array, Complex]:
             )
         values = [_number(complex, path, line.replace("i", "j").replace(" ", "").strip("()")) for line in lines]
         return np.arange(len(values), dtype=float) * step, np.array([values], dtype=np.complex128)
+    for line in lines:
+        refuse_decimal_comma(line, str(path))
     table = [[_number(float, path, cell) for cell in re.split(r"[,;\s]+", line)] for line in lines]
     widths = {len(row) for row in table}
     if len(widths) > 1 or (width := widths.pop()) < 3 or width % 2 == 0:

@@ -68,7 +68,8 @@ def layout(path: Path) -> Layout | None:
         return Layout(columns=len(found[0]), heading=1, units=units)
     if any(row is not None and len(row) in (2, 3) for row in found):
         return Layout(columns=len(found[0]), heading=0) if len(found[0]) in (2, 3) else None
-    if len(rows) > 2 and all(row is not None and len(row) == len(found[0]) for row in found):
+    alike = sum(row is not None and len(row) == len(found[0]) for row in found)
+    if len(rows) > 2 and len(found[0]) > 3 and alike > len(found) / 2:
         return Layout(columns=len(found[0]), heading=0)
     return None
 
