@@ -84,7 +84,6 @@ READERS = {
     "numbers": numbers,
     "mesh": mesh,
     "mtx": lambda path: matrices(path, mass=beside(path, "m.mtx"), dofs=beside(path, "dofs.txt")),
-    "npz": lambda path: matrices(path, mass=beside(path, "m.npz"), dofs=beside(path, "dofs.txt")),
     "sti": matrices,
     "study": study,
 }

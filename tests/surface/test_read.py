@@ -6,7 +6,7 @@ import zipfile
 import numpy as np
 import pytest
 
-from faying import InputError, ReadError, Scan, read_scan
+from faying import InputError, ReadError, Scan, fit_fractal, read_scan
 from faying.surface.read import plausible
 from faying.surface.scan import Profile
 from faying.surface.synthesize import spectral, with_missing
@@ -299,7 +299,7 @@ def test_a_size_replaces_one_that_cannot_be_and_no_other(tmp_path):
         read_scan(long)
     back = read_scan(long, size=160e-6)
     assert back.spacing == pytest.approx((4e-6, 4e-6))
-    assert "size given by the caller" in back.history[-1]
+    assert "given by the caller" in back.notes[-1]
     with pytest.raises(InputError, match="the file states its size"):
         read_scan(write_scan(scan, tmp_path / "good.x3p"), size=1e-3)
     assert read_scan(tmp_path / "good.x3p", spacing=1e-6).spacing == pytest.approx((1e-6, 1e-6))
@@ -329,3 +329,25 @@ def test_a_scan_too_large_for_the_memory_is_refused_before_it_is_unpacked(rough,
         read_scan(path)
     monkeypatch.setenv("FAYING_MEMORY", "1")
     assert read_scan(path).shape == rough.shape
+
+
+def test_a_text_without_an_end_of_line_may_be_cut_short_and_fits_say_so(tmp_path):
+    line = spectral(300, spacing=0.5e-6, D=2.4, Rq=1e-6)
+    path = write_scan(line, tmp_path / "a.txt", xy_unit="um", z_unit="nm")
+    assert read_scan(path, "um", "nm").notes == ()
+    path.write_bytes(path.read_bytes()[:-700])  # in the middle of a line: a shorter line scan
+    back = read_scan(path, "um", "nm")
+    assert back.heights.size < 300
+    assert "may be cut short" in back.notes[0]
+    assert back.notes[0] in fit_fractal(back).warnings
+
+
+@pytest.mark.parametrize("suffix", ["x3p", "csv"])
+def test_a_scan_cut_short_is_refused(rough, tmp_path, suffix):
+    path = write_scan(rough, tmp_path / f"a.{suffix}", **({} if suffix == "x3p" else {"xy_unit": "mm", "z_unit": "um"}))
+    units = () if suffix == "x3p" else ("mm", "um")
+    blob = path.read_bytes()
+    for share in np.linspace(0.02, 0.99, 25):
+        path.write_bytes(blob[: int(share * len(blob))])
+        with pytest.raises(ReadError):
+            read_scan(path, *units)

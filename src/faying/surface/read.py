@@ -94,7 +94,21 @@ def read_scan(
         scan = _text_or_other(file, xy_unit, z_unit, lateral)
     scan = _resized(scan, lateral)
     plausible(scan)
-    return scan
+    return replace(scan, notes=(*scan.notes, *_about_the_end(file, head)))
+
+
+def _about_the_end(file: Path, head: bytes) -> tuple[str, ...]:
+    """A note on a text file whose last line has no end: it may have been cut short."""
+    if b"\0" in head or head[:2] == b"PK" or not _is_text(head):
+        return ()
+    with file.open("rb") as handle:
+        handle.seek(-1, 2)
+        ended = handle.read(1) in b"\r\n\x1a"
+    return () if ended else (f"{file}: the last line has no line break; the file may be cut short",)
+
+
+def _is_text(head: bytes) -> bool:
+    return sum(b in b"\t\n\r\x0c" or b >= 32 for b in head) == len(head)
 
 
 def _head(file: Path) -> bytes:
@@ -180,10 +194,10 @@ def _resized(scan: Scan | Profile, lateral: Lateral) -> Scan | Profile:
     if _believable(sizes, own):
         shown = " x ".join(f"{s:.4g} m" for s in sizes)
         raise InputError(f"{scan.source}: the file states its size, {shown}; leave out size and spacing")
-    history = (*scan.history, "size given by the caller, in place of what the file states")
+    notes = (*scan.notes, "the size is that given by the caller, in place of what the file states")
     if isinstance(scan, Scan):
-        return replace(scan, spacing=steps, history=history)
-    return replace(scan, spacing=steps[0], history=history)
+        return replace(scan, spacing=steps, notes=notes)
+    return replace(scan, spacing=steps[0], notes=notes)
 
 
 def _believable(sizes: tuple[float, ...], spacing: tuple[float, ...]) -> bool:

@@ -76,6 +76,7 @@ class Scan:
         source: the file or recipe.
         instrument: the limits that the file states.
         history: what was done to the heights since.
+        notes: what a reader of the results should know of the file.
 
     Raises:
         InputError: for heights that are not two-dimensional or not finite, and spacings that are not positive.
@@ -86,6 +87,7 @@ class Scan:
     source: str = "array"
     instrument: Instrument = field(default_factory=Instrument)
     history: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "heights", _frozen(self.heights, 2, "Scan"))
@@ -150,6 +152,7 @@ class Scan:
             source=self.source,
             instrument=self.instrument,
             history=(*self.history, f"profile {index} along {along}"),
+            notes=self.notes,
         )
 
 
@@ -164,6 +167,7 @@ class Profile:
         source: the file or recipe.
         instrument: the limits that the file states.
         history: what was done to the heights since.
+        notes: what a reader of the results should know of the file.
 
     Raises:
         InputError: as for Scan.
@@ -174,6 +178,7 @@ class Profile:
     source: str = "array"
     instrument: Instrument = field(default_factory=Instrument)
     history: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "heights", _frozen(self.heights, 1, "Profile"))
