@@ -10,7 +10,7 @@ SOURCE = Path(__file__).parent.parent / "src" / "faying"
 # a room may import from rooms on earlier lines, and from itself; rooms on one line do not see each other
 ORDER = [
     {"errors"},
-    {"units", "files", "typing", "notes"},
+    {"units", "files", "memory", "typing", "notes"},
     {"materials", "netcdf"},
     {"surface", "fe", "halfspace"},
     {"contact", "asperity_fe"},
