@@ -47,7 +47,7 @@ def test_the_template_is_a_study(folder):
         ({"bolt__0__preload": "-4 kN"}, "must be positive"),
         ({"bolt__0__preload": ["8 kN", "4 kN"]}, "preloads must rise"),
         ({"bolt__0__preload": []}, "is empty"),
-        ({"bolt__0__preload": "nan kN"}, "finite"),
+        ({"bolt__0__preload": "nan kN"}, "is not a quantity"),
         ({"surface__D": 3.2}, "surface.D = 3.2: the dimension of a surface lies between 2 and 3"),
         ({"surface__D": float("nan")}, "surface.D = nan should be a plain finite number"),
         ({"surface__G": "1.53e-10"}, r'surface.G = "1.53e-10" has no unit'),
