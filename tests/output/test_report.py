@@ -3,6 +3,7 @@
 from matplotlib.figure import Figure
 
 from faying.output import report
+from faying.result import Result
 from tests.helpers.results import small_result
 
 
@@ -28,3 +29,14 @@ def test_joints_of_different_laws_have_each_its_own():
 def test_a_structure_without_rigid_motion_has_a_report():
     found = small_result(rigid=[])
     assert "Rigid-body values" not in report.html(found, {"law": Figure()})
+
+
+def test_names_of_any_kind_reach_files_and_figures(tmp_path):
+    """Characters beyond ASCII, and what matplotlib and HTML would read as their own."""
+    found = small_result(title="Träger <b>&", joints=(r"$\frac{1}{0$", "Fläche µ"))
+    made = report.write(found, tmp_path)
+    assert Result.load(tmp_path / "result.nc") == found
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "Träger &lt;b&gt;&amp;" in page
+    assert "<b>" not in page
+    assert {p.name for p in made} >= {"result.nc", "report.html", "pressure.svg"}

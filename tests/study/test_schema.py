@@ -48,6 +48,13 @@ def test_the_template_is_a_study(folder):
         ({"bolt__0__preload": ["8 kN", "4 kN"]}, "preloads must rise"),
         ({"bolt__0__preload": []}, "is empty"),
         ({"bolt__0__preload": "nan kN"}, "is not a quantity"),
+        (
+            {
+                "material": {"rubber": {"E": "1 MPa", "nu": 0.5, "density": "1 g/cm^3"}},
+                "part__upper__material": "rubber",
+            },
+            "nu = 0.5, and solid elements lock near 0.5; give at most 0.495",
+        ),
         ({"surface__D": 3.2}, "surface.D = 3.2: the dimension of a surface lies between 2 and 3"),
         ({"surface__D": float("nan")}, "surface.D = nan should be a plain finite number"),
         ({"surface__G": "1.53e-10"}, r'surface.G = "1.53e-10" has no unit'),

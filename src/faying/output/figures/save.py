@@ -14,6 +14,11 @@ def new_figure(width: float, height: float) -> Any:
     return Figure(figsize=(width, height), layout="constrained")
 
 
+def plain(text: str) -> str:
+    """A name as it stands: without this, matplotlib reads what is between dollar signs as mathematics."""
+    return text.replace("$", r"\$")
+
+
 def check_ending(path: Path) -> None:
     """Raise InputError unless figures can be written under this name."""
     kinds = new_figure(1, 1).canvas.get_supported_filetypes()

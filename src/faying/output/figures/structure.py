@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.output.figures.save import new_figure
+from faying.output.figures.save import new_figure, plain
 from faying.result import Result
 
 
@@ -19,7 +19,7 @@ def pressure_map(ax: Any, result: Result, load: int = -1, joint: int = 0) -> Any
     x, y = (centre @ axes.T).T * 1e3
     shut = pressure > 0
     # each point covers its share of the face: markers of that area, a little larger so that no gaps show
-    per_mm = 330 / max(np.ptp(x), 1.4 * np.ptp(y))
+    per_mm = 330 / max(np.ptp(x), 1.4 * np.ptp(y), 1e-3)
     size = 2.2 * result.weights[here] * 1e6 * per_mm**2
     ax.scatter(x[~shut], y[~shut], s=size[~shut], color="0.9", linewidths=0)
     dots = ax.scatter(x[shut], y[shut], c=pressure[shut], s=size[shut], cmap="viridis", linewidths=0, vmin=0)
@@ -29,7 +29,7 @@ def pressure_map(ax: Any, result: Result, load: int = -1, joint: int = 0) -> Any
         aspect="equal",
         xlabel="along the joint [mm]",
         ylabel="across [mm]",
-        title=f"{result.joints[joint]}, {result.loads[load] / 1e3:g} kN: open on {share:.0%}",
+        title=f"{plain(result.joints[joint])}, {result.loads[load] / 1e3:g} kN: open on {share:.0%}",
     )
     return ax
 
@@ -72,7 +72,7 @@ def comparison(ax: Any, result: Result) -> Any:
         ax.plot(modes, error, "o-", color=f"C{row}", label=f"Faying, {load / 1e3:g} kN")
         if c.published is not None:
             theirs = 100 * (c.published[row] / c.frequencies[row] - 1)
-            ax.plot(modes, theirs, "x:", color=f"C{row}", label=f"{c.published_name}, {load / 1e3:g} kN")
+            ax.plot(modes, theirs, "x:", color=f"C{row}", label=f"{plain(c.published_name)}, {load / 1e3:g} kN")
     ax.axhline(0, color="k", lw=0.8)
     ax.set(xlabel="mode of the test", ylabel="error [% of the test]", xticks=modes)
     ax.legend(fontsize=7)
@@ -138,8 +138,8 @@ def law_curves(result: Result) -> Any:
         here = (result.joint_of_point == joint) & (pressure > 1e-3 * pressure.max())
         order = np.argsort(pressure[here])
         p = pressure[here][order] * 1e-6
-        ax.plot(p, result.k_n[-1][here][order] * 1e-12, "-", color=f"C{joint}", label=f"{name}: k_n")
-        ax.plot(p, result.k_t[-1][here][order] * 1e-12, "--", color=f"C{joint}", label=f"{name}: k_t")
+        ax.plot(p, result.k_n[-1][here][order] * 1e-12, "-", color=f"C{joint}", label=f"{plain(name)}: k_n")
+        ax.plot(p, result.k_t[-1][here][order] * 1e-12, "--", color=f"C{joint}", label=f"{plain(name)}: k_t")
     ax.set(xscale="log", yscale="log", xlabel="pressure [MPa]", ylabel="stiffness per area [MPa/um]")
     ax.legend(fontsize=8)
     ax.grid(alpha=0.3, which="both")

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.output.figures.save import new_figure, save
+from faying.output.figures.save import new_figure, plain, save
 from faying.surface.convention import density
 from faying.surface.form import Prepared
 from faying.surface.fractal import FractalFit
@@ -109,5 +109,5 @@ def overview(scan: Scan | Profile, ready: Prepared, fits: Mapping[str, FractalFi
         axes[0, 1].set_title("levelled", fontsize="medium")
     power_spectrum(spectrum(ready.scan), fits, axes[1, 0])
     estimators(fits, axes[1, 1])
-    figure.suptitle(Path(scan.source).name)
+    figure.suptitle(plain(Path(scan.source).name))
     return save(figure, path)

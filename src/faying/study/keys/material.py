@@ -6,6 +6,8 @@ from faying.errors import InputError
 from faying.materials import CATALOGUE, Material
 from faying.study.keys.reader import Table
 
+STIFFEST = 0.495  # Poisson's ratio from which displacements alone cannot describe a solid
+
 
 def read_materials(top: Table) -> dict[str, Material]:
     """Return the catalogue with the materials of the study."""
@@ -39,6 +41,12 @@ def read_parts(top: Table, materials: Mapping[str, Material]) -> dict[str, str]:
             top.faults.add(f'part.{name}.material = "{material}" is unknown; known are {known}')
         elif material is not None and materials[material].density is None:
             top.faults.add(f'part.{name}: material "{material}" has no density; modes need one')
+        elif material is not None and materials[material].nu > STIFFEST:
+            nu = materials[material].nu
+            top.faults.add(
+                f'part.{name}: material "{material}" has nu = {nu:g}, and solid elements lock near 0.5; give at most '
+                f"{STIFFEST:g}"
+            )
         parts[name] = material
         table.close()
     return parts

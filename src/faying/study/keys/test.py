@@ -67,6 +67,12 @@ def _listed(table: Table, loads: int) -> TestChoice:
             raise InputError(f"{name} should be one list of frequencies for each preload")
         if len(value) != loads:
             raise InputError(f"{name} has {len(value)} rows for {loads} preloads; give one list for each")
+        counts = sorted({len(row) for row in value})
+        if len(counts) > 1 or counts == [0]:
+            some = " and ".join(map(str, counts))
+            raise InputError(
+                f"{name} has rows of {some} frequencies; give the same modes, one or more, at each preload"
+            )
         return tuple(tuple(quantity(v, "Hz", name) for v in row) for row in value)
 
     def points(value: Any, name: str) -> tuple[tuple[float, float, float], ...]:
