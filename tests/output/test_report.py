@@ -1,5 +1,6 @@
 """The report of a result made by hand: what it says of joints and laws."""
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from faying.output import report
@@ -33,7 +34,11 @@ def test_a_structure_without_rigid_motion_has_a_report():
 
 def test_names_of_any_kind_reach_files_and_figures(tmp_path):
     """Characters beyond ASCII, and what matplotlib and HTML would read as their own."""
-    found = small_result(title="Träger <b>&", joints=(r"$\frac{1}{0$", "Fläche µ"))
+    grid = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]) * 1e-2
+    q = np.ones((2, 6))
+    places = {"points": np.concatenate([grid, grid + 1]), "weights": q[0], "joint_of_point": np.repeat([0, 1], 3)}
+    names = (r"$\frac{1}{0$", "Fläche µ")
+    found = small_result(title="Träger <b>&", joints=names, pressure=q, k_n=q, k_t=q, **places)
     made = report.write(found, tmp_path)
     assert Result.load(tmp_path / "result.nc") == found
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
