@@ -81,7 +81,14 @@ def test_messages():
         tighten(made, made.assembly(), [1e3, 1e3], order=(0, 0))
     with pytest.raises(faying.InputError, match="must name every bolt"):
         tighten(made, made.assembly(), [1e3, 1e3], order=(0, 1, 2))
-    bare = plates(bolts=(Bolt(name="one", faces=FACES), Bolt(name="two", faces=FACES)))
+    bare = plates(
+        bolts=(
+            *(
+                Bolt(name=n, faces=FACES, at=(x, 0.02, 0.0), seat=(0.0, 24e-3))
+                for n, x in (("one", 0.03), ("two", 0.05))
+            ),
+        )
+    )
     with pytest.raises(faying.InputError, match="bolts one, two have no shank"):
         tighten(bare, bare.assembly(), [1e3, 1e3], order=(0, 1))
 

@@ -11,6 +11,7 @@ from faying.fe.constraint import constrain
 from faying.fe.elasticity import Solid
 from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
+from faying.fe.quality import quality
 from faying.fe.sides import skin, triangles_of
 from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt, FittedBolt
@@ -19,6 +20,7 @@ from faying.joint.joint_law import JointLaw
 from faying.joint.preload import PreloadProblem
 from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.joint.springs import Springs
+from faying.notes import Note
 from faying.typing import Array, Index
 
 
@@ -117,6 +119,20 @@ class Structure:
             raise InputError(
                 f"part {', '.join(loose)} has no joint; add a [[joint]] of one of its faces, or leave it out"
             )
+        for what, names in (
+            ("joints", [joint.name for joint in self.joints]),
+            ("bolts", [bolt.name for bolt in self.bolts]),
+        ):
+            again = sorted({name for name in names if names.count(name) > 1})
+            if again:
+                raise InputError(f"two {what} are called {again[0]!r}; give each a name of its own")
+        pairs = [frozenset(joint.faces) for joint in self.joints]
+        for k, pair in enumerate(pairs):
+            if pair in pairs[:k]:
+                raise InputError(
+                    f"joints {self.joints[pairs.index(pair)].name!r} and {self.joints[k].name!r} join the same faces "
+                    f"{' and '.join(map(repr, sorted(pair)))}, which would double the stiffness; leave one out"
+                )
         frame = Frame(
             mesh=self.mesh,
             materials=self.materials,
@@ -177,6 +193,12 @@ class Structure:
     def shift_frequency(self) -> float:
         """A frequency below the first elastic mode of any compact body of this size [Hz]: .02 c/size."""
         return self._frame.shift_frequency
+
+    @property
+    def notes(self) -> tuple[Note, ...]:
+        """What the mesh left out, how good its elements are, and what was chosen for the bolts."""
+        bolts = [note for bolt in self.fitted_bolts if isinstance(bolt, FittedBolt) for note in bolt.notes]
+        return (*self.mesh.notes, *quality(self.mesh).notes, *bolts)
 
     def assembly(self, *, solver: str | None = None) -> PreloadProblem:
         """Return the preload problem of this structure."""
