@@ -94,7 +94,10 @@ def test_messages():
 
 
 def test_a_joint_far_softer_than_its_parts_converges_to_what_rounding_leaves():
-    """Steel on a bed of 0.1 N/mm3: digits lost in K u keep the imbalance above 1e-10; the force is still that of the bolts."""
+    """Steel on a bed of 0.1 N/mm3: digits lost in K u keep the imbalance above 1e-10.
+
+    The force is still that of the bolts.
+    """
     made = two_bolts(STEEL, k=1e8)
     found = made.assembly().solve(40.0 * made.loads[:, 0])
     assert found.imbalance < 1e-8

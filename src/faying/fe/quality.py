@@ -18,8 +18,8 @@ POOR = 0.05  # scaled Jacobian below which an element is noted
 class MeshQuality:
     """What the elements of a mesh are.
 
-    counts: kind -> number of elements; least: least scaled Jacobian [-], 1 for an ideal element and 0 for a flat one; poor:
-    number of elements below `POOR`.
+    counts: kind -> number of elements; least: least scaled Jacobian [-], 1 for an ideal element and 0 for a flat one;
+    poor: number of elements below `POOR`.
     """
 
     counts: Mapping[str, int]
@@ -35,8 +35,8 @@ class MeshQuality:
             out.append(
                 Note(
                     code="stiff-elements",
-                    text=f"{share:.0%} of the elements are tetrahedra with four nodes, which are far too stiff in bending "
-                    "(frequencies half as high again and more); mesh with ten nodes",
+                    text=f"{share:.0%} of the elements are tetrahedra with four nodes, which are far too stiff in "
+                    "bending (frequencies half as high again and more); mesh with ten nodes",
                 )
             )
         if self.poor:

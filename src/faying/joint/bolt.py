@@ -96,16 +96,16 @@ class Bolt:
         at: A point (3,) [m] on the axis; the middle between the faces where None.
         diameter: Diameter [m] of the shank, greater than 0; None for a bolt that is a force and nothing else.
         material: Material of the shank, given together with the diameter.
-        seat: Inner and outer diameter [m] of the ring that head and nut press on. Where None: that of a washer; else, with
-            `at`, from the hole to the width across flats of a hexagon head; else the whole faces.
+        seat: Inner and outer diameter [m] of the ring that head and nut press on. Where None: that of a washer; else,
+            with `at`, from the hole to the width across flats of a hexagon head; else the whole faces.
         washers: Washers under head and nut together.
         head_mass: Mass of the head [kg]; that of a hexagon head where None.
         nut_mass: Mass of the nut [kg]; that of a hexagon nut where None.
         preload: Forces [N] that it is tightened to, one load after another.
 
     Raises:
-        InputError: Diameter without material or the other way round, a diameter of 0 or less, a ring without width; when
-            it is fitted, an axis beside its hole, or `at` without a hole, a diameter or a ring.
+        InputError: Diameter without material or the other way round, a diameter of 0 or less, a ring without width;
+            when it is fitted, an axis beside its hole, or `at` without a hole, a diameter or a ring.
 
     Source:
         Head and nut: ISO 4014, ISO 4032.
@@ -134,7 +134,10 @@ class Bolt:
             raise InputError(f"bolt {self.name!r}: the seat's inner diameter must be less than its outer")
 
     def fitted(self, mesh: Mesh) -> "FittedBolt":
-        """Return the bolt in its place. Raises InputError where its faces do not look away from each other, or no axis joins them."""
+        """Return the bolt in its place.
+
+        Raises InputError where its faces do not look away from each other, or no axis joins them.
+        """
         first, second = self.faces
         if mesh.face_part[first] == mesh.face_part[second] and self.diameter is None:
             raise InputError(
@@ -173,7 +176,10 @@ class Bolt:
         return FittedBolt(bolt=self, point=centre_a, axis=axis / length, length=length, ends=ends, ring=seat)
 
     def _hole(self, mesh: Mesh, point: Array, axis: Array) -> Hole | None:
-        """The hole that the axis runs through, None where there is none. Raises InputError where the axis lies beside it."""
+        """The hole that the axis runs through, None where there is none.
+
+        Raises InputError where the axis lies beside it.
+        """
         found = None
         for face in self.faces:
             for hole in holes(mesh.points, mesh.face(face)):
@@ -184,7 +190,8 @@ class Bolt:
                 if beside > BESIDE * hole.radius:
                     raise InputError(
                         f"bolt {self.name!r}: its axis lies {show(beside, 'm')} beside the centre of the hole of "
-                        f"{show(2 * hole.radius, 'm')} in {face!r}, at ({', '.join(f'{1e3 * x:.4g}' for x in hole.centre)}) mm; "
+                        f"{show(2 * hole.radius, 'm')} in {face!r}, at "
+                        f"({', '.join(f'{1e3 * x:.4g}' for x in hole.centre)}) mm; "
                         "give that point as `at`"
                     )
                 found = found or hole
@@ -202,13 +209,13 @@ class Bolt:
         size = self.diameter or inner / CLEARANCE
         if inner and inner >= ACROSS_FLATS * size:
             raise InputError(
-                f"bolt {self.name!r}: a head of {show(ACROSS_FLATS * size, 'm')} across flats falls through its hole of "
-                f"{show(inner, 'm')}; give seat, or a washer"
+                f"bolt {self.name!r}: a head of {show(ACROSS_FLATS * size, 'm')} across flats falls through its hole "
+                f"of {show(inner, 'm')}; give seat, or a washer"
             )
         if not size:
             raise InputError(
-                f"bolt {self.name!r} has a point on its axis, but neither seat, washer, diameter nor a round hole says how "
-                "much of its faces it presses; give seat (inner and outer diameter)"
+                f"bolt {self.name!r} has a point on its axis, but neither seat, washer, diameter nor a round hole "
+                "says how much of its faces it presses; give seat (inner and outer diameter)"
             )
         return inner, ACROSS_FLATS * size
 
@@ -217,8 +224,8 @@ class Bolt:
 class FittedBolt:
     """A bolt in its place.
 
-    point [m] and axis (3,): from head to nut; length [m]: clamped; ends: mean motions (6, unknowns) of both seats; ring:
-    inner and outer diameter [m] of the seats, None for whole faces.
+    point [m] and axis (3,): from head to nut; length [m]: clamped; ends: mean motions (6, unknowns) of both seats;
+    ring: inner and outer diameter [m] of the seats, None for whole faces.
     """
 
     bolt: Bolt

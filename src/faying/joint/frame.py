@@ -58,8 +58,8 @@ class Frame:
             for other in beams[:k]:
                 if one.meets(other):
                     raise InputError(
-                        f"bolts {other.bolt.name!r} and {one.bolt.name!r} run through one place; give each a point on its own "
-                        "axis as `at`, or leave one out"
+                        f"bolts {other.bolt.name!r} and {one.bolt.name!r} run through one place; give each a point on "
+                        "its own axis as `at`, or leave one out"
                     )
         return fitted
 
@@ -82,7 +82,7 @@ class Frame:
 
     @cached_property
     def vibrating(self) -> tuple[Any, Any]:
-        """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; fixed unknowns cleared."""
+        """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; fixed ones cleared."""
         K = added(self._upheld, [bolt.stiffness for bolt in self.fitted_bolts if bolt.released is None])
         M = added(self.matrices[1], [bolt.mass for bolt in self.fitted_bolts])
         M = added(M, [mass.matrix(self.mesh) for mass in self.masses])

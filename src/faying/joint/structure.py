@@ -111,8 +111,8 @@ class Structure:
             apart = [face for face in bolt.faces if face not in faces]
             if apart:
                 raise InputError(
-                    f"bolt {bolt.name!r}: its face {apart[0]!r} is in no joint; add a [[joint]] of it and the seat that it "
-                    "presses"
+                    f"bolt {bolt.name!r}: its face {apart[0]!r} is in no joint; add a [[joint]] of it and the seat "
+                    "that it presses"
                 )
         loose = [part for part in self.mesh.parts if part not in met]
         if loose and len(self.mesh.parts) > 1:
@@ -176,7 +176,7 @@ class Structure:
 
     @property
     def vibrating(self) -> tuple[Any, Any]:
-        """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; fixed unknowns cleared."""
+        """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; fixed ones cleared."""
         return self._frame.vibrating
 
     @property
@@ -231,8 +231,8 @@ class Structure:
             pressures: Pressure [Pa] at the points of each joint's interface, one array per joint.
 
         Returns:
-            For each joint: the points of its springs with their share of the area, the pressure there, k_n, k_t and both
-            loss factors. With springs per node the points are nodes.
+            For each joint: the points of its springs with their share of the area, the pressure there, k_n, k_t and
+            both loss factors. With springs per node the points are nodes.
         """
         return tuple(joint.springs(pressure) for joint, pressure in zip(self.joints, pressures, strict=True))
 
