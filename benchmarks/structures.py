@@ -33,9 +33,8 @@ MILLION = 1000
 
 
 def meshed(size):
-    from faying.study.build import checked_mesh
-
     from faying.study import Study
+    from faying.study.case import checked_mesh
 
     if size == MILLION:
         return bar()

@@ -42,10 +42,9 @@ def main():
     ask.add_argument("--size", type=int, default=150, choices=sorted(EDGES))
     ask.add_argument("--checks", type=int, default=20)
     given = ask.parse_args()
-    from faying.study.build import build_all, checked_mesh, surfaces_of
-
     from faying.study import Study
     from faying.study.axes import Grid, axis_of
+    from faying.study.case import checked_mesh, structure_of, surfaces_of
     from faying.study.sweep import Recipe, _Trainer, evaluate
 
     plan = Study.read(ROOT / "examples/t-specimen/study.toml")
@@ -61,12 +60,12 @@ def main():
         for texts in (AXES, OUTSIDE)
     )
     clock = time.process_time
-    structure = build_all(plan, mesh=mesh, surfaces=surfaces).structure
+    structure = structure_of(plan, mesh, surfaces)
 
     begin = clock()
     structure.vibrating, structure.loads, structure.rigid  # noqa: B018
     laws, forces, _ = near.laws(near.grid.size // 2 + 5)
-    full(structure, laws, forces, plan.mode_count)
+    full(structure, laws, forces, plan.modes.count)
     single = clock() - begin
     print(f"{mesh.unknowns:,} unknowns: one full solution {single:.1f} CPU s", flush=True)
 
@@ -100,7 +99,7 @@ def main():
             if (where == "outside" and all(inner)) or not np.isfinite(got[0]):
                 continue
             laws, forces, _ = recipe.laws(index)
-            differ.append(float(np.abs(got / full(structure, laws, forces, plan.mode_count) - 1).max()))
+            differ.append(float(np.abs(got / full(structure, laws, forces, plan.modes.count) - 1).max()))
         print(
             f"{len(differ)} random points {where} the ranges: frequencies differ by {max(differ):.1e} at most",
             flush=True,

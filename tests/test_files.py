@@ -8,7 +8,8 @@ import sys
 import pytest
 
 import faying
-from faying.files import write_atomically
+from faying.errors import ReadError
+from faying.files import read_numbers, write_atomically
 from faying.study.template import write
 
 
@@ -57,3 +58,18 @@ def test_no_half_results_where_writing_stops_short(tmp_path, command):
     assert "Traceback" not in done.stderr
     left = list(out.iterdir()) if out.is_dir() else []  # a folder made for nothing is gone as well
     assert all(path.stat().st_size < 2**15 and not path.name.endswith(".part") for path in left)
+
+
+@pytest.mark.parametrize("line", ["1,5;2,5;3,5", "1,5 2,5", "1,5\t2", "10;4,5"])
+def test_decimal_commas_are_refused(tmp_path, line):
+    path = tmp_path / "table.csv"
+    path.write_text(f"pressure; stiffness\n{line}\n")
+    with pytest.raises(ReadError, match="line 2.*decimal commas; write decimal points"):
+        read_numbers(path, len(line.replace(";", " ").replace("\t", " ").split()), "p, k")
+
+
+@pytest.mark.parametrize("line", ["1,2,3", "1, 2, 3", "1 , 2 , 3", "1;2;3", "1.5;2;3", "1 2 3", "1.5, 2,3", "1,-2,3"])
+def test_separators_are_no_decimal_commas(tmp_path, line):
+    path = tmp_path / "table.csv"
+    path.write_text(line + "\n")
+    assert read_numbers(path, 3, "three numbers").shape == (1, 3)

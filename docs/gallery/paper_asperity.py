@@ -17,7 +17,8 @@ from faying.contact.asperity.lin_lin import LinLin
 from faying.contact.asperity.zx import ZX
 from faying.contact.substrate import asperity_share
 from faying.materials import RIGID, ContactPair, Material
-from faying.output.figures.law import figure, save
+from faying.output.figures.law import figure
+from faying.output.figures.save import save
 from faying.typing import Array
 
 R, HEIGHT, DIMENSION = 15e-6, 0.1e-6, 2.9961

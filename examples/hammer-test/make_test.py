@@ -19,7 +19,7 @@ from faying.measured.frf import FRF
 from faying.measured.mapping import Transform
 from faying.measured.uff_write import write_uff
 from faying.study import Study, build
-from faying.study.response import Solved
+from faying.study.response import LoadedStructure
 
 HERE = Path(__file__).parent
 POINTS = 8
@@ -43,7 +43,7 @@ def spread_nodes(points: np.ndarray, count: int) -> list[int]:
     return chosen
 
 
-def hammered() -> Solved:
+def hammered() -> LoadedStructure:
     """The structure that is hammered, at its preload."""
     study = Study.read(HERE / "study.toml")
     steel = study.materials["45 steel"]
@@ -59,7 +59,7 @@ def hammered() -> Solved:
     mass = structure.vibrating[1]
     modes = lowest_modes(stiffness, mass, 40, shift_frequency=structure.shift_frequency)
     damped = damped_modes(modes, stiffness, mass, LOSS * loss, rigid=6, count=30)
-    return Solved(
+    return LoadedStructure(
         study=study, structure=structure, modes=modes, damped=damped, stiffness=stiffness, mass=mass, loss=LOSS * loss
     )
 

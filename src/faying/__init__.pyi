@@ -5,17 +5,17 @@ from .contact.half_space import HalfSpace
 from .contact.jk import JK
 from .decks.matrices import read_matrices
 from .decks.meshfile import read_mesh
-from .errors import FayingError, InputError, NotConverged, OutsideValidity, ReadError
+from .errors import FayingError, InputError, NotConverged, ReadError
 from .halfspace import solve_half_space
 from .materials import CATALOGUE, RIGID, ContactPair, Material
 from .measured.compare import compare_modes
 from .measured.frf import FRF
 from .measured.identify import identify_modes
-from .measured.model import ModelModes, read_model_modes
+from .measured.model import ModelModes
 from .measured.records import frf_from_records
 from .measured.uff import read_uff
 from .measured.uff_write import write_uff
-from .result import Result
+from .result import Result, read_model_modes
 from .study import Study, run
 from .study.attach import attach
 from .surface import synthesize

@@ -1,4 +1,4 @@
-"""What Faying raises at its users, and the one warning it gives."""
+"""What Faying raises at its users."""
 
 
 class FayingError(Exception):
@@ -15,7 +15,3 @@ class ReadError(InputError):
 
 class NotConverged(FayingError, RuntimeError):
     """An iteration stopped short of its tolerance; the text says where and how far it came."""
-
-
-class OutsideValidity(UserWarning):
-    """A result lies outside the ground on which its model stands."""

@@ -1,6 +1,7 @@
 """Files that appear whole or not at all, and rows of numbers read from text."""
 
 import os
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -50,6 +51,19 @@ def new_folder(folder: Path, remedy: str) -> Iterator[Path]:
         raise
 
 
+_DECIMAL_COMMA = re.compile(r"(?<![\d.,])\d+,\d+(?:[eE][-+]?\d+)?(?=\s*[;\t]|[ ]+[-+.\d]|$)")
+
+
+def refuse_decimal_comma(line: str, where: str) -> None:
+    """Raise ReadError where numbers are written with a decimal comma: other separators stand between the numbers."""
+    apart = re.search(r"[\d.]\s*[;\t]|[\d.] +[-+.\d]", re.sub(r"\s*,\s+|\s+,", ",", line))
+    if apart and _DECIMAL_COMMA.search(line):
+        raise ReadError(
+            f"{where}: {line.strip()[:60]!r} has decimal commas; write decimal points, as in 4.5, and keep the comma for "
+            "between numbers"
+        )
+
+
 def read_numbers(path: Path, columns: int, form: str) -> Any:
     """Read rows of `columns` numbers, with commas, semicolons or blanks between; lines of text may stand at the top.
 
@@ -60,7 +74,9 @@ def read_numbers(path: Path, columns: int, form: str) -> Any:
 
     rows: list[list[float]] = []
     for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), start=1):
-        words = line.split("#")[0].replace(",", " ").replace(";", " ").split()
+        text = line.split("#")[0]
+        refuse_decimal_comma(text, f"{path.name}, line {number}")
+        words = text.replace(",", " ").replace(";", " ").split()
         if not words:
             continue
         try:

@@ -1,5 +1,6 @@
 """Text with units at the edges, SI floats inside: "12 kN" <-> 12000.0. The only file that imports pint."""
 
+import re
 from functools import cache
 from math import isfinite
 from typing import Any
@@ -33,6 +34,12 @@ _PREFIXES = (
 )
 
 
+NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*", re.DOTALL)
+# a unit is names with whole powers, joined by * / . or a blank; "1/" may begin it
+_FACTOR = r"[^\W\d_]+(?:(?:\^|\*\*)-?[0-9]{1,2}|[²³])?"
+UNIT = re.compile(rf"(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/·.]\s*{_FACTOR}|\s+{_FACTOR})*|%")
+
+
 @cache
 def _registry() -> Any:
     import pint
@@ -40,49 +47,79 @@ def _registry() -> Any:
     return pint.UnitRegistry(cache_folder=None)
 
 
+@cache
+def _factor(text: str, unit: str) -> float | None:
+    """How many SI `unit` one unit `text` is; None where it is of another dimension. InputError for no unit's name."""
+    import pint
+
+    if UNIT.fullmatch(text) is None or len(text) > 60:
+        raise InputError(f"{text!r} is not the name of a unit")
+    plain = (
+        re.sub(r"(?<=[^\W\d_])\s*\.\s*(?=[^\W\d_])", "*", text).replace("·", "*").replace("²", "^2").replace("³", "^3")
+    )
+    try:
+        return float(_registry().Quantity(1.0, plain).to(unit).magnitude)
+    except pint.errors.DimensionalityError:
+        return None
+    except Exception:  # pint's parser lets errors of many kinds through
+        raise InputError(f"{text!r} is not the name of a unit") from None
+
+
 def parse(text: object, unit: str, *, name: str = "value") -> float:
     """Turn text such as "12 kN" into a float in the SI unit `unit`.
 
-    `name` is what the error calls the quantity. Raises InputError when the unit is missing, of another
-    dimension, or unknown, and when the number is not finite.
-    """
-    example = EXAMPLES.get(unit, f"1 {unit}")
-    if isinstance(text, bool) or not isinstance(text, str):
-        raise InputError(
-            f'{name} = {text!r} has no unit; write a number with its unit as text, for example "{example}"'
-        )
-    import pint
+    Args:
+        text: one number with a decimal point and the name of a unit.
+        unit: the SI unit that is wanted.
+        name: what the error calls the quantity.
 
+    Raises:
+        InputError: the unit is missing, of another dimension or unknown, the number has a comma or is not finite.
+    """
+    example = f'write for example "{EXAMPLES.get(unit, f"1 {unit}")}"'
+    if isinstance(text, bool) or not isinstance(text, str):
+        raise InputError(f"{name} = {_short(text)} has no unit; write a number with its unit as text, {example[6:]}")
+    if "," in text:
+        raise InputError(f"{name} = {_short(text)} has a comma; decimals take a point, thousands no mark: {example}")
+    found = NUMBER.fullmatch(text)
+    if found is None:
+        raise InputError(f"{name} = {_short(text)} is not a quantity (one number and a unit); {example}")
+    number, word = float(found.group(1)), found.group(2)
+    if not word:
+        raise InputError(f"{name} = {_short(text)} has no unit; {example}")
     try:
-        quantity = _registry().Quantity(text)
-    except (
-        pint.errors.PintError,
-        ValueError,
-        TypeError,
-        AttributeError,
-        SyntaxError,
-        AssertionError,
-        KeyError,
-        ZeroDivisionError,
-        OverflowError,
-    ) as fault:
-        raise InputError(f'{name} = "{text}" is not a quantity ({fault}); write for example "{example}"') from None
-    except Exception as fault:  # pint's tokenizer lets other kinds through
-        raise InputError(f'{name} = "{text}" is not a quantity; write for example "{example}"') from fault
-    if not hasattr(quantity, "units") or (quantity.dimensionless and unit != ""):
-        raise InputError(f'{name} = "{text}" has no unit; write for example "{example}"')
-    try:
-        value = float(quantity.to(unit).magnitude)
-    except pint.errors.DimensionalityError:
-        raise InputError(f'{name} = "{text}" is not in a unit like {unit}; write for example "{example}"') from None
-    if not isfinite(value):
-        raise InputError(f'{name} = "{text}" is not a finite number; write for example "{example}"')
-    return value
+        factor = _factor(word, unit)
+    except InputError as fault:
+        raise InputError(f"{name} = {_short(text)} is not a quantity ({fault}); {example}") from None
+    if factor is None:
+        raise InputError(f"{name} = {_short(text)} is not in a unit like {unit}; {example}")
+    if not isfinite(number * factor):
+        raise InputError(f"{name} = {_short(text)} is not a finite number; {example}")
+    return number * factor
+
+
+def _short(text: object) -> str:
+    """What was given, cut where it is long."""
+    given = f'"{text}"' if isinstance(text, str) else repr(text)
+    return given if len(given) <= 80 else f"{given[:60]}... ({len(given)} characters)"
 
 
 def scale(unit_text: str, unit: str, *, name: str = "unit") -> float:
-    """Return how many SI `unit` one `unit_text` is: scale("um", "m") is 1e-6. Raises InputError as parse does."""
-    return parse(f"1 {unit_text}", unit, name=name)
+    """Return how many SI `unit` one `unit_text` is: scale("um", "m") is 1e-6.
+
+    Raises InputError unless `unit_text` is the name of a unit of that kind, without a number.
+    """
+    try:
+        factor = _factor(unit_text.strip(), unit)
+    except InputError as fault:
+        raise InputError(f"{name}: {fault}; write its name alone, for example {_name_like(unit)}") from None
+    if factor is None:
+        raise InputError(f'{name} = "{unit_text}" is not a unit like {unit}; write for example {_name_like(unit)}')
+    return factor
+
+
+def _name_like(unit: str) -> str:
+    return EXAMPLES.get(unit, f"1 {unit}").partition(" ")[2]
 
 
 def show(value: float, unit: str, *, digits: int = 4) -> str:

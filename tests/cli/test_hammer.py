@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from faying import FRF, Result, read_uff, write_uff
+from faying import FRF, read_uff, write_uff
 from faying.cli import main
 from faying.measured.mapping import Transform
 from faying.measured.model import ModelModes
+from tests.helpers.results import small_result
 
 ROOT = Path(__file__).parents[2]
 FREQUENCIES = np.array([110.0, 240.0, 390.0, 620.0])
@@ -31,32 +32,17 @@ def model():
 def result(tmp_path):
     """A result of two loads, the frequencies of the first lower by a tenth."""
     m = model()
-    q = np.ones((2, 5))
-    return Result(
+    return small_result(
         title="plate",
-        loads=np.array([2e3, 8e3]),
         frequencies=np.stack([0.9 * FREQUENCIES, FREQUENCIES]),
         loss_factors=np.full((2, 4), 0.01),
         loss_error=np.zeros((2, 4)),
-        tied=FREQUENCIES,
+        bonded=FREQUENCIES,
         free=FREQUENCIES,
-        rigid=np.zeros(6),
-        pressure=q,
-        k_n=q,
-        k_t=q,
-        points=np.zeros((5, 3)),
-        weights=np.ones(5),
-        joint_of_point=np.zeros(5, dtype=np.int64),
-        joints=("joint",),
-        unknowns=90,
-        solver="none",
+        mac=np.ones((2, 4, 4)),
         outline=m.points,
         triangles=np.array([[0, 1, 2], [2, 3, 4]]),
         shapes=np.stack([m.shapes, m.shapes]),
-        bolts=("bolt",),
-        bolt_forces=np.ones((2, 1)),
-        slipping=np.zeros((2, 1)),
-        mac=np.ones((2, 4, 4)),
     ).to_netcdf(tmp_path / "result.nc")
 
 

@@ -25,17 +25,17 @@ def test_table_holds_the_law() -> None:
     expected = LAW.at_pressure([1e6, 2e6, 4e6])
     assert [row[0] for row in rows] == pytest.approx([1, 2, 4], rel=1e-3)
     assert [row[2] for row in rows] == pytest.approx((expected.k_n * 1e-12).tolist(), rel=1e-3)
-    assert "outside the ground" not in out
+    assert "outside the validity range" not in out
 
 
 def test_json_agrees_with_the_library() -> None:
     out = json.loads(run(*SPECIMEN, "--pressure", "1 MPa:4 MPa:3", "--json"))
-    expected = LAW.at_pressure(out["pressure"])
-    assert out["pressure"] == pytest.approx([1e6, 2e6, 4e6], rel=1e-12)
+    expected = LAW.at_pressure(out["pressure"]["values"])
+    assert out["pressure"]["values"] == pytest.approx([1e6, 2e6, 4e6], rel=1e-12)
     for name, value in expected.quantities().items():
-        assert out[name] == pytest.approx(value.tolist(), rel=1e-9)
+        assert out[name]["values"] == pytest.approx(value.tolist(), rel=1e-9)
     assert out["valid"] == [True, True, True]
-    assert out["parameters"]["G"] == {"value": 1.53e-10, "unit": "m"}
+    assert out["parameters"]["G"] == {"values": 1.53e-10, "unit": "m"}
 
 
 def test_options_reach_the_law() -> None:
@@ -60,7 +60,7 @@ def test_options_reach_the_law() -> None:
 
     hard = replace(steel, hardness=1e9)
     law = LAW.with_(closure="printed", shear_stress=1e6, pair=ContactPair(hard, hard))
-    assert out["k_t"] == pytest.approx([float(law.at_pressure(2e6).k_t)], rel=1e-9)
+    assert out["k_t"]["values"] == pytest.approx([float(law.at_pressure(2e6).k_t)], rel=1e-9)
 
 
 def test_material_without_catalogue() -> None:
@@ -82,12 +82,12 @@ def test_material_without_catalogue() -> None:
         "--json",
     ]
     same = LAW.with_(pair=ContactPair(LAW.pair.first, RIGID))
-    assert json.loads(run(*words))["k_n"] == pytest.approx([float(same.at_pressure(2e6).k_n)], rel=1e-9)
+    assert json.loads(run(*words))["k_n"]["values"] == pytest.approx([float(same.at_pressure(2e6).k_n)], rel=1e-9)
 
 
-def test_rows_outside_the_ground_carry_a_star_and_the_reason() -> None:
+def test_rows_outside_the_validity_range_carry_a_star_and_the_reason() -> None:
     out = run(*SPECIMEN, "--pressure", "1 MPa:50 MPa:4")
-    assert [line.endswith("*") for line in out.splitlines() if line[:3] == "   "][1:5] == [False, False, True, True]
+    assert [line.endswith("*") for line in out.split("\n\n")[1].splitlines()[1:]] == [False, False, True, True]
     assert "stiffness of the bulk" in out
 
 
@@ -107,7 +107,7 @@ def test_csv_and_figure(tmp_path: Path) -> None:
     ("words", "message"),
     [
         (["--model", "nothing"], "no contact law 'nothing'; known are"),
-        (["--D", "2.39", "--material", "45 steel"], r"JK needs G .*in m.*; scan_area"),
+        (["--D", "2.39", "--material", "45 steel"], r"JK needs G .*, m\) and scan_area"),
         ([*SPECIMEN[:6]], "no material: give --material"),
         ([*SPECIMEN, "--material", "cheese"], "no material 'cheese' in the catalogue"),
         ([*SPECIMEN, "--against", "cheese"], "no material 'cheese'"),
@@ -117,7 +117,7 @@ def test_csv_and_figure(tmp_path: Path) -> None:
         ([*SPECIMEN, "--D", "3.2"], "between 2 and 3"),
         ([*SPECIMEN, "--pressure", "1 MPa:2 MPa:3:4"], "write FROM:TO"),
         ([*SPECIMEN, "--pressure", "2 MPa:1 MPa"], "below the second"),
-        ([*SPECIMEN, "--pressure", "1 MPa:2 MPa:1"], "whole number of 2 or more"),
+        ([*SPECIMEN, "--pressure", "1 MPa:2 MPa:1"], "whole number from 2 to"),
         ([*SPECIMEN, "--pressure", "1:2"], "has no unit"),
         ([*SPECIMEN, "--pressure", "1 GPa"], "more than JK covers"),
         ([*SPECIMEN, "--plot", "law.xyz"], "figures can be written as"),

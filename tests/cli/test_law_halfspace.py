@@ -46,11 +46,11 @@ def test_the_half_space_stands_beside_the_analytic_laws(scan_file, tmp_path):
 
 def test_the_half_space_alone_takes_the_scan(scan_file):
     given = json.loads(run(*scan_file, *STEEL, "--model", "halfspace", "--set", "points=16", "--json").stdout)
-    p, area = np.array(given["pressure"]), np.array(given["area"])
-    assert given["law"] == "HalfSpace"
+    p, area = np.array(given["pressure"]["values"]), np.array(given["area"]["values"])
+    assert given["law"] == "half-space"
     # no point carries more than the hardness
     assert np.all(area >= p / 994e6 * 0.95)
-    assert np.all(np.diff(given["k_n"]) > 0)
+    assert np.all(np.diff(given["k_n"]["values"]) > 0)
 
 
 def test_what_the_scan_does_not_resolve_is_said_beside_the_numbers(scan_file):

@@ -71,7 +71,7 @@ def test_init_and_run(tmp_path, capsys):
         "mac.svg",
     }
     report = (tmp_path / "results" / "report.html").read_text()
-    assert "outside its ground" in report  # the flag travels with the numbers
+    assert "outside its validity range" in report  # the flag travels with the numbers
     assert not re.search(r'(src|href)="(?!data:|#)', report)  # nothing is fetched: one self-contained file
     assert "\x1b[" not in captured.out  # no colour when not a terminal
 

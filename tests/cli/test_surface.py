@@ -99,7 +99,7 @@ def test_plot_is_written(file, tmp_path, suffix):
 
 def test_plot_of_unknown_kind(file, tmp_path, capsys):
     assert run(file, "--plot", str(tmp_path / "a.xyz")) == 1
-    assert "use .png, .pdf or .svg" in capsys.readouterr().err
+    assert "figures can be written as" in capsys.readouterr().err
 
 
 def test_self_test_says_what_it_took_off(tmp_path, capsys):

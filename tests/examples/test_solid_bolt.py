@@ -6,11 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from faying.study.build import build_all, checked_mesh
 
 from faying.fe.faces import face_centre
 from faying.joint.tighten import tighten
-from faying.study import Study
+from faying.study import Study, build
+from faying.study.case import checked_mesh
+from faying.study.keys.solution import ModesChoice
 
 STUDY = Path(__file__).parents[2] / "examples/solid-bolt/study.toml"
 
@@ -22,7 +23,7 @@ def study():
 
 @pytest.fixture(scope="module")
 def structure(study):
-    return build_all(study, mesh=checked_mesh(study)).structure
+    return build(study)
 
 
 def test_faces_that_overlap_in_part_keep_their_names(structure):
@@ -71,7 +72,7 @@ def test_a_sweep_over_its_preload(study, tmp_path):
 
     fine = dict.fromkeys(("bolt.head", "bolt.nut", "upper.seat", "lower.seat"), 4e-3)
     coarse = replace(study.geometry, size=15e-3, face_size={"upper.joint": 7e-3, **fine})
-    plan = replace(study, geometry=coarse, mode_count=4)
+    plan = replace(study, geometry=coarse, modes=ModesChoice(count=4))
     swept = sweep(plan, (axis_of("bolt.preload=1 kN:3 kN:3"),), tmp_path / "out.nc")
     for place, force in ((1, 2e3), (2, 3e3)):
         full = run(replace(plan, bolts=(replace(plan.bolts[0], preload=(force,)),)))

@@ -56,7 +56,7 @@ def test_the_surface_comes_from_the_scan_and_its_roughness_is_consistent(outcome
 
 
 def test_bolt_forces_balance(outcome):
-    assert all(step["imbalance"] < 1e-8 for step in outcome[0]["convergence"])
+    assert all(value < 1e-8 for value in outcome[0]["imbalance"]["values"])
 
 
 def test_files(outcome):

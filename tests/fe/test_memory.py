@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import faying
+from faying import memory as machine
 from faying.fe import memory
 from faying.fe.elasticity import assemble
 from faying.fe.modes import lowest_modes
@@ -42,7 +43,7 @@ def test_without_pardiso_the_advice_names_it(monkeypatch):
 def test_a_limit_that_is_no_number(text, monkeypatch):
     monkeypatch.setenv("FAYING_MEMORY", text)
     with pytest.raises(faying.InputError, match="should be a number of gigabytes"):
-        memory.available()
+        machine.available()
 
 
 def test_the_estimates_cover_the_entries_of_the_factor(matrix):
@@ -63,20 +64,20 @@ def test_pardiso_estimates_at_least_the_entries_of_its_factor(matrix):
 def test_a_container_that_has_little_left(tmp_path, monkeypatch):
     """Control groups: the limit less what is used, with pages of files that can be dropped; version 2, then 1."""
     monkeypatch.delenv("FAYING_MEMORY", raising=False)
-    monkeypatch.setattr(memory, "CGROUP", tmp_path)
-    assert memory._container() is None
+    monkeypatch.setattr(machine, "CGROUP", tmp_path)
+    assert machine._container() is None
     old = tmp_path / "memory"
     old.mkdir()
     (old / "memory.limit_in_bytes").write_text("5000000\n")
     (old / "memory.usage_in_bytes").write_text("3000000\n")
     (old / "memory.stat").write_text("total_inactive_file 500000\n")
-    assert memory.available() == 2.5e6
+    assert machine.available() == 2.5e6
     (tmp_path / "memory.max").write_text("4000000\n")
     (tmp_path / "memory.current").write_text("3000000\n")
     (tmp_path / "memory.stat").write_text("anon 1\ninactive_file 0\n")
-    assert memory.available() == 1e6
+    assert machine.available() == 1e6
     (tmp_path / "memory.max").write_text("max\n")
-    assert memory._container() == np.inf
+    assert machine._container() == np.inf
 
 
 def test_a_matrix_that_is_not_positive_definite(matrix):

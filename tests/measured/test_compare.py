@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from faying import FRF, InputError, ReadError, compare_modes
+from faying import FRF, InputError, ReadError, compare_modes, read_model_modes
 from faying.measured.mac import mac
 from faying.measured.mapping import Transform
-from faying.measured.model import ModelModes, read_model_modes
+from faying.measured.model import ModelModes
 from faying.measured.modes import ModeSet
 from faying.measured.pairing import pair_modes
 from faying.output import report_measured

@@ -109,3 +109,19 @@ def test_tables_that_are_none(tmp_path, text, match):
         read_points(file)
     with pytest.raises(ReadError, match="cannot be read"):
         read_points(tmp_path / "absent.csv")
+
+
+@pytest.mark.parametrize(
+    ("row", "match"),
+    [
+        ("1,nan,0,0", "not finite"),
+        ("1,1,inf,0", "not finite"),
+        ("1;0,5;0;0", "decimal commas"),
+        ("1\t0,5\t0\t0", "decimal commas"),
+    ],
+)
+def test_coordinates_that_cannot_be(tmp_path, row, match):
+    path = tmp_path / "points.csv"
+    path.write_text(f"point,x [mm],y [mm],z [mm]\n{row}\n")
+    with pytest.raises(ReadError, match=match):
+        read_points(path)

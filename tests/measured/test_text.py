@@ -52,3 +52,19 @@ def test_files_that_do_not_fit_together(tmp_path):
         read_frf_text([], quantity="receptance")
     with pytest.raises(ReadError, match="cannot be read"):
         read_frf_text([tmp_path / "absent.csv"], quantity="receptance")
+
+
+def test_a_file_without_an_end_of_line_may_be_cut_short(tmp_path):
+    path = tmp_path / "frf.txt"
+    path.write_text("1 2 3\n2 3 4\n3 4 5\n")
+    assert read_frf_text([path], quantity="accelerance").warnings == ()
+    path.write_text("1 2 3\n2 3 4\n3 4 5")
+    assert "may be cut short" in read_frf_text([path], quantity="accelerance").warnings[0]
+
+
+@pytest.mark.parametrize("line", ["1,5;2,5;3,5", "1,5 2,5 3"])
+def test_decimal_commas_are_refused(tmp_path, line):
+    path = tmp_path / "frf.txt"
+    path.write_text(f"{line}\n" * 4)
+    with pytest.raises(ReadError, match="decimal commas; write decimal points"):
+        read_frf_text([path], quantity="accelerance")

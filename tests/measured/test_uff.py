@@ -370,7 +370,7 @@ def test_damaged_data_sets(tmp_path):
             ],
             "damaged or of a variant",
         ),
-        ([*lines[:14], *lines[16:]], "of the 20 values that its header announces"),
+        ([*lines[:14], *lines[16:]], "16 values where its header announces 20"),
     ):
         path.write_text("".join(changed))
         with pytest.raises(ReadError, match=match):
@@ -403,3 +403,88 @@ def test_mode_sets_that_do_not_fit():
         modes(loss_factors=np.array([np.nan, 1]))
     with pytest.raises(InputError, match=r"not known at 9\+x; they are at 3\+x"):
         modes().at((Dof(9, "x"),))
+
+
+def changed(tmp_path, change, contents):
+    path = write_uff(tmp_path / "a.uff", *contents)
+    path.write_text(change(path.read_text()))
+    return path
+
+
+@pytest.fixture
+def measured():
+    rng = np.random.default_rng(2)
+    positions = {1: (0.0, 0.0, 0.0), 2: (0.5, 0.25, 0.0), 3: (1.0, 0.0, 0.125)}
+    shapes = rng.standard_normal((2, 9)) + 0j
+    dofs = tuple((k, d) for k in (1, 2, 3) for d in "xyz")
+    modes = ModeSet(
+        frequencies=np.array([100.0, 250.0]),
+        loss_factors=np.array([0.01, 0.02]),
+        shapes=shapes,
+        dofs=dofs,
+        positions=positions,
+    )
+    frf = FRF(
+        frequency=np.arange(1.0, 21.0),
+        values=rng.standard_normal((1, 1, 20)) + 1j,
+        outputs=((2, "z"),),
+        inputs=((1, "z"),),
+        quantity="accelerance",
+        positions=positions,
+    )
+    return modes, frf
+
+
+def lines_of_points(text):
+    """Index of the first line of data set 2411's points, and all lines."""
+    lines = text.splitlines(keepends=True)
+    return next(i for i, line in enumerate(lines) if line.strip() == "2411") + 1, lines
+
+
+def without_a_line(text):
+    at, lines = lines_of_points(text)
+    return "".join(lines[: at + 2] + lines[at + 3 :])
+
+
+def point_twice(text):
+    at, lines = lines_of_points(text)
+    moved = lines[at + 1].replace("0.0", "7.0", 1)
+    return "".join([*lines[: at + 2], lines[at], moved, *lines[at + 2 :]])
+
+
+def infinite_point(text):
+    at, lines = lines_of_points(text)
+    word = lines[at + 3].split()[0]
+    return "".join([*lines[: at + 3], lines[at + 3].replace(word, "inf".rjust(len(word)), 1), *lines[at + 4 :]])
+
+
+@pytest.mark.parametrize(
+    ("change", "match"),
+    [
+        (without_a_line, "damaged|cannot be read|whole numbers"),
+        (point_twice, "stands twice, at two places"),
+        (infinite_point, "not finite|NaN or infinite|cannot be read"),
+    ],
+)
+def test_damaged_points_are_refused(tmp_path, measured, change, match):
+    with pytest.raises(ReadError, match=match):
+        read_uff(changed(tmp_path, change, measured[:1]))
+
+
+def test_a_function_with_more_values_than_announced_is_refused(tmp_path, measured):
+    def line_twice(text):
+        lines = text.splitlines(keepends=True)
+        at = next(i for i, line in enumerate(lines) if line.strip() == "58") + 12
+        return "".join([*lines[:at], lines[at], *lines[at:]])
+
+    with pytest.raises(ReadError, match="values where its header announces 20"):
+        read_uff(changed(tmp_path, line_twice, measured[1:]))
+
+
+def test_rigid_modes_are_left_out_with_a_note_and_negative_frequencies_refused(tmp_path, measured):
+    path = changed(tmp_path, lambda text: text.replace("1.00000e+02", "0.00000e+00"), measured[:1])
+    file = read_uff(path)
+    np.testing.assert_allclose(file.modes().frequencies, [250.0])
+    assert any("1 mode shapes at 0 Hz" in note for note in file.warnings)
+    with pytest.raises(ReadError, match="negative frequency"):
+        read_uff(changed(tmp_path, lambda text: text.replace("1.00000e+02", "-1.0000e+02"), measured[:1]))

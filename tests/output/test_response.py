@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from faying import Result
 from faying.output import table
 from faying.output.figures import response
 from faying.result import Receptance
+from tests.helpers.results import small_result
 
 LINES = np.linspace(10, 200, 96)
 MASS, HZ, LOSS = 3.0, 100.0, 0.02
@@ -21,45 +21,21 @@ def result():
     w = 2 * np.pi * LINES
 
     def one(f):
-        values = 1 / (MASS * ((2 * np.pi * f) ** 2 * (1 + 1j * LOSS) - w**2))
-        return Receptance(
-            frequencies=LINES,
-            values=values[:, None, None],
-            error=0.0,
-            inputs=(((0.0, 0.0, 0.0), (0.0, 0.0, 2.0)),),
-            outputs=(((0.04, 0.0, 0.0), (0.0, -1.0, 0.0)),),
-        )
+        return (1 / (MASS * ((2 * np.pi * f) ** 2 * (1 + 1j * LOSS) - w**2)))[:, None, None]
 
-    q = np.ones((2, 5))
-    f = np.array([[100.0, 300.0], [110.0, 310.0]])
-    facts = {"total_k_n [N/m]": 1e9, "total_k_t [N/m]": 1e9, "imbalance": 1e-12}
-    return Result(
-        title="mass",
-        loads=np.array([2e3, 8e3]),
-        frequencies=f,
-        loss_factors=0.02 + 0 * f,
-        loss_error=0 * f,
-        tied=f[1],
-        free=f[0],
-        rigid=np.zeros(6),
-        pressure=q,
-        k_n=q,
-        k_t=q,
-        points=np.zeros((5, 3)),
+    found = Receptance(
+        frequencies=LINES,
+        values=np.stack([one(100.0), one(110.0)]),
+        error=np.zeros(2),
+        input_points=np.zeros((1, 3)),
+        input_directions=np.array([[0.0, 0.0, 2.0]]),
+        output_points=np.array([[0.04, 0.0, 0.0]]),
+        output_directions=np.array([[0.0, -1.0, 0.0]]),
+    )
+    return small_result(
         weights=np.array([1.0, 1, 1, 1, 4]),
-        joint_of_point=np.array([0, 0, 0, 0, 1]),
-        joints=("a", "b"),
-        unknowns=90,
-        solver="none",
-        outline=np.eye(3),
-        triangles=np.array([[0, 1, 2]]),
-        shapes=np.ones((2, 2, 3, 3)),
-        bolts=("left", "right"),
-        bolt_forces=np.array([[2e3, 1.5e3], [8e3, 6e3]]),
-        slipping=np.zeros((2, 2)),
         mac=np.stack([np.eye(2), np.array([[0.0, 0.9], [1.0, 0.1]])]),
-        response=(one(100.0), one(110.0)),
-        convergence=(facts, facts),
+        response=found,
     )
 
 

@@ -57,5 +57,5 @@ def test_estimators_draw_their_intervals(rough):
 
 
 def test_overview_refuses_unknown_suffix(rough, tmp_path):
-    with pytest.raises(InputError, match="cannot be written"):
+    with pytest.raises(InputError, match="figures can be written as"):
         plot.overview(rough, prepared(rough), fit_all(rough), tmp_path / "a.what")

@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 import faying
 from faying.output.figures import sweep as drawing
+from faying.output.figures.save import save
 from faying.study.axes import axis_of
 from faying.study.sweep_files import Sweep
 
@@ -63,7 +64,7 @@ def test_map_over_two_axes_has_the_first_along_x():
     values = axes.collections[0].get_array().reshape(2, 3)
     np.testing.assert_allclose(values, sweep.frequencies[..., 1].T)
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("surface.D [-]", "law.model")
-    assert [t.get_text() for t in axes.get_yticklabels()] == ["jk", "gw"]
+    assert [t.get_text() for t in axes.get_yticklabels()] == ["JK", "GW"]
 
 
 @pytest.mark.parametrize("ending", ["svg", "png"])
@@ -72,7 +73,7 @@ def test_files(ending, tmp_path):
         ("one", made("bolt.preload=1 kN:5 kN:5")),
         ("two", made("surface.D=2.3:2.4:3", "law.alpha=.1:.2:2")),
     ):
-        path = drawing.save(sweep, tmp_path / f"{name}.{ending}")
+        path = save(drawing.figure(sweep), tmp_path / f"{name}.{ending}")
         assert path.stat().st_size > 5000
     assert (
         len(drawing.figure(made("surface.D=2.3:2.4:3", "law.alpha=.1:.2:2", modes=6)).axes) == 2 * 4
@@ -80,7 +81,7 @@ def test_files(ending, tmp_path):
 
 
 def test_what_cannot_be_drawn_is_said_before_anything_is_computed(tmp_path):
-    with pytest.raises(faying.InputError, match=r"written as .svg, .png or .pdf"):
+    with pytest.raises(faying.InputError, match=r"figures can be written as"):
         drawing.check(tmp_path / "a.xyz", 1)
     with pytest.raises(faying.InputError, match="the sweep has 3; leave out --plot"):
         drawing.check(tmp_path / "a.svg", 3)

@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from pathlib import Path
 
 import pytest
 
@@ -30,6 +31,7 @@ def study(folder, text="", **changes):
     return Study.from_dict(data, folder=folder)
 
 
+MILLED = Path(__file__).parents[2] / "examples" / "t-specimen" / "milled.x3p"
 BOLT = {"name": "b1", "faces": ["upper.seat", "lower.seat"]}
 SHANK = {"diameter": "8 mm", "material": "45 steel"}
 WASHER = {"outer": "16 mm", "inner": "8.4 mm", "thickness": "1.6 mm", "material": "45 steel"}
@@ -79,13 +81,12 @@ LAW_TABLE = "pressure [MPa],k_n [MPa/um],k_t [MPa/um]\n0.01,1,0.5\n50,900,400\n"
 
 
 def law_named(folder, **law):
-    from faying.study.surface import NO_SURFACE, law_of
-
-    from faying.materials import CATALOGUE, ContactPair
+    from faying.materials import CATALOGUE
+    from faying.study.keys.surface import NO_SURFACE
 
     made = study(folder, surface=None, law=law)
     steel = CATALOGUE["45 steel"]
-    return law_of(made.law, NO_SURFACE, ContactPair(steel, steel))
+    return made.law.make(NO_SURFACE, steel, steel)
 
 
 def test_laws_given_in_full_need_no_surface(folder):
@@ -124,33 +125,33 @@ def test_laws_given_in_full_need_no_surface(folder):
     [
         (
             SUMMITS | {"sigma": None},
-            r"law.sigma is missing \(standard deviation of the summit heights, m\); give it, or a "
-            r"\[surface\] with a scan",
+            r"law: GW needs sigma \(standard deviation of the summit heights, m\); give it, or a surface with a scan",
         ),
         (
             {"model": "gw"},
-            r"law: density \(summits per area, 1/m\^2\), radius \(.*, m\) and sigma \(.*, m\) are missing; "
-            r"give them, or a \[surface\] with a scan",
+            r"law: GW needs density \(summits per area, 1/m\^2\) and radius \(.*, m\) and sigma \(.*, m\); give "
+            r"them, or a surface with a scan",
         ),
-        ({"model": "power law", "C": 2e-10}, r"law.m is missing \(power of pressure\); give it$"),
+        ({"model": "power law", "C": 2e-10}, r"law: Power law needs m \(power of pressure\); give it$"),
         (SUMMITS | {"sigma": 0.3}, "law.sigma = 0.3 .*unit"),
         (SUMMITS | {"sigma": "0.3 s"}, "law.sigma .*not in a unit like m"),
         (SUMMITS | {"sigma": None, "sigmo": "0.3 um"}, "law.sigmo is not a key that a study has; did you mean sigma"),
         (SUMMITS | {"model": "gv"}, "no contact law 'gv'"),
         (
             SUMMITS | {"model": "gw-ke", "asperity": "JacksonGreen"},
-            'law.asperity goes with model = "gw"; "gw-ke" has the asperity KogutEtsion',
+            'law: asperity goes with model = "gw"; "gw-ke" has the asperity KogutEtsion',
         ),
         (
             {"model": "persson", "slope": 0.1, "h_rms": "1 um"},
             'law.model = "persson" cannot carry a joint by itself: .*never meet',
         ),
         ({"model": "jk"}, r"\[surface\] is missing"),
-        ({"model": "mb"}, r'\[surface\] is missing; model = "mb" takes its inputs from a scan there'),
+        ({"model": "mb"}, r'\[surface\] is missing; model = "mb" takes its inputs from a surface there'),
         ({"model": "table", "file": "none.csv"}, "law.file: no file"),
         ({"model": "table", "file": "heights.csv"}, "heights.csv, line 1: no head"),
-        (SUMMITS | {"slope": 0.1}, "law.slope is not a key that a study has"),
-        ({"model": "table"}, "law.file is missing"),
+        (SUMMITS | {"slope": 0.1}, 'law.slope goes with model = "persson", not "gw"'),
+        (SUMMITS | {"slop": "x"}, "law.slop is not a key that a study has"),
+        ({"model": "table"}, "law: Table needs file"),
         ({"model": "jk", "file": "heights.csv"}, 'law.file goes with model = "table", not "jk"'),
     ],
 )
@@ -172,8 +173,16 @@ def test_the_fractal_parameters_go_under_surface(folder, model):
 
 
 def test_laws_that_a_scan_gives_are_read_with_what_changes_them(folder):
-    found = study(folder, law={"model": "gw", "sigma": "1 um"})
-    assert (found.law.options, found.law.own) == ({"sigma": pytest.approx(1e-6)}, False)
+    law = {"model": "gw", "sigma": "1 um"}
+    (folder / "scan.x3p").write_bytes(MILLED.read_bytes())
+    found = study(folder, law=law, surface={"scan": "scan.x3p"})
+    assert (found.law.given, found.law.needs_surface) == ({"sigma": pytest.approx(1e-6)}, True)
+    assert folder / "scan.x3p" in found.files
+    # D, G and area give no summits: that shows before anything is read or meshed
+    with pytest.raises(
+        faying.InputError, match=r"law: GW needs density .* and radius .*; give them, or a surface with"
+    ):
+        study(folder, law=law)
 
 
 def test_torque_with_friction(folder):
@@ -267,14 +276,13 @@ def test_a_joint_of_its_own(folder):
         "y_axis": [-1, 0, 0],
     }
     surface = {"D": 2.5, "G": "1e-10 m", "scan_area": "4 mm^2"}
-    given = joint(friction=0.2, reach="2 mm", gap=gap, surface=surface, law={"model": "gw"})
+    given = joint(friction=0.2, search_distance="2 mm", gap=gap, surface=surface, law={"model": "mb"})
     found = study(folder, joint=given).joints[0]
-    assert (found.friction, found.reach) == (0.2, pytest.approx(2e-3))
-    assert found.gap_map.origin == pytest.approx((1e-3, 0, 0))
-    assert found.gap_map.x_axis == (0.0, 1.0, 0.0)
-    assert found.gap_map.file == folder / "gap.csv"
+    assert (found.friction, found.search_distance) == (0.2, pytest.approx(2e-3))
+    assert found.gap.origin == pytest.approx((1e-3, 0, 0))
+    assert found.gap.x_axis == (0.0, 1.0, 0.0)
     assert found.surface.D == 2.5
-    assert found.law.model == "gw"
+    assert found.law.model == "MB"
 
 
 def test_measured_heights_need_no_surface(folder):
@@ -289,12 +297,18 @@ def test_measured_heights_need_no_surface(folder):
     }
     found = study(folder, law=law, surface=None)
     assert found.surface is None
-    assert found.law.heights.density == pytest.approx(1e6)
-    assert found.law.heights.radius == pytest.approx(1e-3)
-    assert found.law.options == {"tangent_ratio": 0.01, "asperity": "Ghaednia"}
+    assert found.law.given == {
+        "gaps": folder / "heights.csv",
+        "gaps_unit": "um",
+        "density": pytest.approx(1e6),
+        "radius": pytest.approx(1e-3),
+        "tangent_ratio": 0.01,
+        "asperity": "Ghaednia",
+    }
+    assert folder / "heights.csv" in found.files
     with pytest.raises(faying.InputError, match=r"\[surface\] is missing"):
         study(folder, surface=None)
-    with pytest.raises(faying.InputError, match="law.gaps_unit is missing"):
+    with pytest.raises(faying.InputError, match="needs gaps_unit"):
         study(folder, law={key: value for key, value in law.items() if key != "gaps_unit"})
     with pytest.raises(faying.InputError, match='law.gaps goes with model = "gw-measured", not "jk"'):
         study(folder, law={"model": "jk", "gaps": "heights.csv"})
@@ -303,16 +317,12 @@ def test_measured_heights_need_no_surface(folder):
 
 
 def test_heights_become_a_law(folder):
-    from faying.study.contact import HeightsSpec, LawSpec
-    from faying.study.surface import NO_SURFACE, law_of
-
-    steel = faying.CATALOGUE["45 steel"]
-    heights = HeightsSpec(file=folder / "heights.csv", unit="um", density=1e6, radius=1e-3)
-    law = law_of(LawSpec(model="gw-measured", heights=heights), NO_SURFACE, faying.ContactPair(steel, steel))
+    given = {"gaps": "heights.csv", "gaps_unit": "um", "density": "1e6 1/m^2", "radius": "1 mm"}
+    law = law_named(folder, model="gw-measured", **given)
     assert law.gaps == pytest.approx([0, 10e-6, 20e-6])
     (folder / "heights.csv").write_text("no numbers")
-    with pytest.raises(faying.ReadError, match="measured heights have the columns gap and probability density"):
-        law_of(LawSpec(model="gw-measured", heights=heights), NO_SURFACE, faying.ContactPair(steel, steel))
+    with pytest.raises(faying.InputError, match="measured heights have the columns gap and probability density"):
+        study(folder, surface=None, law={"model": "gw-measured", **given})
 
 
 @pytest.mark.parametrize(
@@ -353,8 +363,8 @@ def test_response_and_damping(folder):
     assert spec.inputs == (((0.0, 0.0, pytest.approx(15e-3)), (0.0, 0.0, 1.0)),)
     assert spec.outputs[0][0][0] == pytest.approx(40e-3)
     assert study(folder).response is None
-    assert study(folder, modes={"damping": "viscous"}).damping == "viscous"
-    assert study(folder).damping == "hysteretic"
+    assert study(folder, modes={"damping": "viscous"}).modes.damping == "viscous"
+    assert study(folder).modes.damping == "hysteretic"
 
 
 @pytest.mark.parametrize(

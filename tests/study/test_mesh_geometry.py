@@ -36,7 +36,7 @@ def test_run_on_a_mesh_of_bricks_and_tetrahedra_that_do_not_match(tmp_path):
     K, M = assemble(whole, {"p0": faying.CATALOGUE["45 steel"]})
     solid = lowest_modes(K, M, 9, shift_frequency=1000.0).frequencies[6:]
     assert np.all(result.frequencies < 1.001 * solid)
-    assert result.tied[:3] == pytest.approx(solid, rel=0.01)
+    assert result.bonded[:3] == pytest.approx(solid, rel=0.01)
 
 
 def test_element_sets_can_be_given_the_names_of_parts(tmp_path):

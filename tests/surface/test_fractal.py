@@ -233,3 +233,28 @@ def test_the_theory_page_states_the_bias_that_each_estimator_declares():
         name: entry.bias for name, entry in ESTIMATORS.items() if name != "psd"
     }
     assert METHODS[0] == "psd"  # the default
+
+
+@pytest.mark.parametrize("D", [2.2, 2.41])
+def test_a_plateau_of_long_waves_is_not_taken_for_the_power_law(D):
+    # 4.1 mm with a roll-off at 60 um: the plateau is the wider band, the power law lies beyond it
+    scan = spectral((1640, 1640), spacing=2.5e-6, D=D, Rq=1e-6, longest=60e-6, seed=1)
+    fit = fit_fractal(scan)
+    assert fit.D == pytest.approx(D, abs=0.03)
+    assert fit.D_interval[0] < D < fit.D_interval[1]
+    assert fit.band[1] < 65e-6
+    told = next(w for w in fit.warnings if "roll-off at about" in w)
+    assert float(told.split("about ")[1].split()[0]) == pytest.approx(60e-6, rel=0.05)
+
+
+def test_the_roll_off_of_a_profile_is_found():
+    fit = fit_fractal(spectral(2**15, spacing=1e-6, D=2.4, Rq=1e-6, longest=100e-6, seed=3))
+    assert fit.D_interval[0] < 2.4 < fit.D_interval[1]
+    told = next(w for w in fit.warnings if "roll-off at about" in w)
+    assert float(told.split("about ")[1].split()[0]) == pytest.approx(100e-6, rel=0.1)
+
+
+def test_a_plateau_without_a_power_law_beyond_it_is_called_one():
+    # the roll-off lies at three times the shortest usable wavelength: too few waves beyond it
+    fit = fit_fractal(spectral((820, 820), spacing=5e-6, D=2.41, Rq=1e-6, longest=60e-6, seed=0))
+    assert any("plateau of the spectrum and no band of shorter waves" in w for w in fit.warnings)

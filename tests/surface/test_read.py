@@ -6,7 +6,7 @@ import zipfile
 import numpy as np
 import pytest
 
-from faying import InputError, ReadError, Scan, read_scan
+from faying import InputError, ReadError, Scan, fit_fractal, read_scan
 from faying.surface.read import plausible
 from faying.surface.scan import Profile
 from faying.surface.synthesize import spectral, with_missing
@@ -239,3 +239,115 @@ def test_another_reader_finds_the_same_in_our_x3p(tmp_path, precision):
     seen = topography.read_topography(str(path)).to_unit("m")
     assert np.abs(np.asarray(seen.heights()).T - scan.heights).max() < 1e-4 * np.ptp(scan.heights)
     assert np.array(seen.physical_sizes) / (36, 24) == pytest.approx(scan.spacing, rel=1e-6)
+
+
+def test_a_zip_archive_without_main_xml_is_no_damaged_x3p(tmp_path):
+    # .plux, .xlsx and others are zip archives too: they go to the other readers, which know them or say what to do
+    path = tmp_path / "a.plux"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("index.xml", "<xml/>")
+    with pytest.raises(ReadError, match="of no format that can be read|install SurfaceTopography"):
+        read_scan(path)
+    with pytest.raises(ReadError, match=r"holds no main.xml"):
+        read_scan(path.rename(tmp_path / "a.x3p"))
+
+
+def test_another_version_of_zip_is_refused_in_words(rough, tmp_path):
+    path = write_scan(rough, tmp_path / "a.x3p")
+    blob = bytearray(path.read_bytes())
+    at = blob.index(b"PK\x01\x02")
+    blob[at + 6] = 99  # version needed to extract
+    path.write_bytes(blob)
+    with pytest.raises(ReadError, match="zip"):
+        read_scan(path)
+
+
+def test_a_heading_states_the_units(rough, tmp_path):
+    path = write_scan(rough, tmp_path / "a.csv", xy_unit="mm", z_unit="um")
+    path.write_text("x [mm],y [mm],z [um]\n" + path.read_text())
+    back = read_scan(path)
+    assert back.spacing == pytest.approx(rough.spacing, rel=1e-6)
+    assert np.allclose(back.heights, rough.heights, atol=1e-14, equal_nan=True)
+    with pytest.raises(InputError, match="states its units"):
+        read_scan(path, xy_unit="mm", z_unit="um")
+    path.write_text("x [mm];z [nm]\n" + "\n".join(f"{0.01 * i};{100 * i % 7}" for i in range(40)))
+    line = read_scan(path)
+    assert isinstance(line, Profile)
+    assert line.spacing == pytest.approx(1e-5)
+    assert line.heights[1] == pytest.approx(2e-9)
+
+
+@pytest.mark.parametrize("given", [{"size": (5.6e-5, 8e-5)}, {"spacing": (1e-6, 2e-6)}])
+def test_a_matrix_of_heights_needs_its_size(tmp_path, given):
+    z = np.arange(40 * 56, dtype=float).reshape(40, 56) % 37
+    path = tmp_path / "matrix.txt"
+    np.savetxt(path, z, delimiter="\t")
+    with pytest.raises(InputError, match=r"matrix of heights.*size or spacing in metres and z_unit"):
+        read_scan(path)
+    scan = read_scan(path, z_unit="nm", **given)
+    assert scan.spacing == pytest.approx((1e-6, 2e-6))
+    assert np.allclose(scan.heights, z * 1e-9)
+    path.write_text("\n".join(path.read_text().splitlines()[:-1]) + "\n1\t2\t3\n")
+    with pytest.raises(ReadError, match="line 40.*not a row of 56 heights"):
+        read_scan(path, z_unit="nm", **given)
+
+
+def test_a_size_replaces_one_that_cannot_be_and_no_other(tmp_path):
+    scan = spectral((40, 40), spacing=1e-6, D=2.4, Rq=1e-8)
+    long = write_scan(Scan(heights=scan.heights, spacing=(4.0, 4.0)), tmp_path / "long.x3p")  # 160 m
+    with pytest.raises(ReadError, match=r"160 m x 160 m.*true size or spacing in metres"):
+        read_scan(long)
+    back = read_scan(long, size=160e-6)
+    assert back.spacing == pytest.approx((4e-6, 4e-6))
+    assert "given by the caller" in back.notes[-1]
+    with pytest.raises(InputError, match="the file states its size"):
+        read_scan(write_scan(scan, tmp_path / "good.x3p"), size=1e-3)
+    assert read_scan(tmp_path / "good.x3p", spacing=1e-6).spacing == pytest.approx((1e-6, 1e-6))
+
+
+@pytest.mark.parametrize("size", [0.0, -1e-3, float("nan"), (1e-3,), (1e-3, 0.0), "4 mm", (1, 2, 3)])
+def test_sizes_that_cannot_be_are_refused(rough, tmp_path, size):
+    path = write_scan(rough, tmp_path / "a.x3p")
+    with pytest.raises(InputError, match="positive length in metres"):
+        read_scan(path, size=size)
+    with pytest.raises(InputError, match="one of the two"):
+        read_scan(path, size=1e-3, spacing=1e-6)
+
+
+@pytest.mark.parametrize("text", ["0,0;0,0;1,5\n1,0;0,0;2,5\n", "0,5\t1,25\t3,5\n1,5\t1,25\t4,5\n", "0,5 1,5 2,5\n"])
+def test_decimal_commas_are_refused(tmp_path, text):
+    path = tmp_path / "a.csv"
+    path.write_text(text * 4)
+    with pytest.raises(ReadError, match="decimal comma.*write decimal points"):
+        read_scan(path, "um", "um")
+
+
+def test_a_scan_too_large_for_the_memory_is_refused_before_it_is_unpacked(rough, tmp_path, monkeypatch):
+    path = write_scan(rough, tmp_path / "a.x3p")
+    monkeypatch.setenv("FAYING_MEMORY", "0.0001")
+    with pytest.raises(ReadError, match=r"2.24e\+03 points need about .* GB are free"):
+        read_scan(path)
+    monkeypatch.setenv("FAYING_MEMORY", "1")
+    assert read_scan(path).shape == rough.shape
+
+
+def test_a_text_without_an_end_of_line_may_be_cut_short_and_fits_say_so(tmp_path):
+    line = spectral(300, spacing=0.5e-6, D=2.4, Rq=1e-6)
+    path = write_scan(line, tmp_path / "a.txt", xy_unit="um", z_unit="nm")
+    assert read_scan(path, "um", "nm").notes == ()
+    path.write_bytes(path.read_bytes()[:-700])  # in the middle of a line: a shorter line scan
+    back = read_scan(path, "um", "nm")
+    assert back.heights.size < 300
+    assert "may be cut short" in back.notes[0]
+    assert back.notes[0] in fit_fractal(back).warnings
+
+
+@pytest.mark.parametrize("suffix", ["x3p", "csv"])
+def test_a_scan_cut_short_is_refused(rough, tmp_path, suffix):
+    path = write_scan(rough, tmp_path / f"a.{suffix}", **({} if suffix == "x3p" else {"xy_unit": "mm", "z_unit": "um"}))
+    units = () if suffix == "x3p" else ("mm", "um")
+    blob = path.read_bytes()
+    for share in np.linspace(0.02, 0.99, 25):
+        path.write_bytes(blob[: int(share * len(blob))])
+        with pytest.raises(ReadError):
+            read_scan(path, *units)

@@ -186,5 +186,5 @@ def test_the_same_reading_without_the_library(scans, monkeypatch):
     from faying.surface import instruments
 
     monkeypatch.setattr(instruments, "_library", lambda: None)
-    with pytest.raises(ReadError, match=r"install SurfaceTopography \(pip install faying\[instruments\]\)"):
+    with pytest.raises(ReadError, match=r"install SurfaceTopography \(pip install SurfaceTopography\)"):
         read_scan(scans / "surfacetopography" / "plu-1.plu")

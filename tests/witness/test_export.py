@@ -123,11 +123,10 @@ def test_calculix_runs_the_contact_table(tmp_path):
         scan_area=16e-6,
         pair=faying.ContactPair(faying.CATALOGUE["45 steel"], faying.CATALOGUE["45 steel"]),
     )
-    from faying.study.connections import JointSpec
-
     from faying.joint.joint_law import JointLaw
     from faying.joint.pairs import lumped
     from faying.study.attach import _contact
+    from faying.study.keys.joint import JointChoice
 
     mesh = two(("hex8", "hex8"), ((3, 2), (3, 2)), numbers=False)
     joined = JointLaw(model=law)
@@ -135,7 +134,7 @@ def test_calculix_runs_the_contact_table(tmp_path):
     nodes = join(mesh, *FACES).at_nodes()
     p = np.full(len(nodes.weights), pressure)
     pairs = lumped(nodes, (*joined.stiffness(p), *joined.loss(p)), p)
-    spec = JointSpec(name="j", faces=FACES, friction=0.9)
+    spec = JointChoice(name="j", faces=FACES, friction=0.9)
     deck = deck_of(
         mesh,
         pairs=pairs,
@@ -380,9 +379,8 @@ def test_modes_of_matrices_that_calculix_stores(tmp_path):
 @needs_ccx
 def test_the_pressure_of_the_preload_in_calculix(tmp_path):
     """Blocks pressed together on half of their backs: our pressure against node-to-surface contact, 2 % in norm."""
-    from faying.study.build import build_all, checked_mesh
-
     from faying.fe.sides import sides_on
+    from faying.study import build
     from faying.study.attach import attach
 
     made = two(("hex8", "hex8"), ((12, 8), (12, 8)), counts=(10, 8))
@@ -398,7 +396,7 @@ def test_the_pressure_of_the_preload_in_calculix(tmp_path):
     ours = found.pairs.pressure
     assert ours.max() > 2 * ours.min()
 
-    structure = build_all(study, mesh=checked_mesh(study)).structure
+    structure = build(study)
     mesh = structure.mesh
     n = mesh.numbers
     load = 3000 * structure.loads[:, 0]

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-SOLVERS = ("mapdl", "abaqus", "nastran", "calculix", "aster")
+from faying.decks.programs import SOLVERS
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})

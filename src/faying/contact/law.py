@@ -60,6 +60,7 @@ class ContactLaw(ABC):
     parameters: ClassVar[Mapping[str, Parameter]]
     validity: ClassVar[str]
     variants: ClassVar[Mapping[str, Mapping[str, object]]] = {}
+    joint_fault: ClassVar[str] = ""  # why the law cannot carry a joint by itself
     geometric: ClassVar[bool] = True
 
     @abstractmethod

@@ -11,7 +11,7 @@ import numpy as np
 from faying import units
 from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS, SOLIDS
-from faying.fe.memory import available
+from faying.memory import available
 from faying.typing import Array, Index
 
 GREATEST = 10**12  # number of a node or an element

@@ -17,8 +17,9 @@ import numpy as np
 
 from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS
-from faying.fe.memory import available, guessed
+from faying.fe.memory import guessed
 from faying.fe.mesh import Mesh, split_at_joints
+from faying.memory import available
 from faying.typing import Array, Index
 
 # netgen numbers the middle nodes by these edges; VTK, and so we, by those of its element

@@ -10,6 +10,7 @@ from faying.errors import InputError, NotConverged
 from faying.halfspace.bounded import Minimum, Problem, Progress, best_level, duality_gap, minimise
 from faying.halfspace.kernels import normal_kernel, transform_shape
 from faying.halfspace.solution import HalfSpaceContact
+from faying.memory import GB, available
 from faying.typing import Array
 
 COARSEST = 48
@@ -309,24 +310,12 @@ def memory_needed(shape: tuple[int, int], *, periodic: bool) -> float:
     return 8.0 * (22 * shape[0] * shape[1] + 5 * padded[0] * padded[1])
 
 
-def memory_free() -> float:
-    """Bytes that the machine can still give, infinite where it does not say."""
-    try:
-        with open("/proc/meminfo") as file:
-            for line in file:
-                if line.startswith("MemAvailable:"):
-                    return 1024.0 * float(line.split()[1])
-    except OSError:
-        pass
-    return np.inf
-
-
 def _check_memory(shape: tuple[int, ...], periodic: bool) -> None:
-    need, have = memory_needed((shape[0], shape[1]), periodic=periodic), memory_free()
-    if need > have:
+    need, have = memory_needed((shape[0], shape[1]), periodic=periodic), available()
+    if have is not None and need > have:
         raise InputError(
-            f"a map of {shape[0]} x {shape[1]} points needs about {need / 2**30:.1f} GiB and "
-            f"{have / 2**30:.1f} GiB are free; cut the map, take every second point"
+            f"a map of {shape[0]} x {shape[1]} points needs about {need / GB:.3g} GB and {have / GB:.3g} GB "
+            "are free; cut the map, take every second point"
             f"{'' if periodic else ', or solve it as periodic (a quarter of the transform)'}"
         )
 

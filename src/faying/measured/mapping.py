@@ -4,12 +4,14 @@ import csv
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from faying.errors import InputError, ReadError
+from faying.files import refuse_decimal_comma
 from faying.measured.frf import Position
 from faying.typing import Array
 from faying.units import scale
@@ -134,6 +136,8 @@ def read_points(path: str | Path) -> dict[int, Position]:
         text = file.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as fault:
         raise ReadError(f"{file}: cannot be read ({fault}); give a CSV table point,x [mm],y [mm],z [mm]") from None
+    for number, line in enumerate(text.splitlines(), 1):
+        refuse_decimal_comma(line, f"{file}, line {number}")
     rows = [[c.strip() for c in row] for row in csv.reader(text.splitlines()) if any(row)]
     units = re.findall(r"\[([^\]]+)\]", ",".join(rows[0])) if rows else []
     if len(units) != 3 or len(set(units)) > 1:
@@ -145,6 +149,8 @@ def read_points(path: str | Path) -> dict[int, Position]:
             label, x, y, z = int(row[0]), *(float(c) * metre for c in row[1:])
         except ValueError:
             raise ReadError(f"{file}: {','.join(row)} is not a point number and three lengths: point,x,y,z") from None
+        if not all(isfinite(v) for v in (x, y, z)):
+            raise ReadError(f"{file}: {','.join(row)} has a coordinate that is not finite; measure that point again")
         if label in out:
             raise ReadError(f"{file}: point {label} stands twice; give each point once")
         out[label] = (x, y, z)

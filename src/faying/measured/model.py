@@ -1,11 +1,10 @@
 """The model's side: modes at its nodes from plain arrays or a result file, and FRFs by their superposition."""
 
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
-from faying.errors import InputError, ReadError
+from faying.errors import InputError
 from faying.measured.frf import QUANTITIES
 from faying.typing import Array, Complex, Index
 
@@ -136,78 +135,3 @@ def _match(wanted: tuple[Array, Array], known: tuple[Array, Array]) -> list[tupl
         same = np.flatnonzero((known[0] == node) & (np.abs(along) > SAME_DIRECTION))
         out.append((int(same[0]), float(np.sign(along[same[0]]))) if len(same) else None)
     return out
-
-
-def read_model_modes(path: str | Path, *, load: float | None = None) -> ModelModes:
-    """Read the modes of a result file (result.nc of `faying run`), and the frequency response that it may hold.
-
-    Args:
-        path: of the file.
-        load: the preload [N] whose modes are wanted; by default the greatest.
-
-    Returns:
-        ModelModes of that preload.
-
-    Raises:
-        ReadError: where the file is no such result.
-        InputError: where it has no such load.
-    """
-    file = Path(path)
-    if not file.is_file():
-        raise ReadError(f"{file}: no such file; write one with: faying run STUDY.toml")
-    data, title = _variables(file)
-    loads = data["loads"]
-    index = len(loads) - 1 if load is None else int(np.argmin(np.abs(loads - load)))
-    if load is not None and abs(loads[index] - load) > 1e-3 * abs(loads[index]):
-        raise InputError(
-            f"{file}: no preload of {load / 1e3:g} kN; it holds {', '.join(f'{v / 1e3:g} kN' for v in loads)}"
-        )
-    return ModelModes(
-        frequencies=data["frequencies"][index],
-        loss_factors=data["loss_factors"][index],
-        shapes=data["shapes"][index],
-        points=data["outline"],
-        triangles=data["triangles"].astype(np.int64),
-        load=float(loads[index]),
-        title=title,
-        source=str(file),
-        full=_full(data, index) if all(name in data for name in RESPONSE) else None,
-    )
-
-
-RESPONSE = (
-    "response_frequencies",
-    "receptance_real",
-    "receptance_imaginary",
-    "output_points",
-    "output_directions",
-    "input_points",
-    "input_directions",
-)
-
-
-def _variables(file: Path) -> tuple[dict[str, Array], str]:
-    """The arrays of a result file by name, and its title. ReadError where it is none."""
-    from scipy.io import netcdf_file
-
-    needed = ("loads", "frequencies", "loss_factors", "outline", "shapes", "triangles")
-    try:
-        with netcdf_file(file, "r", mmap=False) as nc:
-            names = [*needed, *(name for name in RESPONSE if name in nc.variables)]
-            data = {name: np.array(nc.variables[name][:], float) for name in names}
-            return data, nc.title.decode("utf-8", errors="replace") if isinstance(nc.title, bytes) else str(nc.title)
-    except (TypeError, ValueError, KeyError, AttributeError, OSError, IndexError) as fault:
-        raise ReadError(
-            f"{file}: no result of Faying, or damaged ({type(fault).__name__}: {fault}); write one with: faying run "
-            "STUDY.toml"
-        ) from None
-
-
-def _full(data: dict[str, Array], load: int) -> FullResponse:
-    values = data["receptance_real"][load] + 1j * data["receptance_imaginary"][load]
-    return FullResponse(
-        frequency=data["response_frequencies"],
-        receptance=values.transpose(1, 2, 0),
-        outputs=(data["output_points"], data["output_directions"]),
-        inputs=(data["input_points"], data["input_directions"]),
-    )

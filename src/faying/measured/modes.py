@@ -54,6 +54,10 @@ class ModeSet:
             )
         if not all(np.all(np.isfinite(a)) for a in (self.frequencies, self.loss_factors, self.shapes)):
             raise InputError("the modes hold NaN; leave such modes or degrees of freedom out")
+        if not np.all(np.asarray(self.frequencies) > 0):
+            raise InputError(
+                f"frequencies of {np.min(self.frequencies):g} Hz and more; leave out modes at 0 Hz or below"
+            )
         if not self.notes:
             object.__setattr__(self, "notes", ((),) * count)
 

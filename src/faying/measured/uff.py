@@ -18,7 +18,7 @@ from faying.errors import InputError, ReadError
 from faying.measured.frf import FRF, Dof, Position
 from faying.measured.modes import ModeSet
 from faying.measured.uff_units import FileUnits, frf_scale
-from faying.typing import Array
+from faying.typing import Array, Index
 from faying.units import scale
 
 KINDS = {
@@ -220,18 +220,26 @@ def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFi
         for label, kind in zip(s["CS_sys_labels"], s["CS_types"], strict=True)
     }
     positions, rotations = _points(file, sets, systems, kinds, metre)
+    shapes = [_shape(s, f"{file}, data set {s['number']}") for s in sets if s["type"] == 55]
     return UniversalFile(
         source=str(file),
         title=next((s["model_name"] for s in sets if s["type"] == 151), ""),
         units=units,
         functions=tuple(_function(s, f"{file}, data set {s['number']}") for s in sets if s["type"] == 58),
-        shapes=tuple(_shape(s, f"{file}, data set {s['number']}") for s in sets if s["type"] == 55),
+        shapes=tuple(s for s in shapes if s["frequency"] > 0),
         positions=positions,
         rotations=rotations,
         lines=_lines(sets),
         kinds=tuple(s["type"] for s in sets),
-        warnings=_about_lengths(file, positions, stated=units is not None or length_unit is not None),
+        warnings=(
+            *_about_rigid_modes(file, sum(s["frequency"] == 0 for s in shapes)),
+            *_about_lengths(file, positions, stated=units is not None or length_unit is not None),
+        ),
     )
+
+
+def _about_rigid_modes(file: Path, count: int) -> tuple[str, ...]:
+    return (f"{file}: {count} mode shapes at 0 Hz, rigid motion, are left out",) if count else ()
 
 
 def _about_lengths(file: Path, positions: Mapping[int, Position], *, stated: bool) -> tuple[str, ...]:
@@ -293,17 +301,17 @@ def _dof(point: int, code: int) -> Dof:
 def _function(data: dict[str, Any], where: str) -> Function:
     x, values = np.asarray(data["x"], float), np.asarray(data["data"])
     count = data["num_pts"]
-    if len(values) < count:
+    if len(values) != count or len(x) != count:
         raise ReadError(
-            f"{where}: {len(values)} of the {count} values that its header announces; the file is damaged or was cut "
-            "short, export it again"
+            f"{where}: {len(values)} values where its header announces {count}; the file is damaged or was cut short, "
+            "export it again"
         )
-    if not np.all(np.isfinite(values[:count])):
-        raise ReadError(f"{where}: it holds NaN; measure or export that function again")
+    if not (np.all(np.isfinite(values)) and np.all(np.isfinite(x))):
+        raise ReadError(f"{where}: it holds NaN or infinite values; measure or export that function again")
     return Function(
         kind=KINDS.get(data["func_type"], f"function of type {data['func_type']}"),
-        x=x[:count],
-        values=values[:count],
+        x=x,
+        values=values,
         output=_dof(data["rsp_node"], data["rsp_dir"]),
         input=_dof(data["ref_node"], data["ref_dir"]),
         unit=data["ordinate_axis_units_lab"],
@@ -317,7 +325,7 @@ def _shape(data: dict[str, Any], where: str) -> dict[str, Any]:
     kind = data["analysis_type"]
     if kind not in (2, 3, 7):
         raise ReadError(f"{where}: data at nodes of analysis type {kind}, which is no mode; modes are types 2, 3 and 7")
-    points = np.asarray(data["node_nums"], int)
+    points = _whole(data["node_nums"], where)
     parts = [np.asarray(data[r]) for r in ("r1", "r2", "r3")]
     if any(len(p) != len(points) for p in parts):
         raise ReadError(
@@ -329,6 +337,11 @@ def _shape(data: dict[str, Any], where: str) -> dict[str, Any]:
     else:
         pole = data["eig"]
         frequency, loss = abs(pole) / (2 * np.pi), -2 * pole.real / abs(pole) if abs(pole) else 0.0
+    if not (0 <= frequency < np.inf and np.isfinite(loss) and all(np.all(np.isfinite(p)) for p in parts)):
+        raise ReadError(
+            f"{where}: a mode of {frequency:g} Hz, loss factor {loss:g}, with NaN or infinite motion or a negative "
+            "frequency; export it again"
+        )
     spans = {key: re.fullmatch(r"95 % of [a-z ]+: (\S+) \.\. (\S+)", data[key].strip()) for key in ("id2", "id3")}
     return {
         "frequency_interval": _span(spans["id2"]),
@@ -362,19 +375,48 @@ def _points(
     for s in sets:
         if s["type"] not in (15, 2411):
             continue
-        for k, label in enumerate(np.asarray(s["node_nums"], int)):
-            own, motion = int(s["def_cs"][k]), int(s["disp_cs"][k])
+        where = f"{file}, data set {s['number']}"
+        numbers = [_whole(s[name], where) for name in ("node_nums", "def_cs", "disp_cs")]
+        places = np.stack(_like(numbers, [s[name] for name in "xyz"], where), axis=1)
+        for label, own, motion, place in zip(*(n.tolist() for n in numbers), places, strict=True):
             if any(kinds.get(c, 0) != 0 for c in (own, motion)):
                 raise ReadError(
                     f"{file}: point {label} is given in a cylindrical or spherical system; export it in Cartesian ones"
                 )
-            xyz = np.array([s["x"][k], s["y"][k], s["z"][k]], float)
+            xyz = place
             if own in systems:  # rows 1 to 3: the axes, row 4: the origin
                 xyz = xyz @ systems[own][:3] + systems[own][3]
-            positions[int(label)] = tuple(float(v) * metre for v in xyz)  # type: ignore[assignment]
+            position: Any = tuple(float(v) * metre for v in xyz)
+            if positions.get(label, position) != position:
+                raise ReadError(f"{where}: point {label} stands twice, at two places; export the points once")
+            positions[label] = position
             if motion in systems and not np.allclose(systems[motion][:3], np.eye(3), atol=1e-9):
-                rotations[int(label)] = systems[motion][:3]
+                rotations[label] = systems[motion][:3]
     return positions, rotations
+
+
+def _whole(values: Any, where: str) -> Index:
+    """Whole numbers, or ReadError."""
+    try:
+        found = np.atleast_1d(np.asarray(values, float))
+    except (TypeError, ValueError):
+        found = np.array([np.nan])
+    if not np.all(np.isfinite(found)) or np.any(found != np.rint(found)) or np.any(np.abs(found) > 2**53):
+        raise ReadError(f"{where}: some numbers of points are no whole numbers; the file is damaged, export it again")
+    return found.astype(np.int64)
+
+
+def _like(numbers: list[Index], columns: list[Any], where: str) -> list[Array]:
+    """Columns of finite numbers, as many as there are points; ReadError for others."""
+    found = [np.atleast_1d(np.asarray(column, float)) for column in columns]
+    if len({len(c) for c in (*numbers, *found)}) > 1:
+        raise ReadError(
+            f"{where}: {len(numbers[0])} points but {[len(c) for c in found]} coordinates; the file is damaged or was cut "
+            "short, export it again"
+        )
+    if not all(np.all(np.isfinite(c)) for c in found):
+        raise ReadError(f"{where}: some coordinates are NaN or infinite; export the points again")
+    return found
 
 
 def _lines(sets: list[dict[str, Any]]) -> tuple[tuple[int, int], ...]:

@@ -1,6 +1,7 @@
 """Which quantity and unit a function of a universal file is in: type codes, axis labels, data set 164."""
 
 from dataclasses import dataclass
+from math import inf
 from typing import Any
 
 from faying.errors import InputError, ReadError
@@ -28,7 +29,7 @@ class FileUnits:
         if not found:
             return None
         units = cls(length=found[0]["length"], force=found[0]["force"], words=found[0]["units_description"])
-        if not (units.length > 0 and units.force > 0):
+        if not (0 < units.length < inf and 0 < units.force < inf):
             raise ReadError(
                 f"{where}: data set 164 gives the factors {units.length} and {units.force}; they must be positive. "
                 "Export the file again with its units"

@@ -1,5 +1,5 @@
 """The result of a study, as it is kept in memory and on disk."""
 
-from faying.result.result import Comparison, Provenance, Receptance, Result
+from faying.result.result import Comparison, Provenance, Receptance, Result, read_model_modes
 
-__all__ = ["Comparison", "Provenance", "Receptance", "Result"]
+__all__ = ["Comparison", "Provenance", "Receptance", "Result", "read_model_modes"]

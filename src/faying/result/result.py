@@ -288,3 +288,20 @@ class Result:
                 values = (self.frequencies[i, j], self.loss_factors[i, j], self.free[j], self.bonded[j])
                 rows.writerow([f"{load:.6g}", j + 1, *(f"{value:.8g}" for value in values)])
         return out.getvalue()
+
+
+def read_model_modes(path: str | Path, *, load: float | None = None) -> ModelModes:
+    """Read the modes of a result file for a comparison with a test.
+
+    Args:
+        path: result.nc of `faying run`.
+        load: the preload [N]; the greatest where None.
+
+    Returns:
+        The elastic modes at that preload, with the frequency response that the file may hold.
+
+    Raises:
+        ReadError: the file is missing, damaged or no result of Faying.
+        InputError: it has no such load.
+    """
+    return Result.load(path).modes_at(load, source=str(path))

@@ -78,12 +78,27 @@ def attach(
 ) -> Attachment:
     """Lay the law of a study on two faces of a mesh file.
 
-    unit: of the model's coordinates; pressure: a value with unit, a CSV file of node and pressure, or "solve" for the
-    preload of the study's bolts on this mesh; joint: which of the study's joints, by name; preload [text with unit]:
-    which of its preloads; tolerance [m]: how far apart the faces may lie; coupling: "nodes" (pair by pair), "faces"
-    (springs per area, exact on any meshes) or what the meshes allow; frequency [Hz] of equivalent dampers; damping:
-    "paper" for the JK paper's dampers. Raises ReadError and InputError for files, faces that are missing, apart, turned
-    the same way or of doubtful size, and pressures that do not cover the face.
+    Args:
+        model: mesh file of Abaqus, CalculiX, Nastran, MAPDL, Gmsh or VTK.
+        faces: the rough face and the one that it meets.
+        unit: of the model's coordinates; no mesh file says.
+        study: gives surface, law and materials, and the bolts where they are solved.
+        pressure: a value with unit, a CSV file of node and pressure, or "solve" for the study's bolts on this mesh.
+        joint: which of the study's joints, by name; the one with these faces, or the only one, where None.
+        preload: with "solve", which of the study's preloads, as text with a unit.
+        tolerance: how far apart the faces may lie [m].
+        coupling: "nodes" (pair by pair), "faces" (springs per area, exact on any meshes) or what the meshes allow.
+        frequency: of viscous dampers that lose as much as the loss factor does [Hz].
+        damping: "paper" for the JK paper's dampers.
+        force_unit: unit of force of the model.
+        any_size: take a joint of any area.
+
+    Returns:
+        The joint, ready to be written.
+
+    Raises:
+        ReadError, InputError: files, faces that are missing, apart, turned the same way or of doubtful size, and
+            pressures that do not cover the face.
     """
     file = Path(model)
     spec = _joint(study, faces, joint)
@@ -116,11 +131,6 @@ def attach(
     area = pairs.area if pairs.lumped else interface.weights
     flags = _flags(law, used, area)
     system = System(unit, force_unit)
-    viscous = None
-    if damping == "paper":
-        viscous = _paper_dampers(pairs, mesh, materials)
-    elif frequency is not None:
-        viscous = pairs.loss / (2 * np.pi * frequency)
     mean = float(area @ used / area.sum())
     p, force = system.pressure, f"{force_unit}/{unit}2"
     said = f"pressure: {said}; least {used.min() * p:.6g}, mean {mean * p:.6g}, greatest {used.max() * p:.6g} {force}"
@@ -131,7 +141,7 @@ def attach(
         faces=faces,
         system=system,
         facts=(head, *_facts(law, pairs, interface, system, said), *(flags or [VALID])),
-        viscous=viscous,
+        viscous=_dampers(pairs, mesh, materials, frequency, paper=damping == "paper"),
         paper=damping == "paper",
         frequency=frequency,
         first_element=_first_free(file),
@@ -299,6 +309,15 @@ def _flags(law: JointLaw, pressure: Array, area: Array) -> list[str]:
     if not np.any(pressure > 0):
         out.append("validity: the joint carries no pressure, so it has no stiffness")
     return out
+
+
+def _dampers(
+    pairs: NodePairs, mesh: Mesh, materials: Mapping[str, Material], frequency: float | None, *, paper: bool
+) -> Array | None:
+    """Viscous dampers [N s/m]: the JK paper's, those that lose as much at a frequency [Hz], or none."""
+    if paper:
+        return _paper_dampers(pairs, mesh, materials)
+    return None if frequency is None else np.asarray(pairs.loss / (2 * np.pi * frequency))
 
 
 def _paper_dampers(pairs: NodePairs, mesh: Mesh, materials: Mapping[str, Material]) -> Array:

@@ -139,9 +139,11 @@ def _note_lacking(
     faults: Faults, joints: tuple[JointChoice, ...], law: LawChoice, surface: SurfaceChoice | None
 ) -> None:
     """Note every joint's law that its surface does not supply, before anything is read or meshed."""
-    for joint in joints:
+    for number, joint in enumerate(joints, start=1):
         choice = joint.surface or surface
         there = "no" if choice is None else "fractal" if choice.scan is None else "scan"
         fault = (joint.law or law).fault_without(there)
+        if fault and not fault.startswith("[surface]"):
+            fault = f"{f'joint[{number}].law' if joint.law else 'law'}: {fault}"
         if fault and fault not in faults.lines:
             faults.add(fault)

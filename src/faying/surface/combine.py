@@ -126,7 +126,9 @@ def combine(
     length = max(min(scan_a.size), min(scan_b.size))
     missing, spikes = (sum(getattr(r, name) for r in ready) for name in ("missing", "spikes"))
     Ra = float((2 / np.pi * m0) ** 0.5)
-    facts = Facts(Rq=m0**0.5, Ra=Ra, length=length, missing=missing, spikes=spikes, areal=True)
+    facts = Facts(
+        Rq=m0**0.5, Ra=Ra, length=length, missing=missing, spikes=spikes, areal=True, notes=scan_a.notes + scan_b.notes
+    )
     return Combined(
         fit=result(estimate, facts, method="psd", convention=convention, gamma=gamma),
         Rq=m0**0.5,

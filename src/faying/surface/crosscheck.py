@@ -84,7 +84,7 @@ def cross_check(
     if not names:
         raise InputError(
             "no second reader is installed to check the file with; install SurfaceTopography (pip install "
-            "faying[instruments]) or surfalize"
+            "SurfaceTopography) or surfalize"
         )
     return [_ask(name, scan, str(path), extra) for name in names]
 

@@ -64,8 +64,8 @@ class FractalFit:
 @final
 @dataclass(frozen=True, kw_only=True)
 class Facts:
-    """What prepared heights say by themselves: `Rq`, `Ra` and `length` [m] (the side), counts of filled points, and
-    whether they are a scan's (`areal`) or a profile's."""
+    """What prepared heights say by themselves: `Rq`, `Ra` and `length` [m] (the side), counts of filled points,
+    whether they are a scan's (`areal`) or a profile's, and the scan's notes."""
 
     Rq: float
     Ra: float
@@ -73,6 +73,7 @@ class Facts:
     missing: int
     spikes: int
     areal: bool
+    notes: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, scan: Scan | Profile, ready: Prepared) -> "Facts":
@@ -85,6 +86,7 @@ class Facts:
             missing=ready.missing,
             spikes=ready.spikes,
             areal=isinstance(scan, Scan),
+            notes=scan.notes,
         )
 
 
@@ -173,7 +175,7 @@ def result(
     """Complete an estimate by what it implies over the side, its convention in words, and its warnings."""
     c = prefactor(convention, gamma)
     sound = 2 < e.D < 3 and 0 < e.G < float("inf")
-    words = list(e.notes)
+    words = [*facts.notes, *e.notes]
     if not 2 < e.D < 3:
         words.append(f"D = {e.D:.3f} lies outside 2 .. 3: over this band the surface is not fractal, G means nothing")
     elif not 2.1 <= e.D <= 2.9:

@@ -1,14 +1,18 @@
 """All other instrument formats, through SurfaceTopography (extra "instruments"; MIT licence)."""
 
 import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from faying.errors import InputError, ReadError
-from faying.surface.scan import Instrument, Profile, Scan
+from faying.errors import FayingError, InputError, ReadError
+from faying.surface.scan import Instrument, Profile, Scan, check_points
 from faying.units import scale
+
+Steps = Callable[[int, int], tuple[float, float]]
 
 
 def _library() -> Any:
@@ -22,50 +26,100 @@ def _library() -> Any:
     return SurfaceTopography
 
 
-def read(file: Path, xy_unit: str | None, z_unit: str | None) -> Scan | Profile:
-    """Read a file by SurfaceTopography. ReadError where it is not installed or cannot read the file."""
+@dataclass(frozen=True, kw_only=True)
+class _Content:
+    """What the library finds in a file: heights (nx, ny) or (n,), sizes in the file's unit (None: not stated), its unit,
+    what it says of the instrument, and the positions of an uneven line."""
+
+    heights: Any
+    sizes: Any
+    unit: Any
+    info: dict[str, Any]
+    positions: Any
+
+
+def read(file: Path, xy_unit: str | None, z_unit: str | None, steps: Steps | None) -> Scan | Profile:
+    """Read a file by SurfaceTopography; `steps` gives the spacing [m] from the numbers of points (nx, ny).
+
+    ReadError where the library is not installed or cannot read the file.
+    """
+    content = _content(file)
+    if content.sizes is None and steps is None and xy_unit is None:
+        raise InputError(
+            f"{file}: the file does not state its physical size; give size or spacing in metres, for example "
+            f'read_scan("{file.name}", z_unit="nm", size=4e-3), or on the command line --size "4 mm x 4 mm"'
+        )
+    if content.sizes is None and steps is None:
+        raise InputError(f"{file}: the file does not state its physical size; give size or spacing in metres")
+    if content.unit is None:
+        lateral = xy_unit is not None or content.sizes is None
+        if not lateral or z_unit is None:
+            raise InputError(
+                f'{file}: the file states no unit; give both, for example read_scan("{file.name}", xy_unit="um", '
+                'z_unit="nm"), or on the command line --xy-unit um --z-unit nm'
+            )
+        xy = scale(xy_unit, "m", name="xy_unit") if xy_unit is not None else 1.0
+        z = scale(z_unit, "m", name="z_unit")
+    else:
+        if xy_unit is not None or z_unit is not None:
+            raise InputError(f"{file}: the file states its units ({content.unit}); leave out xy_unit and z_unit")
+        unit = str(content.unit).replace("µ", "u").replace("μ", "u").replace("Å", "angstrom")
+        xy = z = scale(unit, "m", name="unit")
+    if content.sizes is None:
+        assert steps is not None
+        counts = content.heights.shape
+        spacing = steps(counts[0], counts[1] if len(counts) > 1 else 1)
+        content = replace(content, sizes=[n * d / xy for n, d in zip(counts, spacing, strict=False)])
+    try:
+        return _scan(file, content, xy, z)
+    except ReadError:
+        raise
+    except InputError as fault:
+        raise ReadError(f"{file}: {fault}") from fault
+
+
+def _content(file: Path) -> _Content:
     library = _library()
     if library is None:
         raise ReadError(
             f"{file}: neither X3P nor x,y,z text; for other instrument formats install SurfaceTopography "
-            "(pip install faying[instruments])"
+            "(pip install SurfaceTopography)"
         )
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            topography = library.read_topography(str(file))
-            heights: Any = np.ma.filled(np.ma.asarray(topography.heights(), float), np.nan)
-            sizes = topography.physical_sizes
-            unit = topography.unit
-            info = dict(topography.info or {})
-            uniform = topography.is_uniform
-            positions = None if uniform else np.asarray(topography.positions(), float)
+            with library.open_topography(str(file)) as reader:
+                channel = reader.default_channel
+                stated = channel.physical_sizes is not None
+                _check_size(file, channel.nb_grid_pts)
+                topography = channel.topography(**({} if stated else {"physical_sizes": channel.nb_grid_pts}))
+                heights: Any = np.ma.filled(np.ma.asarray(topography.heights(), float), np.nan)
+                return _Content(
+                    heights=heights,
+                    sizes=topography.physical_sizes if stated else None,
+                    unit=topography.unit,
+                    info=dict(topography.info or {}),
+                    positions=None if topography.is_uniform else np.asarray(topography.positions(), float),
+                )
+    except FayingError:
+        raise
     except Exception as fault:  # a reader of thirty formats fails in as many ways
         first = str(fault).strip().splitlines()
         reason = first[0] if first else type(fault).__name__
         raise ReadError(
             f"{file}: of no format that can be read, or damaged ({type(fault).__name__}: {reason})"
         ) from fault
-    if unit is None:
-        if xy_unit is None or z_unit is None:
-            raise InputError(
-                f'{file}: the file states no unit; give both, for example read_scan("{file.name}", xy_unit="um", '
-                'z_unit="nm"), or on the command line --xy-unit um --z-unit nm'
-            )
-        xy, z = scale(xy_unit, "m", name="xy_unit"), scale(z_unit, "m", name="z_unit")
-    else:
-        if xy_unit is not None or z_unit is not None:
-            raise InputError(f"{file}: the file states its units ({unit}); leave out xy_unit and z_unit")
-        xy = z = scale(str(unit).replace("µ", "u").replace("μ", "u").replace("Å", "angstrom"), "m", name="unit")
-    try:
-        return _scan(file, heights, sizes, positions, xy, z, _instrument(info, xy))
-    except InputError as fault:
-        raise ReadError(f"{file}: {fault}") from fault
 
 
-def _scan(
-    file: Path, heights: Any, sizes: Any, positions: Any, xy: float, z: float, instrument: Instrument
-) -> Scan | Profile:
+def _check_size(file: Path, points: Any) -> None:
+    """Raise ReadError where the points that a file announces do not fit into memory."""
+    if points is not None and len(points) > 0:
+        check_points(str(file), float(np.prod([float(n) for n in points])))
+
+
+def _scan(file: Path, content: _Content, xy: float, z: float) -> Scan | Profile:
+    heights, sizes, positions = content.heights, content.sizes, content.positions
+    instrument = _instrument(content.info)
     if heights.size == 0 or not all(np.isfinite(s) and s > 0 for s in sizes):
         raise ReadError(f"{file}: the file holds no points or no size; it is damaged")
     if heights.ndim == 2:
@@ -86,7 +140,7 @@ def _scan(
     return Profile(heights=heights * z, spacing=step * xy, source=str(file), instrument=instrument)
 
 
-def _instrument(info: dict[str, Any], xy: float) -> Instrument:
+def _instrument(info: dict[str, Any]) -> Instrument:
     data = info.get("instrument") or {}
     parameters = data.get("parameters") or {}
     values = {}

@@ -6,6 +6,7 @@ N takes up instrument noise, what aliasing folds back, and the error of filled-i
 The bins' means follow a gamma law; maximising its quasi-likelihood (Whittle's approximation) is done by Fisher scoring.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi
 from typing import final
@@ -18,10 +19,7 @@ from faying.typing import Array, Mask
 
 LINES = 8.0  # misfit and
 GAPS = 0.8  # rms of ln(density) about a parabola above which a spectrum is taken as one of separate lines
-LINE_TEXT = (
-    "the power lies in separate lines (a series of waves, a regular texture, or marks all one way, for which profiles "
-    "across them are better)"
-)
+VAGUE = 0.5  # standard error of D above which a fit says nothing of the slope
 BREADTH = 0.35  # standard deviation of the smoothing over ln(frequency); wide against ln(1.5), the usual line distance
 
 
@@ -246,36 +244,83 @@ def fit_band(spectrum: Spectrum, low: float, high: float, *, fixed: bool = False
 
     A band passes where its misfit is at most 1.6, its white term not significantly negative (blur), and its lowest
     octave not significantly off the law fitted above it (waviness, roll-off); significant is 3 standard errors. Bands
-    are cut in steps of 2^(1/2) at either end, the widest tried first, down to a factor of 5; where none passes the one
-    of least misfit is taken, and a remark says so. A spectrum of separate lines goes to `fit_lines`.
+    are cut in steps of 2^(1/2) at either end, the widest tried first, down to a factor of 5. A plateau passes too, as
+    long waves beyond a roll-off make one; it is taken only where no band above it passes, and the roll-off is where the
+    two laws meet. Where no band passes the one of least misfit is taken, and a remark says so. A spectrum of separate
+    lines goes to `fit_lines`.
     """
     law = fit(spectrum, low, high)
     if law.misfit > LINES and _gaps(law, spectrum) > GAPS:
         return fit_lines(spectrum, low / 2, high), (
             "the spectrum consists of lines (as a Weierstrass-Mandelbrot series)",
         )
-    if fixed or _passes(spectrum, law, low, high):
+    if fixed:
         return law, ()
-    steps = int(2 * np.log2(high / low) + 1e-9)
-    ends = [(a, b) for total in range(1, steps + 1) for a in range(total + 1) if (b := total - a) >= 0]
-    tried = []
-    for a, b in ends:
-        bottom, top = low * 2 ** (a / 2), high / 2 ** (b / 2)
-        if top < 5 * bottom:
-            continue
+    tried: list[tuple[PowerLaw, float, float]] = []
+    for bottom, top in _bands(low, high):
         try:
             law = fit(spectrum, bottom, top)
         except NotConverged:
             continue
-        tried.append((law.misfit, bottom, top, law))
-        if _passes(spectrum, law, bottom, top):
-            return law, _cut_in_words(low, high, bottom, top)
+        tried.append((law, bottom, top))
+        if not _passes(spectrum, law, bottom, top):
+            continue
+        if _is_plateau(law):
+            return _beyond(spectrum, tried[-1], low, high)
+        return law, _cut_in_words(low, high, bottom, top)
     if not tried:
         return fit(spectrum, low, high), ("no part of the band obeys a power law",)
-    _, bottom, top, law = min(tried, key=lambda entry: entry[0])
+    law, bottom, top = min(tried, key=lambda entry: entry[0].misfit)
     return law, (
         *_cut_in_words(low, high, bottom, top),
         "no part of the band obeys a power law; the least bad one is used",
+    )
+
+
+def _bands(low: float, high: float) -> Iterator[tuple[float, float]]:
+    """The whole band, then its parts, the widest first, down to a factor of 5."""
+    yield low, high
+    for total in range(1, int(2 * np.log2(high / low) + 1e-9) + 1):
+        for a in range(total + 1):
+            bottom, top = low * 2 ** (a / 2), high / 2 ** ((total - a) / 2)
+            if top >= 5 * bottom:
+                yield bottom, top
+
+
+def _beyond(
+    spectrum: Spectrum, plateau: tuple[PowerLaw, float, float], low: float, high: float
+) -> tuple[PowerLaw, tuple[str, ...]]:
+    """The law of the widest band beyond a plateau, or the plateau itself where no band there passes."""
+    flat, start, end = plateau
+    while start < end / 2:
+        start *= 2**0.5
+    for bottom, top in _bands(start, high) if high >= 5 * start else ():
+        try:
+            law = fit(spectrum, bottom, top)
+        except NotConverged:
+            continue
+        if _passes(spectrum, law, bottom, top) and not _is_plateau(law):
+            return law, (*_cut_in_words(low, high, bottom, top), *_roll_off_in_words(spectrum, flat, law))
+    return flat, (
+        *_cut_in_words(low, high, plateau[1], end),
+        f"the waves of {1 / float(flat.used[-1]):.3g} .. {1 / float(flat.used[0]):.3g} m are a plateau of the spectrum and "
+        "no band of shorter waves obeys a power law over a factor of 5: D and G mean nothing; measure with a finer "
+        "spacing",
+    )
+
+
+def _is_plateau(law: PowerLaw) -> bool:
+    """Whether the density does not fall (D above 3), or its slope cannot be told from the white term."""
+    return law.slope < 1 or float(law.covariance[1, 1]) ** 0.5 > 2 * VAGUE
+
+
+def _roll_off_in_words(spectrum: Spectrum, plateau: PowerLaw, law: PowerLaw) -> tuple[str, ...]:
+    """Where the law meets the mean level of the plateau, both as two-sided densities (areal for a scan)."""
+    turn = 1 if spectrum.axes == 2 else 0
+    level = float(np.mean(np.log(plateau.expected / plateau.used**turn)))
+    corner = law.pivot * float(np.exp((law.log_level - turn * np.log(law.pivot) - level) / (law.slope + turn)))
+    return (
+        f"the spectrum is a plateau beyond a roll-off at about {1 / corner:.3g} m; D and G are those of the waves below",
     )
 
 

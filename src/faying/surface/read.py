@@ -1,27 +1,117 @@
 """Instrument files in: X3P and text in the core, everything else through SurfaceTopography when it is installed."""
 
+import zipfile
+from dataclasses import dataclass, replace
+from math import isfinite
 from pathlib import Path
 
 import numpy as np
 
 from faying.errors import FayingError, InputError, ReadError
 from faying.surface.scan import Profile, Scan
+from faying.surface.text import Layout
 
 ASK = 'for example read_scan("{name}", xy_unit="mm", z_unit="um"), or on the command line --xy-unit mm --z-unit um'
+Lengths = float | tuple[float, float] | None
 
 
-def read_scan(path: str | Path, xy_unit: str | None = None, z_unit: str | None = None) -> Scan | Profile:
-    """Read a measured surface: a Scan, or a Profile where the file holds one line.
+@dataclass(frozen=True, kw_only=True)
+class Lateral:
+    """What the caller says of the lateral extent [m]: the size of the scan or the spacing of its points, (x, y)."""
 
-    X3P (ISO 25178-72) and plain text (`x,y,z` on a regular grid, or `x,z`) are read by Faying itself, all other
-    formats by SurfaceTopography when it is installed (`pip install faying[instruments]`).
-    `xy_unit` and `z_unit` (such as "mm", "um") are needed where the file states no unit, and refused where it does.
-    Raises InputError when a unit is needed and not given, or given against the file; ReadError for files that are
-    missing, damaged, of an unknown format, or of implausible size.
+    size: tuple[float, float] | None = None
+    spacing: tuple[float, float] | None = None
+
+    @classmethod
+    def of(cls, size: Lengths, spacing: Lengths) -> "Lateral":
+        """Check and pair the numbers. InputError where both are given, or one is not positive."""
+        if size is not None and spacing is not None:
+            raise InputError("size and spacing: give one of the two, in metres")
+        return cls(size=_pair(size, "size"), spacing=_pair(spacing, "spacing"))
+
+    def __bool__(self) -> bool:
+        return self.size is not None or self.spacing is not None
+
+    def steps(self, nx: int, ny: int) -> tuple[float, float]:
+        """Distances (dx, dy) [m] of a map of nx by ny points."""
+        if self.spacing is not None:
+            return self.spacing
+        assert self.size is not None
+        return self.size[0] / nx, self.size[1] / ny
+
+
+def _pair(value: Lengths, name: str) -> tuple[float, float] | None:
+    if value is None:
+        return None
+    try:
+        pair = (value, value) if isinstance(value, (int, float)) else tuple(value)
+        numbers = tuple(float(v) for v in pair)
+    except (TypeError, ValueError):
+        numbers = ()
+    if len(numbers) != 2 or not all(isfinite(v) and v > 0 for v in numbers):
+        raise InputError(f"{name} = {value!r}: give one positive length in metres or two (x, y), for example 4e-3")
+    return numbers[0], numbers[1]
+
+
+def read_scan(
+    path: str | Path,
+    xy_unit: str | None = None,
+    z_unit: str | None = None,
+    *,
+    size: Lengths = None,
+    spacing: Lengths = None,
+) -> Scan | Profile:
+    """Read a measured surface.
+
+    X3P (ISO 25178-72) and plain text (x,y,z on a regular grid, x,z of a line, or a matrix of heights) are read by
+    Faying itself, all other formats by SurfaceTopography when it is installed (`pip install SurfaceTopography`).
+
+    Args:
+        path: the file.
+        xy_unit: unit of x and y where the file states none, such as "mm".
+        z_unit: unit of the heights where the file states none, such as "um".
+        size: length of the scan [m], one number or (x, y), where the file states none or one that cannot be.
+        spacing: distance between points [m], in place of `size`.
+
+    Returns:
+        Scan, or Profile where the file holds one line.
+
+    Raises:
+        InputError: when a unit or a size is needed and not given, or given against the file.
+        ReadError: for files that are missing, damaged, of an unknown format, or of implausible size.
     """
-    from faying.surface import x3p
-
     file = Path(path)
+    lateral = Lateral.of(size, spacing)
+    head = _head(file)
+    if head[:2] == b"PK" and _is_x3p(file):
+        from faying.surface import x3p
+
+        _no_units(file, xy_unit, z_unit)
+        scan: Scan | Profile = x3p.read(file)
+    elif file.suffix.lower() == ".x3p":
+        raise ReadError(f"{file}: not an X3P (zip) archive; the file is cut off or damaged, export it again")
+    else:
+        scan = _text_or_other(file, xy_unit, z_unit, lateral)
+    scan = _resized(scan, lateral)
+    plausible(scan)
+    return replace(scan, notes=(*scan.notes, *_about_the_end(file, head)))
+
+
+def _about_the_end(file: Path, head: bytes) -> tuple[str, ...]:
+    """A note on a text file whose last line has no end: it may have been cut short."""
+    if b"\0" in head or head[:2] == b"PK" or not _is_text(head):
+        return ()
+    with file.open("rb") as handle:
+        handle.seek(-1, 2)
+        ended = handle.read(1) in b"\r\n\x1a"
+    return () if ended else (f"{file}: the last line has no line break; the file may be cut short",)
+
+
+def _is_text(head: bytes) -> bool:
+    return sum(b in b"\t\n\r\x0c" or b >= 32 for b in head) == len(head)
+
+
+def _head(file: Path) -> bytes:
     if not file.exists():
         raise ReadError(f"{file}: no such file; check the path")
     if not file.is_file():
@@ -33,13 +123,18 @@ def read_scan(path: str | Path, xy_unit: str | None = None, z_unit: str | None =
         raise ReadError(f"{file}: cannot be opened ({fault.strerror}); check the permissions") from None
     if not head.strip(b"\0 \r\n\t"):
         raise ReadError(f"{file}: the file is empty; export it again")
-    if head[:2] == b"PK":
-        _no_units(file, xy_unit, z_unit)
-        scan: Scan | Profile = x3p.read(file)
-    else:
-        scan = _text_or_other(file, xy_unit, z_unit)
-    plausible(scan)
-    return scan
+    return head
+
+
+def _is_x3p(file: Path) -> bool:
+    """Whether a zip archive is an X3P: it holds main.xml, or its name says so. Other formats are zip archives too."""
+    if file.suffix.lower() == ".x3p":
+        return True
+    try:
+        with zipfile.ZipFile(file) as archive:
+            return "main.xml" in archive.namelist()
+    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError):
+        return False
 
 
 def _no_units(file: Path, xy_unit: str | None, z_unit: str | None) -> None:
@@ -47,27 +142,66 @@ def _no_units(file: Path, xy_unit: str | None, z_unit: str | None) -> None:
         raise InputError(f"{file}: the file states its units; leave out xy_unit and z_unit")
 
 
-def _text_or_other(file: Path, xy_unit: str | None, z_unit: str | None) -> Scan | Profile:
-    from faying.surface import text
+def _text_or_other(file: Path, xy_unit: str | None, z_unit: str | None, lateral: Lateral) -> Scan | Profile:
+    from faying.surface import instruments, text
+
+    try:
+        layout = text.layout(file)
+        if layout is None:
+            return instruments.read(file, xy_unit, z_unit, lateral.steps if lateral else None)
+        if layout.units is not None:
+            _no_units(file, xy_unit, z_unit)
+        return text.read(file, layout, _scales(file, layout, xy_unit, z_unit, lateral), lateral.steps)
+    except FayingError:
+        raise
+    except (ValueError, MemoryError, OverflowError) as fault:
+        raise ReadError(f"{file}: the text cannot be read as x,y,z ({fault})") from fault
+
+
+def _scales(
+    file: Path, layout: Layout, xy_unit: str | None, z_unit: str | None, lateral: Lateral
+) -> tuple[float, float, float]:
+    """Metres per unit of x, y and z of a text file."""
     from faying.units import scale
 
-    if file.suffix.lower() == ".x3p":
-        raise ReadError(f"{file}: not an X3P (zip) archive; the file is cut off or damaged, export it again")
-    if text.looks_like(file):
-        if xy_unit is None or z_unit is None:
-            lacking = [n for n, u in (("xy_unit", xy_unit), ("z_unit", z_unit)) if u is None]
+    if layout.units is not None:
+        x, y, z = layout.units
+        return x, y, z
+    if layout.columns > 3:
+        if not lateral or z_unit is None:
             raise InputError(
-                f"{file}: the file states no unit; give {' and '.join(lacking)}, {ASK.format(name=file.name)}"
+                f"{file}: a matrix of heights states neither its size nor a unit; give size or spacing in metres and "
+                f'z_unit, for example read_scan("{file.name}", z_unit="um", size=4e-3)'
             )
-        try:
-            return text.read(file, scale(xy_unit, "m", name="xy_unit"), scale(z_unit, "m", name="z_unit"))
-        except FayingError:
-            raise
-        except (ValueError, MemoryError, OverflowError) as fault:
-            raise ReadError(f"{file}: the text cannot be read as x,y,z ({fault})") from fault
-    from faying.surface import instruments
+        return 1.0, 1.0, scale(z_unit, "m", name="z_unit")
+    if xy_unit is None or z_unit is None:
+        lacking = [n for n, u in (("xy_unit", xy_unit), ("z_unit", z_unit)) if u is None]
+        raise InputError(f"{file}: the file states no unit; give {' and '.join(lacking)}, {ASK.format(name=file.name)}")
+    xy = scale(xy_unit, "m", name="xy_unit")
+    return xy, xy, scale(z_unit, "m", name="z_unit")
 
-    return instruments.read(file, xy_unit, z_unit)
+
+def _resized(scan: Scan | Profile, lateral: Lateral) -> Scan | Profile:
+    """The scan with the extent that the caller gives, where its own cannot be. InputError where it can."""
+    if not lateral:
+        return scan
+    counts = scan.heights.shape
+    steps = lateral.steps(counts[-1], counts[0])
+    own = scan.spacing if isinstance(scan, Scan) else (scan.spacing, steps[1])
+    if all(abs(a / b - 1) < 1e-6 for a, b in zip(steps, own, strict=True)):
+        return scan
+    sizes = scan.size if isinstance(scan, Scan) else (scan.length,)
+    if _believable(sizes, own):
+        shown = " x ".join(f"{s:.4g} m" for s in sizes)
+        raise InputError(f"{scan.source}: the file states its size, {shown}; leave out size and spacing")
+    notes = (*scan.notes, "the size is that given by the caller, in place of what the file states")
+    if isinstance(scan, Scan):
+        return replace(scan, spacing=steps, notes=notes)
+    return replace(scan, spacing=steps[0], notes=notes)
+
+
+def _believable(sizes: tuple[float, ...], spacing: tuple[float, ...]) -> bool:
+    return max(sizes) <= 10 and min(spacing) >= 1e-11
 
 
 def plausible(scan: Scan | Profile) -> None:
@@ -75,15 +209,18 @@ def plausible(scan: Scan | Profile) -> None:
     sizes = scan.size if isinstance(scan, Scan) else (scan.length,)
     spacing = scan.spacing if isinstance(scan, Scan) else (scan.spacing,)
     hint = "check the unit that the file states or that you gave"
-    if max(sizes) > 10 or min(spacing) < 1e-11:
+    if not _believable(sizes, spacing):
         shown = " x ".join(f"{s:.3g} m" for s in sizes)
-        raise ReadError(f"{scan.source}: a scan of {shown} with points {min(spacing):.3g} m apart; {hint}")
+        raise ReadError(
+            f"{scan.source}: a scan of {shown} with points {min(spacing):.3g} m apart; {hint}, or give the scan's true "
+            "size or spacing in metres (size=4e-3)"
+        )
     known = scan.heights[~np.isnan(scan.heights)]
     if known.size == 0:
         raise ReadError(f"{scan.source}: every point is missing; measure the surface again")
     low, high = np.quantile(known, [0.05, 0.95])
-    reach = float(high - low)
-    if reach > 3 * max(sizes):
-        raise ReadError(f"{scan.source}: heights over {reach:.3g} m on a scan of {max(sizes):.3g} m; {hint}")
-    if 0 < reach < max(1e-13, 1e-10 * max(sizes)):
-        raise ReadError(f"{scan.source}: heights over {reach:.3g} m, less than an atom; {hint}")
+    span = float(high - low)
+    if span > 3 * max(sizes):
+        raise ReadError(f"{scan.source}: heights over {span:.3g} m on a scan of {max(sizes):.3g} m; {hint}")
+    if 0 < span < max(1e-13, 1e-10 * max(sizes)):
+        raise ReadError(f"{scan.source}: heights over {span:.3g} m, less than an atom; {hint}")

@@ -6,7 +6,8 @@ from typing import Any, Self, final
 
 import numpy as np
 
-from faying.errors import InputError
+from faying.errors import InputError, ReadError
+from faying.memory import GB, available
 from faying.typing import Array
 
 
@@ -22,6 +23,19 @@ class Instrument:
     tip_radius: float | None = None
     resolution: float | None = None
     noise: float | None = None
+
+
+BYTES = 160.0  # at the peak of reading and preparing, for each point
+
+
+def check_points(source: str, count: float) -> None:
+    """Raise ReadError where a scan of so many points does not fit into the machine's free memory."""
+    need, free = BYTES * count, available()
+    if free is not None and need > free:
+        raise ReadError(
+            f"{source}: {count:.3g} points need about {need / GB:.3g} GB and {free / GB:.3g} GB are free; crop the scan or "
+            "take every second point before reading it, or set FAYING_MEMORY to the GB that may be taken"
+        )
 
 
 def _frozen(heights: Any, dimensions: int, name: str) -> Array:
@@ -62,6 +76,7 @@ class Scan:
         source: the file or recipe.
         instrument: the limits that the file states.
         history: what was done to the heights since.
+        notes: what a reader of the results should know of the file.
 
     Raises:
         InputError: for heights that are not two-dimensional or not finite, and spacings that are not positive.
@@ -72,6 +87,7 @@ class Scan:
     source: str = "array"
     instrument: Instrument = field(default_factory=Instrument)
     history: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "heights", _frozen(self.heights, 2, "Scan"))
@@ -136,6 +152,7 @@ class Scan:
             source=self.source,
             instrument=self.instrument,
             history=(*self.history, f"profile {index} along {along}"),
+            notes=self.notes,
         )
 
 
@@ -150,6 +167,7 @@ class Profile:
         source: the file or recipe.
         instrument: the limits that the file states.
         history: what was done to the heights since.
+        notes: what a reader of the results should know of the file.
 
     Raises:
         InputError: as for Scan.
@@ -160,6 +178,7 @@ class Profile:
     source: str = "array"
     instrument: Instrument = field(default_factory=Instrument)
     history: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "heights", _frozen(self.heights, 1, "Profile"))

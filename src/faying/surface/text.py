@@ -1,15 +1,20 @@
-"""Text files of points: x, y, z on a regular grid (Nanovea and the like), or x, z of a line; no unit inside."""
+"""Text files of points: x, y, z on a regular grid (Nanovea and the like), x, z of a line, or a matrix of heights."""
 
 import re
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from faying.errors import ReadError
+from faying.files import refuse_decimal_comma
 from faying.surface.scan import Profile, Scan
 from faying.typing import Array
+from faying.units import scale
 
-SUFFIXES = (".csv", ".txt", ".xyz", ".dat", ".asc")
+Steps = Callable[[int, int], tuple[float, float]]
+_COLUMN = re.compile(r"([xyzXYZ])\s*[\[(]\s*([^\])]+?)\s*[\])]")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$")
 _MISSING = {"", "nan", "na", "n/a", "bad", "---", "***", "*"}
 
@@ -23,47 +28,94 @@ def _value(word: str) -> float | None:
 
 def _row(line: str) -> list[float] | None:
     """Numbers of a line, or None where it is a heading."""
-    words = line.split(",") if "," in line else line.split(";") if ";" in line else line.split()
+    words = line.split(";") if ";" in line else line.split(",") if "," in line else line.split()
     while len(words) > 2 and not words[-1].strip():
         words.pop()
     values = [_value(w) for w in words]
     return None if len(values) < 2 or any(v is None for v in values) else [v for v in values if v is not None]
 
 
-def looks_like(path: Path) -> bool:
-    """Whether the file is text whose lines hold two or three numbers after at most 30 lines of heading."""
+@dataclass(frozen=True, kw_only=True)
+class Layout:
+    """How a text file is laid out: numbers in a row (2: x,z; 3: x,y,z; more: a matrix of heights), lines of heading,
+    and metres per unit of x, y and z where the heading states them."""
+
+    columns: int
+    heading: int
+    units: tuple[float, float, float] | None = None
+
+
+def layout(path: Path) -> Layout | None:
+    """Return the layout of a text of numbers, None for any other file.
+
+    A heading is one line such as "x [mm],y [mm],z [um]"; a matrix has none and four numbers in a row or more. Raises
+    ReadError for decimal commas.
+    """
     with path.open("rb") as handle:
-        head = handle.read(8192)
+        head = handle.read(65536)
     if not head.strip() or b"\0" in head:
-        return False
-    lines = head.decode("latin-1").splitlines()
-    rows = [_row(line) for line in lines[:-1] or lines if line.strip()]
-    good = [r for r in rows[:31] if r is not None and len(r) in (2, 3)]
-    return len(good) >= 1 and rows[0] is not None
+        return None
+    lines = [line for line in head.decode("utf-8-sig", "replace").splitlines() if line.strip()]
+    lines = [line for line in lines if not line.lstrip().startswith("#")]
+    units = _heading(lines[0], path) if lines else None
+    rows = lines[1:] if units else lines
+    for line in rows[:1]:
+        refuse_decimal_comma(line, str(path))
+    found = [_row(line) for line in (rows[:-1] or rows)[:31]]
+    if not found or found[0] is None:
+        return None
+    if units is not None:
+        return Layout(columns=len(found[0]), heading=1, units=units)
+    if any(row is not None and len(row) in (2, 3) for row in found):
+        return Layout(columns=len(found[0]), heading=0) if len(found[0]) in (2, 3) else None
+    alike = sum(row is not None and len(row) == len(found[0]) for row in found)
+    if len(rows) > 2 and len(found[0]) > 3 and alike > len(found) / 2:
+        return Layout(columns=len(found[0]), heading=0)
+    return None
 
 
-def read(path: Path, xy: float, z: float) -> Scan | Profile:
-    """Read the points; `xy` and `z` are metres per unit of the file. ReadError for anything but a regular grid."""
-    data = _table(path)
-    if data.shape[1] == 2:
-        return _line(path, data, xy, z)
-    return _grid(path, data, xy, z)
+def _heading(line: str, path: Path) -> tuple[float, float, float] | None:
+    """Metres per unit of x, y and z from "x [mm],y [mm],z [um]" (or x, z), None where the line is no such heading."""
+    cells = [_COLUMN.fullmatch(cell.strip()) for cell in re.split(r"[,;\t]", line.strip())]
+    names = [cell[1].lower() for cell in cells if cell]
+    if len(names) != len(cells) or names not in (["x", "y", "z"], ["x", "z"]):
+        return None
+    factors = [
+        scale(cell[2].replace("µ", "u").replace("μ", "u"), "m", name=f"{path}, heading") for cell in cells if cell
+    ]
+    return factors[0], factors[-2], factors[-1]
 
 
-def _table(path: Path) -> Array:
-    text = path.read_text(encoding="latin-1")
+def read(path: Path, how: Layout, scales: tuple[float, float, float], steps: Steps) -> Scan | Profile:
+    """Read the points; `scales` are metres per unit of x, y, z, `steps` gives a matrix's spacing from its points.
+
+    Raises ReadError for anything but a regular grid.
+    """
+    data = _table(path, how)
+    x, y, z = scales
+    if how.columns > 3:
+        ny, nx = data.shape
+        return Scan(heights=data * z, spacing=steps(nx, ny), source=str(path))
+    return _line(path, data, x, z) if how.columns == 2 else _grid(path, data, x, y, z)
+
+
+def _table(path: Path, how: Layout) -> Array:
     rows: list[list[float]] = []
-    columns = 0
-    for number, line in enumerate(text.splitlines(), 1):
+    skip = how.heading
+    expected = "x,y,z (or x,z)" if how.columns < 4 else f"a row of {how.columns} heights"
+    for number, line in enumerate(path.read_text(encoding="utf-8-sig", errors="replace").splitlines(), 1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
+        if skip:
+            skip -= 1
+            continue
         values = _row(line)
-        if values is None or len(values) not in (2, 3) or (columns and len(values) != columns):
+        if values is None or len(values) != how.columns:
+            refuse_decimal_comma(line, f"{path}, line {number}")
             shown = line.strip()[:40]
-            raise ReadError(f'{path}: line {number} "{shown}" is not x,y,z (or x,z) in numbers; the file is damaged')
-        columns = len(values)
+            raise ReadError(f'{path}: line {number} "{shown}" is not {expected} in numbers; the file is damaged')
         rows.append(values)
-    if len(rows) < 4:
+    if len(rows) < (4 if how.columns < 4 else 2):
         raise ReadError(f"{path}: {len(rows)} points; a scan needs at least 2 x 2, the file is empty or cut off")
     return np.array(rows)
 
@@ -87,7 +139,7 @@ def _axis(values: Array, path: Path, name: str) -> tuple[Array, float]:
     return index.astype(np.int64), step
 
 
-def _grid(path: Path, data: Array, xy: float, z: float) -> Scan:
+def _grid(path: Path, data: Array, x: float, y: float, z: float) -> Scan:
     ix, dx = _axis(data[:, 0], path, "x")
     iy, dy = _axis(data[:, 1], path, "y")
     nx, ny = int(ix.max()) + 1, int(iy.max()) + 1
@@ -100,16 +152,16 @@ def _grid(path: Path, data: Array, xy: float, z: float) -> Scan:
         raise ReadError(f"{path}: the last row holds fewer points than the others; the file is cut off")
     heights = np.full(nx * ny, np.nan)
     heights[cells] = data[:, 2]
-    return Scan(heights=heights.reshape(ny, nx) * z, spacing=(dx * xy, dy * xy), source=str(path))
+    return Scan(heights=heights.reshape(ny, nx) * z, spacing=(dx * x, dy * y), source=str(path))
 
 
-def _line(path: Path, data: Array, xy: float, z: float) -> Profile:
+def _line(path: Path, data: Array, x: float, z: float) -> Profile:
     ix, dx = _axis(data[:, 0], path, "x")
     if len(np.unique(ix)) != len(ix):
         raise ReadError(f"{path}: two points share one x; a line scan has one height for each x")
     heights = np.full(int(ix.max()) + 1, np.nan)
     heights[ix] = data[:, 1]
-    return Profile(heights=heights * z, spacing=dx * xy, source=str(path))
+    return Profile(heights=heights * z, spacing=dx * x, source=str(path))
 
 
 def write(scan: Scan | Profile, path: Path, *, xy: float, z: float) -> None:

@@ -16,14 +16,14 @@ from xml.etree import ElementTree
 import numpy as np
 
 from faying.errors import InputError, ReadError
-from faying.surface.scan import Instrument, Profile, Scan
+from faying.surface.scan import Instrument, Profile, Scan, check_points
 from faying.typing import Array
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 NUMBERS = {"I": "<i2", "L": "<i4", "F": "<f4", "D": "<f8"}
-LARGEST_XML = 64 * 2**20
+LARGEST_XML = 64 * 2**20  # with heights in it; ISO 25178-72 puts larger scans in a block of binary data
 LARGEST_HEIGHTS = 4 * 2**30
 NAMESPACE = "http://www.opengps.eu/2008/ISO5436_2"
 TEMPLATE = """<?xml version="1.0" encoding="UTF-8" standalone="no" ?>
@@ -109,7 +109,7 @@ def read(path: Path) -> Scan | Profile:
     """Read an X3P file: surface (SUR) or profile (PRF), heights in metres. ReadError where it is damaged."""
     try:
         archive = zipfile.ZipFile(path)
-    except (zipfile.BadZipFile, OSError, ValueError) as fault:
+    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as fault:
         raise ReadError(
             f"{path}: not a readable X3P (zip) archive ({fault}); the file is cut off or damaged"
         ) from fault
@@ -165,6 +165,7 @@ def _heights(archive: zipfile.ZipFile, root: ElementTree.Element, path: Path) ->
     kind = np.dtype(NUMBERS[code])
     if prod((nx, ny, kind.itemsize)) > LARGEST_HEIGHTS:
         raise ReadError(f"{path}: a matrix of {nx} x {ny} points is more than can be read; crop the scan")
+    check_points(str(path), float(nx * ny))
     link = _text(root, "Record3", "DataLink", "PointDataLink")
     missing = np.zeros((ny, nx), bool)
     if link:
@@ -185,7 +186,8 @@ def _heights(archive: zipfile.ZipFile, root: ElementTree.Element, path: Path) ->
                 raise ReadError(f"{path}: {mask} marks {bits.size} points of {nx * ny}; the file is cut off")
             missing = bits[: nx * ny].reshape(ny, nx) == 0
         return z, missing
-    texts = [(found.text or "").strip() for found in _walk(root, "Record3", "DataList", "Datum")]
+    lists = _walk(root, "Record3", "DataList")
+    texts = [(found.text or "").strip() for part in lists for found in part if _strip(found.tag) == "Datum"]
     if len(texts) != nx * ny:
         raise ReadError(f"{path}: main.xml lists {len(texts)} heights where {nx} x {ny} are due")
     try:

@@ -57,7 +57,7 @@ class AsperityModel(ABC):
 
     name: ClassVar[str]
     source: ClassVar[str]
-    ground: ClassVar[str]
+    validity: ClassVar[str]
 
     def __post_init__(self) -> None:
         if not 0 < self.R < np.inf:

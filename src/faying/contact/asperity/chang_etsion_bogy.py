@@ -17,7 +17,7 @@ class ChangEtsionBogy(PowerModel):
 
     name: ClassVar[str] = "CEB"
     source: ClassVar[str] = "doi:10.1115/1.3261348"
-    ground: ClassVar[str] = "near yield; no elastic-plastic range, mean pressure stays at K H"
+    validity: ClassVar[str] = "near yield; no elastic-plastic range, mean pressure stays at K H"
 
     @property
     def pieces(self) -> tuple[Piece, ...]:

@@ -25,7 +25,7 @@ class Ghaednia(JacksonGreenBase):
 
     name: ClassVar[str] = "Ghaednia"
     source: ClassVar[str] = "doi:10.1115/1.4041537"
-    ground: ClassVar[str] = "contact radius below 0.41 R; bilinear hardening"
+    validity: ClassVar[str] = "contact radius below 0.41 R; bilinear hardening"
 
     def __post_init__(self) -> None:
         super().__post_init__()

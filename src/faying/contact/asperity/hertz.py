@@ -14,7 +14,7 @@ class Hertz(PowerModel):
 
     name: ClassVar[str] = "Hertz"
     source: ClassVar[str] = "doi:10.1515/crll.1882.92.156"
-    ground: ClassVar[str] = "elastic, contact radius small against R"
+    validity: ClassVar[str] = "elastic, contact radius small against R"
 
     @property
     def critical(self) -> float:

@@ -88,7 +88,7 @@ class JacksonGreen(JacksonGreenBase):
 
     name: ClassVar[str] = "JG"
     source: ClassVar[str] = "doi:10.1115/1.1866166"
-    ground: ClassVar[str] = "contact radius below 0.41 R; elastic, perfectly plastic"
+    validity: ClassVar[str] = "contact radius below 0.41 R; elastic, perfectly plastic"
 
     def __post_init__(self) -> None:
         super().__post_init__()

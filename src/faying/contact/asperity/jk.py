@@ -33,7 +33,7 @@ class JK(PowerModel):
 
     name: ClassVar[str] = "JK"
     source: ClassVar[str] = "doi:10.3390/fractalfract8100611"
-    ground: ClassVar[str] = "as LL-2005; the substrate's share from an elastic model"
+    validity: ClassVar[str] = "as LL-2005; the substrate's share from an elastic model"
 
     def __post_init__(self) -> None:
         super().__post_init__()

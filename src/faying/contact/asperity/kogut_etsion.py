@@ -17,7 +17,7 @@ class KogutEtsion(PowerModel):
 
     name: ClassVar[str] = "KE"
     source: ClassVar[str] = "doi:10.1115/1.1490373"
-    ground: ClassVar[str] = "x up to 110; fitted to elastic, perfectly plastic spheres with nu = 0.3"
+    validity: ClassVar[str] = "x up to 110; fitted to elastic, perfectly plastic spheres with nu = 0.3"
 
     @property
     def pieces(self) -> tuple[Piece, ...]:

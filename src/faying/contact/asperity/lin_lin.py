@@ -17,7 +17,7 @@ class LinLin(PowerModel):
 
     name: ClassVar[str] = "LL-2005"
     source: ClassVar[str] = "doi:10.1115/1.1843830"
-    ground: ClassVar[str] = "elastic, perfectly plastic; full plasticity at 400 times the load of first yield"
+    validity: ClassVar[str] = "elastic, perfectly plastic; full plasticity at 400 times the load of first yield"
 
     @property
     def pieces(self) -> tuple[Piece, ...]:

@@ -23,7 +23,7 @@ class ZhaoMaiettaChang(AsperityModel):
 
     name: ClassVar[str] = "ZMC"
     source: ClassVar[str] = "doi:10.1115/1.555332"
-    ground: ClassVar[str] = "elastic, perfectly plastic; full plasticity at 54 d1"
+    validity: ClassVar[str] = "elastic, perfectly plastic; full plasticity at 54 d1"
 
     @property
     def critical(self) -> float:

@@ -30,7 +30,7 @@ class ZX(AsperityModel):
 
     name: ClassVar[str] = "ZX (reconstructed)"
     source: ClassVar[str] = "doi:10.3390/fractalfract8100611"
-    ground: ClassVar[str] = "none known: it goes from plastic to elastic as load grows"
+    validity: ClassVar[str] = "none known: it goes from plastic to elastic as load grows"
 
     def __post_init__(self) -> None:
         super().__post_init__()

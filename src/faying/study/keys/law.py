@@ -2,9 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from typing import Literal
 
-from faying.contact.build import LawKind, build, check_entries, find
+from faying.contact.build import LawKind, build, check_entries, find, laws
+from faying.contact.inputs import RoughSurface
 from faying.contact.law import ContactLaw
 from faying.errors import InputError
 from faying.materials import CATALOGUE, RIGID, ContactPair, Material
@@ -22,6 +24,9 @@ class LawChoice:
     model: str = "JK"
     counterbody: Literal["part", "rigid"] = "part"
     given: Mapping[str, object] = field(default_factory=dict)
+    meant: frozenset[str] = field(
+        default=frozenset(), repr=False, compare=False
+    )  # with a fault of their own, or misspelt
 
     @classmethod
     def of(cls, table: Table) -> "LawChoice":
@@ -29,7 +34,7 @@ class LawChoice:
         kind = table.take("model", lambda value, name: find(_text(value, name)), None)
         counterbody = table.text("counterbody", "part", ("part", "rigid"))
         if kind is None and "model" in table.data:
-            return cls()  # the fault is noted; the other keys cannot be judged
+            return cls.unknown()
         kind = kind or find(cls.model)
         given = {}
         for name, parameter in kind.law.entries().items():
@@ -41,13 +46,31 @@ class LawChoice:
                 table.data.pop(name)
             elif (value := table.parameter(name, parameter)) is not None:
                 given[name] = value
-        _note_misplaced(table, kind)
+        if kind.law.joint_fault:
+            table.faults.add(f'{table.where}.model = "{kind.label.lower()}" {kind.law.joint_fault}')
+            return cls.unknown()
+        moved = _note_misplaced(table, kind)
+        meant = {name for name in kind.law.entries() if name in table.data and name not in given}
+        for key in table.data:
+            if not table.known(key):
+                meant |= set(get_close_matches(key, kind.law.entries(), n=1))
         table.close()
-        choice = cls(model=kind.label, counterbody=counterbody, given=given)
-        if not choice.needs_surface and not table.faults.lines:
+        # keys of another law: it may be meant, which needs no surface
+        choice = cls(
+            model=kind.label,
+            counterbody=counterbody,
+            given=given,
+            meant=frozenset(kind.law.entries() if moved else meant),
+        )
+        if not choice.missing:
             steel = CATALOGUE["45 steel"]  # faults of a law that needs no surface show at once, whatever the material
             table.made(lambda: build(kind, given, None, ContactPair(steel, steel)))
         return choice
+
+    @classmethod
+    def unknown(cls) -> "LawChoice":
+        """Stands for a law whose fault is noted already, so that nothing more is said of it."""
+        return cls(meant=frozenset(find(cls.model).law.entries()))
 
     @property
     def kind(self) -> LawKind:
@@ -69,24 +92,17 @@ class LawChoice:
         entries = self.kind.law.entries()
         rank = ("nothing", "fractal", "moments", "scan")
         there = {"no": 0, "fractal": 1, "scan": 3}[surface]
-        wanted = {name: rank.index(_needed(entries[name].surface)) for name in self.missing}
+        wanted = {name: rank.index(RoughSurface.needed_for([entries[name].surface])) for name in self.missing}
         short = [name for name in self.missing if not entries[name].surface or wanted[name] > there]
-        if not short:
-            return ""
-        if surface == "no" and all(entries[name].surface for name in short) and set(short) & {*OF_SURFACE, "scan"}:
-            return f'[surface] is missing; model = "{self.model}" takes its inputs from a surface there'
-        return f"law: {self.kind.describe_missing(short, with_scan=surface == 'scan')}"
+        short = [name for name in short if name not in self.meant]
+        if surface == "no" and set(short) & {*OF_SURFACE, "scan"}:
+            return f'[surface] is missing; model = "{self.model.lower()}" takes its inputs from a surface there'
+        return self.kind.describe_missing(short, with_scan=surface == "scan") if short else ""
 
     def make(self, surface: Surface, rough: Material, other: Material) -> ContactLaw:
         """Return the law between the rough material and the other one. Raises InputError as `build`."""
         pair = ContactPair(rough, RIGID if self.counterbody == "rigid" else other)
         return build(self.kind, self.given, surface.rough, pair)
-
-
-def _needed(number: str) -> str:
-    from faying.contact.inputs import RoughSurface
-
-    return RoughSurface.needed_for((number,))
 
 
 def _text(value: object, name: str) -> str:
@@ -95,13 +111,14 @@ def _text(value: object, name: str) -> str:
     return value
 
 
-def _note_misplaced(table: Table, kind: LawKind) -> None:
-    """Note keys that are entries of other laws, each with the laws that have it."""
-    from faying.contact.build import laws
-
+def _note_misplaced(table: Table, kind: LawKind) -> bool:
+    """Note keys that are entries of other laws, each with the laws that have it; whether there were some."""
+    found = False
     for key in [key for key in table.data if not table.known(key)]:
-        owners = [law.name for law in laws().values() if key in law.entries() and key not in kind.law.entries()]
+        owners = [law.name for law in laws().values() if key in law.entries()]
         if owners:
             names = " or ".join(f'"{name.lower()}"' for name in owners)
             table.faults.add(f'{table.where}.{key} goes with model = {names}, not "{kind.label.lower()}"')
             table.data.pop(key)
+            found = True
+    return found

@@ -1,6 +1,6 @@
 """[surface]: the scan of a rough face, or its D, G and area; read and fitted in one place."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -69,8 +69,8 @@ class SurfaceChoice:
             ready = prepared(scan)
             # slopes and curvatures come from measured heights alone: points that were filled in would smooth them
             measured = np.where(ready.known, ready.scan.heights, np.nan)
-            inputs = SurfaceInputs.from_heights(measured, ready.scan.spacing, **fractal)
-            rough = RoughSurface(inputs=inputs, scan=ready.scan)
+            inputs = SurfaceInputs.from_heights(measured, ready.scan.spacing, D=fractal["D"], G=fractal["G"])
+            rough = RoughSurface(inputs=replace(inputs, **fractal), scan=ready.scan)
         source = f"scan {self.scan.name}: {' x '.join(map(str, scan.heights.shape))} points"
         return Surface(rough=rough, origin=self.scan.name, fit=fit, source=source)
 

@@ -1,0 +1,118 @@
+"""Reads inputs named on standard input, one "reader<TAB>path" a line, and answers each with a line of JSON.
+
+An answer is {"outcome": "read" | "refused" | "fault", "text": ...}. A crash, a hang or a want of memory shows in the
+parent: the answer does not come.
+"""
+
+import json
+import resource
+import sys
+import traceback
+import warnings
+from pathlib import Path
+
+MEMORY = 2 * 2**30  # beyond what the imports take
+
+
+def scan(path, **given):
+    from faying import read_scan
+
+    return read_scan(path, **given).heights.size
+
+
+def uff(path):
+    from faying import FayingError, read_uff
+
+    file = read_uff(path)
+    size = len(file.functions) + len(file.shapes)
+    for read in (file.modes, file.frf):
+        try:
+            read()
+        except FayingError:
+            continue
+    return size
+
+
+def frf_text(path):
+    from faying.measured.text import read_frf_text
+
+    return read_frf_text([path], quantity="accelerance", frequency_step=1.0).values.size
+
+
+def points(path):
+    from faying.measured.mapping import read_points
+
+    return len(read_points(path))
+
+
+def numbers(path):
+    from faying.files import read_numbers
+
+    return len(read_numbers(Path(path), 2, "p, k"))
+
+
+def mesh(path):
+    from faying import read_mesh
+
+    return len(read_mesh(path, unit="mm").points)
+
+
+def matrices(path, **given):
+    from faying import read_matrices
+
+    return read_matrices(path, stiffness_unit="N/m", mass_unit="kg", **given)[0].nnz
+
+
+def beside(path, name):
+    return str(Path(path).with_name(name))
+
+
+def study(path):
+    from faying.study import Study
+
+    Study.read(path)
+    return 1
+
+
+READERS = {
+    "scan": scan,
+    "scan units": lambda path: scan(path, xy_unit="mm", z_unit="um"),
+    "scan matrix": lambda path: scan(path, z_unit="nm", size=40e-6),
+    "uff": uff,
+    "frf text": frf_text,
+    "points": points,
+    "numbers": numbers,
+    "mesh": mesh,
+    "mtx": lambda path: matrices(path, mass=beside(path, "m.mtx"), dofs=beside(path, "dofs.txt")),
+    "sti": matrices,
+    "study": study,
+}
+
+
+def main():
+
+    import faying
+    from faying import FayingError
+    from faying.surface import instruments
+
+    instruments._library()
+
+    faying.read_mesh, faying.read_matrices, faying.read_scan, faying.read_uff, faying.Study  # noqa: B018  loaded now
+    taken = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_AS, (taken + MEMORY, taken + MEMORY))
+    warnings.simplefilter("ignore")
+    for line in sys.stdin:
+        reader, path = line.rstrip("\n").split("\t")
+        try:
+            answer = {"outcome": "read", "text": str(READERS[reader](path))}
+        except FayingError as fault:
+            answer = {"outcome": "refused", "text": str(fault)}
+        except BaseException as fault:
+            last = traceback.extract_tb(fault.__traceback__)
+            ours = [f"{Path(f.filename).name}:{f.lineno}" for f in last if "faying" in f.filename][-2:]
+            answer = {"outcome": "fault", "text": f"{type(fault).__name__}: {str(fault)[:120]} at {' < '.join(ours)}"}
+        print(json.dumps(answer), flush=True)
+
+
+if __name__ == "__main__":
+    main()

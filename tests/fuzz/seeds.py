@@ -1,0 +1,148 @@
+"""Small valid inputs of every reader, written into a folder; each with the name of its reader in `child.READERS`."""
+
+import zipfile
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.io import mmwrite
+
+from faying import FRF, write_scan, write_uff
+from faying.measured.modes import ModeSet
+from faying.surface.synthesize import spectral
+from tests.helpers import meshfiles
+from tests.helpers.blocks import row
+from tests.helpers.boxes import stack
+
+STUDY = (
+    meshfiles.STUDY
+    + """
+[law]
+model = "jk"
+shear_ratio = 0.2
+[[mass]]
+face = "p0.left"
+mass = "20 g"
+[response]
+from = "1 kHz"
+to = "8 kHz"
+points = 20
+[[response.input]]
+point = ["1 mm", "2 mm", "0 mm"]
+direction = [0, 0, 1]
+[[response.output]]
+point = ["1 mm", "2 mm", "0 mm"]
+direction = [0, 0, 1]
+"""
+)
+
+
+def scans(folder):
+    scan = spectral((20, 24), spacing=(2e-6, 3e-6), D=2.4, Rq=1e-6, seed=1)
+    for precision in "FI":
+        yield "scan", write_scan(scan, folder / f"{precision}.x3p", precision=precision)
+    with zipfile.ZipFile(folder / "F.x3p") as old, zipfile.ZipFile(folder / "stored.x3p", "w") as new:
+        for name in old.namelist():
+            new.writestr(name, old.read(name))
+    yield "scan", folder / "stored.x3p"
+    yield "scan units", write_scan(scan, folder / "a.csv", xy_unit="mm", z_unit="um")
+    headed = folder / "headed.csv"
+    headed.write_text("x [mm],y [mm],z [um]\n" + (folder / "a.csv").read_text())
+    yield "scan", headed
+    np.savetxt(folder / "matrix.txt", scan.heights[:12] * 1e9, fmt="%.4f", delimiter="\t")
+    yield "scan matrix", folder / "matrix.txt"
+    line = spectral(60, spacing=1e-6, D=2.4, Rq=1e-6)
+    yield "scan units", write_scan(line, folder / "line.txt", xy_unit="um", z_unit="nm")
+
+
+def tests_of_hammers(folder):
+    rng = np.random.default_rng(1)
+    positions = {k: tuple(rng.uniform(0, 1, 3)) for k in (1, 2, 3)}
+    frf = FRF(
+        frequency=np.arange(1.0, 21.0),
+        values=rng.standard_normal((3, 1, 20)) + 1j * rng.standard_normal((3, 1, 20)),
+        outputs=((1, "x"), (2, "-z"), (3, "z")),
+        inputs=((1, "z"),),
+        quantity="accelerance",
+        positions=positions,
+    )
+    modes = [
+        ModeSet(
+            frequencies=np.array([100.0, 250.0]),
+            loss_factors=np.array([0.01, 0.02]),
+            shapes=shapes,
+            dofs=tuple((k, d) for k in (1, 2, 3) for d in "xyz"),
+            positions=positions,
+        )
+        for shapes in (rng.standard_normal((2, 9)) + 0j, rng.standard_normal((2, 9)) + 1j * rng.standard_normal((2, 9)))
+    ]
+    yield "uff", write_uff(folder / "frf.uff", frf)
+    yield "uff", write_uff(folder / "real.uff", modes[0])
+    yield "uff", write_uff(folder / "complex.uff", modes[1], frf)
+    table = np.column_stack([frf.frequency, frf.values[0, 0].real, frf.values[0, 0].imag])
+    np.savetxt(folder / "frf.csv", table, fmt="%.8g", delimiter=",", header="f,re,im", comments="")
+    yield "frf text", folder / "frf.csv"
+    (folder / "frf.txt").write_text("\n".join(str(complex(v)) for v in frf.values[0, 0]))
+    yield "frf text", folder / "frf.txt"
+    (folder / "points.csv").write_text(
+        "point,x [mm],y [mm],z [mm]\n" + "\n".join(f"{k},{k}.5,{2 * k},0" for k in range(1, 9))
+    )
+    yield "points", folder / "points.csv"
+    (folder / "table.csv").write_text(
+        "pressure,stiffness\n" + "\n".join(f"{k}e6, {k**0.5:.5f}e13" for k in range(1, 12))
+    )
+    yield "numbers", folder / "table.csv"
+
+
+def meshes(folder):
+    mesh = row([0.05, 0.04], [2, 1], kinds=("hex8", "tet10"), sections=((2, 1), (2, 1)), width=0.02, height=0.01)
+    for name, text in {
+        "flat.inp": meshfiles.abaqus(mesh),
+        "assembly.inp": meshfiles.assembly(mesh),
+        "small.bdf": meshfiles.nastran(mesh),
+        "two.msh": meshfiles.gmsh(mesh),
+        "four.msh": meshfiles.gmsh(mesh, version="4.1"),
+        "a.cdb": meshfiles.ansys(mesh),
+    }.items():
+        (folder / name).write_text(text)
+        yield "mesh", folder / name
+
+
+def matrices(folder):
+    from faying import Material
+    from faying.fe.elasticity import assemble
+
+    mesh = stack([0.02], [2], width=0.01, height=0.01, sections=[(1, 1)])
+    K, M = (sp.csr_matrix(A) for A in assemble(mesh, {"p0": Material(name="s", E=2e11, nu=0.3, density=7800.0)})[:2])
+    mmwrite(folder / "k.mtx", K, precision=12)
+    mmwrite(folder / "m.mtx", M, precision=12)
+    nodes = np.repeat(np.arange(1, K.shape[0] // 3 + 1), 3)
+    (folder / "dofs.txt").write_text(
+        "".join(f"{n} {d}\n" for n, d in zip(nodes, np.tile([1, 2, 3], len(nodes)), strict=False))
+    )
+    yield "mtx", folder / "k.mtx"
+    for name, A in (("job.sti", K), ("job.mas", M)):
+        low = sp.tril(A).tocoo()
+        lines = [f"{i + 1} {j + 1} {v:.12e}" for i, j, v in zip(low.row, low.col, low.data, strict=True)]
+        (folder / name).write_text("\n".join(lines) + "\n")
+    (folder / "job.dof").write_text(
+        "".join(f"{n}.{d}\n" for n, d in zip(nodes, np.tile([1, 2, 3], len(nodes)), strict=False))
+    )
+    yield "sti", folder / "job.sti"
+
+
+def studies(folder):
+    (folder / "study.toml").write_text(STUDY)
+    mesh = row([0.05, 0.04], [2, 1], kinds=("hex8", "hex8"), sections=((2, 1), (2, 1)), width=0.02, height=0.01)
+    (folder / "model.inp").write_text(meshfiles.abaqus(mesh))
+    yield "study", folder / "study.toml"
+
+
+def written(folder):
+    """(reader, path) of every seed."""
+    return [
+        *scans(folder),
+        *tests_of_hammers(folder),
+        *meshes(folder),
+        *matrices(folder),
+        *studies(folder),
+    ]
