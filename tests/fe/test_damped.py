@@ -95,7 +95,10 @@ def test_a_loss_that_is_too_great_is_told():
 
 
 def test_held_unknowns_stay_at_rest_and_the_rest_is_as_without_them():
-    """constrain() leaves the eigenvalues of the free block; free_motions() those rigid motions that leave them at rest."""
+    """constrain() leaves the eigenvalues of the free block.
+
+    free_motions() leaves those rigid motions that leave them at rest.
+    """
     K, _, loss = jointed([2, 2], (1, 1))
     held = np.arange(30)
     free = np.setdiff1d(np.arange(K.shape[0]), held)
@@ -115,7 +118,10 @@ def test_held_unknowns_stay_at_rest_and_the_rest_is_as_without_them():
 
 
 def by_iteration(K, M, loss, kind, near):
-    """Eigenvalues of the full problem nearest to those given, by inverse iteration with a complex shift: our witness."""
+    """Eigenvalues of the full problem nearest to those given.
+
+    By inverse iteration with a complex shift: our witness.
+    """
     from scipy.sparse.linalg import splu
 
     out = []

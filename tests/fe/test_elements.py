@@ -141,7 +141,8 @@ def test_patch_of_mixed_elements():
     assert len(inner) == 1
     strain = (GRADIENT + GRADIENT.T) / 2
     stress = STEEL.E * 0.3 / (1.3 * 0.4) * np.trace(strain) * np.eye(3) + 2 * STEEL.G * strain
-    # only the traction on z = 0 is left; bricks give a quarter of each face to the node, wedges a third of each triangle they put there
+    # only the traction on z = 0 is left; bricks give a quarter of each face to the node, wedges a third of each
+    # triangle they put there
     share = 2 * 0.25 * 0.4 / 4 + sum(0.25 * 0.4 / 6 for cell in mesh.parts["p"][1] if inner[0] in cell)
     assert force[inner[0]] == pytest.approx(stress @ [0, 0, -share], rel=1e-9)
 

@@ -74,7 +74,85 @@ def test_a_pin_flush_with_the_plate_is_no_piece_of_its_face(tmp_path, size):
 
 
 def test_parts_that_run_into_each_other(tmp_path):
-    with pytest.raises(
-        faying.InputError, match="the parts plate, block run into each other: .* may touch, not overlap"
-    ):
+    match = (
+        r"gluing makes 3 solids of 2: 'plate' and 'block' share 20 x 20 x 0.5 mm about \(50, 20, 9.75\) mm; parts may"
+    )
+    with pytest.raises(faying.InputError, match=match):
         mesh_step(step(tmp_path, *plate_and_block(low=9.5)), size=8e-3)
+
+
+def test_solids_of_one_name_are_numbered(tmp_path):
+    from netgen.occ import Box, Pnt
+
+    both = [named(Box(Pnt(0, 0, z), Pnt(20, 20, z + 10)), "plate") for z in (0, 10)]
+    assert sorted(mesh_step(step(tmp_path, *both), size=10e-3).parts) == ["plate_1", "plate_2"]
+
+
+@pytest.mark.parametrize(
+    ("point", "match"),
+    [
+        ((0.03, 0.01, 0.5), "the nearest face of 'plate' is 490 mm away, more than 1 mm; check the point and its unit"),
+        (
+            (0.0, 0.01, 0.01),
+            r"face 'x' at \(0, 10, 10\) mm lies on 2 faces of 'plate', with their centres at .*30, 15, 10",
+        ),
+        ((0.0, 0.0, 0.0), "lies on 3 faces of 'plate'"),
+    ],
+)
+def test_a_point_names_one_face(tmp_path, point, match):
+    with pytest.raises(faying.InputError, match=match):
+        mesh_step(step(tmp_path, *plate_and_block()), size=8e-3, face_points={"x": ("plate", point)})
+
+
+def test_a_point_near_one_face_names_it(tmp_path):
+    at_side = {"side": ("plate", (0.0, 0.01, 0.005)), "far": ("plate", (0.0605, 0.01, 0.005))}
+    mesh = mesh_step(step(tmp_path, *plate_and_block()), size=8e-3, face_points=at_side)
+    assert mesh.points[mesh.face_nodes("side"), 0] == pytest.approx(0.0, abs=1e-12)
+    assert mesh.points[mesh.face_nodes("far"), 0] == pytest.approx(0.06)
+
+
+def test_a_mesh_beyond_the_memory_is_refused_before_it_is_made(tmp_path, monkeypatch):
+    monkeypatch.setenv("FAYING_MEMORY", "4")
+    with pytest.raises(
+        faying.InputError, match=r"edges of 0.1 mm make about .* elements .* 4 GB are free: take .* mm or more"
+    ):
+        mesh_step(step(tmp_path, *plate_and_block()), size=1e-4)
+
+
+def test_a_death_of_the_cad_kernel_is_an_error(tmp_path, monkeypatch):
+    """A segmentation fault in the child, as mutated files cause it, is no end of this process."""
+    import faying.fe.geometry as geometry
+
+    path = step(tmp_path, *plate_and_block())
+    dying = "import os, signal, sys; os.kill(os.getpid(), signal.SIGSEGV); "
+    run = geometry.subprocess.run
+
+    def killed(command, **given):
+        return run([command[0], "-c", dying, *command[3:]], **given)
+
+    monkeypatch.setattr(geometry.subprocess, "run", killed)
+    with pytest.raises(faying.ReadError, match="the CAD kernel died on it .signal 11.; repair the geometry"):
+        mesh_step(path, size=8e-3)
+
+
+@pytest.mark.parametrize("cut", [0.2, 0.5, 0.9])
+def test_a_step_file_cut_short_is_an_error(tmp_path, cut):
+    path = step(tmp_path, *plate_and_block())
+    whole = path.read_bytes()
+    path.write_bytes(whole[: int(cut * len(whole))])
+    with pytest.raises(faying.ReadError):
+        mesh_step(path, size=8e-3)
+
+
+def test_the_estimate_of_the_size_of_a_mesh():
+    """Elements and unknowns of meshes as netgen makes them: right within a factor of two."""
+    from netgen.occ import Box, OCCGeometry, Pnt
+
+    from faying.fe.geometry import ELEMENTS, UNKNOWNS
+
+    for size in (3.0, 6.0):
+        mesh = OCCGeometry(Box(Pnt(0, 0, 0), Pnt(60, 40, 30))).GenerateMesh(maxh=size, grading=0.4)
+        mesh.SecondOrder()
+        elements, unknowns = len(mesh.Elements3D()), 3 * len(mesh.Points())
+        assert 0.5 < ELEMENTS * 72000 / size**3 / elements < 2
+        assert 0.5 < UNKNOWNS * elements / unknowns < 2

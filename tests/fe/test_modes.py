@@ -53,8 +53,8 @@ def test_axial_modes(bar, stiffness):
 def test_bending_modes_with_a_joint_at_mid_length(bar, stiffness):
     """Euler-Bernoulli halves, free outside, joined by a rotational spring k I; the first mode is symmetric.
 
-    Half beam, x from the free end: w = cosh bx + cos bx + c (sinh bx + sin bx); at the joint no shear, and the moment is
-    the spring's: E I w'' = -2 k I w'.
+    Half beam, x from the free end: w = cosh bx + cos bx + c (sinh bx + sin bx); at the joint no shear, and the moment
+    is the spring's: E I w'' = -2 k I w'.
     """
     K, M = sprung(bar, stiffness, 1e15)
     modes = lowest_modes(K, M, 16, shift_frequency=SHIFT)
@@ -262,7 +262,10 @@ def test_ties_over_several_joints_do_not_depend_on_their_order(turned):
 
 
 def test_a_node_of_two_joints_grows_together_with_both():
-    """Three cubes in an L: the corner's edge lies in two joints, and the same nodes come out whatever is named first."""
+    """Three cubes in an L.
+
+    The corner's edge lies in two joints, and the same nodes come out whatever is named first.
+    """
     from faying.fe.mesh import Mesh
     from faying.fe.sides import sides_on
     from tests.helpers.boxes import block
@@ -288,7 +291,10 @@ def test_a_node_of_two_joints_grows_together_with_both():
 
 @pytest.mark.parametrize("strength", [10.0, 60.0])
 def test_strong_dampers_against_the_whole_problem(strength):
-    """Viscous joint, loss factors up to a tenth and more: every mode is one of the full companion's, in rising order."""
+    """Viscous joint.
+
+    Loss factors up to a tenth and more: every mode is one of the full companion's, in rising order.
+    """
     mesh = stack([0.1, 0.1], [4, 4], width=0.03, height=0.02, sections=[(1, 1), (1, 1)])
     parts, M = assemble(mesh, dict.fromkeys(mesh.parts, BAR))
     joint = join(mesh, "p0.right", "p1.left")

@@ -9,8 +9,8 @@ from faying.joint.bolt import Bolt
 def face_load(points, blocks, axis_point, direction):
     """Nodal forces [N] (3n,) of a total force 1 N along `direction` whose line of action passes through `axis_point`.
 
-    The traction is uniform up to a linear part across the face, just enough to bring the resultant on the line: two such
-    loads on one line with opposite directions balance exactly, whatever the meshes of their faces.
+    The traction is uniform up to a linear part across the face, just enough to bring the resultant on the line: two
+    such loads on one line with opposite directions balance exactly, whatever the meshes of their faces.
     """
     unit = direction / np.linalg.norm(direction)
     helper = np.eye(3)[np.argmin(np.abs(unit))]

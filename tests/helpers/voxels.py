@@ -35,8 +35,8 @@ def voxels(edges, parts, faces, kind="hex20"):
 def bolted(places=((20e-3, 20e-3),), length=40e-3, kind="hex20", gap=0.0):
     """Two plates, 40 mm wide and 10 mm thick, with square holes, and in each hole a bolt with square head and nut.
 
-    places: of the bolts [m]. Faces: lower.joint, upper.joint, upper.seat0, lower.seat0, bolt0.head, bolt0.nut, bolt0.shank
-    (one side of it), ...
+    places: of the bolts [m]. Faces: lower.joint, upper.joint, upper.seat0, lower.seat0, bolt0.head, bolt0.nut,
+    bolt0.shank (one side of it), ...
     """
     mm = 1e-3
     lines = [

@@ -21,7 +21,10 @@ def bolt(**changes):
 
 
 def test_torque_by_nut_factor():
-    """Shigley, Mechanical Engineering Design, 9th ed., example 8-3 (b): 25 kip in a 3/4 in bolt, K = .2: 3750 lbf in."""
+    """Shigley.
+
+    Mechanical Engineering Design, 9th ed., example 8-3 (b): 25 kip in a 3/4 in bolt, K = .2: 3750 lbf in.
+    """
     pound_force, inch = 4.4482216, 0.0254
     found = torque_to_preload(3750 * pound_force * inch, 0.75 * inch, nut_factor=0.2)
     assert found == pytest.approx(25e3 * pound_force, rel=1e-6)
@@ -169,7 +172,10 @@ def test_tension_is_stiffness_times_stretch():
 
 
 def test_bolts_against_a_fixed_plate_in_closed_form():
-    """A plate of high mass on a bolt over a held plate: f of the point mass is sqrt(k/m) of the bolt, elastic plates aside."""
+    """A plate of high mass on a bolt over a held plate.
+
+    F of the point mass is sqrt(k/m) of the bolt, elastic plates aside.
+    """
     stiff = faying.Material(name="stiff", E=2e15, nu=0.3, density=7800.0)
     mesh = stacked(gap=1e-6)
     from faying.fe.modes import lowest_modes

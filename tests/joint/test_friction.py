@@ -78,7 +78,10 @@ def test_slip_grows_with_the_push():
 
 
 def test_what_slipped_does_not_come_back_by_itself():
-    """Pushed until it slips, then let go: a part of the slip is left, held by shear of the other sign; without friction none."""
+    """Pushed until it slips, then let go: a part of the slip is left, held by shear of the other sign.
+
+    Without friction none.
+    """
     left = {}
     for friction in (None, MU):
         made = held(friction)
@@ -106,7 +109,10 @@ def test_the_tangent_is_the_derivative_of_the_shear(x: float, y: float, limit: f
 
 
 def test_the_tangent_of_a_joint_against_differences():
-    """The out-of-balance force of the whole, k_t and limit held, moved by a small step: K x with the tangents of the joint."""
+    """The out-of-balance force of the whole.
+
+    K_t and limit held, moved by a small step: K x with the tangents of the joint.
+    """
     made = held(MU)
     assembly = made.assembly()
     load = pushed(made, 2e3, 560.0)
@@ -147,7 +153,10 @@ def test_no_friction_at_all_is_the_limit_of_a_little():
 
 
 def test_what_moves_while_it_is_open_closes_without_shear():
-    """Pushed over a gap, then pressed: the joint closes where the push has brought it, and takes nothing of the push."""
+    """Pushed over a gap.
+
+    Then pressed: the joint closes where the push has brought it, and takes nothing of the push.
+    """
     mesh = stacked(gap=2e-6)
     supports = (Support(face="low.bottom"), Support(face="high.top", stiffness=3e9))
     structure = plates(mesh, friction=0.2, supports=supports)

@@ -84,7 +84,10 @@ def test_a_law_whose_stiffness_outgrows_its_pressure_is_refused():
 
 @pytest.mark.parametrize("scan_area", [None, 16e-6])
 def test_springs_per_node_are_those_of_the_law_at_the_force_of_each_node(scan_area):
-    """The paper's use: a node's force on the scan's area gives the node's spring; what is reported is what is assembled."""
+    """The paper's use: a node's force on the scan's area gives the node's spring.
+
+    What is reported is what is assembled.
+    """
     mesh = stack([0.03, 0.03], [2, 2], width=0.02, height=0.02)
     faces = "p0.right", "p1.left"
     law = JointLaw(model=Given(k_n=lambda p: 3e9 * p**0.5, k_t=lambda p: 2e9 * p**0.5, loss_n=lambda p: 0.1 + 0 * p))

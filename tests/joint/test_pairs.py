@@ -1,4 +1,7 @@
-"""Springs between nodes: sums, the matrix of springs per area from pairs alone, turned faces, faces that do not match."""
+"""Springs between nodes.
+
+Sums, the matrix of springs per area from pairs alone, turned faces, faces that do not match.
+"""
 
 import numpy as np
 import pytest

@@ -28,7 +28,7 @@ def law(D=2.39, G=1.5e-10):
 def beam(**changes):
     mesh = stack([0.06, 0.05], [5, 4], width=0.02, height=0.015)
     joint = Joint(name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), law=law())
-    bolt = Bolt(name="b", faces=("p0.left", "p1.right"), at=(0.0, 0.009, 0.0075))
+    bolt = Bolt(name="b", faces=("p0.left", "p1.right"), at=(0.0, 0.009, 0.0075), seat=(0.0, 0.012))
     return Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=(joint,), bolts=(bolt,), **changes)
 
 

@@ -86,7 +86,10 @@ def test_vibration_has_the_whole_bolt(single):
 
 
 def test_bolts_in_turn_leave_what_presses_their_heads():
-    """The force that is left in a bolt is worked out from its stretch; the pressure under its head knows nothing of it."""
+    """The force that is left in a bolt is worked out from its stretch.
+
+    The pressure under its head knows nothing of it.
+    """
     mesh = bolted(places=((14e-3, 20e-3), (32e-3, 20e-3)), length=46e-3, kind="hex8")
     made = structure(mesh, bolts=2)
     found = tighten(made, made.assembly(), [5e3, 5e3], order=[0, 1])

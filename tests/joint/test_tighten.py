@@ -81,13 +81,23 @@ def test_messages():
         tighten(made, made.assembly(), [1e3, 1e3], order=(0, 0))
     with pytest.raises(faying.InputError, match="must name every bolt"):
         tighten(made, made.assembly(), [1e3, 1e3], order=(0, 1, 2))
-    bare = plates(bolts=(Bolt(name="one", faces=FACES), Bolt(name="two", faces=FACES)))
+    bare = plates(
+        bolts=(
+            *(
+                Bolt(name=n, faces=FACES, at=(x, 0.02, 0.0), seat=(0.0, 24e-3))
+                for n, x in (("one", 0.03), ("two", 0.05))
+            ),
+        )
+    )
     with pytest.raises(faying.InputError, match="bolts one, two have no shank"):
         tighten(bare, bare.assembly(), [1e3, 1e3], order=(0, 1))
 
 
 def test_a_joint_far_softer_than_its_parts_converges_to_what_rounding_leaves():
-    """Steel on a bed of 0.1 N/mm3: digits lost in K u keep the imbalance above 1e-10; the force is still that of the bolts."""
+    """Steel on a bed of 0.1 N/mm3: digits lost in K u keep the imbalance above 1e-10.
+
+    The force is still that of the bolts.
+    """
     made = two_bolts(STEEL, k=1e8)
     found = made.assembly().solve(40.0 * made.loads[:, 0])
     assert found.imbalance < 1e-8

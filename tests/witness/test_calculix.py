@@ -88,8 +88,8 @@ def two_blocks(kind, counts):
 def both(tmp_path, mesh, springs, K, M, materials, count):
     """Ours and theirs with the outer ends held: rigid motions cost CalculiX's shift digits.
 
-    Bricks: from the matrices that CalculiX stores, its bubbles condensed out of the stiffness as ours are. It gives them
-    a mass too.
+    Bricks: from the matrices that CalculiX stores, its bubbles condensed out of the stiffness as ours are. It gives
+    them a mass too.
     """
     held = np.concatenate([mesh.face_nodes("p0.left"), mesh.face_nodes("p1.right")])
     step = ["*BOUNDARY", *(f"{n + 1},1,3" for n in held), "*STEP", "*FREQUENCY,SOLVER=ARPACK", f"{count}", "*END STEP"]

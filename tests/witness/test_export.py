@@ -73,7 +73,10 @@ def test_calculix_runs_the_springs(tmp_path, kind, angle, coupling):
 
 
 def contact_step(mesh, traction, fixed, modes):
-    """Traction on the free end, then modes about that state; nothing but the contact holds the second block sideways."""
+    """Traction on the free end, then modes about that state.
+
+    Nothing but the contact holds the second block sideways.
+    """
     area = 0.03 * 0.02 * 1e6
     force = face_load(mesh.points, mesh.face("p1.right"), np.array([0.1, 0.015, 0.01]), np.array([-1.0, 0, 0]))
     loads = [f"{i // 3 + 1},{i % 3 + 1},{f * traction * area:.12e}" for i, f in enumerate(force) if f]

@@ -4,9 +4,9 @@ Read: nodes in any system, elements, sets, surfaces, includes, parts and instanc
 Keywords after the Abaqus Keywords Reference Guide and the CalculiX manual.
 
 Written: SPRING2 and DASHPOT2, connectors with structural damping, a matrix, and the law as a contact property. Keywords
-after the Abaqus Keywords Reference Guide 2016 and 2017: MATRIX INPUT (entries "node, direction, node, direction, value",
-one triangle), CONNECTOR DAMPING (TYPE=STRUCTURAL: a part of the elasticity), SPRING (ORIENTATION). Not run: read back in
-the tests by a reader of that grammar.
+after the Abaqus Keywords Reference Guide 2016 and 2017: MATRIX INPUT (entries "node, direction, node, direction,
+value", one triangle), CONNECTOR DAMPING (TYPE=STRUCTURAL: a part of the elasticity), SPRING (ORIENTATION). Not run:
+read back in the tests by a reader of that grammar.
 """
 
 import re
@@ -144,8 +144,8 @@ def _nodes(block: Block, scope: Scope) -> None:
     wrong = np.flatnonzero((size > 0) & (np.abs(size - 1) > 0.01))
     if len(wrong):
         raise ReadError(
-            f"{block.where}: node {numbers[wrong[0]]} has more than three coordinates; a number has a decimal point, not a "
-            "comma"
+            f"{block.where}: node {numbers[wrong[0]]} has more than three coordinates; a number has a decimal point, "
+            "not a comma"
         )
     x = table[:, :3]
     if system == "C":

@@ -79,7 +79,10 @@ def mesh(deck: JointDeck, sets: int, group: Index, frames: int, frame: Index) ->
 
 
 def commands(deck: JointDeck, sets: Array, axes: Index) -> str:
-    """Write AFFE_MODELE and AFFE_CARA_ELEM of the joint; sets (s, 10): frame, then k, loss and dampers along three axes."""
+    """Write AFFE_MODELE and AFFE_CARA_ELEM of the joint.
+
+    sets (s, 10): frame, then k, loss and dampers along three axes.
+    """
     paper = bool(sets[:, 7:].any())
     note = deck.damping_note() if paper else "loss factors in AMOR_HYST: CALC_MODES takes them through RIGI_MECA_HYST"
     lines = deck.header(

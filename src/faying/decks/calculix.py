@@ -79,8 +79,8 @@ def contact(deck: JointDeck) -> str:
         "**",
         "contact in place of springs: needs a *STATIC step with the bolts, then *STEP,PERTURBATION with *FREQUENCY",
         "NODE TO SURFACE only: SURFACE TO SURFACE loses a TABULAR law. Slave is the surface named first",
-        f"stick slope k_t at the mean pressure, {law.mean_pressure * deck.system.pressure:.6g}; friction {law.friction:g}"
-        + ("" if law.given else ", not given by the study: check it"),
+        f"stick slope k_t at the mean pressure, {law.mean_pressure * deck.system.pressure:.6g}; friction "
+        f"{law.friction:g}" + ("" if law.given else ", not given by the study: check it"),
         "no damping: *CONTACT DAMPING acts in *DYNAMIC only",
     )
     lines += ["*SURFACE INTERACTION,NAME=JK", "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=TABULAR", *rows]

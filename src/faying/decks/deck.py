@@ -16,7 +16,9 @@ NOTHING = 1e-14  # of the largest of a block: entries below it are rounding
 
 @dataclass(frozen=True, kw_only=True)
 class Contact:
-    """The law as a contact property: pressure [Pa] against approach [m], k_n, k_t [Pa/m] and loss factor at the mean pressure.
+    """The law as a contact property.
+
+    Pressure [Pa] against approach [m], k_n, k_t [Pa/m] and loss factor at the mean pressure.
 
     friction: coefficient [-]; given: whether the study says it.
     """
@@ -36,8 +38,8 @@ class JointDeck:
     """One joint, ready to be written.
 
     pairs: its springs; mesh: of the model, with its node numbers; faces: their names; facts: lines for the header;
-    viscous [N s/m] (p, 3, 3): dampers, None where no frequency is given; paper: they are the JK paper's; first_element: the
-    number from which elements are numbered; contact: None where the law gives no curve.
+    viscous [N s/m] (p, 3, 3): dampers, None where no frequency is given; paper: they are the JK paper's; first_element:
+    the number from which elements are numbered; contact: None where the law gives no curve.
     """
 
     pairs: NodePairs
@@ -109,8 +111,8 @@ class JointDeck:
             )
         if self.paper:
             return (
-                "dampers after the JK paper, c = eta sqrt(M k) pair by pair, M the whole mass: their sum grows with the "
-                "square root of the number of pairs, so the damping depends on the mesh"
+                "dampers after the JK paper, c = eta sqrt(M k) pair by pair, M the whole mass: their sum grows with "
+                "the square root of the number of pairs, so the damping depends on the mesh"
             )
         return f"dampers c = eta k/omega, right at {self.frequency:g} Hz: loss grows with frequency beyond it"
 
@@ -132,9 +134,9 @@ def grouped(values: Array) -> tuple[Index, Index]:
 def springs_of(blocks: Array, like: Array | None = None) -> list[tuple[int, int, int, int, Array]]:
     """Springs between single directions that add up to the blocks (p, 3, 3) of pairs.
 
-    Rows of (end, direction, end, direction, stiffness (p,)): ends 0 and 1, directions 0 to 2. What couples two directions
-    becomes four springs whose diagonals cancel; where no block does, only the three of like directions are left. like:
-    blocks that decide which are left, in place of these.
+    Rows of (end, direction, end, direction, stiffness (p,)): ends 0 and 1, directions 0 to 2. What couples two
+    directions becomes four springs whose diagonals cancel; where no block does, only the three of like directions are
+    left. like: blocks that decide which are left, in place of these.
     """
     judge = blocks if like is None else like
     out = [(0, c, 1, c, blocks[:, c, c]) for c in range(3)]

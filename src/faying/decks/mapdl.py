@@ -1,11 +1,11 @@
 """MAPDL (ANSYS): archives read as meshes, and the joint written as MATRIX27, COMBIN14 and the stiffness of CONTA174.
 
-Read: .cdb as CDWRITE writes it in blocked format: NBLOCK, EBLOCK, ET and CMBLOCK, after the description of CDWRITE in the
-Mechanical APDL command reference. Components of nodes become faces, components of elements parts.
+Read: .cdb as CDWRITE writes it in blocked format: NBLOCK, EBLOCK, ET and CMBLOCK, after the description of CDWRITE in
+the Mechanical APDL command reference. Components of nodes become faces, components of elements parts.
 
-Written: MATRIX27 after the ANSYS element reference: directions UX UY UZ ROTX ROTY ROTZ of node I, then of J, in the nodal
-axes; C1 to C78 are the upper triangle row by row; KEYOPT(2) = 0 symmetric; KEYOPT(3) = 4 stiffness, 5 damping. R takes six
-constants, each RMORE six more. Not run in MAPDL: the archive is read back by mapdl-archive in the tests.
+Written: MATRIX27 after the ANSYS element reference: directions UX UY UZ ROTX ROTY ROTZ of node I, then of J, in the
+nodal axes; C1 to C78 are the upper triangle row by row; KEYOPT(2) = 0 symmetric; KEYOPT(3) = 4 stiffness, 5 damping. R
+takes six constants, each RMORE six more. Not run in MAPDL: the archive is read back by mapdl-archive in the tests.
 """
 
 import re
@@ -320,8 +320,8 @@ def contact(deck: JointDeck) -> str:
     lines = deck.header(
         "!",
         "commands for a contact region of CONTA174 in Workbench, where cid is its number; else set cid first",
-        "FKN and FKT below zero are absolute, force per length cubed; one value for the region: cut the face into regions to "
-        "follow the pressure",
+        "FKN and FKT below zero are absolute, force per length cubed; one value for the region: cut the face into "
+        "regions to follow the pressure",
         f"k_n and k_t at the mean pressure {law.mean_pressure * deck.system.pressure:.6g}",
     )
     lines += [

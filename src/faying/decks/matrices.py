@@ -74,15 +74,15 @@ def _check_mass(name: str, M: Any, dofs: Index) -> None:
     totals = total_mass(M, dofs)
     if np.ptp(totals) > SYMMETRIC * 100 * totals.max():
         raise InputError(
-            f"{name}: the mass that moves along x, y and z is {', '.join(f'{m:.6g}' for m in totals)}; they should be equal: is "
-            "the mass matrix whole?"
+            f"{name}: the mass that moves along x, y and z is {', '.join(f'{m:.6g}' for m in totals)}; they should be "
+            "equal: is the mass matrix whole?"
         )
 
 
 def read_pair(
     stiffness: str | Path, mass: str | Path | None = None, *, stiffness_unit: str, mass_unit: str
 ) -> Matrices:
-    """Read K [N/m], M [kg] and dofs as `read_matrices` does, with no list of unknowns for Matrix Market and SciPy's .npz.
+    """Read K [N/m], M [kg] and dofs as `read_matrices` does, also .mtx and .npz without a list of dofs.
 
     Without a list, each unknown counts as direction 1 of a node of its own. Raises what `read_matrices` raises.
     """
@@ -279,6 +279,7 @@ def _check(name: str, K: Any, M: Any, dofs: Index) -> None:
         if np.any(beyond):
             (a, b), (c, d) = dofs[entries.row[beyond][0]], dofs[entries.col[beyond][0]]
             raise InputError(
-                f"{name}: {np.count_nonzero(beyond)} entries of the {what} matrix are greater than their diagonals allow, that "
-                f"of node {a} direction {b} and node {c} direction {d} for one: the matrix is cut short or not positive"
+                f"{name}: {np.count_nonzero(beyond)} entries of the {what} matrix are greater than their diagonals "
+                "allow, that of node "
+                f"{a} direction {b} and node {c} direction {d} for one: the matrix is cut short or not positive"
             )

@@ -30,8 +30,8 @@ def read_mesh(
     Args:
         path: The file.
         unit: Length unit of the coordinates, such as "mm"; no format says it.
-        parts: Names of the element sets that are the parts, or part -> element set. Where None: the bodies that the file
-            names, else its element sets if they divide the elements, else the pieces that share no node.
+        parts: Names of the element sets that are the parts, or part -> element set. Where None: the bodies that the
+            file names, else its element sets if they divide the elements, else the pieces that share no node.
 
     Returns:
         The mesh in metres, with the file's node numbers.
@@ -136,13 +136,15 @@ class _Builder:
         lost = loose[~np.isin(loose, points_of_reference)]
         if len(lost):
             raise InputError(
-                f"{self.name}: {len(lost)} nodes belong to no element: {_some(lost)}; delete them, or is the file cut short?"
+                f"{self.name}: {len(lost)} nodes belong to no element: {_some(lost)}; delete them, or is the file cut "
+                "short?"
             )
         if len(loose):
             self.notes.append(
                 Note(
                     code="reference-points",
-                    text=f"{len(loose)} reference points are left out, with the couplings that name them: {_some(loose)}",
+                    text=f"{len(loose)} reference points are left out, with the couplings that name them: "
+                    f"{_some(loose)}",
                 )
             )
 
@@ -303,8 +305,8 @@ class _Builder:
                 near = list(blocks)[int(loose[0] // n)]
                 raise InputError(
                     f"{self.name}: part {near!r} shares {len(loose)} nodes with other parts outside of any named face "
-                    f"(node {self.raw.numbers[loose[0] % n]} is one); name the faces of the joint on both sides, or make "
-                    "one part of them"
+                    f"(node {self.raw.numbers[loose[0] % n]} is one); name the faces of the joint on both sides, or "
+                    "make one part of them"
                 )
         old = key % n
         old_numbers = self.raw.numbers[old]

@@ -1,12 +1,12 @@
 """Nastran bulk data: read as meshes and DMIG matrices, and the joint written as CBUSH, CELAS2 and DMIG.
 
-Read: GRID in any system, CTETRA, CHEXA, CPENTA, skins of CTRIA and CQUAD, PLOAD4 and SET1, in small, large and free fields,
-after the Nastran Quick Reference Guide. A body is what has one property number; faces are skins of one property, the
-element faces that PLOAD4 cards of one load set name, or sets of nodes (SET1, or SET of the case control).
+Read: GRID in any system, CTETRA, CHEXA, CPENTA, skins of CTRIA and CQUAD, PLOAD4 and SET1, in small, large and free
+fields, after the Nastran Quick Reference Guide. A body is what has one property number; faces are skins of one
+property, the element faces that PLOAD4 cards of one load set name, or sets of nodes (SET1, or SET of the case control).
 
 Written, in fields of 16 columns, after the MSC Nastran Quick Reference Guide and OptiStruct's: PBUSH (K, B, GE), CBUSH
-with CID since its grids coincide, CELAS2 (K, G1, C1, G2, C2, GE), DMIG with one triangle of a symmetric matrix (form 6),
-chosen in the case control by K2GG, B2GG and K42GG. MYSTRAN solves CBUSH and CELAS2 and passes DMIG over.
+with CID since its grids coincide, CELAS2 (K, G1, C1, G2, C2, GE), DMIG with one triangle of a symmetric matrix (form
+6), chosen in the case control by K2GG, B2GG and K42GG. MYSTRAN solves CBUSH and CELAS2 and passes DMIG over.
 """
 
 import re
@@ -416,7 +416,9 @@ def cbush(deck: JointDeck) -> str:
 
 
 def celas2(deck: JointDeck) -> str:
-    """Write CELAS2 elements in the basic axes; what an inclined face couples becomes springs that cancel on the diagonal.
+    """Write CELAS2 elements in the basic axes.
+
+    What an inclined face couples becomes springs that cancel on the diagonal.
 
     Grids must have their displacements in the basic axes (CD = 0). Raises InputError where a spring that couples has a
     loss factor of another sign than its stiffness.

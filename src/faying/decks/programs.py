@@ -10,7 +10,7 @@ from faying.errors import ReadError
 
 @dataclass(frozen=True, kw_only=True)
 class Program:
-    """Suffixes of the meshes and the matrices that the module `faying.decks.<name>` reads, and whether it writes joints.
+    """What the module `faying.decks.<name>` does: suffixes of meshes and matrices it reads, whether it writes joints.
 
     Such a module has `read(path) -> RawMesh`, `read_matrices(path, names) -> Matrices`, `decks(deck) -> {file: text}`.
     """

@@ -29,7 +29,8 @@ class RawMesh:
     element numbers, the parts that the file itself makes of its elements; element_sets, node_sets: name -> numbers;
     side_sets: name -> rows of (element number, side); face_elements: name -> arrays of node numbers (f, a); extra:
     numbers of nodes that only elements other than solids hold; references: nodes that constraints alone name; turned:
-    nodes whose displacements are in directions of their own; notes: what was left out. Raises ReadError for numbers below 1 or without end, and places that are not finite.
+    nodes whose displacements are in directions of their own; notes: what was left out. Raises ReadError for numbers
+    below 1 or without end, and places that are not finite.
     """
 
     numbers: Index
@@ -74,7 +75,8 @@ def ranged(first: int, last: int, step: int, where: str) -> Index:
     """Numbers from first to last. Raises ReadError where they do not rise or are more than any file holds."""
     if step < 1 or last < first or first < 1 or (last - first) // step > MOST:
         raise ReadError(
-            f"{where}: a range from {first} to {last} by {step}; ranges rise from 1 or more and have at most {MOST:,} numbers"
+            f"{where}: a range from {first} to {last} by {step}; ranges rise from 1 or more and have at most {MOST:,} "
+            "numbers"
         )
     return np.arange(first, last + 1, step)
 
@@ -135,7 +137,10 @@ def read_text(path: Path, what: str) -> str:
 
 
 def numbers_of(path: Path, text: str, count: int | None = None) -> Array:
-    """All numbers of a text. Raises ReadError where there are others than `count`, or a word or the last line is cut."""
+    """All numbers of a text.
+
+    Raises ReadError where there are others than `count`, or a word or the last line is cut.
+    """
     import warnings
 
     if text and not text.endswith("\n"):

@@ -19,7 +19,8 @@ def write(deck: JointDeck, solver: str, folder: Path) -> list[Path]:
     turned = ends[deck.mesh.turned[ends]] if deck.mesh.turned is not None else ends[:0]
     if len(turned):
         raise InputError(
-            f"{len(turned)} nodes of the joint have directions of their own in the model, node {deck.mesh.numbers[turned[0]]} "
+            f"{len(turned)} nodes of the joint have directions of their own in the model, node "
+            f"{deck.mesh.numbers[turned[0]]} "
             "for one (CD, *TRANSFORM); a joint acts in the directions of the model: take these out"
         )
     texts: dict[str, str] = module_of(solver).decks(deck)

@@ -29,7 +29,7 @@ class Ring:
 
 
 def mean_motion(points: Array, blocks: Blocks, at: Array, ring: Ring | None = None) -> Any:
-    """Sparse operator (6, 3n) from nodal displacements to the translation [m] and rotation [rad] of a face about `at` (3,).
+    """Sparse operator (6, 3n) from displacements to the mean translation [m] and rotation [rad] of a face about `at`.
 
     The rigid motion nearest to the face's own in the mean square over its area (or that of a ring on it). Its transpose
     spreads a force and a moment at `at` over the face as tractions linear in position. Raises InputError where the ring

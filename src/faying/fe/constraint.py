@@ -10,8 +10,8 @@ from faying.typing import Array, Index
 def constrain(matrix: Any, fixed: Index, diagonal: float | None = None) -> Any:
     """Return a sparse CSR matrix with the rows and columns of `fixed` unknowns cleared.
 
-    diagonal: what stands there instead, the mean of the diagonal where None (a stiffness), 0 for a mass or a loss: fixed
-    unknowns then have no part in any mode.
+    diagonal: what stands there instead, the mean of the diagonal where None (a stiffness), 0 for a mass or a loss:
+    fixed unknowns then have no part in any mode.
     """
     matrix = matrix.tocsr()
     if not len(fixed):

@@ -155,7 +155,7 @@ class _Span:
         return int(new.shape[1])
 
     def eigen(self, count: int, kind: str) -> tuple[Complex, Complex, Complex]:
-        """Squares w^2 (1 + i eta), roots lambda, and coefficients (size, count) of the modes that follow the real ones."""
+        """Squares w^2 (1 + i eta), roots lambda and coefficients (size, count) of modes that follow the real ones."""
         from scipy.linalg import eig
 
         K, C = self.small

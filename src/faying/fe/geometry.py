@@ -4,8 +4,12 @@ Names are those that the CAD program gave to solids and faces. A face without a 
 nearest to it takes the name.
 """
 
+import json
+import subprocess
+import sys
+import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +17,16 @@ import numpy as np
 
 from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS
+from faying.fe.memory import guessed
 from faying.fe.mesh import Mesh, split_at_joints
+from faying.memory import available
 from faying.typing import Array, Index
 
 # netgen numbers the middle nodes by these edges; VTK, and so we, by those of its element
+NEAR = 1.0  # mm: a point farther from every face than this names none
+AMBIGUOUS = 1e-3  # mm: faces whose distances differ by less are not told apart
+# tetrahedra per volume over edge^3, and unknowns per tetrahedron of second order: counted on blocks and on bolted joints
+ELEMENTS, UNKNOWNS = 5.0, 4.5
 _NETGEN_EDGES = {"tet10": ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)), "tri6": ((1, 2), (0, 2), (0, 1))}
 
 
@@ -25,13 +35,18 @@ def _to_vtk(kind: str) -> list[int]:
     return [*range(KINDS[kind].corners), *(KINDS[kind].corners + i for i in edges)]
 
 
-def read_step(path: Path) -> Any:
-    """Return the OpenCASCADE shape of a STEP file, in the file's millimetres."""
+def _check_head(path: Path) -> None:
     if not path.is_file():
         raise ReadError(f"no file {path}; geometry.step names a STEP file relative to the study")
-    head = path.read_bytes()[:64]
+    with path.open("rb") as file:
+        head = file.read(64)
     if b"ISO-10303-21" not in head:
         raise ReadError(f"{path} is not a STEP file (it does not begin with ISO-10303-21); export STEP AP214 or AP242")
+
+
+def read_step(path: Path) -> Any:
+    """Return the OpenCASCADE shape of a STEP file, in the file's millimetres."""
+    _check_head(path)
     from netgen.occ import OCCGeometry
 
     try:
@@ -43,6 +58,16 @@ def read_step(path: Path) -> Any:
     return shape
 
 
+@dataclass(frozen=True, kw_only=True)
+class _Request:
+    """What is asked of the CAD kernel; lengths [m]."""
+
+    path: str
+    size: float
+    local_size: Mapping[str, float]
+    face_points: Mapping[str, tuple[str, Sequence[float]]]
+
+
 def mesh_step(
     path: Path,
     *,
@@ -50,28 +75,84 @@ def mesh_step(
     local_size: Mapping[str, float] | None = None,
     face_points: Mapping[str, tuple[str, Sequence[float]]] | None = None,
 ) -> Mesh:
-    """Mesh the solids of a STEP file with second-order tetrahedra.
+    """Mesh the solids of a STEP file with second-order tetrahedra, in a process of its own.
 
     path: STEP file; size: largest edge [m]; local_size: face name -> largest edge there [m]; face_points: name to
-    give -> (part, point [m]) for faces that the file does not name. Faces that two parts share come out matched node
-    for node, one copy per part. Raises ReadError for unreadable files and InputError for names that do not exist.
+    give -> (part, point [m] at most 1 mm away) for faces that the file does not name. Faces that two parts share come
+    out matched node for node, one copy per part. Raises ReadError for unreadable files, among them those on which the
+    CAD kernel dies, and InputError for names that do not exist, points on no face or several, and meshes beyond the
+    memory.
     """
-    from netgen.occ import Glue, OCCGeometry, Pnt, Vertex
+    _check_head(path)
+    request = _Request(path=str(path.resolve()), size=size, local_size=local_size or {}, face_points=face_points or {})
+    with tempfile.TemporaryDirectory() as folder:
+        order, answer = Path(folder) / "request.json", Path(folder) / "mesh.npz"
+        order.write_text(json.dumps(asdict(request)), encoding="utf-8")
+        code = "import sys; sys.path[:] = sys.argv[2:]; from faying.fe.geometry import serve; serve(sys.argv[1])"
+        done = subprocess.run(
+            [sys.executable, "-c", code, folder, *sys.path], stdin=subprocess.DEVNULL, capture_output=True, check=False
+        )
+        fault = Path(folder) / "fault.json"
+        if fault.is_file():
+            kind, text = json.loads(fault.read_text(encoding="utf-8"))
+            raise {"ReadError": ReadError, "InputError": InputError}[kind](text)
+        if done.returncode or not answer.is_file():
+            last = done.stderr.decode("utf-8", errors="replace").strip().splitlines()[-1:]
+            how = f"signal {-done.returncode}" if done.returncode < 0 else " ".join(last) or f"code {done.returncode}"
+            raise ReadError(
+                f"{path}: the CAD kernel died on it ({how}); repair the geometry in the CAD program and export it again"
+            )
+        with np.load(answer) as data:
+            parts = json.loads(str(data["parts"]))
+            faces = json.loads(str(data["faces"]))
+            return Mesh(
+                points=data["points"],
+                parts={name: (data[f"part{k}"],) for k, name in enumerate(parts)},
+                faces={name: (data[f"face{k}"],) for k, name in enumerate(faces)},
+                face_part=faces,
+                source=path.name,
+            )
+
+
+def serve(folder: str) -> None:
+    """Do what `mesh_step` has asked for in a folder; this runs in the process of its own."""
+    place = Path(folder)
+    given = json.loads((place / "request.json").read_text(encoding="utf-8"))
+    try:
+        mesh = _mesh_here(_Request(**given))
+    except (ReadError, InputError) as fault:
+        text = json.dumps([type(fault).__name__, str(fault)])
+        (place / "fault.json").write_text(text, encoding="utf-8")
+        return
+    arrays: dict[str, Any] = {f"part{k}": blocks[0] for k, blocks in enumerate(mesh.parts.values())}
+    arrays |= {f"face{k}": blocks[0] for k, blocks in enumerate(mesh.faces.values())}
+    arrays["parts"] = np.array(json.dumps(list(mesh.parts)))
+    arrays["faces"] = np.array(json.dumps({name: mesh.face_part[name] for name in mesh.faces}))
+    np.savez(place / "mesh.npz", points=mesh.points, **arrays)
+
+
+def _mesh_here(request: _Request) -> Mesh:
+    path, size = Path(request.path), request.size
+    local_size, face_points = request.local_size, request.face_points
+    from netgen.occ import Glue, OCCGeometry
 
     shape = read_step(path)
     solids = list(shape.solids)
     for number, solid in enumerate(solids):
         if not solid.name:
             solid.name = f"part{number + 1}"
+    given = [solid.name for solid in solids]
+    for number, solid in enumerate(solids):
+        if given.count(solid.name) > 1:  # told apart by their order in the file
+            solid.name = f"{given[number]}_{given[: number + 1].count(given[number])}"
     names = [solid.name for solid in solids]
     if len(set(names)) != len(names):
         raise InputError(f"{path}: two solids have the same name ({', '.join(names)}); name each of them once")
-    for label, (part, point) in (face_points or {}).items():
+    for label, (part, point) in face_points.items():
         if part not in names:
             raise InputError(f"face {label!r}: no part is called {part!r}; the parts are {', '.join(names)}")
-        here = Vertex(Pnt(*(1e3 * x for x in point)))
-        nearest = min(solids[names.index(part)].faces, key=lambda face: face.Distance(here))
-        nearest.name = label
+        _face_at(label, part, point, list(solids[names.index(part)].faces)).name = label
+    _check_size(sum(solid.mass for solid in solids), size, path.name)
 
     # gluing merges touching faces and keeps one of their names: remember the geometry of every named face
     marks = [Mark(face.name, names[i], face) for i, solid in enumerate(solids) for face in solid.faces if face.name]
@@ -79,8 +160,8 @@ def mesh_step(
     parts = list(glued.solids)
     if len(parts) != len(solids):
         raise InputError(
-            f"{path.name}: the parts {', '.join(names)} run into each other: gluing makes {len(parts)} solids of them; "
-            "parts may touch, not overlap"
+            f"{path.name}: parts run into each other, so that gluing makes {len(parts)} solids of {len(names)}: "
+            f"{_overlaps(solids, names)}; parts may touch, not overlap"
         )
     for face in glued.faces:
         face.name = ""
@@ -92,16 +173,70 @@ def mesh_step(
         sides = {solid.name: {int(face.name) for face in solid.faces} for solid in parts}
         _label_pieces(glued, listed, sides, size, cut, labels)
     found = {label for pairs in labels for label, _ in pairs}
-    for label, size_here in (local_size or {}).items():
+    for label, size_here in local_size.items():
         if label not in found:
             raise InputError(f"size of face {label!r}: the faces are {', '.join(sorted(found))}")
         for face, pairs in zip(listed, labels, strict=True):
             if any(label == have for have, _ in pairs):
                 face.maxh = size_here * 1e3
 
-    mesh = OCCGeometry(glued).GenerateMesh(maxh=size * 1e3, grading=0.4, quad_dominated=False)
-    mesh.SecondOrder()
+    try:
+        mesh = OCCGeometry(glued).GenerateMesh(maxh=size * 1e3, grading=0.4, quad_dominated=False)
+        mesh.SecondOrder()
+    except Exception as fault:  # NgException, which netgen's Python does not name
+        raise InputError(
+            f"{path.name} cannot be meshed with size {size * 1e3:g} mm ({fault}); choose another size, or repair the geometry"
+        ) from None
     return _collect(mesh, [solid.name for solid in parts], labels, source=path.name)
+
+
+def _face_at(label: str, part: str, point: Sequence[float], faces: Sequence[Any]) -> Any:
+    """The one face of a part at a point. Raises InputError where none is near, or several are."""
+    from netgen.occ import Pnt, Vertex
+
+    here = Vertex(Pnt(*(1e3 * x for x in point)))
+    distance = np.array([face.Distance(here) for face in faces])
+    order = np.argsort(distance)
+    where = f"face {label!r} at ({', '.join(f'{1e3 * x:g}' for x in point)}) mm"
+    if distance[order[0]] > NEAR:
+        raise InputError(
+            f"{where}: the nearest face of {part!r} is {distance[order[0]]:.4g} mm away, more than {NEAR:g} mm; check the point "
+            "and its unit"
+        )
+    near = [faces[k] for k in order if distance[k] < distance[order[0]] + AMBIGUOUS]
+    if len(near) > 1:
+        centres = "; ".join(f"({f.center.x:.4g}, {f.center.y:.4g}, {f.center.z:.4g}) mm" for f in near)
+        raise InputError(
+            f"{where} lies on {len(near)} faces of {part!r}, with their centres at {centres}; give a point inside one of them"
+        )
+    return near[0]
+
+
+def _check_size(volume: float, size: float, name: str) -> None:
+    """Raise InputError where a mesh of edges `size` [m] in a volume [mm3] is more than the memory takes."""
+    elements = ELEMENTS * volume * 1e-9 / size**3
+    unknowns = int(UNKNOWNS * elements)
+    needed, free = guessed(unknowns), available()
+    if free is not None and needed > free:
+        least = size * (needed / free) ** 0.25  # memory grows as unknowns^(4/3), so as size^-4
+        raise InputError(
+            f"{name}: edges of {size * 1e3:g} mm make about {elements:,.0f} elements and {unknowns:,} unknowns, whose "
+            f"factorisation takes {needed / 1e9:.3g} GB; {free / 1e9:.3g} GB are free: take {least * 1e3:.2g} mm or more"
+        )
+
+
+def _overlaps(solids: Sequence[Any], names: Sequence[str]) -> str:
+    """Which parts have a volume in common, and where."""
+    found = []
+    for k, one in enumerate(solids):
+        for j in range(k):
+            both = one * solids[j]
+            if both.mass > 1e-9 * one.mass:
+                low, high = both.bounding_box
+                size = " x ".join(f"{b - a:.3g}" for a, b in zip(low, high, strict=True))
+                centre = f"({both.center.x:.4g}, {both.center.y:.4g}, {both.center.z:.4g}) mm"
+                found.append(f"{names[j]!r} and {names[k]!r} share {size} mm about {centre}")
+    return "; ".join(found) or ", ".join(names)
 
 
 def _signature(face: Any) -> Array:
@@ -143,8 +278,8 @@ def _label_pieces(
 ) -> None:
     """Give (name, part) to the pieces into which gluing has cut faces: where two faces overlap only in part.
 
-    sides: numbers of the glued faces that bound each part. A piece bounds the part and lies on the face, which points on
-    it tell, those of a mesh of the surfaces. Raises InputError where the pieces do not make up the face.
+    sides: numbers of the glued faces that bound each part. A piece bounds the part and lies on the face, which points
+    on it tell, those of a mesh of the surfaces. Raises InputError where the pieces do not make up the face.
     """
     from netgen.meshing import MeshingStep
     from netgen.occ import OCCGeometry, Pnt, Vertex
@@ -164,8 +299,8 @@ def _label_pieces(
                 area += listed[number].mass
         if not np.isclose(area, mark.face.mass, rtol=1e-4):
             raise InputError(
-                f"face {mark.name!r} of part {mark.part!r} ({mark.face.mass:.6g} mm2) comes out as {area:.6g} mm2 where the "
-                "parts touch; do they overlap? Else split it in the CAD program where they meet"
+                f"face {mark.name!r} of part {mark.part!r} ({mark.face.mass:.6g} mm2) comes out as {area:.6g} mm2 "
+                "where the parts touch; do they overlap? Else split it in the CAD program where they meet"
             )
 
 

@@ -142,9 +142,9 @@ class Interface:
 def join(mesh: Mesh, first: str, second: str, *, search_distance: float | None = None) -> Interface:
     """Pair two faces: where their meshes match, point by point; else over every overlap of two element faces.
 
-    first, second: names of the faces; search_distance: the farthest that the second may lie away [m], 1 % of the structure's size
-    where None. What finds no partner carries nothing. Raises InputError where the faces do not meet at all, lie on one
-    part, or face the same way.
+    first, second: names of the faces; search_distance: the farthest that the second may lie away [m], 1 % of the
+    structure's size where None. What finds no partner carries nothing. Raises InputError where the faces do not meet at
+    all, lie on one part, or face the same way.
     """
     faces_a, faces_b = mesh.face(first), mesh.face(second)
     if mesh.face_part[first] == mesh.face_part[second]:

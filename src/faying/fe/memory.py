@@ -5,7 +5,8 @@ import numpy as np
 from faying.errors import InputError
 from faying.memory import GB, available
 
-# entries of a factor over unknowns^(4/3), as nested dissection of a compact solid grows (George 1973, doi:10.1137/0710032);
+# entries of a factor over unknowns^(4/3), as nested dissection of a compact solid grows (George 1973,
+# doi:10.1137/0710032);
 # PARDISO counts 14 to 16 on boxes of tet10 with 43,000 to 154,000 unknowns, less on slender structures
 FILL = 16.0
 FILL_MINIMUM_DEGREE = 25.0  # the only ordering SuperLU has for these: 19 counted at 43,000 unknowns, growing

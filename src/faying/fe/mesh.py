@@ -22,8 +22,8 @@ class Mesh:
 
     Args:
         points: Nodes (n, 3) [m].
-        parts: Name -> blocks of elements, one array (e, a) of nodes for each kind; a tells the kind: tet4, wedge6, hex8,
-            tet10, wedge15, hex20. Nodes are in VTK's order. A single array stands for one block.
+        parts: Name -> blocks of elements, one array (e, a) of nodes for each kind; a tells the kind: tet4, wedge6,
+            hex8, tet10, wedge15, hex20. Nodes are in VTK's order. A single array stands for one block.
         faces: Name -> blocks of element faces (f, a): tri3, quad4, tri6, quad8, normals out of the part.
         face_part: Name of a face -> name of its part.
         source: File that the mesh came from.

@@ -42,8 +42,8 @@ def lowest_modes(
     """Find the `count` lowest modes by block Lanczos iteration with a negative shift.
 
     stiffness [N/m], mass [kg]: sparse and symmetric; shift_frequency [Hz] sets the shift -(2 pi f)^2, at which
-    K + |shift| M is positive definite even for free bodies. Raises InputError where more modes are asked for than there are
-    masses, the shift is above every mode, the structure is unstable, or memory is short, and NotConverged where the
+    K + |shift| M is positive definite even for free bodies. Raises InputError where more modes are asked for than there
+    are masses, the shift is above every mode, the structure is unstable, or memory is short, and NotConverged where the
     iteration stops short.
     """
     _check_shift(stiffness, mass, shift_frequency)
@@ -79,8 +79,8 @@ def _check_shift(stiffness: Any, mass: Any, shift_frequency: float) -> None:
     highest = float(np.sqrt(ratio.max(initial=0.0))) / (2 * np.pi)
     if shift_frequency > TOO_HIGH * highest > 0:
         raise InputError(
-            f"a shift of {shift_frequency:.4g} Hz lies above all modes of these matrices, which end near {highest:.3g} Hz; "
-            "give one near the first elastic mode"
+            f"a shift of {shift_frequency:.4g} Hz lies above all modes of these matrices, which end near "
+            f"{highest:.3g} Hz; give one near the first elastic mode"
         )
 
 
@@ -91,8 +91,8 @@ def _check_stable(stiffness: Any, values: Array, shapes: Array, shift: float) ->
     if values[worst] < -max(1e-4 * shift, rounding):
         rate = np.sqrt(-values[worst]) / (2 * np.pi)
         raise InputError(
-            f"the structure is unstable: {np.count_nonzero(values < -max(1e-4 * shift, rounding))} eigenvalues are negative, "
-            f"the lowest -({rate:.4g} Hz)^2; check the signs of the stiffness matrix and of its springs"
+            f"the structure is unstable: {np.count_nonzero(values < -max(1e-4 * shift, rounding))} eigenvalues are "
+            f"negative, the lowest -({rate:.4g} Hz)^2; check the signs of the stiffness matrix and of its springs"
         )
 
 
@@ -126,8 +126,8 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[A
     Fewer where the mass has a lower rank.
 
     Block Lanczos with full reorthogonalisation (Grimes, Lewis, Simon 1994, doi:10.1137/S0895479888151111), without
-    restarts: a factor takes far more memory than the basis. An eigenvalue that comes as often as the blocks are wide may
-    come more often than that, so that wider ones are tried.
+    restarts: a factor takes far more memory than the basis. An eigenvalue that comes as often as the blocks are wide
+    may come more often than that, so that wider ones are tried.
     """
     n = mass.shape[0]
     generator = np.random.default_rng(SEED)

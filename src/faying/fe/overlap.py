@@ -17,7 +17,10 @@ from faying.typing import Array, Index
 
 @dataclass(frozen=True, kw_only=True)
 class Pieces:
-    """Convex pieces of element faces: corners (p, 4, 3), a triangle's last one twice, and block and number of the face."""
+    """Convex pieces of element faces.
+
+    Corners (p, 4, 3), a triangle's last one twice, and block and number of the face.
+    """
 
     corners: Array
     block: Index
@@ -110,8 +113,8 @@ class Overlap:
 def overlap(points: Array, first: Blocks, second: Blocks, *, search_distance: float, degree: int) -> Overlap:
     """Cut two surfaces that face each other into their common pieces.
 
-    search_distance: the farthest that the second may lie away [m]; degree: of the polynomials that the points integrate exactly
-    on each triangle of an overlap. May come out empty.
+    search_distance: the farthest that the second may lie away [m]; degree: of the polynomials that the points integrate
+    exactly on each triangle of an overlap. May come out empty.
     """
     one, two = pieces(points, first), pieces(points, second)
     a, b = _near(one, two, search_distance)

@@ -38,8 +38,8 @@ class Response:
 class Vibration:
     """The equations (K + i eta P + i C - w^2 M) u = f, or with i w C where kind is viscous.
 
-    stiffness K [N/m], mass M [kg], loss C [N/m or N s/m], sparse; rigid: how many of the lowest modes are rigid motions;
-    structural_loss: eta [-] of the parts themselves, whose stiffness is P (parts; K where None).
+    stiffness K [N/m], mass M [kg], loss C [N/m or N s/m], sparse; rigid: how many of the lowest modes are rigid
+    motions; structural_loss: eta [-] of the parts themselves, whose stiffness is P (parts; K where None).
     """
 
     stiffness: Any
@@ -51,7 +51,7 @@ class Vibration:
     parts: Any | None = None
 
     def dynamic_stiffness(self, omega: float, K: Any, P: Any, C: Any, M: Any) -> Any:
-        """The matrix of the equations at an angular frequency [1/s], of full matrices, projected ones or their products."""
+        """The matrix of the equations at an angular frequency [1/s], of full or projected matrices, or products."""
         damping = omega * C if self.kind == "viscous" else C
         return K + 1j * (self.structural_loss * P + damping) - omega**2 * M
 
@@ -70,7 +70,7 @@ def frequency_response(
 
     forces (unknowns, i): unit forces; outputs (unknowns, o): what is read of u; frequencies [Hz] (f,). Basis: rigid
     motions, real and complex modes, and the response to the forces at the shift of the factorisation, so that modes
-    beyond the last one count through their static part. Raises InputError for frequencies that do not rise from above 0.
+    beyond the last one count through their static part. Raises InputError for frequencies that do not rise above 0.
     """
     frequencies = np.asarray(frequencies, dtype=float)
     if frequencies.ndim != 1 or not len(frequencies) or frequencies[0] <= 0 or np.any(np.diff(frequencies) <= 0):

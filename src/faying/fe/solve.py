@@ -23,7 +23,10 @@ class Factorisation(Protocol):
         """Solve for one right-hand side (n,) or several (n, m)."""
 
     def again(self, matrix: Any) -> "Factorisation":
-        """Factorise another matrix with the same pattern, both CSR with sorted indices; the analysis is kept if it can."""
+        """Factorise another matrix with the same pattern, both CSR with sorted indices.
+
+        The analysis is kept if it can.
+        """
 
 
 class _Mumps:
@@ -119,7 +122,10 @@ _BACKENDS: dict[str, Callable[[Any], Factorisation]] = {
 
 @cache
 def available() -> tuple[str, ...]:
-    """Names of the factorisations that can be used here, fastest first; one that is installed but broken is left out."""
+    """Names of the factorisations that can be used here, fastest first.
+
+    One that is installed but broken is left out.
+    """
     from importlib import import_module
 
     def works(module: str) -> bool:

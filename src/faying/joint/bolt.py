@@ -11,12 +11,16 @@ from faying.errors import InputError
 from faying.fe.attach import Ring, mean_motion
 from faying.fe.elasticity import Solid
 from faying.fe.faces import face_centre
+from faying.fe.holes import Hole, holes
 from faying.fe.mesh import Mesh
+from faying.notes import Note
 from faying.typing import Array
 from faying.units import show
 
 # proportions of hexagon heads and nuts, of the thread's diameter: width across flats, heights (ISO 4014, ISO 4032)
 ACROSS_FLATS, HEAD_HEIGHT, NUT_HEIGHT = 1.5, 0.64, 0.85
+CLEARANCE = 1.1  # diameter of a clearance hole over that of its bolt (ISO 273, medium)
+BESIDE = 0.2  # of a hole's radius: farther from its centre, an axis misses it
 HEXAGON = 3**0.5 / 2  # area of a hexagon over the square of its width across flats
 
 
@@ -92,15 +96,16 @@ class Bolt:
         at: A point (3,) [m] on the axis; the middle between the faces where None.
         diameter: Diameter [m] of the shank, greater than 0; None for a bolt that is a force and nothing else.
         material: Material of the shank, given together with the diameter.
-        seat: Inner and outer diameter [m] of the ring that head and nut press on; a washer's, else the whole faces, where
-            None.
+        seat: Inner and outer diameter [m] of the ring that head and nut press on. Where None: that of a washer; else,
+            with `at`, from the hole to the width across flats of a hexagon head; else the whole faces.
         washers: Washers under head and nut together.
         head_mass: Mass of the head [kg]; that of a hexagon head where None.
         nut_mass: Mass of the nut [kg]; that of a hexagon nut where None.
         preload: Forces [N] that it is tightened to, one load after another.
 
     Raises:
-        InputError: Diameter without material or the other way round, a diameter of 0 or less, a ring without width.
+        InputError: Diameter without material or the other way round, a diameter of 0 or less, a ring without width;
+            when it is fitted, an axis beside its hole, or `at` without a hole, a diameter or a ring.
 
     Source:
         Head and nut: ISO 4014, ISO 4032.
@@ -129,7 +134,10 @@ class Bolt:
             raise InputError(f"bolt {self.name!r}: the seat's inner diameter must be less than its outer")
 
     def fitted(self, mesh: Mesh) -> "FittedBolt":
-        """Return the bolt in its place. Raises InputError where its faces do not look away from each other, or no axis joins them."""
+        """Return the bolt in its place.
+
+        Raises InputError where its faces do not look away from each other, or no axis joins them.
+        """
         first, second = self.faces
         if mesh.face_part[first] == mesh.face_part[second] and self.diameter is None:
             raise InputError(
@@ -158,27 +166,96 @@ class Bolt:
                 f"the bolt's faces {first!r} and {second!r} do not look away from each other; name the two seats "
                 "that head and nut press on"
             )
-        rings: list[Ring | None] = [None, None]
-        seat = self.seat
-        if seat is None and self.washers:
-            seat = (self.washers[0].inner, self.washers[0].outer)
-        if seat is not None:
-            rings = [Ring(point=centre_a, axis=axis, inner=seat[0] / 2, outer=seat[1] / 2)] * 2
+        hole = self._hole(mesh, centre_a, axis / length)
+        seat = self._seat(hole)
+        ring = None if seat is None else Ring(point=centre_a, axis=axis, inner=seat[0] / 2, outer=seat[1] / 2)
         ends = tuple(
             mean_motion(mesh.points, mesh.face(name), centre, ring)
-            for name, centre, ring in zip(self.faces, (centre_a, centre_b), rings, strict=True)
+            for name, centre in zip(self.faces, (centre_a, centre_b), strict=True)
         )
-        return FittedBolt(bolt=self, axis=axis / length, length=length, ends=ends)
+        return FittedBolt(bolt=self, point=centre_a, axis=axis / length, length=length, ends=ends, ring=seat)
+
+    def _hole(self, mesh: Mesh, point: Array, axis: Array) -> Hole | None:
+        """The hole that the axis runs through, None where there is none.
+
+        Raises InputError where the axis lies beside it.
+        """
+        found = None
+        for face in self.faces:
+            for hole in holes(mesh.points, mesh.face(face)):
+                arm = hole.centre - point
+                beside = float(np.linalg.norm(arm - (arm @ axis) * axis))
+                if beside > 2 * hole.radius:
+                    continue
+                if beside > BESIDE * hole.radius:
+                    raise InputError(
+                        f"bolt {self.name!r}: its axis lies {show(beside, 'm')} beside the centre of the hole of "
+                        f"{show(2 * hole.radius, 'm')} in {face!r}, at "
+                        f"({', '.join(f'{1e3 * x:.4g}' for x in hole.centre)}) mm; "
+                        "give that point as `at`"
+                    )
+                found = found or hole
+        return found
+
+    def _seat(self, hole: Hole | None) -> tuple[float, float] | None:
+        """Inner and outer diameter [m] of the ring, None for the whole faces."""
+        if self.seat is not None:
+            return self.seat
+        if self.washers:
+            return self.washers[0].inner, self.washers[0].outer
+        if self.at is None:
+            return None
+        inner = 0.0 if hole is None else 2 * hole.radius
+        size = self.diameter or inner / CLEARANCE
+        if inner and inner >= ACROSS_FLATS * size:
+            raise InputError(
+                f"bolt {self.name!r}: a head of {show(ACROSS_FLATS * size, 'm')} across flats falls through its hole "
+                f"of {show(inner, 'm')}; give seat, or a washer"
+            )
+        if not size:
+            raise InputError(
+                f"bolt {self.name!r} has a point on its axis, but neither seat, washer, diameter nor a round hole "
+                "says how much of its faces it presses; give seat (inner and outer diameter)"
+            )
+        return inner, ACROSS_FLATS * size
 
 
 @dataclass(frozen=True, kw_only=True)
 class FittedBolt:
-    """A bolt in its place: axis (3,) from head to nut, clamped length [m], mean motions (6, unknowns) of both seats."""
+    """A bolt in its place.
+
+    point [m] and axis (3,): from head to nut; length [m]: clamped; ends: mean motions (6, unknowns) of both seats;
+    ring: inner and outer diameter [m] of the seats, None for whole faces.
+    """
 
     bolt: Bolt
+    point: Array
     axis: Array
     length: float
     ends: tuple[Any, ...]
+    ring: tuple[float, float] | None
+
+    @property
+    def notes(self) -> tuple[Note, ...]:
+        """What was chosen for want of a seat."""
+        if self.ring is None or self.bolt.seat is not None or self.bolt.washers:
+            return ()
+        inner, outer = (show(d, "m") for d in self.ring)
+        text = (
+            f"bolt {self.bolt.name!r} has no seat: it presses a ring of {inner} to {outer}, from its hole and its size"
+        )
+        return (Note(code="bolt-seat", text=text),)
+
+    def meets(self, other: "FittedBolt") -> bool:
+        """Whether two bolts run through one place: parallel, on a common face, closer than their shanks are thick."""
+        arm = other.point - self.point
+        apart = float(np.linalg.norm(arm - (arm @ self.axis) * self.axis))
+        thick = ((self.bolt.diameter or 0.0) + (other.bolt.diameter or 0.0)) / 2 or 1e-3 * self.length
+        return (
+            apart < thick
+            and abs(float(self.axis @ other.axis)) > 0.9
+            and bool({*self.bolt.faces} & {*other.bolt.faces})
+        )
 
     @cached_property
     def motion(self) -> Any:

@@ -1,10 +1,10 @@
 """Equilibrium of elastic parts on a rough interface, by Newton with a line search.
 
 The rough surface is a normal compliance p(approach), so nothing is penalised: its tangent is the contact stiffness.
-Tangentially the joint sticks with the stiffness k_t of its pressure and, where a friction coefficient is given, slips at
-friction times pressure. With k_t and that limit given, equilibrium is the minimum of a convex energy; both then follow
-the pressure until nothing changes. How a Newton step is solved is left to those who build on this: with sparse matrices
-(`preload`) or in a small basis (`reduce`).
+Tangentially the joint sticks with the stiffness k_t of its pressure and, where a friction coefficient is given, slips
+at friction times pressure. With k_t and that limit given, equilibrium is the minimum of a convex energy; both then
+follow the pressure until nothing changes. How a Newton step is solved is left to those who build on this: with sparse
+matrices (`preload`) or in a small basis (`reduce`).
 """
 
 from abc import ABC, abstractmethod
@@ -70,7 +70,10 @@ class StickSlip:
         return np.asarray(np.linalg.norm(self.k_t[:, None] * (slip - self.anchor), axis=1) > self.limit)
 
     def tangent(self, slip: Array) -> Array:
-        """Tangent (q, 2, 2) [Pa/m] of the shear traction: k_t where it sticks; across the motion only where it slides."""
+        """Tangent (q, 2, 2) [Pa/m] of the shear traction: k_t where it sticks.
+
+        Across the motion only where it slides.
+        """
         full = self.k_t[:, None, None] * np.eye(2)
         slides = self.sliding(slip)
         if np.any(slides):
@@ -179,20 +182,27 @@ class Equilibrium(ABC):
             beyond = float(trace.weights[p > end].sum()) / touching if touching > 0 else 0.0
             if beyond > allowed:
                 raise InputError(
-                    f"the preload presses the joint to {p.max() / 1e6:.4g} MPa, and {beyond:.0%} of what is in contact to more "
-                    f"than {law.model.name} covers with this surface ({end / 1e6:.4g} MPa); lower the preload, widen the "
-                    "joint, or choose a law that reaches further"
+                    f"the preload presses the joint to {p.max() / 1e6:.4g} MPa, and {beyond:.0%} of what is in "
+                    "contact to more than "
+                    f"{law.model.name} covers with this surface ({end / 1e6:.4g} MPa); lower the preload, widen "
+                    "the joint, or choose a law that reaches further"
                 )
 
     def _rounding(self, u: Array) -> float:
-        """What rounding alone may leave of the elastic forces [N]: parts far stiffer than their joints lose digits in K u."""
+        """What rounding alone may leave of the elastic forces [N].
+
+        Parts far stiffer than their joints lose digits in K u.
+        """
         return float(2 * np.finfo(float).eps * np.linalg.norm(abs(self.stiffness) @ np.abs(u)))
 
     def _move(self, trace: InterfaceMotion, u: Array) -> Array:
         return np.asarray(trace.relative @ u).reshape(-1, 3)
 
     def _state(self, u: Array) -> list[tuple[Array, Array, Array]]:
-        """Relative motion (q, 3), pressure and k_n (q,) of each joint; asked for several times in a step, found once."""
+        """Relative motion (q, 3), pressure and k_n (q,) of each joint.
+
+        Asked for several times in a step, found once.
+        """
         if self._known is None or self._known[0] is not u:
             moves = [self._move(trace, u) for trace, _ in self.joints]
             found = [
@@ -227,7 +237,10 @@ class Equilibrium(ABC):
         return out
 
     def _line_search(self, u: Array, step: Array, load: Array, grips: list[StickSlip]) -> float:
-        """Step length at which the slope of the energy has fallen to a fraction; the energy is convex along the line."""
+        """Step length at which the slope of the energy has fallen to a fraction.
+
+        The energy is convex along the line.
+        """
         stretch = self.stiffness @ step
         linear = float(step @ (load - self.stiffness @ u))
         quadratic = float(step @ stretch)
@@ -248,8 +261,8 @@ class Equilibrium(ABC):
         if start >= 0:
             apart = min(float(trace.gap.min()) for trace, _ in self.joints)
             raise NotConverged(
-                "preload: the search direction does not lower the energy; a joint may be wholly open (before any load the "
-                f"nearest faces lie {apart * 1e6:.4g} um apart): put the faces on each other, or pull harder"
+                "preload: the search direction does not lower the energy; a joint may be wholly open (before any load "
+                f"the nearest faces lie {apart * 1e6:.4g} um apart): put the faces on each other, or pull harder"
             )
         end = slope(1.0)
         if abs(end) <= 0.5 * abs(start):

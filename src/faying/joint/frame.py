@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from faying.errors import InputError
 from faying.fe.constraint import constrain, free_motions
 from faying.fe.elasticity import Solid, assemble, rigid_motions
 from faying.fe.mesh import Mesh
@@ -48,10 +49,19 @@ class Frame:
     def fitted_bolts(self) -> tuple[FittedBolt | FittedSolidBolt, ...]:
         """The bolts in their places."""
         joined = [*self.joined, *(support.face for support in self.supports)]
-        return tuple(
+        fitted = tuple(
             bolt.fitted(self.mesh) if isinstance(bolt, Bolt) else bolt.fitted(self.mesh, self.matrices[0], joined)
             for bolt in self.bolts
         )
+        beams = [bolt for bolt in fitted if isinstance(bolt, FittedBolt)]
+        for k, one in enumerate(beams):
+            for other in beams[:k]:
+                if one.meets(other):
+                    raise InputError(
+                        f"bolts {other.bolt.name!r} and {one.bolt.name!r} run through one place; give each a point on "
+                        "its own axis as `at`, or leave one out"
+                    )
+        return fitted
 
     @cached_property
     def loads(self) -> Array:
@@ -72,7 +82,7 @@ class Frame:
 
     @cached_property
     def vibrating(self) -> tuple[Any, Any]:
-        """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; fixed unknowns cleared."""
+        """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; fixed ones cleared."""
         K = added(self._upheld, [bolt.stiffness for bolt in self.fitted_bolts if bolt.released is None])
         M = added(self.matrices[1], [bolt.mass for bolt in self.fitted_bolts])
         M = added(M, [mass.matrix(self.mesh) for mass in self.masses])

@@ -45,8 +45,8 @@ class GapMap:
         outside = np.any((local < low - 0.25 * (high - low)) | (local > high + 0.25 * (high - low)), axis=1)
         if outside.mean() > 0.2:
             raise InputError(
-                f"{outside.mean():.0%} of the joint lies far from the gap map, which covers {_box(low, high)} while the joint "
-                f"lies at {_box(local.min(axis=0), local.max(axis=0))}; check origin, axes and units"
+                f"{outside.mean():.0%} of the joint lies far from the gap map, which covers {_box(low, high)} while "
+                f"the joint lies at {_box(local.min(axis=0), local.max(axis=0))}; check origin, axes and units"
             )
         inside = LinearNDInterpolator(self.places, self.gaps)(local)
         return np.asarray(np.where(np.isfinite(inside), inside, NearestNDInterpolator(self.places, self.gaps)(local)))

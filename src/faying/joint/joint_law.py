@@ -20,11 +20,12 @@ LEAST_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p
 class JointLaw:
     """The law of one joint, with its pressure as a function of approach: w = integral of dp/k from 0 to p.
 
-    k is the law's k_load where it has one (asperities that yield close more on loading than they spring back), else k_n.
+    k is the law's k_load where it has one (asperities that yield close more on loading than they spring back), else
+    k_n.
 
     law; tangential: "law" takes its k_t, "mindlin" takes k_t = k_n 2(1-nu)/(2-nu) with the nu given (for laws that
-    define none); scale of stiffness [-], 1 unless a study of sensitivity asks otherwise. Raises InputError where the law
-    gives no k_n, or no k_t and tangential = "law".
+    define none); scale of stiffness [-], 1 unless a study of sensitivity asks otherwise. Raises InputError where the
+    law gives no k_n, or no k_t and tangential = "law".
     """
 
     model: ContactLaw
@@ -106,7 +107,10 @@ class JointLaw:
         return np.where(pressure > 0, np.clip(pressure, self.least_pressure, self.model.greatest_pressure), 0.0)
 
     def stiffness(self, pressure: Array) -> tuple[Array, Array]:
-        """k_n and k_t [Pa/m] at pressures [Pa] of any shape; 0 where the pressure is 0, constant beyond the end of the law."""
+        """k_n and k_t [Pa/m] at pressures [Pa] of any shape.
+
+        0 where the pressure is 0, constant beyond the end of the law.
+        """
         within = self._within(pressure)
         if np.size(pressure) > FEW:
             log_p, (log_n, log_t), _ = self._samples

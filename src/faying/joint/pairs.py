@@ -82,9 +82,9 @@ class NodePairs:
 def lumped(nodes: Interface, springs: tuple[Array, Array, Array, Array], pressure: Array) -> NodePairs:
     """Return a spring for each pair of nodes that face each other.
 
-    nodes: what `Interface.at_nodes` gives: shares of the area after the diagonal of the consistent mass of the face, all
-    positive (HRZ, doi:10.1002/eqe.4290040305), that sum to the area; springs: k_n, k_t [Pa/m] and loss factors [-] at
-    these nodes (p,), at the pressure [Pa] (p,) given.
+    nodes: what `Interface.at_nodes` gives: shares of the area after the diagonal of the consistent mass of the face,
+    all positive (HRZ, doi:10.1002/eqe.4290040305), that sum to the area; springs: k_n, k_t [Pa/m] and loss factors [-]
+    at these nodes (p,), at the pressure [Pa] (p,) given.
     """
     k_n, k_t, loss_n, loss_t = springs
     frames, area = nodes.frames, nodes.weights
@@ -107,9 +107,9 @@ def lumped(nodes: Interface, springs: tuple[Array, Array, Array, Array], pressur
 def consistent(interface: Interface, springs: tuple[Array, Array, Array, Array]) -> NodePairs:
     """Return the springs per area of a joint, matched or not, as springs between all nodes that share an overlap.
 
-    A matrix whose blocks in each row sum to zero, as that of springs per area does, is a sum of springs between two nodes,
-    each the negative of one off-diagonal block; so nothing is lost. Those within one face are negative.
-    springs: k_n, k_t [Pa/m] and loss factors [-] at the points of the interface (q,).
+    A matrix whose blocks in each row sum to zero, as that of springs per area does, is a sum of springs between two
+    nodes, each the negative of one off-diagonal block; so nothing is lost. Those within one face are negative. springs:
+    k_n, k_t [Pa/m] and loss factors [-] at the points of the interface (q,).
     """
     k_n, k_t, loss_n, loss_t = springs
     full, lost = interface.springs(k_n, k_t), interface.springs(k_n * loss_n, k_t * loss_t)

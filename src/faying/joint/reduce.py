@@ -1,11 +1,11 @@
 """Makes the small bases of a structure of which only the joints change.
 
-PreloadState, roughness and contact model act on the faying faces alone, so one factorisation serves every variant. The basis
-of each problem (equilibrium, vibration) starts from a reference state and is enriched by what that factorisation makes
-of the residual of a variant, until the residual says that the variant is solved. The estimate of the error is that of
-the residual in the energy norm of the reference. What the variants trained on need of the basis for vibration is kept,
-most needed first, so that its leading part is a coarser basis: the difference between the two is the cheap estimate that
-every evaluation carries.
+PreloadState, roughness and contact model act on the faying faces alone, so one factorisation serves every variant. The
+basis of each problem (equilibrium, vibration) starts from a reference state and is enriched by what that factorisation
+makes of the residual of a variant, until the residual says that the variant is solved. The estimate of the error is
+that of the residual in the energy norm of the reference. What the variants trained on need of the basis for vibration
+is kept, most needed first, so that its leading part is a coarser basis: the difference between the two is the cheap
+estimate that every evaluation carries.
 """
 
 from collections.abc import Sequence
@@ -115,7 +115,8 @@ class Reduction:
         """Start from a factorised reference.
 
         reference (n, n): stiffness + joints + shift x mass, of which `factor` is the factorisation; state (n,): a
-        displacement in equilibrium; shapes (n, m): elastic modes at the reference, more than the `count` that is asked for.
+        displacement in equilibrium; shapes (n, m): elastic modes at the reference, more than the `count` that is asked
+        for.
         """
         from scipy.linalg import cholesky, solve_triangular
 
@@ -161,8 +162,8 @@ class Reduction:
     ) -> Self:
         """Solve one variant of a structure in full, its bolts pulled at once, and start from that.
 
-        laws: the law of each joint; forces [N] (bolts,); count: elastic modes wanted. Raises InputError where a part is held by
-        nothing.
+        laws: the law of each joint; forces [N] (bolts,); count: elastic modes wanted. Raises InputError where a part is
+        held by nothing.
         """
         joints = tuple(replace(joint, law=law) for joint, law in zip(structure.joints, laws, strict=True))
         structure = replace(structure, joints=joints)
@@ -214,7 +215,7 @@ class Reduction:
     def static_error(
         self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], found: PreloadState
     ) -> tuple[float, Array]:
-        """Error of an equilibrium in energy, over that of the joints' normal springs [-], and what would mend it (n,)."""
+        """Error of an equilibrium in energy over that of the joints' springs [-], and what would mend it (n,)."""
         residual = self._static_residual(laws, forces, friction, found)
         answer = self.factor.solve(residual)
         return float(np.sqrt(np.maximum(residual @ answer, 0.0)) / _pressed(self.traces, laws, found)), answer

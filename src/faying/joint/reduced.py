@@ -128,9 +128,9 @@ class ReducedEquilibrium(Equilibrium):
 class ReducedModel:
     """The two bases, projected.
 
-    weights [m2], gaps [m]: (q,) of each joint; static_*: stiffness (s, s), loads (s, bolts) of 1 N each, relative motion
-    at the points of each joint (3q, s); dynamic_*: stiffness, mass (d, d), relative motion (3q, d); count: modes that are
-    given; coarse: how many leading vectors of the dynamic basis make the coarser one of the estimate.
+    weights [m2], gaps [m]: (q,) of each joint; static_*: stiffness (s, s), loads (s, bolts) of 1 N each, relative
+    motion at the points of each joint (3q, s); dynamic_*: stiffness, mass (d, d), relative motion (3q, d); count: modes
+    that are given; coarse: how many leading vectors of the dynamic basis make the coarser one of the estimate.
     """
 
     weights: Sequence[Array]
@@ -151,7 +151,10 @@ class ReducedModel:
     def equilibrium(
         self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None = None
     ) -> PreloadState:
-        """Equilibrium in the basis under bolt forces [N] (b,); start: coefficients found before, maybe in fewer vectors."""
+        """Equilibrium in the basis under bolt forces [N] (b,).
+
+        start: coefficients found before, maybe in fewer vectors.
+        """
         joints = list(zip(self._motions(self.static_relative), laws, strict=True))
         load = self.static_loads @ forces
         if start is not None:

@@ -45,8 +45,8 @@ class SolidBolt:
         for face in self.faces:
             if mesh.face_part[face] != part:
                 raise InputError(
-                    f"bolt {self.name!r} is the part {part!r}, but its face {face!r} is on {mesh.face_part[face]!r}; name "
-                    "the faces under its own head and nut"
+                    f"bolt {self.name!r} is the part {part!r}, but its face {face!r} is on {mesh.face_part[face]!r}; "
+                    "name the faces under its own head and nut"
                 )
         centre, normal, _ = face_centre(mesh.points, mesh.face(head))
         end, _, _ = face_centre(mesh.points, mesh.face(nut))
@@ -71,13 +71,13 @@ class SolidBolt:
         met = [f for f in joined if mesh.face_part.get(f) == part and np.isin(mesh.face_nodes(f), layer).any()]
         if met:
             raise InputError(
-                f"bolt {self.name!r}: the plane through {_mm(place)} mm in which it is drawn in meets its face {met[0]!r}, "
-                "which is in a joint; give a point of the bare shank as `at`, or a finer mesh"
+                f"bolt {self.name!r}: the plane through {_mm(place)} mm in which it is drawn in meets its face "
+                f"{met[0]!r}, which is in a joint; give a point of the bare shank as `at`, or a finer mesh"
             )
         if 3 * len(layer) > MOST:
             raise InputError(
-                f"bolt {self.name!r}: the elements in the plane across its shank have {3 * len(layer):,} unknowns, which all "
-                f"couple while it is pulled ({MOST:,} at most); mesh the shank more coarsely, or give a beam"
+                f"bolt {self.name!r}: the elements in the plane across its shank have {3 * len(layer):,} unknowns, "
+                f"which all couple while it is pulled ({MOST:,} at most); mesh the shank more coarsely, or give a beam"
             )
         drawn = np.zeros((len(mesh.points), 3))
         drawn[beyond] = axis
@@ -92,9 +92,9 @@ class FittedSolidBolt:
     """A solid bolt in its place: pull (unknowns,) and rigidity [N/m].
 
     The far half is drawn towards the head by a (the turn of a nut), v being 1 along the axis in that half and 0 in the
-    other. The bolt is strained by u + a v, so that its tension is v.K(u + a v) = pull.u + rigidity a: the resultant of the
-    stresses in every section, exactly. Given a tension instead of a, the structure loses the stiffness
-    pull pull'/rigidity and gains the load -tension pull/rigidity. Where the halves meet makes no difference.
+    other. The bolt is strained by u + a v, so that its tension is v.K(u + a v) = pull.u + rigidity a: the resultant of
+    the stresses in every section, exactly. Given a tension instead of a, the structure loses the stiffness pull
+    pull'/rigidity and gains the load -tension pull/rigidity. Where the halves meet makes no difference.
     """
 
     bolt: SolidBolt

@@ -11,6 +11,7 @@ from faying.fe.constraint import constrain
 from faying.fe.elasticity import Solid
 from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
+from faying.fe.quality import quality
 from faying.fe.sides import skin, triangles_of
 from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt, FittedBolt
@@ -19,6 +20,7 @@ from faying.joint.joint_law import JointLaw
 from faying.joint.preload import PreloadProblem
 from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.joint.springs import Springs
+from faying.notes import Note
 from faying.typing import Array, Index
 
 
@@ -109,14 +111,28 @@ class Structure:
             apart = [face for face in bolt.faces if face not in faces]
             if apart:
                 raise InputError(
-                    f"bolt {bolt.name!r}: its face {apart[0]!r} is in no joint; add a [[joint]] of it and the seat that it "
-                    "presses"
+                    f"bolt {bolt.name!r}: its face {apart[0]!r} is in no joint; add a [[joint]] of it and the seat "
+                    "that it presses"
                 )
         loose = [part for part in self.mesh.parts if part not in met]
         if loose and len(self.mesh.parts) > 1:
             raise InputError(
                 f"part {', '.join(loose)} has no joint; add a [[joint]] of one of its faces, or leave it out"
             )
+        for what, names in (
+            ("joints", [joint.name for joint in self.joints]),
+            ("bolts", [bolt.name for bolt in self.bolts]),
+        ):
+            again = sorted({name for name in names if names.count(name) > 1})
+            if again:
+                raise InputError(f"two {what} are called {again[0]!r}; give each a name of its own")
+        pairs = [frozenset(joint.faces) for joint in self.joints]
+        for k, pair in enumerate(pairs):
+            if pair in pairs[:k]:
+                raise InputError(
+                    f"joints {self.joints[pairs.index(pair)].name!r} and {self.joints[k].name!r} join the same faces "
+                    f"{' and '.join(map(repr, sorted(pair)))}, which would double the stiffness; leave one out"
+                )
         frame = Frame(
             mesh=self.mesh,
             materials=self.materials,
@@ -160,7 +176,7 @@ class Structure:
 
     @property
     def vibrating(self) -> tuple[Any, Any]:
-        """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; fixed unknowns cleared."""
+        """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; fixed ones cleared."""
         return self._frame.vibrating
 
     @property
@@ -177,6 +193,12 @@ class Structure:
     def shift_frequency(self) -> float:
         """A frequency below the first elastic mode of any compact body of this size [Hz]: .02 c/size."""
         return self._frame.shift_frequency
+
+    @property
+    def notes(self) -> tuple[Note, ...]:
+        """What the mesh left out, how good its elements are, and what was chosen for the bolts."""
+        bolts = [note for bolt in self.fitted_bolts if isinstance(bolt, FittedBolt) for note in bolt.notes]
+        return (*self.mesh.notes, *quality(self.mesh).notes, *bolts)
 
     def assembly(self, *, solver: str | None = None) -> PreloadProblem:
         """Return the preload problem of this structure."""
@@ -209,8 +231,8 @@ class Structure:
             pressures: Pressure [Pa] at the points of each joint's interface, one array per joint.
 
         Returns:
-            For each joint: the points of its springs with their share of the area, the pressure there, k_n, k_t and both
-            loss factors. With springs per node the points are nodes.
+            For each joint: the points of its springs with their share of the area, the pressure there, k_n, k_t and
+            both loss factors. With springs per node the points are nodes.
         """
         return tuple(joint.springs(pressure) for joint, pressure in zip(self.joints, pressures, strict=True))
 

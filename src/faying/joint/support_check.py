@@ -22,7 +22,8 @@ def checked_preload(
 ) -> PreloadState:
     """`tighten`, and check that no part is left free to move.
 
-    Raises InputError where a part is not, also in place of the NotConverged that this leads to, and what `tighten` raises.
+    Raises InputError where a part is not, also in place of the NotConverged that this leads to, and what `tighten`
+    raises.
     """
     try:
         found = tighten(structure, assembly, forces, order=order)
@@ -87,8 +88,9 @@ def check_motions(structure: Structure, modes: Modes) -> None:
         return
     part = _mover(structure, modes.shapes[:, free])
     raise InputError(
-        f"{len(free)} motions cost no energy and {rigid_count} of them are those of the whole: part {part!r} moves freely "
-        f"against the others (at {modes.frequencies[free].max():.2g} Hz). Its joints resist only some directions; give "
+        f"{len(free)} motions cost no energy and {rigid_count} of them are those of the whole: part {part!r} moves "
+        "freely against the others (at "
+        f"{modes.frequencies[free].max():.2g} Hz). Its joints resist only some directions; give "
         "the law a tangential stiffness, a joint more, or a support"
     )
 

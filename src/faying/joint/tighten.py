@@ -26,8 +26,9 @@ def tighten(
 
     order: indices of the bolts, in the order of tightening, any of them more than once; None pulls all at once, so that
     each ends at its force. In an order, the bolt at hand is pulled to its force while those tightened before it are
-    springs of their shank's stiffness; bolts yet to come carry nothing, solid ones a hundredth of their force. The forces left at the end are in
-    `bolt_forces`. Raises InputError where an order misses a bolt or a bolt in it has no shank.
+    springs of their shank's stiffness; bolts yet to come carry nothing, solid ones a hundredth of their force. The
+    forces left at the end are in `bolt_forces`. Raises InputError where an order misses a bolt or a bolt in it has no
+    shank.
     """
     force = np.asarray(forces, dtype=float)
     loads = structure.loads

@@ -46,9 +46,9 @@ class Element:
     """One kind of element: corners first, then the middles of the edges where order is 2.
 
     exponents: the monomials that the shape functions span; stiffness_degree, mass_degree: of the quadrature rules of a
-    solid; face_degree: of a face, exact for products of two shape functions on straight elements; pieces: convex pieces of
-    a curved face as four nodes each, a triangle's last one twice; bubbles: local gradients (q, b, d) at the places (q, d)
-    of incompatible modes, None where there are none.
+    solid; face_degree: of a face, exact for products of two shape functions on straight elements; pieces: convex pieces
+    of a curved face as four nodes each, a triangle's last one twice; bubbles: local gradients (q, b, d) at the places
+    (q, d) of incompatible modes, None where there are none.
     """
 
     shape: Shape
@@ -140,8 +140,8 @@ class Element:
     def stiffness(self, points: Array, cells: Index, density: Callable[[Array, Array], Array]) -> Array:
         """Stiffness (e, a, 3, a, 3) of elements; density: of gradients in space (e, q, a, 3) and volumes (e, q).
 
-        Incompatible modes are condensed out. Taylor's correction takes the map of the middle everywhere, so that uniform
-        stress does no work on them.
+        Incompatible modes are condensed out. Taylor's correction takes the map of the middle everywhere, so that
+        uniform stress does no work on them.
         """
         local, weights, _, gradients = self.stiffness_rule
         g, det = gradients_in_space(points, cells, gradients)

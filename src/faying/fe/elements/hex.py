@@ -1,8 +1,8 @@
 """Bricks with eight and twenty nodes; rules of the stiffness are those of CalculiX.
 
-The eight-node brick bends by Wilson's incompatible modes 1 - x^2, 1 - y^2, 1 - z^2 with Taylor's correction: R.L. Taylor,
-P.J. Beresford, E.L. Wilson, "A non-conforming element for stress analysis", Int. J. Numer. Methods Eng. 10 (1976)
-1211-1219, doi:10.1002/nme.1620100602. Also CalculiX's C3D8I.
+The eight-node brick bends by Wilson's incompatible modes 1 - x^2, 1 - y^2, 1 - z^2 with Taylor's correction: R.L.
+Taylor, P.J. Beresford, E.L. Wilson, "A non-conforming element for stress analysis", Int. J. Numer. Methods Eng. 10
+(1976) 1211-1219, doi:10.1002/nme.1620100602. Also CalculiX's C3D8I.
 """
 
 import numpy as np

@@ -1,0 +1,117 @@
+"""Bolts in round holes: which ring they press where nobody says it, and places that cannot be meant."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import faying
+from faying.fe.holes import holes
+from faying.fe.interface import join
+from faying.fe.mesh import Mesh
+from faying.fe.sides import sides_on
+from faying.joint.bolt import Bolt, Washer
+from faying.joint.joint_law import JointLaw
+from faying.joint.structure import Joint, Structure
+from tests.helpers.laws import Given
+
+STEEL = faying.CATALOGUE["45 steel"]
+INNER, OUTER, N = 4.5e-3, 20e-3, 24
+CENTRE = np.array([0.03, 0.01, 0.0])
+LAW = JointLaw(model=Given(k_n=lambda p: 2e7 * p**0.5, k_t=lambda p: 1e7 * p**0.5))
+
+
+def rings(centres=(CENTRE,)):
+    """Two plates, 5 mm each, of rings of bricks: a hole of 9 mm in a disc of 40 mm about each centre."""
+    points, parts, faces, owner, offset = [], {}, {}, {}, 0
+    radius, layers = np.linspace(INNER, OUTER, 6), 3
+    for name, low in (("upper", 0.0), ("lower", -5e-3)):
+        places, cells = [], []
+        for k, centre in enumerate(centres):
+            around = 2 * np.pi * np.arange(N) / N
+            r, a, z = np.meshgrid(radius, around, low + np.linspace(0, 5e-3, layers), indexing="ij")
+            places.append(np.stack([r * np.cos(a), r * np.sin(a), z], -1).reshape(-1, 3) + centre)
+            index = np.arange(r.size).reshape(r.shape) + k * r.size
+            turned = np.roll(index, -1, axis=1)
+            cube = [index[:-1, :, :-1], index[1:, :, :-1], turned[1:, :, :-1], turned[:-1, :, :-1]]
+            cube += [index[:-1, :, 1:], index[1:, :, 1:], turned[1:, :, 1:], turned[:-1, :, 1:]]
+            cells.append(np.stack(cube, -1).reshape(-1, 8))
+        where, block = np.concatenate(places), np.concatenate(cells)
+        for label, height in (("top", low + 5e-3), ("bottom", low)):
+            on = np.flatnonzero(np.abs(where[:, 2] - height) < 1e-9)
+            faces[f"{name}.{label}"] = tuple(f + offset for f in sides_on(on, (block,), len(where)))
+            owner[f"{name}.{label}"] = name
+        parts[name] = block + offset
+        points.append(where)
+        offset += len(where)
+    return Mesh(points=np.concatenate(points), parts=parts, faces=faces, face_part=owner)
+
+
+FACES = ("upper.top", "lower.bottom")
+
+
+def bolt(**changes):
+    return Bolt(**({"name": "b", "faces": FACES, "diameter": 8e-3, "material": STEEL, "at": tuple(CENTRE)} | changes))
+
+
+def structure(mesh, *bolts):
+    joint = Joint(
+        name="j", faces=("upper.bottom", "lower.top"), interface=join(mesh, "upper.bottom", "lower.top"), law=LAW
+    )
+    return Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=(joint,), bolts=bolts)
+
+
+def test_holes_of_a_face():
+    other = CENTRE + np.array([0.05, 0, 0])
+    found = holes((mesh := rings((CENTRE, other))).points, mesh.face("upper.top"))
+    assert sorted(float(hole.centre[0]) for hole in found) == pytest.approx([CENTRE[0], other[0]], abs=1e-9)
+    assert [hole.radius for hole in found] == pytest.approx([INNER, INNER], rel=1e-9)
+
+
+def test_a_bolt_without_a_seat_presses_from_its_hole_to_its_head():
+    """1.5 d across flats: the same load as with that ring given, and a note; not the whole face."""
+    mesh = rings()
+    chosen, given = bolt().fitted(mesh), bolt(seat=(2 * INNER, 12e-3)).fitted(mesh)
+    assert chosen.ring == pytest.approx((2 * INNER, 12e-3), rel=1e-9)
+    assert chosen.load == pytest.approx(given.load, abs=1e-12)
+    assert [note.code for note in structure(mesh, bolt()).notes] == ["bolt-seat"]
+    assert not structure(mesh, bolt(seat=(2 * INNER, 12e-3))).notes
+    bare = bolt(diameter=None, material=None).fitted(mesh)
+    assert bare.ring == pytest.approx((2 * INNER, 1.5 * 2 * INNER / 1.1), rel=1e-9)
+
+
+def test_a_seat_that_nothing_tells_is_asked_for():
+    from tests.helpers.boxes import stack
+
+    plain = replace(bolt(diameter=None, material=None), faces=("p1.right", "p0.left"), at=(0.0, 0.01, 0.01))
+    mesh = stack([0.03, 0.03], [2, 2], width=0.02, height=0.02)
+    with pytest.raises(faying.InputError, match="neither seat, washer, diameter nor a round hole says how much"):
+        plain.fitted(mesh)
+    sized = replace(plain, diameter=8e-3, material=STEEL)
+    assert sized.fitted(mesh).ring == pytest.approx((0.0, 12e-3))
+    with pytest.raises(faying.InputError, match="a head of 7.5 mm across flats falls through its hole of 9 mm"):
+        bolt(diameter=5e-3).fitted(rings())
+    washer = Washer(outer=18e-3, inner=9e-3, thickness=1e-3, material=STEEL)
+    assert bolt(diameter=5e-3, washers=(washer,)).fitted(rings()).ring == pytest.approx((9e-3, 18e-3))
+
+
+def test_an_axis_beside_its_hole_is_refused():
+    with pytest.raises(
+        faying.InputError, match=r"its axis lies 5 mm beside the centre of the hole of 9 mm in 'upper.top', at \(30"
+    ):
+        bolt(at=tuple(CENTRE + np.array([5e-3, 0, 0]))).fitted(rings())
+    assert bolt(at=tuple(CENTRE + np.array([0.5e-3, 0, 0]))).fitted(rings()).length == pytest.approx(10e-3)
+
+
+def test_two_bolts_in_one_place_and_one_thing_twice_are_refused():
+    other = CENTRE + np.array([0.05, 0, 0])
+    mesh = rings((CENTRE, other))
+    assert structure(mesh, bolt(), bolt(name="c", at=tuple(other))).loads.shape[1] == 2
+    with pytest.raises(faying.InputError, match="bolts 'b' and 'c' run through one place"):
+        structure(mesh, bolt(), bolt(name="c")).loads  # noqa: B018
+    with pytest.raises(faying.InputError, match="two bolts are called 'b'"):
+        structure(mesh, bolt(), bolt(at=tuple(other)))
+    made = structure(mesh, bolt())
+    again = replace(made.joints[0], name="k", faces=made.joints[0].faces[::-1])
+    with pytest.raises(faying.InputError, match="joints 'j' and 'k' join the same faces .* would double the stiffness"):
+        replace(made, joints=(*made.joints, again))
