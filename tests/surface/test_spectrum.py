@@ -172,7 +172,13 @@ def edges_of(lowest, highest, ratio):
     return np.array(edges) * lowest
 
 
-SIZES = [(31, 48, 2e-6, 3e-6), (48, 31, 3e-6, 2e-6), (40, 44, 1e-6, 2.5e-6), (33, 35, 2.3e-6, 1.1e-6)]
+SIZES = [
+    (31, 48, 2e-6, 3e-6),
+    (31, 48, 3e-6, 2e-6),
+    (48, 31, 3e-6, 2e-6),
+    (40, 44, 1e-6, 2.5e-6),
+    (33, 35, 2.3e-6, 1.1e-6),
+]
 
 
 @pytest.mark.parametrize(("ny", "nx", "dx", "dy"), SIZES)
