@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from faying import FRF, InputError, ReadError, compare_modes, read_model_modes
 from faying.measured.mac import mac
 from faying.measured.mapping import Transform
-from faying.measured.model import ModelModes
+from faying.measured.model import FullResponse, ModelModes
 from faying.measured.modes import ModeSet
 from faying.measured.pairing import pair_modes
 from faying.output import report_measured
@@ -235,3 +235,63 @@ def test_a_test_without_any_partner_still_gives_a_table_and_files(tmp_path):
     assert all("at best" in row[5] for row in c.rows()[1:])
     made = report_measured.write(c, tmp_path)
     assert {p.name for p in made} == {"comparison.csv", "mac.svg", "shapes.png", "comparison.html"}
+
+
+def plate(count=COUNT):
+    """A coarse outline of 10 mm squares, its shapes linear in x and y on each: what interpolation must give back."""
+    x, y = np.meshgrid(np.arange(0, 0.11, 0.01), np.arange(0, 0.06, 0.01))
+    points = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
+    number = np.arange(points.shape[0]).reshape(x.shape)
+    a, b, c, d = (v.ravel() for v in (number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]))
+    triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    gradient = np.random.default_rng(5).standard_normal((count, 3, 4))
+    shapes = np.einsum("mxk,nk->mnx", gradient, np.column_stack([np.ones(len(points)), 20 * points]))
+    modes = ModelModes(
+        frequencies=100.0 * np.arange(1, count + 1),
+        loss_factors=np.full(count, 0.01),
+        shapes=shapes,
+        points=points,
+        triangles=triangles,
+    )
+    return modes, gradient
+
+
+def test_points_between_nodes_are_compared_where_they_are():
+    theirs, gradient = plate()
+    rng = np.random.default_rng(8)
+    places = np.column_stack([rng.uniform(0, 0.1, 12), rng.uniform(0, 0.05, 12), np.zeros(12)])
+    shapes = np.einsum("mxk,nk->mnx", gradient, np.column_stack([np.ones(12), 20 * places])).reshape(COUNT, -1)
+    test = ModeSet(
+        frequencies=theirs.frequencies,
+        loss_factors=theirs.loss_factors,
+        shapes=shapes.astype(complex),
+        dofs=[(k + 1, d) for k in range(12) for d in "xyz"],
+        positions={k + 1: tuple(p) for k, p in enumerate(places)},
+    )
+    c = compare_modes(test, theirs, tolerance=1e-4)  # nodes are up to 7 mm away
+    assert c.notes == ()
+    assert len(c.dofs) == 36
+    np.testing.assert_allclose(np.diag(c.mac), 1, atol=1e-12)
+    np.testing.assert_allclose(c.model_shapes(), shapes, atol=1e-12)
+    assert max(c.point_map.distance.values()) < 1e-12
+
+
+def test_the_full_response_serves_points_beside_its_nodes():
+    theirs, _ = plate(2)
+    lines = np.arange(20.0, 300.0, 2.0)
+    z = np.array([[0.0, 0, 1]])
+    node = np.array([25])
+    full = FullResponse(
+        frequency=lines,
+        receptance=theirs.receptance(lines, (node, z), (node, z)) - 1 / (2 * np.pi * lines) ** 2,
+        outputs=(theirs.points[node], z),
+        inputs=(theirs.points[node], z),
+    )
+    whole = ModelModes(**{**vars(theirs), "full": full})
+    corners = theirs.triangles[(theirs.triangles == 25).any(axis=1)][0]
+    weights = np.where(corners == 25, 0.98, 0.01)
+    more = whole.with_places(corners[None], weights[None], node)
+    at = (np.array([len(theirs.points)]), z)
+    found = more.full_frf(lines, at, at, "receptance")
+    expected = more.receptance(lines, at, at) - 1 / (2 * np.pi * lines) ** 2
+    np.testing.assert_allclose(found, expected, rtol=1e-9)

@@ -125,3 +125,35 @@ def test_coordinates_that_cannot_be(tmp_path, row, match):
     path.write_text(f"point,x [mm],y [mm],z [mm]\n{row}\n")
     with pytest.raises(ReadError, match=match):
         read_points(path)
+
+
+SQUARE = np.array([[0.0, 0, 0], [0.01, 0, 0], [0.01, 0.01, 0], [0, 0.01, 0]])
+HALVES = np.array([[0, 1, 2], [0, 2, 3]])
+
+
+@given(st.floats(0.0, 0.01), st.floats(0.0, 0.01), st.floats(-2e-3, 2e-3))
+def test_a_point_over_a_face_lies_on_it_at_its_foot(x, y, z):
+    found = map_points({1: (x, y, z)}, SQUARE, triangles=HALVES, tolerance=3e-3)
+    corners, weights = list(found.corners[1]), np.array(found.weights[1])
+    assert weights.sum() == pytest.approx(1)
+    np.testing.assert_allclose(weights @ SQUARE[corners], [x, y, 0], atol=1e-9)
+    assert found.distance[1] == pytest.approx(abs(z), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("point", "place"),
+    [
+        ((-0.001, 0.004, 0), (0, 0.004, 0)),
+        ((0.012, 0.013, 0), (0.01, 0.01, 0)),
+        ((0.004, -0.002, 0.001), (0.004, 0, 0)),
+    ],
+)
+def test_a_point_beside_a_face_lies_on_its_nearest_edge_or_corner(point, place):
+    found = map_points({1: point}, SQUARE, triangles=HALVES, tolerance=5e-3)
+    np.testing.assert_allclose(np.array(found.weights[1]) @ SQUARE[list(found.corners[1])], place, atol=1e-12)
+    assert found.distance[1] == pytest.approx(np.linalg.norm(np.subtract(point, place)))
+
+
+def test_triangles_without_area_do_no_harm():
+    found = map_points({1: (0.003, 0.001, 0)}, SQUARE, triangles=[[0, 1, 1], [0, 0, 0], [0, 1, 2]], tolerance=1e-3)
+    assert found.distance[1] == pytest.approx(0, abs=1e-12)

@@ -1,5 +1,7 @@
 """Power spectra and structure functions against direct sums and closed forms."""
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,7 +12,14 @@ from faying.surface import powerlaw
 from faying.surface.convention import cut_factor, density, structure_coefficient
 from faying.surface.lines import find_lines
 from faying.surface.scan import Profile
-from faying.surface.spectrum import periodogram, spectrum, structure_function
+from faying.surface.spectrum import (
+    HANN_CORRELATION,
+    _running_median,
+    binned,
+    periodogram,
+    spectrum,
+    structure_function,
+)
 from faying.surface.synthesize import spectral, weierstrass_mandelbrot
 
 
@@ -153,3 +162,130 @@ def test_tool_marks_are_found_and_a_rough_surface_or_a_series_left_alone():
     series = weierstrass_mandelbrot((256, 256), spacing=1e-6, D=2.4, G=1e-9)
     power, frequency, _ = periodogram(series)
     assert not find_lines(series, power, frequency).any()
+
+
+def edges_of(lowest, highest, ratio):
+    """Half-integers, two steps wide at least, growing by `ratio`, until the highest frequency is passed."""
+    edges = [0.5]
+    while edges[-1] < highest / lowest:
+        edges.append(max(edges[-1] + 2, np.ceil(edges[-1] * ratio) + 0.5))
+    return np.array(edges) * lowest
+
+
+SIZES = [
+    (31, 48, 2e-6, 3e-6),
+    (31, 48, 3e-6, 2e-6),
+    (48, 31, 3e-6, 2e-6),
+    (40, 44, 1e-6, 2.5e-6),
+    (33, 35, 2.3e-6, 1.1e-6),
+]
+
+
+@pytest.mark.parametrize(("ny", "nx", "dx", "dy"), SIZES)
+def test_bins_are_the_averages_over_the_whole_plane(ny, nx, dx, dy):
+    """Odd and even sizes, unequal spacings: the half-plane must count as the whole plane, brute force."""
+    rng = np.random.default_rng(ny)
+    scan = Scan(heights=rng.standard_normal((ny, nx)) * 1e-6, spacing=(dx, dy))
+    s = spectrum(scan, ratio=1.2)
+    wy, wx = (0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(n) + 0.5) / n) for n in (ny, nx))
+    window = np.outer(wy, wx)
+    z = scan.heights - np.average(scan.heights, weights=window)
+    power = np.abs(np.fft.fft2(z * window)) ** 2 * dx * dy / np.sum(window**2)
+    f = np.hypot(np.fft.fftfreq(nx, dx)[None, :], np.fft.fftfreq(ny, dy)[:, None])
+    sides = nx * dx, ny * dy
+    assert s.lowest == pytest.approx(1 / min(sides))
+    assert s.nyquist == pytest.approx(0.5 / max(dx, dy))
+    assert s.curvature == pytest.approx((1 / sides[0] ** 2 + 1 / sides[1] ** 2) / 2)
+    edges = edges_of(s.lowest, s.nyquist, 1.2)
+    inside = [(f >= low) & (f < high) for low, high in itertools.pairwise(edges)]
+    inside = [m for m in inside if m.any()]
+    assert len(s.frequency) == len(inside)
+    np.testing.assert_allclose(s.count, [m.sum() / 2 for m in inside])  # each coefficient stands twice in the plane
+    np.testing.assert_allclose(s.frequency, [f[m].mean() for m in inside], rtol=1e-9)
+    np.testing.assert_allclose(s.density, [power[m].mean() * 2 * np.pi * f[m].mean() for m in inside], rtol=1e-9)
+
+
+@pytest.mark.parametrize(("ny", "nx", "dx", "dy"), SIZES)
+def test_what_is_excluded_counts_for_nothing(ny, nx, dx, dy):
+    rng = np.random.default_rng(nx)
+    scan = Scan(heights=rng.standard_normal((ny, nx)) * 1e-6, spacing=(dx, dy))
+    power, frequency, axes = periodogram(scan)
+    mask = rng.random(power.shape) < 0.3
+    without = binned(scan, power, frequency, axes, exclude=mask)
+    spoiled = binned(scan, np.where(mask, 1e9, power), frequency, axes, exclude=mask)
+    np.testing.assert_array_equal(without.density, spoiled.density)
+    assert without.count.sum() < binned(scan, power, frequency, axes).count.sum()
+
+
+def test_the_window_is_even_and_leaves_no_mean():
+    """A periodogram does not know which way a profile runs, and holds nothing at zero frequency."""
+    z = np.random.default_rng(4).standard_normal(101).cumsum() * 1e-7
+    line, back = (periodogram(Profile(heights=h, spacing=1e-6))[0] for h in (z, z[::-1]))
+    np.testing.assert_allclose(line, back, rtol=1e-9, atol=1e-12 * line.max())
+    assert line[0] < 1e-20 * line.max()
+    plane = np.random.default_rng(5).standard_normal((40, 33)).cumsum(0).cumsum(1) * 1e-8
+    one, other = (periodogram(Scan(heights=h, spacing=(1e-6, 2e-6)))[0] for h in (plane, plane[::-1, ::-1]))
+    np.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-12 * one.max())
+    assert one[0, 0] < 1e-20 * one.max()
+
+
+def test_the_window_correlation_is_that_of_its_fourth_power():
+    """Parseval: the squared correlations of all neighbours sum to N sum(w^4) / sum(w^2)^2 = 35/18."""
+    w = 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(64) + 0.5) / 64)
+    assert pytest.approx(64 * np.sum(w**4) / np.sum(w**2) ** 2) == HANN_CORRELATION
+
+
+@pytest.mark.parametrize("shape", [(600,), (48, 60)])
+def test_the_spread_of_a_bin_is_that_of_white_noise(shape):
+    rng = np.random.default_rng(1)
+    found = []
+    for _ in range(400):
+        z = rng.standard_normal(shape)
+        scan = Profile(heights=z, spacing=1e-6) if z.ndim == 1 else Scan(heights=z, spacing=(1e-6, 1.5e-6))
+        found.append(spectrum(scan, ratio=1.5))
+    density = np.array([s.density for s in found])
+    # away from the ends; a bin's border coefficients lose neighbours, so that the spread stated is a little large
+    stated = np.mean([s.spread for s in found], axis=0)
+    use = slice(3, -1)
+    seen = density.std(axis=0) / density.mean(axis=0)
+    assert 0.88 < np.mean(seen[use] / stated[use]) < 1.05
+
+
+def test_a_minority_of_uneven_bins_does_not_change_the_unevenness():
+    """Median over 6 bins on either side: 6 uneven neighbours of 13 are smoothed out, 7 are not."""
+    even = np.ones(60)
+    for run, level in ((6, 1.0), (7, 5.0)):
+        values = even.copy()
+        values[30 : 30 + run] = 5.0
+        assert _running_median(values)[30 + run // 2 - (run % 2 == 0)] == level
+    assert (_running_median(np.full(9, 0.3)) == 1).all()
+
+
+@pytest.mark.parametrize(("ny", "nx", "dx", "dy"), SIZES)
+def test_the_structure_function_is_the_mean_over_all_pairs(ny, nx, dx, dy):
+    """Brute force over every lag, with missing points, unequal spacings and the longest lag as asked."""
+    rng = np.random.default_rng(nx + ny)
+    z = rng.standard_normal((ny, nx))
+    z[rng.random(z.shape) < 0.1] = np.nan
+    scan, longest = Scan(heights=z, spacing=(dx, dy)), 0.3
+    sf = structure_function(scan, longest=longest, ratio=1.4)
+    limit = longest * min(nx * dx, ny * dy)
+    step = max(dx, dy)
+    edges = [0.5]
+    while edges[-1] * step < limit:
+        edges.append(max(edges[-1] + 1, edges[-1] * 1.4))
+    rings = {}
+    for i in range(-int(limit / dy), int(limit / dy) + 1):
+        for j in range(int(limit / dx) + 1):
+            r = np.hypot(j * dx, i * dy)
+            a = z[max(0, -i) : ny - max(0, i), : nx - j]
+            b = z[max(0, i) : ny + min(0, i), j:]
+            known = ~np.isnan(a - b)
+            if r <= limit * (1 + 1e-12) and r / step >= 0.5 and known.any():
+                rings.setdefault(int(np.digitize(r / step, edges)), []).append(
+                    (r, np.mean((b - a)[known] ** 2), known.sum())
+                )
+    expected = np.array([np.mean(rings[k], axis=0) * [1, 1, len(rings[k])] for k in sorted(rings)])
+    np.testing.assert_allclose(sf.lag, expected[:, 0], rtol=1e-9)
+    np.testing.assert_allclose(sf.value, expected[:, 1], rtol=1e-6)
+    np.testing.assert_allclose(sf.pairs, expected[:, 2], rtol=1e-9)

@@ -24,7 +24,7 @@ class ModalComparison:
 
     Args:
         test: its modes.
-        model: its modes.
+        model: its modes, with a point of its own wherever the test has one between nodes.
         dofs: degrees of freedom of the test that lie on the model (d,).
         nodes: where they are in the model (d,).
         axes: along what in the model (d, 3).
@@ -51,6 +51,11 @@ class ModalComparison:
     frac: Array | None = None
     full: Mask | None = None
     notes: tuple[str, ...] = ()
+
+    @property
+    def places(self) -> dict[int, int]:
+        """Where each point of the test is among the model's points."""
+        return {dof.point: int(node) for dof, node in zip(self.dofs, self.nodes, strict=True)}
 
     @property
     def frequency_difference(self) -> Array:
@@ -209,7 +214,7 @@ def compare_modes(
         tolerance: largest distance between a point and the model [m] (default: 2 % of the model's diagonal).
         frf: the measured FRFs, to set the model's beside.
         least_mac: smallest MAC of a pair, in (0, 1].
-        greatest_shift: largest difference in frequency of a pair, relative to the test, positive.
+        greatest_shift: largest relative difference in frequency of a pair, positive.
 
     Returns:
         ModalComparison.
@@ -221,18 +226,18 @@ def compare_modes(
         Allemang 2003, Sound and Vibration 37(8) (MAC); Heylen and Lammens 1996 (FRAC).
     """
     known = {d.point for d in test.dofs}
-    points = map_points(
-        {p: x for p, x in test.positions.items() if p in known}, model.points, transform=transform, tolerance=tolerance
-    )
+    positions = {p: x for p, x in test.positions.items() if p in known}
+    points = map_points(positions, model.points, triangles=model.triangles, transform=transform, tolerance=tolerance)
     notes = _left_out(test, points)
     used = tuple(d for d in test.dofs if d.point in points.nodes)
-    nodes = np.array([points.nodes[d.point] for d in used])
+    model, places = _with_places(model, points)
+    nodes = np.array([places[d.point] for d in used])
     axes = points.transform.directions([d.axis() for d in used])
     theirs = np.einsum("mdx,dx->md", model.shapes[:, nodes], axes)
     table = mac(test.at(used), theirs)
     pairs = pair_modes(table, test.frequencies, model.frequencies, least_mac=least_mac, greatest_shift=greatest_shift)
     notes += _alike(theirs, pairs, len(used))
-    shared, predicted, full, score = (None, None, None, None) if frf is None else _overlay(frf, model, points, notes)
+    shared, predicted, full, score = _overlay(frf, model, points, places, notes)
     return ModalComparison(
         test=test,
         model=model,
@@ -258,8 +263,21 @@ def _left_out(test: ModeSet, points: PointMap) -> list[str]:
         notes.append(f"points {', '.join(map(str, nowhere))} have modes but no position; they are left out")
     if points.missing:
         far = ", ".join(f"{p} ({d * 1e3:.3g} mm away)" for p, d in points.missing.items())
-        notes.append(f"points without a node within {points.tolerance * 1e3:.3g} mm, left out: {far}")
+        notes.append(f"points farther than {points.tolerance * 1e3:.3g} mm from the model, left out: {far}")
     return notes
+
+
+def _with_places(model: ModelModes, points: PointMap) -> tuple[ModelModes, dict[int, int]]:
+    """The model with a point of its own wherever the test has one between nodes, and the index of each test point."""
+    between = [p for p in points.nodes if max(points.weights[p]) < 1 - 1e-9]
+    places = {p: points.corners[p][int(np.argmax(points.weights[p]))] for p in points.nodes}
+    if not between:
+        return model, places
+    corners, weights, nearest = (
+        np.array([of[p] for p in between]) for of in (points.corners, points.weights, points.nodes)
+    )
+    places |= {p: len(model.points) + k for k, p in enumerate(between)}
+    return model.with_places(corners, weights, nearest), places
 
 
 def _alike(shapes: Array, pairs: Index, count: int) -> list[str]:
@@ -278,9 +296,11 @@ def _alike(shapes: Array, pairs: Index, count: int) -> list[str]:
 
 
 def _overlay(
-    frf: FRF, model: ModelModes, points: PointMap, notes: list[str]
+    frf: FRF | None, model: ModelModes, points: PointMap, places: dict[int, int], notes: list[str]
 ) -> tuple[FRF | None, Complex | None, Mask | None, Array | None]:
     """The FRFs between mapped degrees of freedom, the model's, which of these are its full response, and their FRAC."""
+    if frf is None:
+        return None, None, None, None
     o = [k for k, d in enumerate(frf.outputs) if d.point in points.nodes]
     i = [k for k, d in enumerate(frf.inputs) if d.point in points.nodes]
     if not o or not i or not np.isfinite(frf.values[np.ix_(o, i)]).any():
@@ -296,12 +316,12 @@ def _overlay(
         positions=frf.positions,
         source=frf.source,
     )
-    places = [
-        (np.array([points.nodes[d.point] for d in side]), points.transform.directions([d.axis() for d in side]))
+    ends = [
+        (np.array([places[d.point] for d in side]), points.transform.directions([d.axis() for d in side]))
         for side in (outputs, inputs)
     ]
-    predicted = model.frf(shared.frequency, places[0], places[1], shared.quantity)
-    known = model.full_frf(shared.frequency, places[0], places[1], shared.quantity)
+    predicted = model.frf(shared.frequency, ends[0], ends[1], shared.quantity)
+    known = model.full_frf(shared.frequency, ends[0], ends[1], shared.quantity)
     full = np.isfinite(known).sum(axis=2) >= 2
     predicted[full] = known[full]
     score = np.full(predicted.shape[:2], np.nan)

@@ -1,4 +1,4 @@
-"""Points of a test to nodes of a model: a rigid transformation, given or fitted, and the nearest node."""
+"""Points of a test on a model: a rigid transformation, given or fitted, and the nearest place."""
 
 import csv
 import re
@@ -13,7 +13,7 @@ import numpy as np
 from faying.errors import InputError, ReadError
 from faying.files import refuse_decimal_comma
 from faying.measured.frf import Position
-from faying.typing import Array
+from faying.typing import Array, Index
 from faying.units import scale
 
 
@@ -77,9 +77,15 @@ def fit_transform(test: Any, model: Any) -> Transform:
 
 @dataclass(frozen=True, kw_only=True)
 class PointMap:
-    """Where the points of a test lie. nodes: point -> nearest node; distance: point -> [m]; missing: points without."""
+    """Where the points of a test lie on a model.
+
+    nodes: point -> nearest node; corners, weights: point -> three nodes and their weights, between which the model's
+    motion is interpolated there; distance: point -> distance from the model [m]; missing: points too far from it.
+    """
 
     nodes: Mapping[int, int]
+    corners: Mapping[int, tuple[int, int, int]]
+    weights: Mapping[int, tuple[float, float, float]]
     distance: Mapping[int, float]
     missing: Mapping[int, float]
     transform: Transform
@@ -87,11 +93,18 @@ class PointMap:
 
 
 def map_points(
-    positions: Mapping[int, Position], nodes: Any, *, transform: Transform | None = None, tolerance: float | None = None
+    positions: Mapping[int, Position],
+    nodes: Any,
+    *,
+    triangles: Any = (),
+    transform: Transform | None = None,
+    tolerance: float | None = None,
 ) -> PointMap:
-    """Find the nearest node (n, 3) [m] of each point, within tolerance [m] (default: 2 % of the model's diagonal).
+    """Find where each point lies on the nodes (n, 3) [m] and the triangles (t, 3) between them.
 
-    Points farther away are listed as missing with their distance. Raises InputError where no point finds a node.
+    The distance counts from the nearest place on a triangle, or node. A point farther away than `tolerance` [m]
+    (default: 2 % of the model's diagonal) is listed as missing with its distance. Raises InputError where no point is
+    near enough.
     """
     from scipy.spatial import KDTree
 
@@ -100,7 +113,7 @@ def map_points(
     size = float(np.linalg.norm(np.ptp(cloud, axis=0)))
     limit = 0.02 * size if tolerance is None else tolerance
     if not limit > 0:
-        raise InputError(f"tolerance = {limit}: the distance allowed between point and node must be positive")
+        raise InputError(f"tolerance = {limit}: the distance allowed between point and model must be positive")
     if not positions:
         raise InputError(
             "the test states no positions of its points; give them in a table: --points points.csv (point,x [mm],"
@@ -108,7 +121,9 @@ def map_points(
         )
     labels = list(positions)
     there = transform.points([positions[k] for k in labels])
-    distance, nearest = KDTree(cloud).query(there)
+    nearest = KDTree(cloud).query(there)[1]
+    corners, weights = _on_triangles(there, cloud, nearest, np.asarray(triangles, np.int64).reshape(-1, 3))
+    distance = np.linalg.norm(np.einsum("pc,pcx->px", weights, cloud[corners]) - there, axis=1)
     here = distance <= limit
     if not here.any():
         own = float(np.linalg.norm(np.ptp(there, axis=0)))
@@ -117,13 +132,69 @@ def map_points(
             f"{distance.min() * 1e3:.3g} mm away. The test spans {own:.3g} m, the model {size:.3g} m: check the unit "
             "(--length-unit), give the frame (--frame pairs.csv), or raise the tolerance"
         )
+    kept = np.flatnonzero(here)
     return PointMap(
-        nodes={k: int(n) for k, n, ok in zip(labels, nearest, here, strict=True) if ok},
-        distance={k: float(d) for k, d, ok in zip(labels, distance, here, strict=True) if ok},
-        missing={k: float(d) for k, d, ok in zip(labels, distance, here, strict=True) if not ok},
+        nodes={labels[k]: int(nearest[k]) for k in kept},
+        corners={labels[k]: tuple(corners[k].tolist()) for k in kept},
+        weights={labels[k]: tuple(weights[k].tolist()) for k in kept},
+        distance={labels[k]: float(distance[k]) for k in kept},
+        missing={labels[k]: float(distance[k]) for k in np.flatnonzero(~here)},
         transform=transform,
         tolerance=limit,
     )
+
+
+def _on_triangles(points: Array, cloud: Array, nearest: Index, triangles: Index) -> tuple[Index, Array]:
+    """Three nodes and their weights for each point: the nearest place on a triangle, or the nearest node alone."""
+    corners = np.repeat(nearest[:, None], 3, axis=1)
+    weights = np.tile([1.0, 0.0, 0.0], (len(points), 1))
+    if not len(triangles):
+        return corners, weights
+    abc = cloud[triangles]
+    middle = abc.mean(axis=1)
+    radius = np.linalg.norm(abc - middle[:, None], axis=2).max(axis=1)
+    for k, point in enumerate(points):
+        best = float(np.linalg.norm(cloud[nearest[k]] - point))
+        near = np.flatnonzero(np.linalg.norm(middle - point, axis=1) - radius < best)
+        if not len(near):
+            continue
+        share = _barycentric(point, abc[near])
+        distance = np.linalg.norm(np.einsum("tc,tcx->tx", share, abc[near]) - point, axis=1)
+        found = int(np.argmin(distance))
+        if distance[found] < best - 1e-9 * float(radius[near[found]]):
+            corners[k], weights[k] = triangles[near[found]], share[found]
+    return corners, weights
+
+
+def _barycentric(point: Array, abc: Array) -> Array:
+    """Weights (t, 3) of the corners (t, 3, 3) at the place on each triangle that is nearest to the point (3,)."""
+    a, b, c = abc[:, 0], abc[:, 1], abc[:, 2]
+    out = np.zeros((len(abc), 3))
+    best = np.full(len(abc), np.inf)
+    for first, second in ((0, 1), (1, 2), (2, 0)):
+        along = abc[:, second] - abc[:, first]
+        length = np.einsum("tx,tx->t", along, along)
+        way = np.einsum("tx,tx->t", point - abc[:, first], along)
+        t = np.clip(way / np.where(length > 0, length, 1.0), 0.0, 1.0)
+        distance = np.linalg.norm(abc[:, first] + t[:, None] * along - point, axis=1)
+        nearer = distance < best
+        best = np.where(nearer, distance, best)
+        share = np.zeros_like(out)
+        share[:, first], share[:, second] = 1 - t, t
+        out[nearer] = share[nearer]
+    # inside, where the foot of the perpendicular falls into the triangle
+    normal = np.cross(b - a, c - a)
+    area = np.einsum("tx,tx->t", normal, normal)
+    flat = area > 0
+    inner = (
+        np.stack(
+            [np.einsum("tx,tx->t", np.cross(q - p, point - p), normal) for p, q in ((b, c), (c, a), (a, b))], axis=1
+        )
+        / np.where(flat, area, 1.0)[:, None]
+    )
+    inside = flat & (inner >= 0).all(axis=1)
+    out[inside] = inner[inside]
+    return out
 
 
 def read_points(path: str | Path) -> dict[int, Position]:

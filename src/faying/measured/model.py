@@ -1,6 +1,7 @@
 """The model's side: modes at its nodes from plain arrays or a result file, and FRFs by their superposition."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 
@@ -46,6 +47,7 @@ class ModelModes:
         title: of the study.
         source: the file.
         full: the full response at some points, where that is known.
+        near: the outline's own point beside each point (n,), where points have been added; None for themselves.
 
     Raises:
         InputError: where the arrays do not fit together.
@@ -60,6 +62,7 @@ class ModelModes:
     title: str = ""
     source: str = ""
     full: FullResponse | None = None
+    near: Index | None = None
 
     def __post_init__(self) -> None:
         m, n = len(self.frequencies), len(self.points)
@@ -67,6 +70,19 @@ class ModelModes:
             raise InputError(
                 f"shapes of {self.shapes.shape} for {m} frequencies at {n} points; they need ({m}, {n}, 3)"
             )
+
+    def with_places(self, corners: Index, weights: Array, nearest: Index) -> Self:
+        """The same modes, known at more points too: interpolated between corners (k, 3) by weights (k, 3).
+
+        nearest (k,): the outline's own point beside each.
+        """
+        own = np.arange(len(self.points)) if self.near is None else self.near
+        return replace(
+            self,
+            points=np.concatenate([self.points, np.einsum("kc,kcx->kx", weights, self.points[corners])]),
+            shapes=np.concatenate([self.shapes, np.einsum("kc,mkcx->mkx", weights, self.shapes[:, corners])], axis=1),
+            near=np.concatenate([own, nearest]),
+        )
 
     def receptance(self, frequency: Array, outputs: tuple[Array, Array], inputs: tuple[Array, Array]) -> Complex:
         """Receptance [m/N] (o, i, f) by superposition of the elastic modes with hysteretic loss.
@@ -103,7 +119,8 @@ class ModelModes:
             return out
         full, ends = self.full, (self.full.outputs, self.full.inputs)
         there, here = ((self._nodes(points), axes) for points, axes in ends)
-        found = [[_match(side, place) for place in (there, here)] for side in (outputs, inputs)]
+        sides = [(nodes if self.near is None else self.near[nodes], axes) for nodes, axes in (outputs, inputs)]
+        found = [[_match(side, place) for place in (there, here)] for side in sides]
         rest = (full.receptance - self.receptance(full.frequency, there, here)) * (2j * np.pi * full.frequency) ** 2
         inside = (frequency >= full.frequency[0]) & (frequency <= full.frequency[-1]) & (frequency > 0)
         lines = frequency[inside]
@@ -123,7 +140,8 @@ class ModelModes:
     def _nodes(self, points: Array) -> Array:
         from scipy.spatial import KDTree
 
-        return np.asarray(KDTree(self.points).query(points)[1])
+        own = self.points if self.near is None else self.points[: int(self.near.max()) + 1]
+        return np.asarray(KDTree(own).query(points)[1])
 
 
 def _match(wanted: tuple[Array, Array], known: tuple[Array, Array]) -> list[tuple[int, float] | None]:

@@ -411,8 +411,8 @@ def _like(numbers: list[Index], columns: list[Any], where: str) -> list[Array]:
     found = [np.atleast_1d(np.asarray(column, float)) for column in columns]
     if len({len(c) for c in (*numbers, *found)}) > 1:
         raise ReadError(
-            f"{where}: {len(numbers[0])} points but {[len(c) for c in found]} coordinates; the file is damaged or was cut "
-            "short, export it again"
+            f"{where}: {len(numbers[0])} points but {[len(c) for c in found]} coordinates; the file is damaged or was "
+            "cut short, export it again"
         )
     if not all(np.all(np.isfinite(c)) for c in found):
         raise ReadError(f"{where}: some coordinates are NaN or infinite; export the points again")

@@ -50,11 +50,15 @@ class Hammer:
 
     def points(self, structure: Structure) -> PointMap:
         """Where the test's points lie on the outline. InputError where none of them does."""
-        nodes, _ = structure.outline()
+        nodes, triangles = structure.outline()
         known = {d.point for d in self.tested.modes.dofs}
         positions = {p: x for p, x in self.tested.modes.positions.items() if p in known}
         return map_points(
-            positions, structure.mesh.points[nodes], transform=self.transform, tolerance=self.choice.tolerance
+            positions,
+            structure.mesh.points[nodes],
+            triangles=triangles,
+            transform=self.transform,
+            tolerance=self.choice.tolerance,
         )
 
     def response(self, solved: LoadedStructure, points: PointMap) -> tuple[FullResponse | None, list[Note]]:

@@ -57,7 +57,7 @@ def _at_test(result: Result, folder: Path) -> list[Path]:
     title = f"{model.title}, {model.load / 1e3:g} kN, at the points of the test"
     labels = list(points.nodes)
     # shapes in the axes of the test: x_test = rotation^T x_model
-    shapes = model.shapes[:, [points.nodes[k] for k in labels]] @ points.transform.rotation
+    shapes = model.shapes[:, [beside.places[k] for k in labels]] @ points.transform.rotation
     positions = {k: beside.test.positions[k] for k in labels}
     made = [
         write_uff(folder / TEST_FILES[0], _modes(model.frequencies, model.loss_factors, shapes, positions), title=title)

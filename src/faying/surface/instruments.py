@@ -47,7 +47,7 @@ def read(file: Path, xy_unit: str | None, z_unit: str | None, steps: Steps | Non
     if content.sizes is None and steps is None and xy_unit is None:
         raise InputError(
             f"{file}: the file does not state its physical size; give size or spacing in metres, for example "
-            f'read_scan("{file.name}", z_unit="nm", size=4e-3), or on the command line --size "4 mm x 4 mm"'
+            f'read_scan("{file.name}", z_unit="nm", size=4e-3)'
         )
     if content.sizes is None and steps is None:
         raise InputError(f"{file}: the file does not state its physical size; give size or spacing in metres")

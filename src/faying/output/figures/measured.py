@@ -165,7 +165,7 @@ def _test_motion(comparison: ModalComparison, t: int, m: int) -> tuple[Any, Any]
     peak = np.abs(model).max() / np.linalg.norm(comparison.model.shapes[m], axis=1).max()
     values = values * peak / max(np.abs(values).max(), 1e-300)
     points = list(dict.fromkeys(d.point for d in comparison.dofs))
-    rest = comparison.model.points[[comparison.point_map.nodes[p] for p in points]]
+    rest = comparison.model.points[[comparison.places[p] for p in points]]
     motion = np.zeros_like(rest)
     for dof, axis, value in zip(comparison.dofs, comparison.axes, values, strict=True):
         motion[points.index(dof.point)] += value * axis
