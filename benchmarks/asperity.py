@@ -1,7 +1,8 @@
 """Speed of the single asperity: the rows of Table 1, and CalculiX on the same mesh with the same load steps.
 
 Run `python benchmarks/asperity.py [--elements N] [--calculix M]`. CPU seconds of one process with one thread, so that
-a busy machine disturbs them little; CalculiX is given the nodes in contact at each step and has only plasticity to solve.
+a busy machine disturbs them little; CalculiX is given the nodes in contact at each step and has only plasticity to
+solve.
 """
 
 import argparse

@@ -2,7 +2,8 @@
 
 Run `python benchmarks/asperity_substrate.py`. A sphere's computed force F(delta; E) is the measuring stick. A cap on a
 substrate is compared with: the sphere at delta_a of eq. (1), delta = delta_a (1 + (c/sqrt 2) Er sqrt(delta_a/h_a));
-and the sphere at delta with 1/E = x/Ea + (1 - x)/Eb, x = 1 - exp(-alpha h_a/sqrt(R delta)). The second table goes beyond
+and the sphere at delta with 1/E = x/Ea + (1 - x)/Eb, x = 1 - exp(-alpha h_a/sqrt(R delta)). The second table goes
+beyond
 the fit: flatter caps, Ea/Eb = 4, delta up to h_a; there a cap differs from a sphere also at Ea = Eb, so the measuring
 stick is the force over that of the same cap with Ea = Eb.
 """
@@ -95,7 +96,8 @@ def main(elements: int = 40) -> None:
 
     fitted, alpha = least_squares(eq_1, [0.3]).x, least_squares(effective, [0.5]).x
     print(
-        f"{len(d)} points, 0.01 < delta/h_a < 0.3, h_a/R 0.0067 to 0.075, Ea/Eb 1 to 2, Eb/Y 282, nu 0.3, perfectly plastic"
+        f"{len(d)} points, 0.01 < delta/h_a < 0.3, h_a/R 0.0067 to 0.075, Ea/Eb 1 to 2, Eb/Y 282, nu 0.3, perfectly "
+        f"plastic"
     )
     for name, error in (
         ("eq. (1), c = 1.5", eq_1([1.5])),
@@ -105,7 +107,8 @@ def main(elements: int = 40) -> None:
     ):
         same = ratio == 1
         print(
-            f"{name:45s} error of F: rms {100 * np.sqrt(np.mean(error**2)):5.1f} %, largest {100 * abs(error).max():5.1f} %,"
+            f"{name:45s} error of F: rms {100 * np.sqrt(np.mean(error**2)):5.1f} %, largest "
+            f"{100 * abs(error).max():5.1f} %,"
             f" rms at Ea = Eb {100 * np.sqrt(np.mean(error[same] ** 2)):5.1f} %"
         )
 

@@ -2,9 +2,9 @@
 
     python benchmarks/halfspace.py [--witness PYTHON] [--contactmechanics PYTHON] [--quick]
 
-PYTHON: interpreters that have tamaas and aspher, and ContactMechanics (their needs may clash; neither is a dependency of
-faying). Without them only faying is measured. Every run is on one thread; CPU seconds of the solution alone, median of
-three for faying, one run for the others. "residual" is faying's error bound, computed by faying for everyone.
+PYTHON: interpreters that have tamaas and aspher, and ContactMechanics (their needs may clash; neither is a dependency
+of faying). Without them only faying is measured. Every run is on one thread; CPU seconds of the solution alone, median
+of three for faying, one run for the others. "residual" is faying's error bound, computed by faying for everyone.
 """
 
 import argparse
@@ -51,7 +51,8 @@ def theirs(code, python, h, pressure, hardness, tol):
 
 def line(code, area, mean, residual, seconds, ratio):
     print(
-        f"  {code:18s} area {area:.5f}  load error {mean:8.1e}  residual {residual:8.1e}  {seconds:8.2f} s  x {ratio:6.1f}",
+        f"  {code:18s} area {area:.5f}  load error {mean:8.1e}  residual {residual:8.1e}  {seconds:8.2f} s  x "
+        f"{ratio:6.1f}",
         flush=True,
     )
 

@@ -4,8 +4,9 @@
 
 The T-specimen of the examples, meshed finer and finer (its holes need 55,000 unknowns at least; 40,000 are those of the
 two blocks), with springs between the facing nodes of its joint. Every contender runs in a process of its own on one
-thread; medians of the CPU seconds from the mesh in memory (for ccx: from its input file) to the frequencies, and the peak
-of resident memory. Modules are imported and libraries loaded before that, by two cubes solved in the same way. "bare" gets
+thread; medians of the CPU seconds from the mesh in memory (for ccx: from its input file) to the frequencies, and the
+peak of resident memory. Modules are imported and libraries loaded before that, by two cubes solved in the same way.
+"bare" gets
 the matrices for nothing: pypardiso as it comes, and SciPy's eigsh. Sizes in thousands of unknowns; --large adds 500 and
 675 (ccx up to 500), --million a bar of 1,078,110 unknowns for Faying alone, in 24 GB at most.
 """
@@ -182,7 +183,8 @@ def compare(size, repeats, with_ccx):
                 continue
             if name == "ours":
                 print(
-                    f"  ours  {row['cpu']:7.1f} CPU s, of them modes {row['modes']:7.1f}; peak {row['peak_gb']:.2f} GB, factor "
+                    f"  ours  {row['cpu']:7.1f} CPU s, of them modes {row['modes']:7.1f}; peak {row['peak_gb']:.2f} "
+                    f"GB, factor "
                     f"estimated {row['factor_gb']:.2f} GB",
                     flush=True,
                 )
@@ -193,7 +195,8 @@ def compare(size, repeats, with_ccx):
                 np.array(row["frequencies"])[elastic] / np.array(rows["ours"]["frequencies"])[elastic] - 1
             ).max()
             print(
-                f"  {name:5s} {row['cpu']:7.1f} CPU s; ours takes {mine / row['cpu']:.3f} of it; peak {row['peak_gb']:.2f} GB; "
+                f"  {name:5s} {row['cpu']:7.1f} CPU s; ours takes {mine / row['cpu']:.3f} of it; peak "
+                f"{row['peak_gb']:.2f} GB; "
                 f"frequencies differ by {differ:.1e}",
                 flush=True,
             )

@@ -82,7 +82,8 @@ def main():
     online = clock() - begin
     answered = np.isfinite(rows["frequencies"][:, 0]).sum()
     print(
-        f"{near.grid.size} evaluations: {online:.1f} CPU s, {online / single:.2f} of a full solution; {answered} answered",
+        f"{near.grid.size} evaluations: {online:.1f} CPU s, {online / single:.2f} of a full solution; {answered} "
+        f"answered",
         flush=True,
     )
 

@@ -163,7 +163,7 @@ def figure_11() -> Any:
 
 
 def figure_12() -> Any:
-    """Draw the ratio of tangential to normal stiffness with Mindlin's value and its bounds; dots mark ends of stages."""
+    """Draw tangential over normal stiffness with Mindlin's value and its bounds; dots mark ends of stages."""
     fig = _curves("ratio", "Kt/Kn", logarithmic=False)
     nu = STEEL.nu
     for ax in fig.axes:

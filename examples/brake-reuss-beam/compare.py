@@ -1,4 +1,4 @@
-"""Run both studies and set them beside the published model: a table, and pressure.png with the gap and the pressures."""
+"""Run both studies and compare them with the published model: a table, and pressure.png with gap and pressures."""
 
 import sys
 from pathlib import Path

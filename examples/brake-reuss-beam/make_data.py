@@ -1,8 +1,8 @@
 """Write data/asperity-gaps.csv and data/gap-map.csv: the measured interface of the beam, for the two studies.
 
 The measurement is not part of this repository. It is brb_surface_data.mat of github tmd-lab/tmdsimpy
-(examples/structures/data, MIT), published with Porter and Brake 2023, doi:10.1016/j.ymssp.2023.110210. This script looks
-for it in FAYING_DATA/brake-reuss-beam, or where the first argument says.
+(examples/structures/data, MIT), published with Porter and Brake 2023, doi:10.1016/j.ymssp.2023.110210. This script
+looks for it in FAYING_DATA/brake-reuss-beam, or where the first argument says.
 """
 
 import os

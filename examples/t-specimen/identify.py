@@ -1,8 +1,8 @@
 """Find dimensions of the T-specimen from the five test frequencies at 4 kN, by least squares within bounds.
 
 Identified: height and thickness of the stems, how far the flanges stand out beyond them, thickness of the flanges.
-Chosen, not identified: the width (bending across the thin side of the stems hardly depends on it), holes and washers, the
-bolts in the middle of what stands out. Not used: the rows at 8 and 12 kN, and everything that the paper computed.
+Chosen, not identified: the width (bending across the thin side of the stems hardly depends on it), holes and washers,
+the bolts in the middle of what stands out. Not used: the rows at 8 and 12 kN, and everything that the paper computed.
 
 Least squares run on a plane-stress model of the two T's grown together, which takes a moment. What it leaves out (the
 joint, the third dimension, the holes) is the ratio of the study's frequencies to its own, computed for the dimensions

@@ -59,7 +59,8 @@ def refuse_decimal_comma(line: str, where: str) -> None:
     apart = re.search(r"[\d.]\s*[;\t]|[\d.] +[-+.\d]", re.sub(r"\s*,\s+|\s+,", ",", line))
     if apart and _DECIMAL_COMMA.search(line):
         raise ReadError(
-            f"{where}: {line.strip()[:60]!r} has decimal commas; write decimal points, as in 4.5, and keep the comma for "
+            f"{where}: {line.strip()[:60]!r} has decimal commas; write decimal points, as in 4.5, and keep the comma "
+            f"for "
             "between numbers"
         )
 
@@ -67,8 +68,8 @@ def refuse_decimal_comma(line: str, where: str) -> None:
 def read_numbers(path: Path, columns: int, form: str) -> Any:
     """Read rows of `columns` numbers, with commas, semicolons or blanks between; lines of text may stand at the top.
 
-    Returns an array (rows, columns); comments begin with #. Raises ReadError, with `form` as what was expected, where no
-    such row is found or a later line is not one.
+    Returns an array (rows, columns); comments begin with #. Raises ReadError, with `form` as what was expected, where
+    no such row is found or a later line is not one.
     """
     import numpy as np
 

@@ -80,7 +80,8 @@ def test_first_yield_at_the_right_load_and_depth():
 
 @pytest.mark.parametrize("x", [1.5, 3.0, 5.9, 6.1, 10.0, 20.0, 50.0, 76.8, 110.0])
 def test_load_and_area_of_a_sphere_are_those_of_both_published_laws(x):
-    """With a tangent modulus of 1 % of E; the two laws differ from one another by up to 4.1 % in load, 2.7 % in area."""
+    """With a tangent modulus of 1 % of E; the two laws differ from one another by up to 4.1 % in load, 2.7 % in
+    area."""
     force, area = at_top(pressed(x, 0.01, 32))
     for model in (KogutEtsion, JacksonGreen):
         law = model(R=1.0, pair=PAIR).at(x * CRITICAL)

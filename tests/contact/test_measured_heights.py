@@ -1,4 +1,5 @@
-"""Measured heights: closed forms of plain distributions, Gauss against Greenwood and Williamson, quadrature, unloading."""
+"""Measured heights: closed forms of plain distributions, Gauss against Greenwood and Williamson, quadrature,
+unloading."""
 
 import itertools
 from math import pi, sqrt

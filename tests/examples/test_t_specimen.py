@@ -37,7 +37,8 @@ def test_modes_lie_between_free_and_tied(outcome):
 
 
 def test_the_row_used_for_identification_fits_and_the_others_are_near(outcome):
-    """4 kN was used to find the dimensions; 8 and 12 kN are predictions. Bounds: the paper's own largest error, 4.1 %."""
+    """4 kN was used to find the dimensions; 8 and 12 kN are predictions. Bounds: the paper's own largest error, 4.1
+    %."""
     error = np.array(outcome[0]["comparison"]["error"])
     assert np.abs(error[0]).max() < 0.041
     assert np.abs(error[1:]).max() < 0.05

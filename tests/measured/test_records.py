@@ -70,7 +70,8 @@ def test_noise_on_the_response(periodic):
 
 
 def hits(count=3, length=N):
-    """Half-sine hits and the response of the system, summed from its impulse response; it does not die out in a record."""
+    """Half-sine hits and the response of the system, summed from its impulse response; it does not die out in a
+    record."""
     t = np.arange(length) / RATE
     pulse = np.where(t < 0.004, np.sin(np.pi * t / 0.004), 0.0)
     displacement = np.zeros((2, length))
@@ -83,7 +84,8 @@ def hits(count=3, length=N):
 
 
 def test_an_exponential_window_is_taken_off_again():
-    """A record of half a second cuts the ringing of the first mode at a quarter; the window's decay cures that exactly."""
+    """A record of half a second cuts the ringing of the first mode at a quarter; the window's decay cures that
+    exactly."""
     force, response = hits(length=512)
     frf = frf_from_records(
         force, response, RATE, outputs=OUTPUTS, quantity="receptance", window="exponential", decay=12.0

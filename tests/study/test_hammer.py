@@ -1,4 +1,5 @@
-"""A hammer test in the study: the example's, its full response against a direct solution, and the files that are written."""
+"""A hammer test in the study: the example's, its full response against a direct solution, and the files that are
+written."""
 
 import json
 from dataclasses import replace
@@ -86,7 +87,8 @@ def test_a_poor_response_is_noted():
 
 
 def test_the_study_carries_the_comparison(result):
-    """What is hammered in the example is stiffer by 3 % and tighter by 1 kN: every mode finds its partner, 0 to 2 % off."""
+    """What is hammered in the example is stiffer by 3 % and tighter by 1 kN: every mode finds its partner, 0 to 2 %
+    off."""
     found = result.hammer
     assert found.model.load == 6e3
     assert found.pairs.tolist() == [[k, k] for k in range(7)]

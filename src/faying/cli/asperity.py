@@ -232,6 +232,7 @@ def table(document: list[dict[str, Any]]) -> str:
         residual = "-" if entry["residual"] is None else show(entry["residual"], "m")
         lines.append(
             f"{head}{show(history['displacement'][top], 'm'):>14}{show(history['force'][top], 'N'):>12}"
-            f"{history['area'][top] * 1e12:>10.4g} um2{bounds:>26}{show(history['pressure'][top], 'Pa'):>12}{residual:>12}"
+            f"{history['area'][top] * 1e12:>10.4g} "
+            f"um2{bounds:>26}{show(history['pressure'][top], 'Pa'):>12}{residual:>12}"
         )
     return "\n".join(lines)

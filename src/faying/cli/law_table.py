@@ -47,7 +47,7 @@ def show(
 
 
 def draw_contact(laws: dict[str, Any], pressure: float, path: str) -> None:
-    """Write the picture of where the scan touches at a pressure [Pa]; InputError unless one law is solved on the scan."""
+    """Write the picture of where the scan touches at a pressure [Pa]; InputError unless one is solved on the scan."""
     from faying.contact.half_space import HalfSpace
     from faying.errors import InputError
     from faying.output.figures.contact_map import contact_figure
@@ -131,7 +131,7 @@ def table(inputs: Any, comparison: Any) -> str:
 
 
 def reasons(response: Any) -> list[str]:
-    """Return why a response leaves its validity range, with the pressures from and to; coverage is shown by - already."""
+    """Return why a response leaves its validity range, with the pressures from and to; coverage shows as -."""
     from faying.units import show as unit
 
     lines = []

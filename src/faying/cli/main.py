@@ -46,7 +46,7 @@ def cli() -> None:
 
 
 def main(argv: list[str] | None = None) -> None:
-    """Entry point of the command `faying`. Exit codes: 0 done, 1 failed on its input or its mathematics, 2 wrong usage."""
+    """Entry point of the command `faying`. Exit codes: 0 done, 1 input or mathematics failed, 2 wrong usage."""
     from faying.errors import FayingError
 
     try:

@@ -48,7 +48,7 @@ class LawKind:
 
 @cache
 def laws() -> Mapping[str, type[ContactLaw]]:
-    """Return every contact law by the name of its class, in alphabetical order, found among the files of the package."""
+    """Return every contact law by the name of its class, in alphabetical order, found among the files."""
     package = import_module("faying.contact")
     found: dict[str, type[ContactLaw]] = {}
     for entry in iter_modules(package.__path__):

@@ -41,10 +41,11 @@ class HalfSpace(ContactLaw):
     where both faces are rough, the scan of their sum. pair of materials. elastic=True leaves out the hardness.
     stiffness: "unloading", k_n against a small fall of the load, which is what a vibration sees: elastic, loss_n 0,
     energy_n the strain energy; or "loading", k_n against its growth, loss_n the plastic work of first loading over
-    the strain energy, energy_n their sum. area: "corrected" for the size of the points, or as "counted". shear_ratio X = T/(mu F): above 0,
-    k_t is that of the points that still stick and loss_t follows from their slip (needs the pair's friction).
-    periodic as in `solve_half_space`. points: rungs of the ladder, spaced evenly in ln(pressure) from lowest to
-    highest pressure [Pa]; between them each quantity is a monotone cubic in logarithms. tol as in `solve_half_space`.
+    the strain energy, energy_n their sum. area: "corrected" for the size of the points, or as "counted". shear_ratio X
+    = T/(mu F): above 0, k_t is that of the points that still stick and loss_t follows from their slip (needs the
+    pair's friction). periodic as in `solve_half_space`. points: rungs of the ladder, spaced evenly in ln(pressure)
+    from lowest to highest pressure [Pa]; between them each quantity is a monotone cubic in logarithms. tol as in
+    `solve_half_space`.
     progress: called with (rungs done, points) while the ladder is climbed, on first use.
 
     Closure variable: the pressure [Pa]. Flagged where fewer than 30 points touch or none is open, and where k_n changes

@@ -162,8 +162,8 @@ class MixedIslands(Islands):
     ) -> Array:
         """Sum of (x/c^2)^power c^softness over all islands with lower < x < upper [-].
 
-        tangent: each term times 1 - 2 g power/(power + 1), which makes d/d(delta) of a force c^2 (delta/c^2)^(power + 1)
-        out of that at constant c. slope: h_a/r_a. Raises InputError where the sum from zero diverges.
+        tangent: each term times 1 - 2 g power/(power + 1), which makes d/d(delta) of a force c^2 (delta/c^2)^(power +
+        1) out of that at constant c. slope: h_a/r_a. Raises InputError where the sum from zero diverges.
         """
         lo, hi, q = np.broadcast_arrays(*(np.asarray(v, float) for v in (lower, upper, slope)))
         plain = 2 / SHAPE * (OWN_MODULUS * q / 40) ** 2  # u = 40

@@ -107,8 +107,8 @@ class TabulatedLaw(ContactLaw):
     def from_csv(cls, path: str | Path) -> Self:
         """Read a table with a head such as `pressure [MPa],k_n [MPa/um]`; lines from # on are comments.
 
-        `faying law --csv` writes such files. Raises ReadError, with the file and the line, for files that are missing or
-        do not hold a table.
+        `faying law --csv` writes such files. Raises ReadError, with the file and the line, for files that are missing
+        or do not hold a table.
         """
         try:
             return cls(**read_columns(Path(path)), origin=str(path))

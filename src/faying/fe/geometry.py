@@ -25,7 +25,8 @@ from faying.typing import Array, Index
 # netgen numbers the middle nodes by these edges; VTK, and so we, by those of its element
 NEAR = 1.0  # mm: a point farther from every face than this names none
 AMBIGUOUS = 1e-3  # mm: faces whose distances differ by less are not told apart
-# tetrahedra per volume over edge^3, and unknowns per tetrahedron of second order: counted on blocks and on bolted joints
+# tetrahedra per volume over edge^3, and unknowns per tetrahedron of second order: counted on blocks and on bolted
+# joints
 ELEMENTS, UNKNOWNS = 5.0, 4.5
 _NETGEN_EDGES = {"tet10": ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)), "tri6": ((1, 2), (0, 2), (0, 1))}
 
@@ -185,7 +186,8 @@ def _mesh_here(request: _Request) -> Mesh:
         mesh.SecondOrder()
     except Exception as fault:  # NgException, which netgen's Python does not name
         raise InputError(
-            f"{path.name} cannot be meshed with size {size * 1e3:g} mm ({fault}); choose another size, or repair the geometry"
+            f"{path.name} cannot be meshed with size {size * 1e3:g} mm ({fault}); choose another size, or repair the "
+            f"geometry"
         ) from None
     return _collect(mesh, [solid.name for solid in parts], labels, source=path.name)
 
@@ -200,14 +202,16 @@ def _face_at(label: str, part: str, point: Sequence[float], faces: Sequence[Any]
     where = f"face {label!r} at ({', '.join(f'{1e3 * x:g}' for x in point)}) mm"
     if distance[order[0]] > NEAR:
         raise InputError(
-            f"{where}: the nearest face of {part!r} is {distance[order[0]]:.4g} mm away, more than {NEAR:g} mm; check the point "
+            f"{where}: the nearest face of {part!r} is {distance[order[0]]:.4g} mm away, more than {NEAR:g} mm; check "
+            f"the point "
             "and its unit"
         )
     near = [faces[k] for k in order if distance[k] < distance[order[0]] + AMBIGUOUS]
     if len(near) > 1:
         centres = "; ".join(f"({f.center.x:.4g}, {f.center.y:.4g}, {f.center.z:.4g}) mm" for f in near)
         raise InputError(
-            f"{where} lies on {len(near)} faces of {part!r}, with their centres at {centres}; give a point inside one of them"
+            f"{where} lies on {len(near)} faces of {part!r}, with their centres at {centres}; give a point inside one "
+            f"of them"
         )
     return near[0]
 
@@ -221,7 +225,8 @@ def _check_size(volume: float, size: float, name: str) -> None:
         least = size * (needed / free) ** 0.25  # memory grows as unknowns^(4/3), so as size^-4
         raise InputError(
             f"{name}: edges of {size * 1e3:g} mm make about {elements:,.0f} elements and {unknowns:,} unknowns, whose "
-            f"factorisation takes {needed / 1e9:.3g} GB; {free / 1e9:.3g} GB are free: take {least * 1e3:.2g} mm or more"
+            f"factorisation takes {needed / 1e9:.3g} GB; {free / 1e9:.3g} GB are free: take {least * 1e3:.2g} mm or "
+            f"more"
         )
 
 

@@ -117,7 +117,7 @@ FIGURES = {
     ),
     "response": ReportFigure(
         draw=response.responses,
-        caption="Accelerance at every preload: response over force, at the points and along the directions of the study.",
+        caption="Accelerance at every preload, at the points and along the directions of the study.",
         applies=lambda result: result.response is not None,
     ),
 }

@@ -11,7 +11,7 @@ from faying.output.figures.save import new_figure, save
 from faying.output.page import BITMAPS, document, picture, table
 
 CAPTIONS = {
-    "mac": "MAC of the modes of the test against those of the model, at the points and directions of the test. Pairs are framed.",
+    "mac": "MAC of the modes of the test against those of the model, at the points of the test. Pairs are framed.",
     "frf": "FRFs of the test and of the model, its full response or its elastic modes superposed, as the legend says.",
     "shapes": "Paired mode shapes: motion measured at the points of the test (left), the model's (right).",
 }

@@ -199,7 +199,8 @@ class Result:
         index = len(self.loads) - 1 if load is None else int(np.argmin(np.abs(self.loads - load)))
         if load is not None and abs(self.loads[index] - load) > 1e-3 * abs(self.loads[index]):
             raise InputError(
-                f"{source}: no preload of {load / 1e3:g} kN; it holds {', '.join(f'{v / 1e3:g} kN' for v in self.loads)}"
+                f"{source}: no preload of {load / 1e3:g} kN; it holds "
+                f"{', '.join(f'{v / 1e3:g} kN' for v in self.loads)}"
             )
         return ModelModes(
             frequencies=self.frequencies[index],
@@ -237,7 +238,8 @@ class Result:
         return out
 
     def to_netcdf(self, path: str | Path) -> Path:
-        """Write everything as NetCDF-4 that xarray opens, with named coordinates; the file appears complete or not at all."""
+        """Write everything as NetCDF-4 that xarray opens, with named coordinates; the file appears complete or not
+        at all."""
         group = to_group(self)
         names = {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
         labels = {name: np.array(values, dtype=object) for name, values in names.items()}

@@ -165,8 +165,8 @@ class Grid:
                 raise InputError(f"--set {key}: every joint has a law of its own; a sweep varies the study's [law]")
             if key == MODEL and not study.law.needs_surface:
                 raise InputError(
-                    f'--set {key}: [law] gives "{study.law.model}" in full; other laws would lack their surface. Vary them '
-                    "on a study with [surface]"
+                    f'--set {key}: [law] gives "{study.law.model}" in full; other laws would lack their surface. '
+                    "Vary them on a study with [surface]"
                 )
             if key not in (MODEL, "law.counterbody") and not models:
                 check_entries(study.law.kind, [parts[1]])

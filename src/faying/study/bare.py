@@ -28,8 +28,8 @@ def modes_with_joint(
 ) -> tuple[DampedModes, int]:
     """Elastic modes, with loss factors, of stiffness and mass from a file (as `read_matrices` takes) and the joint.
 
-    The matrices must be those of the attachment's mesh, node by node. Returns the modes and how many rigid motions nothing
-    resists.
+    The matrices must be those of the attachment's mesh, node by node. Returns the modes and how many rigid motions
+    nothing resists.
     """
     pairs, mesh = attachment.pairs, attachment.deck.mesh
     read = read_matrices(matrices, stiffness_unit=stiffness_unit, mass_unit=mass_unit, mass=mass, dofs=dofs)

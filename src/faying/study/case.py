@@ -75,7 +75,8 @@ class Case:
         size = structure.mesh.size
         if not SIZES[0] <= size <= SIZES[1]:
             text = (
-                f"the structure measures {size:.4g} m from corner to corner; if it should not, the unit of its geometry "
+                f"the structure measures {size:.4g} m from corner to corner; if it should not, the unit of its "
+                f"geometry "
                 "is wrong"
             )
             notes.append(Note(code="size", text=text))

@@ -23,7 +23,8 @@ Places = tuple[NDArray[Any], Array]
 
 @dataclass(frozen=True, kw_only=True)
 class Hammer:
-    """What a study knows of its test before it is solved. tested: modes and FRFs; transform: test frame to model frame."""
+    """What a study knows of its test before it is solved. tested: modes and FRFs; transform: test frame to model
+    frame."""
 
     choice: HammerChoice
     tested: Tested
@@ -62,7 +63,8 @@ class Hammer:
         )
 
     def response(self, solved: LoadedStructure, points: PointMap) -> tuple[FullResponse | None, list[Note]]:
-        """The full response at the test's own points, directions and lines, None where its FRFs meet no point; notes."""
+        """The full response at the test's own points, directions and lines, None where its FRFs meet no point;
+        notes."""
         frf = self.tested.frf
         if frf is None:
             return None, []

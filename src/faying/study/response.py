@@ -105,7 +105,8 @@ def poor(frequencies: Array, error: Array, which: str) -> list[Note]:
     if error[worst] <= POOR:
         return []
     text = (
-        f"the frequency response {which} leaves a residual of {error[worst]:.1%} at {frequencies[worst]:g} Hz, where modes "
+        f"the frequency response {which} leaves a residual of {error[worst]:.1%} at {frequencies[worst]:g} Hz, where "
+        f"modes "
         "beyond those computed count; raise modes.count, or end at a lower frequency"
     )
     return [Note(code="response-residual", text=text)]

@@ -106,7 +106,8 @@ def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[
         if np.any(pressure > end):
             share = float(weights @ (pressure > end) / area)
             text = (
-                f"{joint.name}, {kilo}: on {share:.2%} of the joint the pressure exceeds the {end / 1e6:.3g} MPa at which "
+                f"{joint.name}, {kilo}: on {share:.2%} of the joint the pressure exceeds the {end / 1e6:.3g} MPa at "
+                f"which "
                 f"{model.name} ends with this surface; stiffness is held there"
             )
             out.append(Note(code="beyond-law", joint=joint.name, load=load, share=share, text=text))
@@ -117,6 +118,7 @@ def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[
         for reason, mask in answer.reasons.items():
             share = float(weights @ mask / area)
             if share > 0:
-                text = f"{joint.name}, {kilo}: {model.name} is outside its validity range on {share:.0%} of the joint: {reason}"
+                where = f"{model.name} is outside its validity range on {share:.0%} of the joint"
+                text = f"{joint.name}, {kilo}: {where}: {reason}"
                 out.append(Note(code="outside-validity", joint=joint.name, load=load, share=share, text=text))
     return out

@@ -22,7 +22,8 @@ def check(spec: ResponseChoice | None) -> None:
     for point, axis in (*spec.inputs, *spec.outputs) if spec else ():
         if _name(axis) is None:
             raise InputError(
-                f"response: the direction {list(axis)} at {[f'{1e3 * v:g} mm' for v in point]} lies along none of x, y, z, the only "
+                f"response: the direction {list(axis)} at {[f'{1e3 * v:g} mm' for v in point]} lies along none of x, "
+                f"y, z, the only "
                 "ones of data set 58; turn it, or leave out --uff"
             )
 
@@ -134,8 +135,8 @@ def _nearest(points: Array, place: tuple[float, ...]) -> int:
 def _spread(points: Array, first: list[int]) -> list[int]:
     """`first`, then points each as far as can be from all before it, up to MOST_POINTS in all.
 
-    Points that coincide with another, as nodes of two faces in a joint do, are left out: a position would not tell which
-    of the two is meant.
+    Points that coincide with another, as nodes of two faces in a joint do, are left out: a position would not tell
+    which of the two is meant.
     """
     from scipy.spatial import KDTree
 

@@ -158,7 +158,8 @@ def _size(comparison: ModalComparison) -> float:
 
 
 def _test_motion(comparison: ModalComparison, t: int, m: int) -> tuple[Any, Any]:
-    """Points of the test moved and at rest (p, 3) [mm], with the sign of the model's shape and its size at those points."""
+    """Points of the test moved and at rest (p, 3) [mm], with the sign of the model's shape and its size at those
+    points."""
     shapes = comparison.test.at(comparison.dofs)[t]
     model = comparison.model_shapes()[m]
     values = (shapes * np.vdot(shapes, model)).real  # turned to the model's phase

@@ -35,11 +35,13 @@ def pressure_map(ax: Any, result: Result, load: int = -1, joint: int = 0) -> Any
 
 
 def frequencies(ax: Any, result: Result, modes: int = 8) -> Any:
-    """Draw frequency against preload, each mode relative to its bonded value; free bounds lie far below and are listed."""
+    """Draw frequency against preload, each mode relative to its bonded value; free bounds lie far below and are
+    listed."""
     load = result.loads * 1e-3
     count = min(modes, len(result.bonded))
     for mode in range(count):
         ratio = result.frequencies[:, mode] / result.bonded[mode]
+        bounds = result.free[mode], result.frequencies[-1, mode], result.bonded[mode]
         ax.plot(
             load,
             ratio,
@@ -47,7 +49,7 @@ def frequencies(ax: Any, result: Result, modes: int = 8) -> Any:
             color=f"C{mode % 10}",
             ms=4,
             lw=1.4,
-            label=f"{mode + 1}: {result.free[mode]:.0f} / {result.frequencies[-1, mode]:.0f} / {result.bonded[mode]:.0f} Hz",
+            label=f"{mode + 1}: {' / '.join(f'{f:.0f}' for f in bounds)} Hz",
         )
     ax.axhline(1, color="k", lw=0.8, ls="--")
     ax.set(

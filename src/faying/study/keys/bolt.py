@@ -130,7 +130,8 @@ def _rising(value: Any, name: str, unit: str, example: str) -> tuple[float, ...]
             raise InputError(f'{name} = "{text}": a preload pulls the joint together and must be positive')
     if any(b <= a or isclose(a, b) for a, b in pairwise(loads)):
         raise InputError(
-            f"{name} = {value!r}: preloads must rise, since the law is one of loading; the joint remembers the greatest "
+            f"{name} = {value!r}: preloads must rise, since the law is one of loading; the joint remembers the "
+            f"greatest "
             "load it has seen"
         )
     return tuple(loads)

@@ -10,7 +10,8 @@ from faying.study.keys.reader import Faults, Table, point
 
 @dataclass(frozen=True, kw_only=True)
 class GeometryChoice:
-    """A STEP file and how finely to mesh it, lengths [m]; or a mesh file, its unit, and the element sets of the parts."""
+    """A STEP file and how finely to mesh it, lengths [m]; or a mesh file, its unit, and the element sets of the
+    parts."""
 
     step: Path | None = None
     size: float = 0.0

@@ -88,7 +88,8 @@ class LawChoice:
         return bool(self.missing)
 
     def fault_without(self, surface: str) -> str:
-        """What is wrong where this law finds "no" surface, one of "fractal" numbers, or a "scan"; "" where it is fine."""
+        """What is wrong where this law finds "no" surface, one of "fractal" numbers, or a "scan"; "" where it is
+        fine."""
         entries = self.kind.law.entries()
         rank = ("nothing", "fractal", "moments", "scan")
         there = {"no": 0, "fractal": 1, "scan": 3}[surface]
