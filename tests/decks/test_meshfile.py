@@ -211,10 +211,10 @@ def test_units(tmp_path):
     assert faying.read_mesh(path, unit="inch").size == pytest.approx(25.4 * faying.read_mesh(path, unit="mm").size)
 
 
-@pytest.mark.parametrize("unit", ["5 mm", "mm*1000", "0.001", "mm 5", "9**9**9 mm", "", "mm, m", 1.0])
+@pytest.mark.parametrize("unit", ["5 mm", "mm*1000", "0.001", "mm 5", "9**9**9 mm", "", "mm, m"])
 def test_a_unit_is_a_name(tmp_path, unit):
     path = written(tmp_path, meshfiles.abaqus(two(gap=1e-4)), "m.inp")
-    with pytest.raises(faying.InputError, match='is no unit; write one without a number, such as "mm"'):
+    with pytest.raises(faying.InputError, match="unit of the mesh.*write (its name alone, )?for example mm"):
         faying.read_mesh(path, unit=unit)
 
 

@@ -78,3 +78,41 @@ def test_a_part_that_slides_freely_is_named():
     sticking = replace(free, joints=(replace(joint, law=JointLaw(model=law())),))
     K, _ = sticking.joined(sticking.springs((np.full(len(joint.interface.weights), 5e6),)))
     check_motions(sticking, lowest_modes(K, sticking.vibrating[1], 12, shift_frequency=sticking.shift_frequency))
+
+
+def clamped_pair(*supports):
+    """Two bars bolted together on supports."""
+    mesh = stack([0.03, 0.03], [2, 2], width=0.02, height=0.02)
+    joint = Joint(
+        name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), law=JointLaw(model=law())
+    )
+    bolt = Bolt(name="bolt", faces=("p0.left", "p1.right"))
+    return Structure(
+        mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=(joint,), bolts=(bolt,), supports=supports
+    )
+
+
+def modes_of(structure):
+    found = checked_preload(structure, structure.assembly(), [2e3])
+    K, _ = structure.joined(structure.springs(found.pressures))
+    return lowest_modes(K, structure.vibrating[1], 8, shift_frequency=structure.shift_frequency)
+
+
+def test_a_soft_suspension_is_no_loose_part():
+    """100 Pa/um in all directions: the whole sways far below its first elastic mode, f = sqrt(k A/m)/2 pi."""
+    structure = clamped_pair(Support(face="p0.left", stiffness=1e8))
+    assert structure.rigid_count == 0
+    modes = modes_of(structure)
+    check_motions(structure, modes)
+    along = np.sqrt(1e8 * 4e-4 / (STEEL.density * 0.06 * 4e-4)) / (2 * np.pi)
+    assert np.abs(modes.frequencies[:6] / along - 1).min() < 0.01
+
+
+def test_springs_that_a_fixed_face_takes_away_leave_the_free_motions():
+    """z at rest and springs along z on one face: what they resist is fixed already, and four motions are left."""
+    structure = clamped_pair(
+        Support(face="p0.left", directions=("z",)), Support(face="p0.left", directions=("z",), stiffness=1e12)
+    )
+    only_fixed = clamped_pair(Support(face="p0.left", directions=("z",)))
+    assert structure.rigid_count == only_fixed.rigid_count == 4
+    check_motions(structure, modes_of(structure))

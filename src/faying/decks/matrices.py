@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from faying import units
 from faying.decks.programs import MATRICES, reader_of
-from faying.decks.raw import Matrices, both_triangles, numbers_of, once, read_dofs, read_text, room, unit_size, whole
+from faying.decks.raw import Matrices, both_triangles, numbers_of, once, read_dofs, read_text, room, whole
 from faying.errors import InputError, ReadError
 from faying.fe.mesh import Mesh
 from faying.typing import Array, Index
@@ -46,7 +47,7 @@ def read_matrices(
         raise InputError(
             f'{file.name} does not say its units; say them, for example stiffness_unit = "N/mm", mass_unit = "t"'
         )
-    scales = unit_size(stiffness_unit, "N/m", "stiffness_unit"), unit_size(mass_unit, "kg", "mass_unit")
+    scales = units.scale(stiffness_unit, "N/m", name="stiffness_unit"), units.scale(mass_unit, "kg", name="mass_unit")
     if file.suffix.lower() == ".mtx":
         if mass is None or dofs is None:
             raise InputError(
@@ -97,8 +98,8 @@ def read_pair(
     other = Path(mass)
     if other.suffix.lower() not in kinds:
         raise ReadError(f"{other}: the mass should be .mtx or .npz")
-    K = kinds[file.suffix.lower()](file) * unit_size(stiffness_unit, "N/m", "stiffness unit")
-    M = kinds[other.suffix.lower()](other) * unit_size(mass_unit, "kg", "mass unit")
+    K = kinds[file.suffix.lower()](file) * units.scale(stiffness_unit, "N/m", name="stiffness unit")
+    M = kinds[other.suffix.lower()](other) * units.scale(mass_unit, "kg", name="mass unit")
     table = np.column_stack([np.arange(1, K.shape[0] + 1), np.ones(K.shape[0], dtype=np.int64)])
     _check(file.name, K, M, table)
     return K.tocsr(), M.tocsr(), table

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from faying import units
 from faying.decks.programs import MESHES, reader_of
-from faying.decks.raw import RawMesh, unit_size
+from faying.decks.raw import RawMesh
 from faying.errors import InputError, ReadError
 from faying.fe.elements import FACES, SOLIDS
 from faying.fe.mesh import Mesh, least_jacobian
@@ -46,7 +47,7 @@ def read_mesh(
     module = reader_of(file, MESHES)
     if unit is None:
         raise InputError(f'{file.name} does not say in which unit its coordinates are; say it, for example unit = "mm"')
-    scale = unit_size(unit, "m", "unit of the mesh")
+    scale = units.scale(unit, "m", name="unit of the mesh")
     raw: RawMesh = module.read(file)
     return _Builder(raw, file.name, unit, scale).mesh(parts)
 

@@ -1,6 +1,5 @@
 """What a file holds before it becomes a mesh or matrices: the file's own numbers, its own unit, its sets."""
 
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -8,7 +7,6 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from faying import units
 from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS, SOLIDS
 from faying.memory import available
@@ -177,16 +175,6 @@ def both_triangles(half: Any) -> Any:
     from scipy.sparse import diags_array
 
     return (half + half.T - diags_array(half.diagonal())).tocsr()
-
-
-def unit_size(text: str, unit: str, name: str) -> float:
-    """How many of an SI unit one of a unit is; InputError where the text is more than names of units, such as 5 mm."""
-    one = r"[A-Za-zµμ]+(?:(?:\^|\*\*)-?\d)?"
-    if not isinstance(text, str) or not re.fullmatch(rf"{one}(?:\s*[*/]\s*{one}){{0,5}}", text.strip()):
-        raise InputError(
-            f'{name} = {text!r} is no unit; write one without a number, such as "{units.EXAMPLES[unit].split()[1]}"'
-        )
-    return units.scale(text, unit, name=name)
 
 
 def room(size: float, name: str) -> None:

@@ -96,9 +96,11 @@ class Frame:
             all_six = free_motions(rigid_motions(self.mesh.points), self.fixed)
             if not all_six.shape[1]:
                 return all_six
-            energy = all_six.T @ (springs @ all_six)
-            values, vectors = np.linalg.eigh(energy)
-            return np.asarray(all_six @ vectors[:, values < 1e-10 * max(values.max(), 1e-300)])
+            values, vectors = np.linalg.eigh(all_six.T @ (springs @ all_six))
+            # beside what the springs resist of any motion, fixed faces aside: where they resist nothing, all is rounding
+            whole = rigid_motions(self.mesh.points)
+            most = float(np.linalg.eigvalsh(whole.T @ (springs @ whole)).max())
+            return np.asarray(all_six @ vectors[:, values < 1e-10 * most])
         return free_motions(rigid_motions(self.mesh.points), self.fixed)
 
     @cached_property

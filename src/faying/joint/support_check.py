@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError, NotConverged
+from faying.fe.elasticity import rigid_motions
 from faying.fe.modes import Modes
 from faying.joint.equilibrium import PreloadState
 from faying.joint.preload import PreloadProblem
@@ -14,6 +15,7 @@ from faying.joint.tighten import tighten
 from faying.typing import Array
 
 RIGID_BELOW = 0.01  # of the shift: a frequency below it is that of a motion that nothing resists
+BENT = 0.01  # share of the energy of a motion above which it is not one of the whole
 NOTHING = 1e-6  # of the greatest pressure
 
 
@@ -84,8 +86,8 @@ def check_motions(structure: Structure, modes: Modes) -> None:
     """Raise InputError where a part moves freely though neither its supports nor the want of any explain it."""
     rigid_count = structure.rigid_count
     free = np.flatnonzero(modes.frequencies < RIGID_BELOW * np.sqrt(modes.shift) / (2 * np.pi))
-    if len(free) <= rigid_count:
-        return
+    if len(free) <= rigid_count or not np.any(_bent(structure, modes.shapes[:, free]) > BENT):
+        return  # the whole moves as one, free or on a soft suspension
     part = _mover(structure, modes.shapes[:, free])
     raise InputError(
         f"{len(free)} motions cost no energy and {rigid_count} of them are those of the whole: part {part!r} moves "
@@ -93,6 +95,14 @@ def check_motions(structure: Structure, modes: Modes) -> None:
         f"{modes.frequencies[free].max():.2g} Hz). Its joints resist only some directions; give "
         "the law a tangential stiffness, a joint more, or a support"
     )
+
+
+def _bent(structure: Structure, shapes: Array) -> Array:
+    """Share (m,) of the kinetic energy of shapes that is no rigid motion of the whole."""
+    whole, mass = rigid_motions(structure.mesh.points), structure.matrices[1]
+    rest = shapes - whole @ np.linalg.solve(whole.T @ (mass @ whole), whole.T @ (mass @ shapes))
+    energy = [np.einsum("im,im->m", x, mass @ x) for x in (rest, shapes)]
+    return np.asarray(energy[0] / energy[1])
 
 
 def _mover(structure: Structure, shapes: Any) -> str:
