@@ -91,7 +91,7 @@ def combine(
         gamma: ratio of neighbouring frequencies in that series, above 1.
 
     Returns:
-        Combined. D and G come from the wavelengths that both scans cover.
+        Combined; D and G from the wavelengths that both scans cover.
 
     Raises:
         InputError: for anything but two areal scans, and where the bands of wavelength do not overlap by a factor of 4.
@@ -123,11 +123,15 @@ def combine(
     )
     parts = [summits(r) for r in ready]
     m0, m2, m4 = (sum(getattr(p, name) for p in parts) for name in ("m0", "m2", "m4"))
-    length = max(min(scan_a.size), min(scan_b.size))
-    missing, spikes = (sum(getattr(r, name) for r in ready) for name in ("missing", "spikes"))
-    Ra = float((2 / np.pi * m0) ** 0.5)
+    missing, spikes = sum(r.missing for r in ready), sum(r.spikes for r in ready)
     facts = Facts(
-        Rq=m0**0.5, Ra=Ra, length=length, missing=missing, spikes=spikes, areal=True, notes=scan_a.notes + scan_b.notes
+        Rq=m0**0.5,
+        Ra=float((2 / np.pi * m0) ** 0.5),
+        length=max(min(scan_a.size), min(scan_b.size)),
+        missing=missing,
+        spikes=spikes,
+        areal=True,
+        notes=scan_a.notes + scan_b.notes,
     )
     return Combined(
         fit=result(estimate, facts, method="psd", convention=convention, gamma=gamma),

@@ -33,8 +33,8 @@ def check_points(source: str, count: float) -> None:
     need, free = BYTES * count, available()
     if free is not None and need > free:
         raise ReadError(
-            f"{source}: {count:.3g} points need about {need / GB:.3g} GB and {free / GB:.3g} GB are free; crop the scan or "
-            "take every second point before reading it, or set FAYING_MEMORY to the GB that may be taken"
+            f"{source}: {count:.3g} points need about {need / GB:.3g} GB and {free / GB:.3g} GB are free; crop the "
+            "scan or take every second point before reading it, or set FAYING_MEMORY to the GB that may be taken"
         )
 
 
