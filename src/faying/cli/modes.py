@@ -68,21 +68,32 @@ def command(
     if as_json:
         click.echo(json.dumps(found, indent=2))
         return
-    click.echo(f"{found['source']}: {found['unknowns']:,} unknowns, {found['solver']}\n")
+    click.echo(f"{found['source']}: {found['unknowns']:,} unknowns, {found['solver']}")
+    if "mass" in found:
+        click.echo(f"mass along x, y, z: {', '.join(f'{m:.6g} kg' for m in found['mass']['values'])}")
+    click.echo("")
     for number, value in enumerate(found["frequencies"]["values"], start=1):
         click.echo(f"{number:4d} {value:14.6f} Hz")
+    if found.get("missed"):
+        click.echo(
+            f"note: {found['missed']} modes below the last of these are missing; give another --shift, below the first"
+        )
 
 
 def _here(given: Any, count: int, shift: float) -> dict[str, Any]:
-    from faying.fe.modes import lowest_modes
+    from faying.decks.matrices import total_mass
+    from faying.fe.modes import lowest_modes, missed_modes
 
     modes = lowest_modes(given.stiffness, given.mass, count, shift_frequency=shift)
+    missed = missed_modes(given.stiffness, given.mass, modes)
     return {
         "source": given.source,
         "unknowns": int(given.mass.shape[0]),
         "solver": modes.factorisation.name,
         "factor_memory": {"unit": "B", "value": modes.factorisation.memory},
         "processes": 1,
+        "missed": missed,
+        "mass": {"unit": "kg", "values": total_mass(given.mass, given.dofs).tolist()},
         "frequencies": {"unit": "Hz", "values": modes.frequencies.tolist()},
     }
 

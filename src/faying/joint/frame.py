@@ -97,7 +97,7 @@ class Frame:
             if not all_six.shape[1]:
                 return all_six
             values, vectors = np.linalg.eigh(all_six.T @ (springs @ all_six))
-            # beside what the springs resist of any motion, fixed faces aside: where they resist nothing, all is rounding
+            # beside what the springs resist of any motion, fixed faces aside: the rest is rounding
             whole = rigid_motions(self.mesh.points)
             most = float(np.linalg.eigvalsh(whole.T @ (springs @ whole)).max())
             return np.asarray(all_six @ vectors[:, values < 1e-10 * most])

@@ -23,9 +23,6 @@ def frf_from_records(
 ) -> FRF:
     """Return the FRFs of one input from the records of its hits (or of a stretch of random force each).
 
-    H1 = Sfx/Sff is free of bias from noise on the response, H2 = Sxx/Sxf from noise on the force; with noise-to-signal
-    ratios q they come out as H/(1 + q_force) and H (1 + q_response).
-
     Args:
         force: [N], shape (records, samples), 8 samples or more.
         response: in the SI unit of `quantity`'s motion, shape (records, outputs, samples).
@@ -33,9 +30,10 @@ def frf_from_records(
         outputs: (point, direction) of each output.
         input: (point, direction) of the force.
         quantity: "receptance", "mobility" or "accelerance".
-        estimator: "H1" or "H2".
-        window: "exponential" multiplies force and response by exp(-decay t), which moves every pole left by exactly
-            `decay`; the FRF notes it, and the identification takes it off again. "hann" is for random force.
+        estimator: "H1" = Sfx/Sff, H/(1 + q) for noise over signal q of the force, or "H2" = Sxx/Sxf, H (1 + q) for
+            that of the response.
+        window: "exponential" multiplies both by exp(-decay t), which moves every pole left by exactly `decay`; the
+            identification takes it off again. "hann" is for random force.
         decay: of the exponential window [1/s], positive with it and 0 without.
 
     Returns:
@@ -50,11 +48,7 @@ def frf_from_records(
     f, x = np.asarray(force, float), np.asarray(response, float)
     places = tuple(Dof(*pair) for pair in outputs)
     _check(f, x, len(places), sampling_rate)
-    if estimator not in ("H1", "H2") or (window == "exponential") != (decay > 0):
-        raise InputError(
-            f"estimator = {estimator!r}, window = {window!r}, decay = {decay}: use H1 (noise on the response) or H2 "
-            '(noise on the force); give decay > 0 [1/s] with window="exponential", and only then'
-        )
+    _check_choices(estimator, window, decay)
     weight = _window(window, f.shape[1], decay / sampling_rate)
     F, X = np.fft.rfft(f * weight), np.fft.rfft(x * weight)
     s_ff = np.mean(np.abs(F) ** 2, axis=0)
@@ -88,6 +82,14 @@ def _check(force: Array, response: Array, outputs: int, sampling_rate: float) ->
         raise InputError(f"the force of record {empty} is zero throughout; leave that hit out")
     if not 0 < sampling_rate < np.inf:
         raise InputError(f"sampling_rate = {sampling_rate}: samples per second must be positive")
+
+
+def _check_choices(estimator: str, window: str, decay: float) -> None:
+    if estimator not in ("H1", "H2") or (window == "exponential") != (decay > 0):
+        raise InputError(
+            f"estimator = {estimator!r}, window = {window!r}, decay = {decay}: use H1 (noise on the response) or H2 "
+            '(noise on the force); give decay > 0 [1/s] with window="exponential", and only then'
+        )
 
 
 def _window(name: str, n: int, decay: float) -> Array:

@@ -80,6 +80,7 @@ class Case:
                 "is wrong"
             )
             notes.append(Note(code="size", text=text))
+        notes += structure.notes
         return cls(
             study=study,
             structure=structure,

@@ -72,6 +72,19 @@ def _summed(a: tuple[Spectrum, Array], b: tuple[Spectrum, Array]) -> Spectrum:
     )
 
 
+def _facts(m0: float, ready: tuple[Prepared, Prepared], scans: tuple[Scan, Scan]) -> Facts:
+    """What the two scans say together: heights add as squares, lengths are those of the larger."""
+    return Facts(
+        Rq=m0**0.5,
+        Ra=float((2 / np.pi * m0) ** 0.5),
+        length=max(min(scan.size) for scan in scans),
+        missing=sum(r.missing for r in ready),
+        spikes=sum(r.spikes for r in ready),
+        areal=True,
+        notes=scans[0].notes + scans[1].notes,
+    )
+
+
 def _check(**scans: object) -> None:
     for name, scan in scans.items():
         if not isinstance(scan, Scan):
@@ -91,7 +104,7 @@ def combine(
         gamma: ratio of neighbouring frequencies in that series, above 1.
 
     Returns:
-        Combined. D and G come from the wavelengths that both scans cover.
+        Combined; D and G from the wavelengths that both scans cover.
 
     Raises:
         InputError: for anything but two areal scans, and where the bands of wavelength do not overlap by a factor of 4.
@@ -123,12 +136,7 @@ def combine(
     )
     parts = [summits(r) for r in ready]
     m0, m2, m4 = (sum(getattr(p, name) for p in parts) for name in ("m0", "m2", "m4"))
-    length = max(min(scan_a.size), min(scan_b.size))
-    missing, spikes = (sum(getattr(r, name) for r in ready) for name in ("missing", "spikes"))
-    Ra = float((2 / np.pi * m0) ** 0.5)
-    facts = Facts(
-        Rq=m0**0.5, Ra=Ra, length=length, missing=missing, spikes=spikes, areal=True, notes=scan_a.notes + scan_b.notes
-    )
+    facts = _facts(m0, ready, (scan_a, scan_b))
     return Combined(
         fit=result(estimate, facts, method="psd", convention=convention, gamma=gamma),
         Rq=m0**0.5,

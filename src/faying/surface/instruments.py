@@ -28,8 +28,11 @@ def _library() -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class _Content:
-    """What the library finds in a file: heights (nx, ny) or (n,), sizes in the file's unit (None: not stated), its
-    unit, what it says of the instrument, and the positions of an uneven line."""
+    """What the library finds in a file.
+
+    heights (nx, ny) or (n,); sizes in the file's unit, None where not stated; its unit; what it says of the instrument;
+    the positions of an uneven line.
+    """
 
     heights: Any
     sizes: Any

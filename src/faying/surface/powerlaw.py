@@ -303,9 +303,8 @@ def _beyond(
             return law, (*_cut_in_words(low, high, bottom, top), *_roll_off_in_words(spectrum, flat, law))
     return flat, (
         *_cut_in_words(low, high, plateau[1], end),
-        f"the waves of {1 / float(flat.used[-1]):.3g} .. {1 / float(flat.used[0]):.3g} m are a plateau of the "
-        f"spectrum and "
-        "no band of shorter waves obeys a power law over a factor of 5: D and G mean nothing; measure with a finer "
+        f"the waves of {1 / float(flat.used[-1]):.3g} .. {1 / float(flat.used[0]):.3g} m are a plateau of the spectrum "
+        "and no band of shorter waves obeys a power law over a factor of 5: D and G mean nothing; measure with a finer "
         "spacing",
     )
 
@@ -322,7 +321,7 @@ def _roll_off_in_words(spectrum: Spectrum, plateau: PowerLaw, law: PowerLaw) -> 
     corner = law.pivot * float(np.exp((law.log_level - turn * np.log(law.pivot) - level) / (law.slope + turn)))
     return (
         f"the spectrum is a plateau beyond a roll-off at about {1 / corner:.3g} m; D and G are those of the waves "
-        f"below",
+        "below",
     )
 
 

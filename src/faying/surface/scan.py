@@ -34,8 +34,7 @@ def check_points(source: str, count: float) -> None:
     if free is not None and need > free:
         raise ReadError(
             f"{source}: {count:.3g} points need about {need / GB:.3g} GB and {free / GB:.3g} GB are free; crop the "
-            f"scan or "
-            "take every second point before reading it, or set FAYING_MEMORY to the GB that may be taken"
+            "scan or take every second point before reading it, or set FAYING_MEMORY to the GB that may be taken"
         )
 
 

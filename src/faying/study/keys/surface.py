@@ -91,7 +91,7 @@ class Surface:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the fit of the scan warns of."""
+        """What the fit of the scan warns of, and what its file says."""
         return () if self.fit is None else tuple(self.fit.warnings)
 
     def facts(self) -> dict[str, Any]:
