@@ -95,3 +95,11 @@ def test_any_text_gives_a_number_or_an_input_error(text):
 @given(st.floats(-1e12, 1e12, allow_subnormal=False), st.sampled_from(["m", "mm", "um", "km", "inch"]))
 def test_any_number_keeps_its_digits(number, unit):
     assert units.parse(f"{number!r} {unit}", "m") == pytest.approx(number * units.scale(unit, "m"), rel=1e-15)
+
+
+def test_one_length_or_two():
+    assert units.lengths("4 mm x 3 mm") == pytest.approx((4e-3, 3e-3))
+    assert units.lengths("5 um") == pytest.approx(5e-6)
+    for text, why in (("4 x 3 mm", "no unit"), ("1 mm x 2 mm x 3 mm", "one length or two"), ("0 mm", "positive")):
+        with pytest.raises(InputError, match=why):
+            units.lengths(text)

@@ -104,6 +104,17 @@ def _short(text: object) -> str:
     return given if len(given) <= 80 else f"{given[:60]}... ({len(given)} characters)"
 
 
+def lengths(text: str, *, name: str = "size") -> tuple[float, float] | float:
+    """Turn "4 mm x 3 mm" into two lengths [m], along x and y, or "5 um" into one. Raises InputError as `parse`."""
+    parts = re.split(r"\s+x\s+", text.strip())
+    if len(parts) > 2:
+        raise InputError(f'{name} = {_short(text)}; write one length or two, for example "4 mm x 3 mm"')
+    found = [parse(part, "m", name=name) for part in parts]
+    if min(found) <= 0:
+        raise InputError(f"{name} = {_short(text)} must be positive")
+    return found[0] if len(found) == 1 else (found[0], found[1])
+
+
 def scale(unit_text: str, unit: str, *, name: str = "unit") -> float:
     """Return how many SI `unit` one `unit_text` is: scale("um", "m") is 1e-6.
 

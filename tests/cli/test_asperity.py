@@ -4,8 +4,8 @@ import json
 
 import numpy as np
 import pytest
+import xarray
 from click.testing import CliRunner
-from scipy.io import netcdf_file
 
 from faying.cli.asperity import command
 from faying.errors import FayingError, InputError, ReadError
@@ -26,11 +26,10 @@ def test_one_case_as_table_json_netcdf_and_figure(tmp_path):
     assert "um2" in shown.output
     assert (tmp_path / "a.png").stat().st_size > 10_000
     entry = json.loads(CliRunner().invoke(command, [*ONE, "--json"]).stdout)[0]
-    with netcdf_file(tmp_path / "a.nc", mmap=False) as nc:
-        history = nc.variables["force"][0]
-        assert nc.variables["force"].units == b"N"
-        assert np.nanmax(history) == pytest.approx(entry["force"], rel=1e-9)
-        assert nc.variables["residual"][0] > 0
+    with xarray.open_dataset(tmp_path / "a.nc") as found:
+        assert found.force.attrs["units"] == "N"
+        assert np.nanmax(found.force[0]) == pytest.approx(entry["force"], rel=1e-9)
+        assert found.residual[0] > 0
     assert entry["pressure"] == pytest.approx(entry["force"] / entry["area"])
 
 
@@ -50,11 +49,10 @@ def test_a_failed_case_does_not_stop_the_others(tmp_path):
     (tmp_path / "cases.csv").write_text("R,h_a,displacement\n20 um,750 nm,800 nm\n20 um,750 nm,30 nm\n")
     with pytest.raises(FayingError, match="1 of 2 cases failed"):
         call(*SMALL, "--table", str(tmp_path / "cases.csv"), "--processes", "1", "--netcdf", str(tmp_path / "b.nc"))
-    with netcdf_file(tmp_path / "b.nc", mmap=False) as nc:
-        force = nc.variables["force"][:]
-        assert np.isnan(force[0]).all()
-        assert np.nanmax(force[1]) > 0
-        assert b"more than the height" in nc.variables["message"][0].tobytes()
+    with xarray.open_dataset(tmp_path / "b.nc") as found:
+        assert np.isnan(found.force[0]).all()
+        assert np.nanmax(found.force[1]) > 0
+        assert "more than the height" in str(found.message.values[0])
 
 
 @pytest.mark.parametrize(

@@ -10,8 +10,7 @@ from faying import FRF, write_scan, write_uff
 from faying.measured.modes import ModeSet
 from faying.surface.synthesize import spectral
 from tests.helpers import meshfiles
-from tests.helpers.blocks import row
-from tests.helpers.boxes import stack
+from tests.helpers.boxes import row, stack
 
 STUDY = (
     meshfiles.STUDY

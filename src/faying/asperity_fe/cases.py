@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
+from faying import netcdf
 from faying.asperity_fe.drive import AsperityCase, AsperityResult
 from faying.errors import FayingError, InputError
-from faying.files import write_atomically
+from faying.netcdf import Variable
 from faying.typing import Array
 
 
@@ -65,38 +66,26 @@ def solve_cases(
 def write_netcdf(
     path: str | Path, cases: Sequence[AsperityCase], results: Sequence[AsperityResult | FayingError]
 ) -> Path:
-    """Write inputs, histories and final values of cases as NetCDF-3; histories are filled up with NaN.
+    """Write inputs, histories and final values of cases as NetCDF-4; histories are filled up with NaN.
 
     Failed cases keep the steps that they did, with their message in `message`. Raises InputError where the file
-    cannot be written; it appears whole or not at all.
+    cannot be written; it appears complete or not at all.
     """
-    from scipy.io import netcdf_file
-
     found = [r if isinstance(r, AsperityResult) else getattr(r, "result", None) for r in results]
     messages = ["" if isinstance(r, AsperityResult) else str(r) for r in results]
     longest = max([len(r.history.force) for r in found if r is not None], default=1)
-    width = max([len(m) for m in messages] + [1])
-
-    def write(temporary: Path) -> None:
-        with netcdf_file(temporary, "w", version=2) as nc:
-            nc.title = "Single asperities pressed by a smooth rigid plane, axisymmetric finite elements"
-            for name, size in (("case", len(cases)), ("step", longest), ("bound", 2), ("letter", width)):
-                nc.createDimension(name, size)
-            for name, (unit, values) in _inputs(cases, found).items():
-                variable = nc.createVariable(name, "f8", ("case",))
-                variable[:] = np.array(values, float)
-                variable.units = unit
-            for name, unit in (("displacement", "m"), ("force", "N"), ("area", "m2"), ("pressure", "Pa")):
-                variable = nc.createVariable(name, "f8", ("case", "step"))
-                variable[:] = _padded([None if r is None else getattr(r.history, name) for r in found], (longest,))
-                variable.units = unit
-            variable = nc.createVariable("area_bounds", "f8", ("case", "step", "bound"))
-            variable[:] = _padded([None if r is None else r.history.area_bounds for r in found], (longest, 2))
-            variable.units = "m2"
-            variable = nc.createVariable("message", "c", ("case", "letter"))
-            variable[:] = np.array([list(m.ljust(width)) for m in messages], "S1")
-
-    return write_atomically(Path(path), write)
+    variables = {
+        name: Variable(dims=("case",), values=np.array(values, float), unit=unit)
+        for name, (unit, values) in _inputs(cases, found).items()
+    }
+    for name, unit in (("displacement", "m"), ("force", "N"), ("area", "m2"), ("pressure", "Pa")):
+        rows = _padded([None if r is None else getattr(r.history, name) for r in found], (longest,))
+        variables[name] = Variable(dims=("case", "step"), values=rows, unit=unit)
+    bounds = _padded([None if r is None else r.history.area_bounds for r in found], (longest, 2))
+    variables["area_bounds"] = Variable(dims=("case", "step", "bound"), values=bounds, unit="m2")
+    variables["message"] = Variable(dims=("case",), values=np.array(messages, dtype=object))
+    title = "Single asperities pressed by a smooth rigid plane, axisymmetric finite elements"
+    return netcdf.write(Path(path), netcdf.Group(variables=variables, attributes={"title": title}))
 
 
 def _inputs(

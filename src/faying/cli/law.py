@@ -49,6 +49,8 @@ WIDTH = 78
 @click.option("--scan", type=click.Path(path_type=Path), help="A scan: D, G, moments and area come from it.")
 @click.option("--xy-unit", help='Unit of x and y where the scan states none, for example "mm".')
 @click.option("--z-unit", help='Unit of the heights where the scan states none, for example "um".')
+@click.option("--size", metavar="LENGTHS", help='Of a scan whose file states none, for example "4 mm x 3 mm".')
+@click.option("--spacing", metavar="LENGTHS", help='Of its points, in place of --size, for example "5 um".')
 @click.option("--method", default="psd", show_default=True, help="Estimator of D and G; `faying surface` lists them.")
 @click.option("--models", metavar="LIST", help='Several laws of the scan, for example "jk,gw,gw-ke,persson".')
 @click.option("--all-models", is_flag=True, help="All laws that take their inputs from a scan.")
@@ -109,9 +111,13 @@ def surface_of(options: dict[str, Any]) -> Any:
     """Read, level and fit the scan of --scan, as a study does."""
     from faying.errors import InputError
     from faying.study.keys.surface import SurfaceChoice
+    from faying.units import lengths
 
     names = ("scan", "xy_unit", "z_unit", "method")
-    surface = SurfaceChoice(**{name: options[name] for name in names}, scan_area=None).read()
+    sizes: dict[str, Any] = {
+        name: lengths(options[name], name=f"--{name}") for name in ("size", "spacing") if options[name]
+    }
+    surface = SurfaceChoice(**{name: options[name] for name in names}, **sizes).read()
     if surface.rough is None or surface.rough.scan is None:
         raise InputError(f"{options['scan']} holds a profile; contact laws need an areal scan")
     return surface.rough

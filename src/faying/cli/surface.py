@@ -17,6 +17,8 @@ from faying.surface.estimators.table import METHODS
     "--degree", type=click.IntRange(0, 8), default=1, show_default=True, help="Form removed: polynomial degree."
 )
 @click.option("--keep-spikes", is_flag=True, help="Leave single outlying points in.")
+@click.option("--size", metavar="LENGTHS", help='Of a scan whose file states none, for example "4 mm x 3 mm".')
+@click.option("--spacing", metavar="LENGTHS", help='Of its points, in place of --size, for example "5 um".')
 @click.option("--self-test", "test", is_flag=True, help="Correct for bias by synthetic surfaces made like this one.")
 @click.option("--cross-check", "check", is_flag=True, help="Compare with what other installed readers make of FILE.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
@@ -25,6 +27,8 @@ def command(
     file: str,
     xy_unit: str | None,
     z_unit: str | None,
+    size: str | None,
+    spacing: str | None,
     method: str,
     degree: int,
     keep_spikes: bool,
@@ -38,8 +42,11 @@ def command(
     from faying.surface.fractal import FractalFit, fit_all, fit_fractal
     from faying.surface.read import read_scan
     from faying.surface.roughness import roughness
+    from faying.units import lengths
 
-    scan = read_scan(file, xy_unit=xy_unit, z_unit=z_unit)
+    given = {"size": size, "spacing": spacing}
+    sizes: dict[str, Any] = {name: lengths(text, name=f"--{name}") for name, text in given.items() if text}
+    scan = read_scan(file, xy_unit=xy_unit, z_unit=z_unit, **sizes)
     ready = prepared(scan, degree=degree, spikes=not keep_spikes)
     options: dict[str, Any] = {"degree": degree, "spikes": not keep_spikes}
     if method == "all":

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from faying import units
 from faying.contact.inputs import FractalSurface, RoughSurface, SurfaceInputs
 from faying.errors import InputError
 from faying.study.keys.reader import Table
@@ -17,11 +18,16 @@ from faying.surface.scan import Scan
 
 @dataclass(frozen=True, kw_only=True)
 class SurfaceChoice:
-    """The rough surface: a scan with its units and estimator, or D, G [m] and scan_area [m2] as given."""
+    """The rough surface: a scan with its units and estimator, or D, G [m] and scan_area [m2] as given.
+
+    size or spacing [m]: of a scan whose file states neither.
+    """
 
     scan: Path | None = None
     xy_unit: str | None = None
     z_unit: str | None = None
+    size: tuple[float, float] | float | None = None
+    spacing: tuple[float, float] | float | None = None
     method: str = "psd"
     D: float | None = None
     G: float | None = None
@@ -34,6 +40,8 @@ class SurfaceChoice:
             scan=table.file("scan", None),
             xy_unit=table.text("xy_unit", None),
             z_unit=table.text("z_unit", None),
+            size=table.take("size", _lengths, None),
+            spacing=table.take("spacing", _lengths, None),
             method=table.text("method", "psd"),
             D=table.number("D", None),
             G=table.quantity("G", "m", None),
@@ -55,7 +63,7 @@ class SurfaceChoice:
         if self.scan is None:
             inputs = FractalSurface(D=self.D or 0.0, G=self.G or 0.0, scan_area=self.scan_area or 0.0)
             return Surface(rough=RoughSurface(inputs=inputs), origin="given in the study")
-        scan = read_scan(self.scan, xy_unit=self.xy_unit, z_unit=self.z_unit)
+        scan = read_scan(self.scan, xy_unit=self.xy_unit, z_unit=self.z_unit, size=self.size, spacing=self.spacing)
         if not isinstance(scan, Scan) and self.scan_area is None:
             raise InputError(f"{self.scan.name} is a line scan, which covers no area; give surface.scan_area as well")
         fit = fit_fractal(scan, method=self.method)
@@ -73,6 +81,12 @@ class SurfaceChoice:
             rough = RoughSurface(inputs=replace(inputs, **fractal), scan=ready.scan)
         source = f"scan {self.scan.name}: {' x '.join(map(str, scan.heights.shape))} points"
         return Surface(rough=rough, origin=self.scan.name, fit=fit, source=source)
+
+
+def _lengths(value: Any, name: str) -> tuple[float, float] | float:
+    if not isinstance(value, str):
+        raise InputError(f'{name} = {value!r} should be text, for example "4 mm x 3 mm"')
+    return units.lengths(value, name=name)
 
 
 @dataclass(frozen=True, kw_only=True)
