@@ -3,6 +3,7 @@
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -49,13 +50,12 @@ def write(path: Path, root: Group) -> Path:
         InputError: the file cannot be written.
     """
 
-    def fill(temporary: Path) -> None:
-        import h5netcdf
+    import h5netcdf
 
-        with h5netcdf.File(temporary, "w") as file:
-            _fill(file, root, {})
-
-    return write_atomically(path, fill)
+    buffer = BytesIO()  # HDF5 itself cannot be stopped tidily where a disk is full
+    with h5netcdf.File(buffer, "w") as file:
+        _fill(file, root, {})
+    return write_atomically(path, lambda temporary: temporary.write_bytes(buffer.getvalue()))
 
 
 def _fill(target: Any, group: Group, known: Mapping[str, int]) -> None:

@@ -35,9 +35,9 @@ _PREFIXES = (
 
 
 NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*", re.DOTALL)
-# a unit is names with whole powers, joined by * / . or a blank; "1/" may begin it
-_FACTOR = r"[^\W\d_]+(?:(?:\^|\*\*)-?[0-9]{1,2}|[²³])?"
-UNIT = re.compile(rf"(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/·.]\s*{_FACTOR}|\s+{_FACTOR})*|%")
+# a unit is names with whole powers, joined by * / . or a blank, maybe in brackets; "1/" may stand before one
+_NAME = r"[^\W\d_]+(?:_\w+)?(?:(?:\^|\*\*)-?[0-9]{1,2}|[²³])?"
+UNIT = re.compile(rf"(?:\s|[*/·.()]|1(?=\s*/)|{_NAME})*|%")
 
 
 @cache

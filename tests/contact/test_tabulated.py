@@ -67,13 +67,13 @@ def test_a_file_comes_back_in_si(tmp_path: Path) -> None:
 
 def test_files_of_the_command_law_are_read(tmp_path: Path) -> None:
     from faying import JK, ContactPair
-    from faying.cli.law import write_csv
+    from faying.cli.law import csv_text
     from faying.materials import CATALOGUE
 
     steel = CATALOGUE["45 steel"]
     jk = JK(D=2.39, G=1.53e-10, scan_area=16e-6, pair=ContactPair(steel, steel))
     made = jk.at_pressure(np.geomspace(1e5, 4e7, 40))
-    write_csv(str(tmp_path / "law.csv"), jk, made)
+    (tmp_path / "law.csv").write_text(csv_text(jk, made))
     back = TabulatedLaw.from_csv(tmp_path / "law.csv").at_pressure(made.pressure).quantities()
     assert back.keys() == made.quantities().keys()
     for name, value in made.quantities().items():

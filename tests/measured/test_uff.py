@@ -279,8 +279,8 @@ def test_lines_to_draw(tmp_path):
 def test_elements_give_lines_too(tmp_path):
     path = tmp_path / "a.uff"
     path.write_text(
-        "    -1\n  2412\n         1        41         1         1         1         3\n         5         6         "
-        "9\n    -1\n"
+        "    -1\n  2412\n         1        41         1         1         1         3\n         5         6         9"
+        "\n    -1\n"
     )
     assert read_uff(path).lines == ((5, 6), (6, 9), (9, 5))
 

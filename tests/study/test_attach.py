@@ -188,7 +188,7 @@ def test_the_command_gives_modes(tmp_path, capsys):
     file, _ = model(tmp_path, mesh)
     K, M = assemble(mesh, dict.fromkeys(mesh.parts, faying.CATALOGUE["45 steel"]))
     mmwrite(tmp_path / "K.mtx", K), mmwrite(tmp_path / "M.mtx", M)
-    (tmp_path / "dofs").write_text("\n".join(f"{i}.{c}" for i in meshfiles.numbers(mesh) for c in (1, 2, 3)))
+    (tmp_path / "dofs").write_text("\n".join(f"{i}.{c}" for i in meshfiles.numbers(mesh) for c in (1, 2, 3)) + "\n")
     words = [
         *common(file),
         "--pressure",
@@ -343,7 +343,7 @@ def test_matrices_half_held(tmp_path):
     for i in range(0, K.shape[0], 3):
         K[i, i] += 1e9
     mmwrite(tmp_path / "K.mtx", K.tocsr()), mmwrite(tmp_path / "M.mtx", M)
-    (tmp_path / "dofs").write_text("\n".join(f"{i}.{c}" for i in meshfiles.numbers(mesh) for c in (1, 2, 3)))
+    (tmp_path / "dofs").write_text("\n".join(f"{i}.{c}" for i in meshfiles.numbers(mesh) for c in (1, 2, 3)) + "\n")
     from faying.study.bare import modes_with_joint
 
     made = attach(file, FACES, unit="mm", study=study, pressure="5 MPa")

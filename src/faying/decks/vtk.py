@@ -25,7 +25,9 @@ def read(path: Path) -> RawMesh:
     try:
         import meshio
     except ImportError:
-        raise InputError(f"{path.name}: VTK files are read by meshio; install it: pip install 'faying[vtk]'") from None
+        raise InputError(
+            f"{path.name}: VTK files are read by meshio; add --extra vtk to uv run, or pip install meshio"
+        ) from None
     # meshio 5.3.5 knows the name of this kind in every format, but not its dimension
     meshio._mesh.topological_dimension.setdefault("wedge15", 3)
     try:

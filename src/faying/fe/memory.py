@@ -27,7 +27,7 @@ def check(needed: float, unknowns: int, solver: str) -> None:
         "faying modes --slepc under mpiexec, which spreads the matrices over processes and machines",
     ]
     if solver != "PARDISO":
-        advice.insert(0, "PARDISO, which needs less (pip install 'faying[pardiso]')")
+        advice.insert(0, "PARDISO, which needs less (add --extra pardiso to uv run, or pip install pypardiso)")
     raise InputError(
         f"{solver} needs {needed / GB:.3g} GB to factorise {unknowns:,} unknowns and {free / GB:.3g} GB are free; "
         f"choose {', or '.join(advice)}; or set FAYING_MEMORY to the GB that may be taken"

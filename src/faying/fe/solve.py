@@ -147,7 +147,7 @@ def chosen(name: str | None = None) -> str:
     if asked not in have:
         raise InputError(
             f"solver {asked!r} is not here; use one of {', '.join(have)}, or install it "
-            "(pardiso: pip install 'faying[pardiso]')"
+            "(pardiso: add --extra pardiso to uv run, or pip install pypardiso)"
         )
     return asked
 

@@ -83,8 +83,8 @@ count = 6                      # elastic modes
 # frame = "frame.csv"          # where some of its points lie in the model, if it has a frame of its own
 # load = "6 kN"                # the preload to compare at; the last where left out
 # tolerance = "2 mm"           # between a point and its node
-# Keys for what the file does not say: points, length_unit, direction, quantity. What a pair needs: least_mac,
-greatest_shift.
+# Keys for what the file does not say: points, length_unit, direction, quantity.
+# What a pair needs: least_mac, greatest_shift.
 
 # Frequency response between points, along directions, at every preload.
 # [response]
