@@ -6,7 +6,11 @@ from .contact.jk import JK
 from .decks.matrices import read_matrices
 from .decks.meshfile import read_mesh
 from .errors import FayingError, InputError, NotConverged, ReadError
+from .fe.mesh import Mesh
 from .halfspace import solve_half_space
+from .joint.bolt import Bolt, Washer
+from .joint.solid_bolt import SolidBolt
+from .joint.structure import Joint, Structure
 from .materials import CATALOGUE, RIGID, ContactPair, Material
 from .measured.compare import compare_modes
 from .measured.frf import FRF
@@ -18,6 +22,8 @@ from .measured.uff_write import write_uff
 from .result import Result, read_model_modes
 from .study import Study, run
 from .study.attach import attach
+from .study.axes import axis_of
+from .study.sweep import sweep
 from .surface import synthesize
 from .surface.combine import Combined, combine
 from .surface.fractal import FractalFit, fit_fractal
