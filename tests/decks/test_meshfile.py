@@ -321,7 +321,7 @@ def test_reals_of_nastran(text, value):
 
 def test_vtk_needs_meshio(tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "meshio", None)
-    fault(tmp_path, "x", r"VTK files are read by meshio; install it: pip install 'faying\[vtk\]'", "m.vtk")
+    fault(tmp_path, "x", "VTK files are read by meshio; add --extra vtk to uv run, or pip install meshio", "m.vtk")
 
 
 def test_the_core_does_not_load_meshio():
