@@ -90,6 +90,7 @@ class SurfaceChoice:
             source=source,
             counter=faces.counter,
             scans=(scan, other),
+            method=self.method,
         )
 
 
@@ -121,6 +122,7 @@ class Surface:
         fit: of D and G where a scan gave them.
         counter: what the other face is, in words.
         scans: of one face as it was read, and the other face.
+        method: estimator of D and G.
     """
 
     rough: RoughSurface | None
@@ -129,6 +131,7 @@ class Surface:
     source: str = ""
     counter: str = ""
     scans: tuple[Scan | Profile, Counter] | None = None
+    method: str = "psd"
 
     @property
     def scan_area(self) -> float | None:
