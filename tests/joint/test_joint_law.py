@@ -57,12 +57,20 @@ def test_mindlin_in_place_of_the_laws_own():
     assert k_t / k_n == pytest.approx(2 * 0.7 / 1.7)
 
 
-def test_a_law_without_tangential_stiffness_is_refused_with_advice():
-    law = JointLaw(model=Given("bare", k_n=lambda p: 1e9 * p**0.5))
-    with pytest.raises(faying.InputError, match='bare defines no tangential stiffness; set tangential = "mindlin"'):
-        law.stiffness(np.array([1e6]))
-    loss = law.loss(np.array([1e6]))
-    assert loss[0] == loss[1] == 0
+def test_a_law_without_tangential_stiffness_takes_mindlin_s_and_says_so():
+    bare = Given("bare", k_n=lambda p: 1e9 * p**0.5)
+    law = JointLaw(model=bare, nu=0.3)
+    k_n, k_t = law.stiffness(np.array([1e6]))
+    assert k_t / k_n == pytest.approx(2 * 0.7 / 1.7, rel=1e-12)
+    assert law.assumes_mindlin
+    assert not law.predicts_loss
+    assert [float(part[0]) for part in law.loss(np.array([1e6]))] == [0, 0]
+    with pytest.raises(faying.InputError, match="bare defines no tangential stiffness"):
+        JointLaw(model=bare, tangential="law").stiffness(np.array([1e6]))
+    own = JointLaw(model=Given(k_n=lambda p: 1e9 * p**0.5, k_t=lambda p: 3e8 * p**0.5, loss_t=lambda p: 0.1 + 0 * p))
+    assert not own.assumes_mindlin
+    assert own.predicts_loss
+    assert own.stiffness(np.array([1e6]))[1] == pytest.approx([3e11], rel=1e-12)
 
 
 def test_a_law_without_normal_stiffness_is_refused():
@@ -77,9 +85,17 @@ def test_a_power_law_closes_as_a_power():
     assert law.pressure(w)[0] == pytest.approx((w * 1e9 * 0.5) ** 2, rel=1e-8)
 
 
-def test_a_law_whose_stiffness_outgrows_its_pressure_is_refused():
-    with pytest.raises(faying.InputError, match="never meet"):
-        JointLaw(model=Given("bare", k_n=lambda p: 1e3 * p**1.1), tangential="mindlin").pressure(np.array([1e-9]))
+def test_faces_meet_under_a_law_that_grows_in_proportion_to_pressure():
+    """k = p/s means p = p0 exp((w - w0)/s): the first touch lies a few s away, where that law had it infinitely far."""
+    s = 0.4e-6
+    law = JointLaw(model=Given("bare", k_n=lambda p: p / s), tangential="mindlin")
+    first = law.approach(law.least_pressure)
+    assert 0 < first <= 3 * s * (1 + 1e-9)
+    for pressure in (1e3, 1e6, 1e8):
+        expected = first + s * np.log(pressure / law.least_pressure)
+        assert law.approach(pressure) == pytest.approx(expected, rel=1e-6)
+        assert law.pressure(np.array([expected]))[0] == pytest.approx(pressure, rel=1e-5)
+    assert law.pressure(np.array([0.0, -1e-9]))[0].tolist() == [0, 0]
 
 
 @pytest.mark.parametrize("scan_area", [None, 16e-6])

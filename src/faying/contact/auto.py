@@ -72,7 +72,7 @@ def _choose(surface: RoughSurface, pair: ContactPair) -> Choice:
     middle = {name: float(row[1]) for name, row in ratios.items()}
     nearest = min(ratios, key=lambda name: float(np.abs(np.log(ratios[name])).max()), default=None)
     said = (
-        "" if nearest is None else f"; the closed law nearest to it, {nearest}, has {middle[nearest]:.2g} times its k_n"
+        "" if nearest is None else f"; the closed law nearest to it, {nearest}, has {middle[nearest]:.2f} times its k_n"
     )
     at = f"at {pressure[1] / 1e6:.3g} MPa"
     faults = [reason for reason, mask in exact.reasons.items() if mask[1]]
@@ -84,7 +84,7 @@ def _choose(surface: RoughSurface, pair: ContactPair) -> Choice:
         return Choice(law=law, reason=reason, ratios=middle)
     if nearest is not None and np.abs(np.log(ratios[nearest])).max() <= log(CLOSE):
         reason = (
-            f"{nearest}, with {middle[nearest]:.2g} times the k_n of the half-space, which does not resolve the contact"
+            f"{nearest}, with {middle[nearest]:.2f} times the k_n of the half-space, which does not resolve the contact"
         )
         return Choice(law=build(nearest, {}, surface, pair), reason=f"{reason} {at}: {faults[0]}", ratios=middle)
     reason = f"half-space, though {faults[0]} {at}: no closed law lies within {CLOSE - 1:.0%} of it{said}"

@@ -108,6 +108,14 @@ def find(name: str) -> LawKind:
     return kind
 
 
+def label_of(law: ContactLaw) -> LawKind:
+    """The kind that a law is of, its variant by what that fixes."""
+    for label, fixed in law.variants.items():
+        if all(getattr(law, name) == value for name, value in fixed.items()):
+            return find(label)
+    return find(law.name)
+
+
 def find_law(name: str) -> type[ContactLaw]:
     """Return the class of the law called `name`; see `find`."""
     return find(name).law

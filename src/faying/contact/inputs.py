@@ -1,7 +1,7 @@
 """What contact models take from a measured surface: plain numbers, and the levelled heights."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
 from math import inf, log, pi, sqrt
 from pathlib import Path
 from typing import ClassVar, Protocol, Self, final
@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.typing import Array
+
+OF_SCAN = ("scan", "cache", "progress")  # what a law takes from a scan beside numbers
 
 
 class HeightMap(Protocol):
@@ -177,11 +179,13 @@ class RoughSurface:
         inputs: `SurfaceInputs` of a scan, or a `FractalSurface` where only D, G and scan_area are known.
         scan: levelled heights with missing points filled in; None where there is no areal scan.
         cache: folder that keeps solved contacts of the scan; None keeps nothing.
+        progress: called with (solutions done, solutions in all) while contacts of the scan are solved.
     """
 
     inputs: FractalSurface
     scan: HeightMap | None = None
     cache: Path | None = None
+    progress: Callable[[int, int], object] | None = field(default=None, repr=False, compare=False)
 
     FRACTAL: ClassVar = ("D", "G", "scan_area", "gamma", "side", "G_majumdar_bhushan")
 
@@ -197,7 +201,7 @@ class RoughSurface:
         """Values of those parameters that this surface gives."""
         out: dict[str, object] = {}
         for name, parameter in parameters.items():
-            if parameter.surface in ("scan", "cache"):
+            if parameter.surface in OF_SCAN:
                 value = getattr(self, parameter.surface)
                 if value is not None:
                     out[name] = value

@@ -121,7 +121,6 @@ def collect(
     every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more]
     every += [*(note for b in besides for note in b.notes), *_closing_notes(study, rigid)]
     totals = np.array([[spring.total() for spring in s.springs] for s in states])
-    interfaces = [spring.interface for spring in states[0].springs]
     result = Result(
         title=study.title,
         loads=case.loads,
@@ -137,12 +136,7 @@ def collect(
         beside_loss_factors=stacked(besides, "loss_factors", len(states), len(bounds[0])),
         rigid=rigid,
         mac=np.stack([_mac(states[0].damped.shapes, s.damped.shapes) for s in states]),
-        points=np.concatenate([i.positions for i in interfaces]),
-        weights=np.concatenate([i.weights for i in interfaces]),
-        joint_of_point=np.concatenate([np.full(len(i.weights), k) for k, i in enumerate(interfaces)]),
-        pressure=np.stack([np.concatenate([spring.pressure for spring in s.springs]) for s in states]),
-        k_n=np.stack([np.concatenate([spring.k_n for spring in s.springs]) for s in states]),
-        k_t=np.stack([np.concatenate([spring.k_t for spring in s.springs]) for s in states]),
+        **_on_joints(states),
         slipping=np.array([s.preload.slipping for s in states]),
         total_k_n=totals[:, :, 0],
         total_k_t=totals[:, :, 1],
@@ -171,6 +165,20 @@ def collect(
         return result
     full = next((s.test_response for s in states if s.test_response is not None), None)
     return replace(result, hammer=case.hammer.beside(result, full))
+
+
+def _on_joints(states: Sequence[State]) -> dict[str, Any]:
+    """Points of all joints, one after the other, and what the springs are there under each load."""
+    interfaces = [spring.interface for spring in states[0].springs]
+    maps = {
+        name: np.stack([np.concatenate([getattr(spring, name) for spring in s.springs]) for s in states])
+        for name in ("pressure", "k_n", "k_t")
+    }
+    return maps | {
+        "points": np.concatenate([i.positions for i in interfaces]),
+        "weights": np.concatenate([i.weights for i in interfaces]),
+        "joint_of_point": np.concatenate([np.full(len(i.weights), k) for k, i in enumerate(interfaces)]),
+    }
 
 
 def _stacked(rows: Sequence[Array | None]) -> Array | None:
