@@ -15,6 +15,7 @@ from faying.surface.fractal import FractalFit, fit_fractal
 from faying.surface.scan import Profile, Scan
 from faying.typing import Array
 
+LEAST_G = 1e-300  # m
 Counter = Scan | str  # the other face: its scan, "same" or "smooth"
 COUNTERS = ("same", "smooth")
 MEANING = {
@@ -78,8 +79,8 @@ def faces_of(
         fit, factor, words = fit_fractal(scan, method=method), 2.0 if counter == "same" else 1.0, MEANING[counter]
     area = scan_area or (scan.size[0] * scan.size[1] if isinstance(scan, Scan) else 0.0)
     dimension = D or fit.D
-    # twice the spectral density at every wavelength: G^(2 D - 4) doubles
-    fractal = {"D": dimension, "G": G or fit.G * factor ** (1 / (2 * dimension - 4)), "scan_area": area}
+    # twice the spectral density at every wavelength: G^(2 D - 4) doubles. Near D = 2 the fitted G underflows
+    fractal = {"D": dimension, "G": G or max(fit.G * factor ** (1 / (2 * dimension - 4)), LEAST_G), "scan_area": area}
     rough = RoughSurface(inputs=FractalSurface(**fractal))
     if isinstance(scan, Scan):
         ready = prepared(scan)
