@@ -96,9 +96,14 @@ def test_files_appear_together_or_not_at_all(tmp_path, there, fault):
         (folder / "result.nc").write_text("old")
         (folder / "mine.txt").write_text("mine")
     before = files_of(tmp_path) if not there else files_of(folder)
-    with pytest.raises(type(fault) if isinstance(fault, Exception) else fault), together(folder, "remedy") as hidden:
-        (hidden / "result.nc").write_text("new")
-        raise fault
+
+    def stopped():
+        with together(folder, "remedy") as hidden:
+            (hidden / "result.nc").write_text("new")
+            raise fault
+
+    with pytest.raises(type(fault) if isinstance(fault, Exception) else fault):
+        stopped()
     assert (files_of(folder) if there else files_of(tmp_path)) == before
     assert there or not folder.parent.exists()
     with together(folder, "remedy") as hidden:
@@ -124,9 +129,14 @@ def test_a_fault_names_the_place_where_the_file_would_have_been(tmp_path):
 
 def test_an_interruption_waits_for_the_files_and_then_counts():
     done = []
-    with pytest.raises(KeyboardInterrupt), uninterrupted():
-        signal.raise_signal(signal.SIGINT)
-        done.append(True)
+
+    def stopped():
+        with uninterrupted():
+            signal.raise_signal(signal.SIGINT)
+            done.append(True)
+
+    with pytest.raises(KeyboardInterrupt):
+        stopped()
     assert done == [True]
 
 

@@ -3,6 +3,7 @@
 import hashlib
 import json
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -138,29 +139,39 @@ def sweep(
     _check(study, tolerance)
     report("surface", 0)
     grid = Grid(study=study, surfaces=surfaces_of(study), axes=tuple(axes))
-    store = Store(Path(out), fingerprint(study, axes, tolerance), grid.size, study.modes.count)
-    report("mesh", 0)
-    try:
-        mesh = checked_mesh(study)
-        materials = materials_of(study, mesh)
-        pairs = [tuple(materials[mesh.face_part[face]] for face in joint.faces) for joint in study.joints]
-        recipe = Recipe(grid=grid, pairs=tuple(pairs))  # type: ignore[arg-type]
-        trainer = _Trainer(study, structure_of(study, mesh, grid.surfaces), recipe, tolerance, report)
-        model = store.model()
-        if model is None:
-            model = trainer.trained().model
-            store.keep_model(model)
-    except FayingError:
-        store.forget()
-        raise
-    report("evaluations", int(store.done.sum()))
-    todo = [i for i in grid.winding() if not store.done[i]]
-    chunks = [todo[i : i + CHUNK] for i in range(0, len(todo), CHUNK)]
-    for indices, rows in _each(model, recipe, chunks, jobs, dask):
-        store.keep(indices, rows)
-        report("evaluations", len(indices))
-    model = _enriched(model, trainer, store, recipe)
-    return store.finish(grid, title=study.title, tolerance=tolerance, unknowns=mesh.unknowns, model=model)
+    with closing(Store(Path(out), fingerprint(study, axes, tolerance), grid.size, study.modes.count)) as store:
+        report("mesh", 0)
+        try:
+            trainer, model = _begun(study, grid, store, tolerance, report)
+        except FayingError:
+            store.forget()
+            raise
+        report("evaluations", store.found)
+        # within a chunk each point starts from the last; chunks are the same after an interruption, so the answers are
+        path = grid.winding()
+        chunks = [c for c in (path[i : i + CHUNK] for i in range(0, len(path), CHUNK)) if not store.done[c].all()]
+        for indices, rows in _each(model, trainer.recipe, chunks, jobs, dask):
+            report("evaluations", int((~store.done[indices]).sum()))
+            store.keep(indices, rows)
+        model = _enriched(model, trainer, store, trainer.recipe)
+        unknowns = trainer.structure.mesh.unknowns
+        return store.finish(grid, title=study.title, tolerance=tolerance, unknowns=unknowns, model=model)
+
+
+def _begun(
+    study: Study, grid: Grid, store: Store, tolerance: float, report: Callable[[str, int], None]
+) -> tuple["_Trainer", ReducedModel]:
+    """What makes the bases, and the model in them: made now, or left by an interrupted sweep."""
+    mesh = checked_mesh(study)
+    materials = materials_of(study, mesh)
+    pairs = [tuple(materials[mesh.face_part[face]] for face in joint.faces) for joint in study.joints]
+    recipe = Recipe(grid=grid, pairs=tuple(pairs))  # type: ignore[arg-type]
+    trainer = _Trainer(study, structure_of(study, mesh, grid.surfaces), recipe, tolerance, report)
+    model = store.model()
+    if model is None:
+        model = trainer.trained().model
+        store.keep_model(model)
+    return trainer, model
 
 
 def _check(study: Study, tolerance: float) -> None:
