@@ -63,6 +63,8 @@ class JointLaw:
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
         """ln approach, ln pressure, and d ln p/d ln w, from the least pressure to where the law ends."""
+        from scipy.special import exprel
+
         p, k = self._grid, self._loading
         slope = np.gradient(np.log(k), np.log(p))
         if np.any(k <= 0) or slope[0] >= 1 - 1e-9:
@@ -70,10 +72,8 @@ class JointLaw:
                 f"{self.model.name}: stiffness does not grow from zero slower than pressure; the faces would never meet"
             )
         # between two points k_n is a power of p, so that the integral of dp/k_n is exact there
-        power = 1 - np.diff(np.log(k)) / np.diff(np.log(p))
-        pieces = np.where(
-            np.abs(power) > 1e-9, (p[1:] / k[1:] - p[:-1] / k[:-1]) / power, p[:-1] / k[:-1] * np.diff(np.log(p))
-        )
+        steps = np.diff(np.log(p))
+        pieces = p[:-1] / k[:-1] * steps * exprel(steps - np.diff(np.log(k)))
         first = p[0] / k[0] / (1 - slope[0])
         w = first + np.concatenate([[0.0], np.cumsum(pieces)])
         return np.log(w), np.log(p), k * w / p
