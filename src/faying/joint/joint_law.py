@@ -34,6 +34,10 @@ class JointLaw:
     scale: float = 1.0
     points: int = 2000
 
+    def check(self) -> None:
+        """Raise InputError where a joint cannot use the law: no stiffness, or one with which faces never meet."""
+        self._samples, self._table  # noqa: B018  # names their own faults
+
     @property
     def least_pressure(self) -> float:
         """Below it the joint carries nothing that matters [Pa]: p(approach) and the stiffness go on as powers."""

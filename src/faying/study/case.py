@@ -1,6 +1,6 @@
 """From a study to its case: mesh, joints with their laws, bolts, supports, all ready to be solved."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -69,8 +69,9 @@ class Case:
             hammer = Hammer.read(study.hammer)
         progress.begin("surface")
         surfaces = surfaces_of(study)
+        laws = checked_laws(study, surfaces)
         progress.begin("mesh")
-        structure = structure_of(study, checked_mesh(study), surfaces)
+        structure = structure_of(study, checked_mesh(study), surfaces, laws)
         notes = [Note(code="surface", text=text) for surface in surfaces for text in surface.warnings]
         size = structure.mesh.size
         if not SIZES[0] <= size <= SIZES[1]:
@@ -133,6 +134,27 @@ def joint_law(joint: JointChoice, law: LawChoice, surface: Surface, rough: Mater
     return JointLaw(model=law.make(surface, rough, other), tangential=joint.tangential, nu=rough.nu)
 
 
+def part_of(study: Study, face: str) -> str | None:
+    """The part that a face belongs to by its name (part.face) or by [geometry.face_at]; None where neither says it."""
+    part = study.geometry.face_at[face][0] if face in study.geometry.face_at else face.partition(".")[0]
+    return part if part in study.parts else None
+
+
+def checked_laws(study: Study, surfaces: Sequence[Surface]) -> dict[str, JointLaw]:
+    """Lay the laws on those joints whose materials are known before there is a mesh, and ask them once.
+
+    Raises InputError for laws that a joint cannot use: in seconds, where meshing may take minutes.
+    """
+    out: dict[str, JointLaw] = {}
+    for joint, surface in zip(study.joints, surfaces, strict=True):
+        parts = [part_of(study, face) for face in joint.faces]
+        if None not in parts:
+            rough, other = (study.materials[study.parts[str(part)]] for part in parts)
+            out[joint.name] = joint_law(joint, study.law_of(joint), surface, rough, other)
+            out[joint.name].check()
+    return out
+
+
 def materials_of(study: Study, mesh: Mesh) -> dict[str, Material]:
     """Material of every part of the mesh."""
     return {name: study.materials[study.parts[name]] for name in mesh.parts}
@@ -161,13 +183,17 @@ def checked_mesh(study: Study) -> Mesh:
     return mesh
 
 
-def structure_of(study: Study, mesh: Mesh, surfaces: tuple[Surface, ...]) -> Structure:
-    """Return the structure of a study on a mesh, with the surface of each joint."""
+def structure_of(
+    study: Study, mesh: Mesh, surfaces: tuple[Surface, ...], laws: Mapping[str, JointLaw] | None = None
+) -> Structure:
+    """Return the structure of a study on a mesh, with the surface of each joint; laws: those of `checked_laws`."""
     materials = materials_of(study, mesh)
     joints = []
     for joint, surface in zip(study.joints, surfaces, strict=True):
         rough, other = (materials[mesh.face_part[face]] for face in joint.faces)
         law = joint_law(joint, study.law_of(joint), surface, rough, other)
+        known = (laws or {}).get(joint.name)
+        law = known if known == law else law  # its tables are made already
         interface = join(mesh, *joint.faces, search_distance=joint.search_distance)
         joints.append(
             Joint(
@@ -192,4 +218,6 @@ def structure_of(study: Study, mesh: Mesh, surfaces: tuple[Surface, ...]) -> Str
 
 def build(study: Study) -> Structure:
     """Return the structure of a study, meshed and with its law on the joints, for work that goes on by hand."""
-    return structure_of(study, checked_mesh(study), surfaces_of(study))
+    surfaces = surfaces_of(study)
+    laws = checked_laws(study, surfaces)
+    return structure_of(study, checked_mesh(study), surfaces, laws)

@@ -19,7 +19,7 @@ from faying.joint.reduced import ReducedModel
 from faying.joint.structure import Structure
 from faying.materials import Material
 from faying.study.axes import Axis, Grid
-from faying.study.case import checked_mesh, joint_law, materials_of, structure_of, surfaces_of
+from faying.study.case import checked_laws, checked_mesh, joint_law, materials_of, structure_of, surfaces_of
 from faying.study.study import Study
 from faying.study.sweep_files import Store, Sweep
 from faying.typing import Array
@@ -30,6 +30,7 @@ CHUNK = 25  # evaluations between two writings to disk
 FAR = 60.0
 BEYOND = 0.1  # share of the contact beyond the end of the law up to which a point counts
 SEED = 20241121
+MOST_LAWS = 100  # looked at before there is a mesh
 LATELY = 32  # laws kept with their tables
 
 
@@ -139,6 +140,7 @@ def sweep(
     _check(study, tolerance)
     report("surface", 0)
     grid = Grid(study=study, surfaces=surfaces_of(study), axes=tuple(axes))
+    _check_laws(grid)
     with closing(Store(Path(out), fingerprint(study, axes, tolerance), grid.size, study.modes.count)) as store:
         report("mesh", 0)
         try:
@@ -172,6 +174,26 @@ def _begun(
         model = trainer.trained().model
         store.keep_model(model)
     return trainer, model
+
+
+def _check_laws(grid: Grid) -> None:
+    """Raise the fault of the first law where no point of the grid has laws that its joints can use.
+
+    Before the mesh, for the joints whose materials are known by then; without preloads, which change no law.
+    """
+    places = np.indices(grid.shape).reshape(len(grid.shape), -1)
+    first = [k for k, axis in enumerate(grid.axes) if axis.key.startswith("bolt.")]
+    fault: FayingError | None = None
+    for index in np.flatnonzero((places[first] == 0).all(axis=0))[:MOST_LAWS]:
+        point = grid.point(int(index))
+        try:
+            checked_laws(point.study, point.surfaces)
+        except FayingError as met:
+            fault = fault or met
+        else:
+            return
+    if fault is not None:
+        raise fault
 
 
 def _check(study: Study, tolerance: float) -> None:
