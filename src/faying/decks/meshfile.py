@@ -61,6 +61,8 @@ def _read(module: Any, file: Path) -> RawMesh:
         if isinstance(fault, InputError):
             raise
         raise ReadError(f"{file} holds something that is not understood ({fault}); is the file whole?") from None
+    if not len(raw.numbers):
+        raise ReadError(f"{file} holds no nodes; is the file whole?")
     if not any(len(numbers) for numbers, _ in raw.elements.values()):
         raise ReadError(f"{file} holds no solid elements; is the file whole?")
     return raw

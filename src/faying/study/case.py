@@ -1,12 +1,12 @@
 """From a study to its case: mesh, joints with their laws, bolts, supports, all ready to be solved."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.interface import join
+from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Joint, Structure
@@ -20,9 +20,11 @@ from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import NO_SURFACE, Surface, SurfaceChoice
 from faying.study.study import Study
 from faying.typing import Array
+from faying.units import show
 
 Report = Callable[[str, int, int], None]
 SIZES = 3e-3, 30.0  # m: a structure smaller or larger than these is noted, for its unit may be wrong
+SEEN = 1e-6  # of snap: less is rounding
 SPARE_MODES = 6  # beyond those asked for, so that the basis of the complex modes does not end at the last of them
 
 
@@ -188,13 +190,15 @@ def structure_of(
 ) -> Structure:
     """Return the structure of a study on a mesh, with the surface of each joint; laws: those of `checked_laws`."""
     materials = materials_of(study, mesh)
-    joints = []
+    joints: list[Joint] = []
+    notes: list[Note] = []
     for joint, surface in zip(study.joints, surfaces, strict=True):
         rough, other = (materials[mesh.face_part[face]] for face in joint.faces)
         law = joint_law(joint, study.law_of(joint), surface, rough, other)
         known = (laws or {}).get(joint.name)
         law = known if known == law else law  # its tables are made already
-        interface = join(mesh, *joint.faces, search_distance=joint.search_distance)
+        interface, closed = snapped(join(mesh, *joint.faces, search_distance=joint.search_distance), study, joint.name)
+        notes += closed
         joints.append(
             Joint(
                 name=joint.name,
@@ -207,13 +211,24 @@ def structure_of(
             )
         )
     return Structure(
-        mesh=mesh,
+        mesh=replace(mesh, notes=(*mesh.notes, *notes)) if notes else mesh,
         materials=materials,
         joints=tuple(joints),
         bolts=study.bolts,
         supports=study.supports,
         masses=study.masses,
     )
+
+
+def snapped(interface: Interface, study: Study, name: str) -> tuple[Interface, list[Note]]:
+    """Close a gap of the CAD model that is nowhere wider than [geometry] snap; a note says how wide it was."""
+    widest, snap = float(np.abs(interface.gap).max()), study.geometry.snap
+    if not SEEN * snap < widest <= snap:
+        return interface, []
+    text = (
+        f"{name}: the faces lie up to {show(widest, 'm')} apart in the geometry; snap = {show(snap, 'm')} closes that"
+    )
+    return replace(interface, gap=np.zeros_like(interface.gap)), [Note(code="snapped", joint=name, text=text)]
 
 
 def build(study: Study) -> Structure:
