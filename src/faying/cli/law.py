@@ -141,9 +141,11 @@ def heading(choice: Any, surface: Any) -> list[str]:
     lines = []
     if surface is not None:
         fit = surface.fit
-        (low, high), (least, most) = fit.D_interval, fit.G_interval
-        lines.append(f"{surface.origin}: D {fit.D:.4g} [{low:.4g}, {high:.4g}], G {show(fit.G, 'm')}")
-        lines.append(f"  [{show(least, 'm')}, {show(most, 'm')}]; {surface.counter}")
+        lines.append(f"{surface.origin}: {surface.counter}")
+        if fit is not None:
+            (low, high), (least, most) = fit.D_interval, fit.G_interval
+            interval = f"[{show(least, 'm')}, {show(most, 'm')}]"
+            lines.append(f"  D {fit.D:.4g} [{low:.4g}, {high:.4g}], G {show(fit.G, 'm')} {interval}")
         lines += [line for text in surface.warnings for line in wrap(f"note: {text}", WIDTH)]
     if choice.reason:
         lines += wrap(f"law: {choice.reason}", WIDTH)

@@ -68,7 +68,7 @@ def _choose(surface: RoughSurface, pair: ContactPair) -> Choice:
     pressure = np.clip(SHARES * full, law.least_pressure, law.greatest_pressure)
     exact = law.at_pressure(pressure)
     assert exact.k_n is not None
-    ratios = closed_ratios(surface, pair, pressure, exact.k_n, plastic=bool(plastic))
+    ratios = closed_ratios(surface, pair, pressure, exact.k_n) if plastic else {}
     middle = {name: float(row[1]) for name, row in ratios.items()}
     nearest = min(ratios, key=lambda name: float(np.abs(np.log(ratios[name])).max()), default=None)
     said = (
@@ -91,16 +91,14 @@ def _choose(surface: RoughSurface, pair: ContactPair) -> Choice:
     return Choice(law=law, reason=reason, ratios=middle)
 
 
-def closed_ratios(
-    surface: RoughSurface, pair: ContactPair, pressure: Array, k_n: Array, *, plastic: bool
-) -> dict[str, Array]:
-    """k_n of the laws of summits over a given k_n [Pa/m] at pressures [Pa] (n,), by label; those that answer alone.
+def closed_ratios(surface: RoughSurface, pair: ContactPair, pressure: Array, k_n: Array) -> dict[str, Array]:
+    """k_n of the laws of summits that yield over a given k_n [Pa/m] at pressures [Pa] (n,), by label.
 
-    Metals that yield meet with the plastic asperities among them, others with Hertz's.
+    Laws without an answer there are left out.
     """
     out = {}
     for kind in kinds().values():
-        if kind.law.name != "GW" or bool(kind.fixed) is not plastic:
+        if kind.law.name != "GW" or not kind.fixed:
             continue
         try:
             found = build(kind, {}, surface, pair).at_pressure(pressure).k_n

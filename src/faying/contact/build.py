@@ -142,7 +142,8 @@ def build(
     check_entries(kind, given)
     missing = kind.missing(given, surface)
     if missing:
-        raise InputError(kind.describe_missing(missing, with_scan=surface is not None and surface.scan is not None))
+        text = kind.describe_missing(missing, with_scan=surface is not None and surface.scan is not None)
+        raise InputError(f"{text}; {surface.unfitted}" if surface is not None and surface.unfitted else text)
     supplied = surface.supplies(kind.law.parameters) if surface is not None else {}
     return kind.law.from_entries({**supplied, **kind.fixed, **given}, pair)
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from math import inf, log, pi, sqrt
+from math import inf, isnan, log, pi, sqrt
 from pathlib import Path
 from typing import ClassVar, Protocol, Self, final
 
@@ -32,7 +32,7 @@ class HeightMap(Protocol):
 class FractalSurface:
     """D [-] and G [m] in the convention of Yan and Komvopoulos (that of JK), scan_area [m2], gamma, frequency index.
 
-    Raises InputError unless all are positive and finite.
+    D and G are NaN where the scan could not be fitted. Raises InputError unless all others are positive and finite.
     """
 
     D: float
@@ -42,7 +42,7 @@ class FractalSurface:
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
-            if not 0 < value < inf:
+            if not 0 < value < inf and not (isnan(value) and name in ("D", "G")):
                 raise InputError(f"surface: {name} = {value}; it must be positive and finite")
 
     @property
@@ -179,12 +179,14 @@ class RoughSurface:
         inputs: `SurfaceInputs` of a scan, or a `FractalSurface` where only D, G and scan_area are known.
         scan: levelled heights with missing points filled in; None where there is no areal scan.
         cache: folder that keeps solved contacts of the scan; None keeps nothing.
+        unfitted: why the scan has no D and G; empty where it has.
         progress: called with (solutions done, solutions in all) while contacts of the scan are solved.
     """
 
     inputs: FractalSurface
     scan: HeightMap | None = None
     cache: Path | None = None
+    unfitted: str = ""
     progress: Callable[[int, int], object] | None = field(default=None, repr=False, compare=False)
 
     FRACTAL: ClassVar = ("D", "G", "scan_area", "gamma", "side", "G_majumdar_bhushan")
@@ -206,5 +208,7 @@ class RoughSurface:
                 if value is not None:
                     out[name] = value
             elif parameter.surface in self.FRACTAL or (parameter.surface and isinstance(self.inputs, SurfaceInputs)):
-                out[name] = getattr(self.inputs, parameter.surface)
+                number = getattr(self.inputs, parameter.surface)
+                if not isnan(number):
+                    out[name] = number
         return out
