@@ -21,6 +21,7 @@ from faying.typing import Array, Mask
 
 BEYOND = 0.1  # share of the contact that may lie beyond the end of the law, at the rim of a hole say; it is flagged
 ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall further
+FAR_OFF = 0.03  # of the imbalance, which a Newton step far from equilibrium leaves
 SETTLED = 1e-4  # imbalance below which k_t and the limit of friction are kept
 
 
@@ -319,7 +320,7 @@ class _Newton:
                     f"(tolerance {tolerance:.0e}); refine the mesh of the joint, or load it in steps"
                 )
             # as exact as Newton's own convergence asks, and no more than the tolerance does
-            accuracy = max(min(1e-2, 0.1 * self.size), 0.3 * tolerance / self.size)
+            accuracy = max(min(FAR_OFF, 0.1 * self.size), 0.3 * tolerance / self.size)
             step, count = balance._direction(u, force, grips, accuracy=accuracy)
             length = balance._line_search(u, step, load, grips)
             u = u + length * step
