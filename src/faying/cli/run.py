@@ -61,6 +61,7 @@ def text(result: Any) -> str:
     at = "" if result.hammer is None else f" at {result.hammer.model.load / 1e3:g} kN"
     tables = {
         "modes": table.modes(result),
+        "range of the frequencies, from that of the stiffness": table.ranges(result),
         "joints": table.joints(result),
         f"bolts, tightened in the order {', '.join(result.tightening)}": table.bolts(result),
         "comparison with the test": table.comparison(result),

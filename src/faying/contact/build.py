@@ -7,10 +7,11 @@ from functools import cache
 from importlib import import_module
 from inspect import isabstract, isclass
 from pkgutil import iter_modules
-from typing import final
+from typing import ClassVar, final
 
 from faying.contact.inputs import RoughSurface
 from faying.contact.law import ContactLaw
+from faying.contact.parameter import FRACTAL
 from faying.errors import InputError
 from faying.materials import ContactPair
 
@@ -60,6 +61,22 @@ def laws() -> Mapping[str, type[ContactLaw]]:
     return dict(sorted(found.items()))
 
 
+AUTO = "auto"
+
+
+class _Auto(ContactLaw):
+    """Stands among the laws for the choice that `faying.contact.auto` makes; never made itself."""
+
+    name = AUTO
+    source = "a choice among the laws of the scan"
+    validity = "that of the law that is taken"
+    parameters: ClassVar = {"D": FRACTAL["D"], "G": FRACTAL["G"], "scan_area": FRACTAL["scan_area"]}
+
+    @classmethod
+    def required(cls) -> tuple[str, ...]:
+        return tuple(cls.parameters)
+
+
 @cache
 def kinds() -> Mapping[str, LawKind]:
     """Return every law and every variant of one by its label."""
@@ -68,6 +85,7 @@ def kinds() -> Mapping[str, LawKind]:
         out[law.name] = LawKind(label=law.name, law=law)
         for label, fixed in law.variants.items():
             out[label] = LawKind(label=label, law=law, fixed=fixed)
+    out[AUTO] = LawKind(label=AUTO, law=_Auto)  # type: ignore[type-abstract]
     return out
 
 
@@ -101,7 +119,7 @@ def build(
     """Make a contact law.
 
     Args:
-        name: label or class of the law in any spelling, or its kind.
+        name: label or class of the law in any spelling, or its kind; "auto" is for `faying.contact.auto.pick`.
         given: values of its entries in SI units; they count before what the surface supplies.
         surface: the rough surface; None where there is none.
         pair: the materials that meet.

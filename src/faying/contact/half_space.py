@@ -3,12 +3,15 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from math import isfinite, pi
+from pathlib import Path
 from typing import Any, ClassVar, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.inputs import HeightMap
+from faying.contact.ladder import Ladder, cached, climb
 from faying.contact.law import ContactLaw, Response
 from faying.contact.parameter import TABLE, TEXT, Parameter
 from faying.errors import InputError
@@ -18,18 +21,7 @@ from faying.materials import ContactPair
 from faying.typing import Array
 
 FEWEST_POINTS = 30
-RESOLVED = 0.1  # greatest change of k_n on half the points each way
-
-
-@final
-@dataclass(frozen=True, kw_only=True)
-class _Ladder:
-    """The contacts' numbers at rising pressures, as ln where the quantity is positive throughout."""
-
-    pressure: Array
-    values: Mapping[str, Array]
-    contact_points: Array
-    k_n_change: Array
+RESOLVED = 0.25  # greatest change of ln k_n on half the points each way
 
 
 @final
@@ -38,18 +30,22 @@ class HalfSpace(ContactLaw):
     """The numerical contact of a scan with a flat, both bodies as one elastic half-space; limited to hardness.
 
     scan of the rough face (levelled, without missing points; anything with heights [m] and spacing (dx, dy) [m]);
-    where both faces are rough, the scan of their sum. pair of materials. elastic=True leaves out the hardness.
-    stiffness: "unloading", k_n against a small fall of the load, which is what a vibration sees: elastic, loss_n 0,
-    energy_n the strain energy; or "loading", k_n against its growth, loss_n the plastic work of first loading over
-    the strain energy, energy_n their sum. area: "corrected" for the size of the points, or as "counted". shear_ratio X
+    where both faces are rough, the scan of their sum. pair of materials. elastic=True leaves
+    out the hardness; a pair that does not yield has none.
+    stiffness: "unloading", k_n against a small fall of the load, which is what a vibration sees: elastic, energy_n the
+    strain energy; or "loading", k_n against its growth, loss_n the plastic work of first loading over 2 pi times the
+    strain energy, energy_n their sum. area: "corrected" for the size of the points, or as "counted". shear_ratio X
     = T/(mu F): above 0, k_t is that of the points that still stick and loss_t follows from their slip (needs the
-    pair's friction). periodic as in `solve_half_space`. points: rungs of the ladder, spaced evenly in ln(pressure)
-    from lowest to highest pressure [Pa]; between them each quantity is a monotone cubic in logarithms. tol as in
-    `solve_half_space`.
-    progress: called with (rungs done, points) while the ladder is climbed, on first use.
+    pair's friction); at 0 no loss is predicted. periodic as in `solve_half_space`. points: rungs of the ladder, spaced
+    evenly in ln(pressure) from lowest to highest pressure [Pa]; between them each quantity is a monotone cubic in
+    logarithms. Large maps are solved on fewer of them (`ladder`). tol as in `solve_half_space`.
+    progress: called with (solutions done, solutions in all) while the ladder is climbed, on first use. cache: folder
+    that keeps solved ladders by the hash of all that they depend on; None keeps nothing.
 
-    Closure variable: the pressure [Pa]. Flagged where fewer than 30 points touch or none is open, and where k_n changes
-    by more than 10 % when the ladder is climbed on half as many points each way (a quarter of the work on top).
+    Closure variable: the pressure [Pa]. k_n_low and k_n_high: the range in which k_n of a scan with four times as many
+    points each way is looked for, from what k_n changed by on half and a quarter of the points, and from what it
+    differs by between the quarters of the window. Flagged where fewer than 30 points touch, and where k_n changes by
+    more than 25 % on half the points. The law ends where every point touches.
     Raises InputError for parameters out of range and whatever `solve_half_space` does not accept.
     """
 
@@ -60,11 +56,12 @@ class HalfSpace(ContactLaw):
     area: Literal["corrected", "counted"] = "corrected"
     shear_ratio: float = 0.0
     periodic: bool = True
-    points: int = 12
+    points: int = 13
     lowest: float | None = None
     highest: float | None = None
-    tol: float = 1e-6
+    tol: float = 1e-5
     progress: Callable[[int, int], object] | None = field(default=None, repr=False, compare=False)
+    cache: Path | None = field(default=None, repr=False, compare=False)
 
     name: ClassVar[str] = "half-space"
     source: ClassVar[str] = "doi:10.1016/S0043-1648(99)00113-1"
@@ -77,19 +74,20 @@ class HalfSpace(ContactLaw):
         "lowest": Parameter("Pa", "least pressure covered", 0),
         "highest": Parameter("Pa", "greatest pressure covered, above the least and below the hardness", 0),
         "tol": Parameter("", "error bound asked of every contact", 0, 1),
+        "cache": Parameter(TABLE, "folder that keeps solved contacts", surface="cache"),
     }
     validity: ClassVar[str] = (
         "the scan resolves the roughness that touches: at least 30 points in contact, some open, and "
-        "k_n within 10 % on half the points each way"
+        "k_n within 25 % on half the points each way"
     )
 
     def __post_init__(self) -> None:
         super().__post_init__()
         object.__setattr__(self, "points", int(self.points))  # the command line reads numbers as floats
-        low, high = self.closure_range
+        low, high = self._asked
         if not 0 < low < high < np.inf:
             raise InputError(f"half-space: pressures from {low:.4g} to {high:.4g} Pa; give 0 < lowest < highest")
-        if not self.elastic and high >= self.pair.hardness:
+        if self._hardness is not None and high >= self._hardness:
             raise InputError(
                 f"half-space: highest = {high:.4g} Pa is not below the hardness {self.pair.hardness:.4g} Pa; "
                 "lower it, or set elastic=True"
@@ -99,18 +97,28 @@ class HalfSpace(ContactLaw):
 
     @property
     def closure_range(self) -> tuple[float, float]:
-        """Least and greatest pressure of the ladder [Pa]; by default 1e-5 and 0.9 of the hardness.
+        """Least and greatest pressure of the ladder [Pa]: as asked, or up to where every point touches."""
+        return float(self.ladder.pressure[0]), float(self.ladder.pressure[-1])
+
+    @property
+    def _asked(self) -> tuple[float, float]:
+        """Least and greatest pressure to solve [Pa]; by default 1e-5 and 0.9 of the hardness.
 
         Elastic: 1e-5 and 0.3 of the pressure that closes the surface, half of E* times its rms slope.
         """
-        if self.elastic:
+        if self._hardness is None:
             heights, (dx, dy) = np.asarray(self.scan.heights), self.scan.spacing
             slope = np.hypot(np.diff(heights, axis=1).std() / dx, np.diff(heights, axis=0).std() / dy)
             full, share = self.pair.E_star * float(slope) / 2, 0.3
         else:
-            full, share = self.pair.hardness, 0.9
+            full, share = self._hardness, 0.9
         low = 1e-5 * full if self.lowest is None else self.lowest
         return low, share * full if self.highest is None else self.highest
+
+    @property
+    def _hardness(self) -> float | None:
+        """What a point can carry [Pa]; None without end."""
+        return None if self.elastic or not isfinite(self.pair.hardness) else self.pair.hardness
 
     @property
     def nu(self) -> float:
@@ -131,22 +139,24 @@ class HalfSpace(ContactLaw):
             pressure=pressure,
             nu=self.nu,
             tol=self.tol,
-            hardness=None if self.elastic else self.pair.hardness,
+            hardness=self._hardness,
             periodic=self.periodic,
             **options,
         )
 
-    def _numbers(self, contact: HalfSpaceContact) -> dict[str, float]:
+    def _numbers(self, contact: HalfSpaceContact, detail: bool = True) -> dict[str, float]:
+        unloading = self.stiffness == "unloading"
+        work = 0.0 if unloading else contact.plastic_work
+        area = contact.area_corrected if self.area == "corrected" else contact.area
+        out = {"area": area, "energy_n": contact.elastic_energy + work}
+        if not detail:
+            return out | {"k_n": contact.normal_stiffness(loading=not unloading)}
         tangent = contact.tangent()
-        out = {
-            "area": contact.area_corrected if self.area == "corrected" else contact.area,
-            "k_n": tangent.k_n_unloading if self.stiffness == "unloading" else tangent.k_n_loading,
-            "k_t": tangent.k_t,
-            "loss_n": 0.0 if self.stiffness == "unloading" else contact.plastic_work / contact.elastic_energy,
-            "loss_t": 0.0,
-            "energy_n": contact.elastic_energy + (0.0 if self.stiffness == "unloading" else contact.plastic_work),
-            "energy_t": 0.0,
-        }
+        out |= {"k_n": tangent.k_n_unloading if unloading else tangent.k_n_loading, "k_t": tangent.k_t}
+        if unloading:
+            out["k_load"] = tangent.k_n_loading
+        else:
+            out["loss_n"] = work / (2 * pi * contact.elastic_energy)
         if self.shear_ratio > 0:
             slip = contact.slip(self.shear_ratio, self.pair.friction)
             out |= {"k_t": slip.k_t, "loss_t": slip.loss_factor}
@@ -154,63 +164,45 @@ class HalfSpace(ContactLaw):
         return out
 
     @cached_property
-    def ladder(self) -> tuple[HalfSpaceContact, ...]:
-        """The solved contacts, from the least to the greatest pressure."""
-        contacts: list[HalfSpaceContact] = []
-        for pressure in np.geomspace(*self.closure_range, self.points):
-            contacts.append(self.contact_at(float(pressure), start=contacts[-1] if contacts else None))
-            if self.progress is not None:
-                self.progress(len(contacts), self.points)
-        return tuple(contacts)
+    def ladder(self) -> Ladder:
+        """The numbers of the contacts, solved on first use or read from the cache."""
+        heights = np.asarray(self.scan.heights, dtype=float)
+        names = ("elastic", "stiffness", "area", "shear_ratio", "periodic", "points", "tol")
+        key = {name: getattr(self, name) for name in names}
+        key |= {"pressure": self._asked, "spacing": tuple(map(float, self.scan.spacing)), "nu": self.nu}
+        key |= {"E_star": self.pair.E_star, "hardness": self._hardness}
+        if self.shear_ratio > 0:
+            key["friction"] = self.pair.friction
+
+        def make() -> Ladder:
+            pressure = np.geomspace(*self._asked, self.points)
+            return climb(heights, self.scan.spacing, pressure, self._solve, self._numbers, self.progress)
+
+        return cached(make, self.cache, key, heights)
 
     @cached_property
-    def _rungs(self) -> _Ladder:
-        rows = [self._numbers(contact) for contact in self.ladder]
-        return _Ladder(
-            pressure=np.geomspace(*self.closure_range, self.points),
-            values={name: np.array([row[name] for row in rows]) for name in rows[0]},
-            contact_points=np.array([np.count_nonzero(c.traction) for c in self.ladder], dtype=float),
-            k_n_change=self._k_n_change(np.array([row["k_n"] for row in rows])),
-        )
-
-    def _k_n_change(self, fine: Array) -> Array:
-        """Relative change of k_n [Pa/m] at the rungs on half as many points each way; 0 where all points touch."""
-        heights, spacing = halved_map(np.asarray(self.scan.heights), self.scan.spacing)
-        change, contact = np.zeros(fine.shape), None
-        for i, pressure in enumerate(np.geomspace(*self.closure_range, self.points)):
-            if np.isfinite(fine[i]):
-                contact = self._solve(heights, spacing, float(pressure), start=contact)
-                tangent = contact.tangent()
-                coarse = tangent.k_n_unloading if self.stiffness == "unloading" else tangent.k_n_loading
-                change[i] = coarse / fine[i] - 1
-        return change
+    def _curves(self) -> Mapping[str, Callable[[Array], Array]]:
+        """Every quantity as a function of ln(pressure)."""
+        ladder = self.ladder
+        rows = {"points": ladder.points, **ladder.values}
+        rows |= {"low": ladder.least_factor, "high": ladder.greatest_factor}
+        return {name: _monotone(np.log(ladder.pressure), row) for name, row in rows.items()}
 
     def at_closure(self, closure: ArrayLike) -> Response:
         """Return the response at pressures [Pa] within `closure_range`, any shape."""
-        from scipy.interpolate import PchipInterpolator
-
         p = np.asarray(closure, dtype=float)
-        table = self._rungs
-        x, at = np.log(table.pressure), np.log(p)
-
-        def between(values: Array) -> Array:
-            finite = np.isfinite(values)
-            if np.all(values[finite] > 0) and finite.sum() >= 2:
-                inside = np.exp(PchipInterpolator(x[finite], np.log(values[finite]))(at))
-            else:
-                inside = PchipInterpolator(x[finite], values[finite])(at)
-            # stiffness is infinite from the first rung on at which every point touches
-            return np.where(at > x[finite][-1], values[-1], inside) if not finite.all() else np.asarray(inside)
-
-        points = between(table.contact_points)
-        change = np.interp(at, x, np.abs(table.k_n_change))
+        x = np.log(p)
+        curve = self._curves
+        values = {name: curve[name](x) for name in self.ladder.values}
+        change = np.interp(x, np.log(self.ladder.pressure), np.abs(self.ladder.change[0]))
         return Response(
             pressure=p,
-            **{name: between(values) for name, values in table.values.items()},
+            k_n_low=values["k_n"] * curve["low"](x),
+            k_n_high=values["k_n"] * curve["high"](x),
+            **values,
             reasons={
-                f"fewer than {FEWEST_POINTS} points of the scan touch": points < FEWEST_POINTS,
+                f"fewer than {FEWEST_POINTS} points of the scan touch": curve["points"](x) < FEWEST_POINTS,
                 f"k_n changes by more than {RESOLVED:.0%} on half the points each way": change > RESOLVED,
-                "every point of the scan touches": points >= self.scan.heights.size * (1 - 1e-9),
             },
         )
 
@@ -224,3 +216,13 @@ class HalfSpace(ContactLaw):
         fine = self._numbers(self.contact_at(pressure))
         coarse = self._numbers(self._solve(heights, spacing, pressure))
         return {name: coarse[name] / fine[name] - 1 for name in ("area", "k_n", "k_t")}
+
+
+def _monotone(x: Array, values: Array) -> Callable[[Array], Array]:
+    """A monotone cubic through the logarithms where all values are positive, through the values else."""
+    from scipy.interpolate import PchipInterpolator
+
+    if not np.all(values > 0):
+        return lambda at: np.asarray(PchipInterpolator(x, values)(at))
+    curve = PchipInterpolator(x, np.log(values))
+    return lambda at: np.asarray(np.exp(curve(at)))

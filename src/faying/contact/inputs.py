@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import inf, log, pi, sqrt
+from pathlib import Path
 from typing import ClassVar, Protocol, Self, final
 
 import numpy as np
@@ -175,10 +176,12 @@ class RoughSurface:
     Args:
         inputs: `SurfaceInputs` of a scan, or a `FractalSurface` where only D, G and scan_area are known.
         scan: levelled heights with missing points filled in; None where there is no areal scan.
+        cache: folder that keeps solved contacts of the scan; None keeps nothing.
     """
 
     inputs: FractalSurface
     scan: HeightMap | None = None
+    cache: Path | None = None
 
     FRACTAL: ClassVar = ("D", "G", "scan_area", "gamma", "side", "G_majumdar_bhushan")
 
@@ -194,9 +197,10 @@ class RoughSurface:
         """Values of those parameters that this surface gives."""
         out: dict[str, object] = {}
         for name, parameter in parameters.items():
-            if parameter.surface == "scan":
-                if self.scan is not None:
-                    out[name] = self.scan
+            if parameter.surface in ("scan", "cache"):
+                value = getattr(self, parameter.surface)
+                if value is not None:
+                    out[name] = value
             elif parameter.surface in self.FRACTAL or (parameter.surface and isinstance(self.inputs, SurfaceInputs)):
                 out[name] = getattr(self.inputs, parameter.surface)
         return out

@@ -19,6 +19,8 @@ Where the print is ambiguous or wrong we read it so:
   reaches 1 under tau slips: it adds no tangential stiffness, and the response says so;
 - stiffness grows with load throughout for 2.1 <= D <= 2.9 while cutoff <= .01; with a cutoff of .1 it falls over part
   of the meso stage above D = 2.76, with .3 above D = 2.5: there the cut-off leaves too little of the elastic part;
+- eqs. 49-53 give dissipated over stored energy, the specific damping capacity (`specific_damping`); the loss factor of
+  this project, and of the modes, is that over 2 pi;
 - asperities at hardness add no stiffness, normal or tangential, as printed (eqs. A8, A14);
 - substrate="computed" is not the paper's: the asperity takes all of delta with the effective modulus that finite
   elements found (`substrate`); its k_n is d(force)/d(delta), its energies those of a sphere of that modulus.
@@ -319,7 +321,7 @@ class JK(ContactLaw):
         pairs = zip(parts["area"], parts["force"], strict=True)
         return [np.minimum(tau * area / np.where(force > 0, force, np.inf), 1.0) for area, force in pairs]
 
-    def _loss(self, energies: list[Array]) -> Array:
+    def _capacity(self, energies: list[Array]) -> Array:
         elastic, mixed, plastic = energies
         return (self.alpha * mixed + plastic) / (elastic + (1 - self.alpha) * mixed)  # eqs. (49), (58)
 
@@ -332,13 +334,29 @@ class JK(ContactLaw):
 
     @cached_property
     def _held(self) -> tuple[float, float]:
-        """Normal and tangential loss factor with which the small stage ends."""
+        """Normal and tangential specific damping with which the small stage ends."""
         parts = self._parts(np.array(min(max(self.limits[0], 1e-80), 1e80)))
-        return float(self._loss(parts["energy_n"])), float(self._loss(self._energy_t(parts)))
+        return float(self._capacity(parts["energy_n"])), float(self._capacity(self._energy_t(parts)))
 
-    def _loss_factor(self, al: Array, energies: list[Array], held: float) -> Array:
-        eta = self._loss(energies)
-        return eta if self.loss == "literal" else np.where(al >= self.limits[0], held, eta)
+    def specific_damping(self, al: ArrayLike) -> tuple[Array, Array]:
+        """Dissipated over stored energy, normal and tangential [-], at al' [m2]; the paper's loss factor, eqs. 49-53.
+
+        It is 2 pi times the loss factor of `at_closure`.
+        """
+        a = checked(al, name="al'", unit="m2", zero=False)
+        return self._damping(a, self._parts(a))
+
+    def _damping(self, al: Array, parts: dict[str, list[Array]]) -> tuple[Array, Array]:
+        normal, tangential = self._capacity(parts["energy_n"]), self._capacity(self._energy_t(parts))
+        if self.loss == "literal":
+            return normal, tangential
+        held = al >= self.limits[0]
+        return np.where(held, self._held[0], normal), np.where(held, self._held[1], tangential)
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """Numbers of the law that nobody measured."""
+        return (f"its loss rests on an assumed elastic-plastic load index, alpha = {self.alpha:g}",)
 
     def _pressure_at(self, closure: Array) -> Array:
         return np.asarray(sum(self._parts(closure, ("force",))["force"]) / self.scan_area)
@@ -350,6 +368,7 @@ class JK(ContactLaw):
         parts = self._parts(a)
         shear = self._shear(parts)
         tangential = self._energy_t(parts)
+        damping_n, damping_t = self._damping(a, parts)
         loaded = self.shear_stress > 0 or self.shear_ratio > 0
         area, k_n = np.asarray(sum(parts["area"]) / A0), np.asarray(sum(parts["k_n"]) / A0)
         k_t = sum((1 - X) ** (1 / 3) * k for X, k in zip(shear, parts["k_t"], strict=True)) / A0  # eq. (A11)
@@ -360,8 +379,8 @@ class JK(ContactLaw):
             area=area,
             k_n=k_n,
             k_t=np.asarray(k_t),
-            loss_n=np.asarray(self._loss_factor(a, parts["energy_n"], self._held[0])),
-            loss_t=np.asarray(self._loss_factor(a, tangential, self._held[1])),
+            loss_n=damping_n / (2 * pi),
+            loss_t=damping_t / (2 * pi),
             energy_n=np.asarray(sum(parts["energy_n"]) / A0),
             energy_t=np.asarray(sum(tangential) / A0) if loaded else np.zeros_like(a),
             reasons={

@@ -60,7 +60,6 @@ class ContactLaw(ABC):
     parameters: ClassVar[Mapping[str, Parameter]]
     validity: ClassVar[str]
     variants: ClassVar[Mapping[str, Mapping[str, object]]] = {}
-    joint_fault: ClassVar[str] = ""  # why the law cannot carry a joint by itself
     geometric: ClassVar[bool] = True
 
     @abstractmethod
@@ -135,6 +134,11 @@ class ContactLaw(ABC):
         own = {name: getattr(self, name) for name in self.parameters}
         numbers = {name: value for name, value in own.items() if isinstance(value, float | int | str)}
         return {"name": self.name, "source": self.source, **numbers, "greatest_pressure [Pa]": self.greatest_pressure}
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the law assumes that nobody measured, each beginning with the number that rests on it."""
+        return ()
 
     def _pressure_at(self, closure: Array) -> Array:
         """Pressure alone; a model overrides this where it is quicker than the whole response."""

@@ -38,10 +38,6 @@ class Persson(ContactLaw):
     name: ClassVar[str] = "Persson"
     source: ClassVar[str] = "doi:10.1063/1.1388626"
     validity: ClassVar[str] = "elastic; real area up to 0.3 for the stiffness; a surface much larger than its waves"
-    joint_fault: ClassVar[str] = (
-        "cannot carry a joint by itself: its stiffness grows in proportion to pressure from zero, so the faces never "
-        "meet; take another law here, and this one with `faying law`"
-    )
     parameters: ClassVar = {
         "slope": Parameter("", "rms gradient of the surface", 0, surface="slope"),
         "h_rms": Parameter("m", "rms height", 0, surface="h_rms"),

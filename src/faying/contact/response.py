@@ -19,6 +19,8 @@ UNITS = {
     "energy_n": "J/m^2",
     "energy_t": "J/m^2",
     "k_load": "Pa/m",
+    "k_n_low": "Pa/m",
+    "k_n_high": "Pa/m",
 }
 
 
@@ -28,7 +30,9 @@ class Response:
 
     pressure [Pa]; area, real over nominal [-]; k_n, k_t normal and tangential stiffness [Pa/m]; loss_n, loss_t
     loss factors [-]; energy_n, energy_t strain energies [J/m2]; k_load [Pa/m], the slope of pressure over closing on
-    first loading where it is not k_n, because asperities yield. A quantity that the model does not define is None.
+    first loading where it is not k_n, because asperities yield; k_n_low, k_n_high [Pa/m], the range of k_n where
+    the law states one. A loss factor is the energy dissipated in a cycle over 2 pi times the greatest energy stored in
+    it. A quantity that the model does not define is None.
     valid tells where the model is within its validity range; `reasons` names, per way of leaving it, where.
     """
 
@@ -41,6 +45,8 @@ class Response:
     energy_n: Array | None = None
     energy_t: Array | None = None
     k_load: Array | None = None
+    k_n_low: Array | None = None
+    k_n_high: Array | None = None
     reasons: Mapping[str, Mask] = field(default_factory=dict)
 
     @property

@@ -74,26 +74,28 @@ def stiffness_on(kernel: Kernel, cells: Mask) -> Array:
     )
 
 
-def normal_and_shear_kernels(contact: HalfSpaceContact) -> tuple[Kernel, Kernel]:
-    """The kernels of the contact's map, scaled."""
-    shape = contact.heights.shape
-    aspect = contact.spacing[1] / contact.spacing[0]
-    return (
-        normal_kernel(shape, aspect, periodic=contact.periodic, workers=contact.workers),
-        shear_kernel(shape, aspect, contact.nu, periodic=contact.periodic, workers=contact.workers),
+def normal_stiffness_of(contact: HalfSpaceContact, *, loading: bool) -> float:
+    """Return one of the two normal stiffnesses [Pa/m]; see `HalfSpaceContact.normal_stiffness`."""
+    kernel = normal_kernel(
+        contact.heights.shape,
+        contact.spacing[1] / contact.spacing[0],
+        periodic=contact.periodic,
+        workers=contact.workers,
     )
+    cells = contact.traction > 0
+    if loading:
+        cells &= ~contact.at_hardness
+    return float(stiffness_on(kernel, cells)[0, 0]) * contact.E_star / contact.spacing[0]
 
 
 def tangent_of(contact: HalfSpaceContact) -> Tangent:
     """Return the tangent stiffness of a contact; see `HalfSpaceContact.tangent`."""
-    normal, shear = normal_and_shear_kernels(contact)
-    unit = contact.E_star / contact.spacing[0]
-    touching = contact.traction > 0
-    k_unload = float(stiffness_on(normal, touching)[0, 0]) * unit
-    k_load = k_unload
+    shape, aspect = contact.heights.shape, contact.spacing[1] / contact.spacing[0]
+    shear = shear_kernel(shape, aspect, contact.nu, periodic=contact.periodic, workers=contact.workers)
+    k_unload = k_load = normal_stiffness_of(contact, loading=False)
     if contact.hardness is not None and contact.at_hardness.any():
-        k_load = float(stiffness_on(normal, touching & ~contact.at_hardness)[0, 0]) * unit
-    tensor = stiffness_on(shear, touching) * unit
+        k_load = normal_stiffness_of(contact, loading=True)
+    tensor = stiffness_on(shear, contact.traction > 0) * contact.E_star / contact.spacing[0]
     return Tangent(
         k_n_loading=k_load,
         k_n_unloading=k_unload,

@@ -13,6 +13,7 @@ from faying.joint.springs import Motion, Springs
 from faying.typing import Array
 
 FEW = 200  # pressures up to which a law is inverted exactly; more are read from the table between its points
+GREATEST_FADE = 2 / 3  # power of k in p below the least pressure
 LEAST_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p(approach) goes on as a power
 
 
@@ -21,18 +22,49 @@ class JointLaw:
     """The law of one joint, with its pressure as a function of approach: w = integral of dp/k from 0 to p.
 
     k is the law's k_load where it has one (asperities that yield close more on loading than they spring back), else
-    k_n.
+    k_n. Below the least pressure k goes on as a power of p, of at most 2/3, so that the faces do meet: a law that grows
+    in proportion to pressure from nothing has its first touch infinitely far away, which no finite face has.
 
-    law; tangential: "law" takes its k_t, "mindlin" takes k_t = k_n 2(1-nu)/(2-nu) with the nu given (for laws that
-    define none); scale of stiffness [-], 1 unless a study of sensitivity asks otherwise. Raises InputError where the
-    law gives no k_n, or no k_t and tangential = "law".
+    Args:
+        model: the contact law.
+        tangential: "law" takes its k_t; "mindlin" takes k_t = k_n 2(1-nu)/(2-nu); None takes that of the law where it
+            defines one, else Mindlin's.
+        nu: Poisson's ratio for Mindlin's ratio [-].
+        scale: of both stiffnesses [-], 1 unless a study of sensitivity asks otherwise.
+        end: "low" or "high" takes that end of the range of k_n that the law states, and moves k_t with it.
+        reason: why this law was taken, where the user named none.
+
+    Raises:
+        InputError: where the law gives no k_n, or no k_t and tangential = "law".
     """
 
     model: ContactLaw
-    tangential: Literal["law", "mindlin"] = "law"
+    tangential: Literal["law", "mindlin"] | None = None
     nu: float = 0.3
     scale: float = 1.0
     points: int = 2000
+    end: Literal["low", "high"] | None = None
+    reason: str = ""
+
+    @cached_property
+    def _defined(self) -> frozenset[str]:
+        """The quantities that the law defines."""
+        return frozenset(self.model.at_pressure(self._grid[[-1]]).quantities())
+
+    @property
+    def assumes_mindlin(self) -> bool:
+        """Whether the tangential stiffness is assumed from the normal one."""
+        return self.tangential == "mindlin" or (self.tangential is None and "k_t" not in self._defined)
+
+    @property
+    def predicts_loss(self) -> bool:
+        """Whether the law gives any loss factor."""
+        return bool({"loss_n", "loss_t"} & self._defined)
+
+    @property
+    def has_range(self) -> bool:
+        """Whether the law states a range of its stiffness."""
+        return {"k_n_low", "k_n_high"} <= self._defined
 
     @property
     def least_pressure(self) -> float:
@@ -60,21 +92,24 @@ class JointLaw:
         slope = self.model.at_pressure(self._grid).k_load
         return np.exp(self._samples[1][0]) if slope is None else self.scale * slope
 
+    @property
+    def _fade(self) -> float:
+        """Power of the pressure with which the stiffness goes on below the least pressure [-]."""
+        k = self._loading
+        return min(float(np.log(k[1] / k[0]) / np.log(self._grid[1] / self._grid[0])), GREATEST_FADE)
+
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
         """ln approach, ln pressure, and d ln p/d ln w, from the least pressure to where the law ends."""
         p, k = self._grid, self._loading
-        slope = np.gradient(np.log(k), np.log(p))
-        if np.any(k <= 0) or slope[0] >= 1 - 1e-9:
-            raise InputError(
-                f"{self.model.name}: stiffness does not grow from zero slower than pressure; the faces would never meet"
-            )
+        if np.any(k <= 0):
+            raise InputError(f"{self.model.name}: no stiffness on loading at {p[np.argmax(k <= 0)]:.4g} Pa")
         # between two points k_n is a power of p, so that the integral of dp/k_n is exact there
         power = 1 - np.diff(np.log(k)) / np.diff(np.log(p))
         pieces = np.where(
             np.abs(power) > 1e-9, (p[1:] / k[1:] - p[:-1] / k[:-1]) / power, p[:-1] / k[:-1] * np.diff(np.log(p))
         )
-        first = p[0] / k[0] / (1 - slope[0])
+        first = p[0] / k[0] / (1 - self._fade)
         w = first + np.concatenate([[0.0], np.cumsum(pieces)])
         return np.log(w), np.log(p), k * w / p
 
@@ -89,14 +124,20 @@ class JointLaw:
         answer = self.model.at_pressure(pressure)
         if answer.k_n is None:
             raise InputError(f"{self.model.name} defines no normal stiffness; choose another law for the joint")
-        k_n = self.scale * answer.k_n
-        if self.tangential == "mindlin":
+        factor: Array | float = self.scale
+        if self.end is not None:
+            limit = answer.k_n_low if self.end == "low" else answer.k_n_high
+            if limit is None:
+                raise InputError(f"{self.model.name} states no range of its stiffness")
+            factor = self.scale * limit / np.where(answer.k_n > 0, answer.k_n, 1.0)
+        k_n = factor * answer.k_n
+        if self.tangential == "mindlin" or (self.tangential is None and answer.k_t is None):
             return k_n, k_n * 2 * (1 - self.nu) / (2 - self.nu)
         if answer.k_t is None:
             raise InputError(
-                f'{self.model.name} defines no tangential stiffness; set tangential = "mindlin" in the study'
+                f'{self.model.name} defines no tangential stiffness; leave out tangential = "law", or set "mindlin"'
             )
-        return k_n, self.scale * answer.k_t
+        return k_n, factor * answer.k_t
 
     def answer(self, pressure: Array) -> Response:
         """What the law says at pressures [Pa]; beyond its ends, what it says there."""
@@ -121,12 +162,11 @@ class JointLaw:
         raised = within > pressure
         if not np.any(raised):
             return k_n, k_t
-        # below the table p is a power of w, so k_n a power of p with the exponent 1 - 1/(d ln p/d ln w)
-        fade = np.where(raised, pressure / np.where(raised, within, 1.0), 1.0) ** (1 - 1 / self._table[2][0])
+        fade = np.where(raised, pressure / np.where(raised, within, 1.0), 1.0) ** self._fade
         return k_n * fade, k_t * fade
 
     def loss(self, pressure: Array) -> tuple[Array, Array]:
-        """Loss factors normal and tangential [-]; 0 where the law defines none."""
+        """Loss factors normal and tangential [-]; 0, as far as an equation asks, where the law predicts none."""
         within = self._within(pressure)
         if np.size(pressure) <= FEW:
             return self._ask_loss(within)

@@ -58,7 +58,9 @@ class Springs(Generic[Motion]):
         k is the spring of a point, so that c grows with the root of its share of the area: the sum depends on the mesh.
         """
         w = self.interface.weights
-        c_n, c_t = (eta * np.sqrt(mass * k / w) for eta, k in ((self.loss_n, self.k_n), (self.loss_t, self.k_t)))
+        # the paper's eta is dissipated over stored energy: 2 pi times the loss factor
+        both = (self.loss_n, self.k_n), (self.loss_t, self.k_t)
+        c_n, c_t = (2 * np.pi * loss * np.sqrt(mass * k / w) for loss, k in both)
         return self.interface.springs(c_n, c_t)
 
     def total(self) -> tuple[float, float]:

@@ -29,6 +29,8 @@ def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
         f"<p>Loss factors come from complex modes with {result.damping} loss in the joints. Free: faces apart. Bonded: "
         f"faces grown together.{_rigid(result)}</p>",
     ]
+    if result.low is not None:
+        parts += ["<h2>Range of the frequencies, from that of the stiffness</h2>", page.table(table.ranges(result))]
     if result.comparison is not None:
         parts += [
             "<h2>Comparison with the test</h2>",

@@ -8,14 +8,27 @@ Rows = list[list[str]]
 
 
 def modes(result: Result) -> Rows:
-    """One row per mode: free, then each preload with its loss factor, then bonded."""
-    heads = [f"{load / 1e3:g} kN [Hz] (loss)" for load in result.loads]
+    """One row per mode: free, then each preload with its loss factor where one is predicted, then bonded."""
+    lost = bool(np.isfinite(result.loss_factors).any())
+    heads = [f"{load / 1e3:g} kN [Hz]{' (loss)' * lost}" for load in result.loads]
     rows: Rows = [["mode", "free [Hz]", *heads, "bonded [Hz]"]]
     for j in range(len(result.bonded)):
         cells = [
-            f"{f:.2f} ({eta:.1e})" for f, eta in zip(result.frequencies[:, j], result.loss_factors[:, j], strict=True)
+            f"{f:.2f} ({eta:.1e})" if lost else f"{f:.2f}"
+            for f, eta in zip(result.frequencies[:, j], result.loss_factors[:, j], strict=True)
         ]
         rows.append([str(j + 1), f"{result.free[j]:.2f}", *cells, f"{result.bonded[j]:.2f}"])
+    return rows
+
+
+def ranges(result: Result) -> Rows:
+    """One row per mode: the frequencies at both ends of the range of stiffness; empty where no law states one."""
+    if result.low is None or result.high is None:
+        return []
+    rows: Rows = [["mode", *(f"{load / 1e3:g} kN [Hz]" for load in result.loads)]]
+    for j in range(len(result.bonded)):
+        pairs = zip(result.low[:, j], result.high[:, j], strict=True)
+        rows.append([str(j + 1), *(f"{low:.2f} .. {high:.2f}" for low, high in pairs)])
     return rows
 
 
@@ -27,14 +40,16 @@ def comparison(result: Result) -> Rows:
     count = c.frequencies.shape[1]
     rows: Rows = [["preload", "source", *(f"mode {j + 1}" for j in range(count))]]
     theirs = [] if c.published is None else [(c.published_name, c.published)]
+    beside = [] if c.beside is None else list(zip(result.beside, c.beside, strict=True))
+    ours = [*beside, ("Faying", c.predicted)]
     for i, load in enumerate(result.loads):
         rows.append([f"{load / 1e3:g} kN", "test [Hz]", *(f"{f:.1f}" for f in c.frequencies[i])])
-        for name, values in (*theirs, ("Faying", c.predicted)):
+        for name, values in (*theirs, *ours):
             rows.append(["", f"{name} [Hz]", *(f"{f:.1f}" for f in values[i])])
             errors = 100 * (values[i] / c.frequencies[i] - 1)
             rows.append(["", f"{name} error [%]", *(f"{e:+.2f}" for e in errors)])
     if len(result.loads) > 1:
-        for name, values in (("test", c.frequencies), *theirs, ("Faying", c.predicted)):
+        for name, values in (("test", c.frequencies), *theirs, *ours):
             slope = c.sensitivity(values, result.loads) * 1e3
             rows.append(["d f/d preload", f"{name} [Hz/kN]", *(f"{s:+.3f}" for s in slope)])
     return rows

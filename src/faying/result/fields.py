@@ -16,24 +16,46 @@ KEY = "variable"
 
 @dataclass(frozen=True, kw_only=True)
 class Declared:
-    """What a field that holds an array declares: name in the file, dimensions, SI unit, long name, kind of number."""
+    """What a field that holds an array declares: name in the file, dimensions, SI unit, long name, kind of number.
+
+    gaps: whether NaN may stand in it, for what was not predicted.
+    """
 
     name: str
     dims: tuple[str, ...]
     unit: str
     long_name: str
     dtype: str
+    gaps: bool = False
 
 
-def variable(*dims: str, unit: str, long_name: str, dtype: str = "f8", name: str = "", default: Any = MISSING) -> Any:
+def variable(
+    *dims: str,
+    unit: str,
+    long_name: str,
+    dtype: str = "f8",
+    name: str = "",
+    gaps: bool = False,
+    default: Any = MISSING,
+) -> Any:
     """Declare a field of a dataclass as an array with named dimensions; writer, reader, JSON and tables follow."""
-    declared = Declared(name=name, dims=dims, unit=unit, long_name=long_name, dtype=dtype)
+    declared = Declared(name=name, dims=dims, unit=unit, long_name=long_name, dtype=dtype, gaps=gaps)
     return field(metadata={KEY: declared}, **({} if default is MISSING else {"default": default}))
 
 
 def declared(kind: Any) -> dict[str, Declared]:
     """What the array fields of a dataclass declare, by the name of the field."""
     return {f.name: f.metadata[KEY] for f in fields(kind) if KEY in f.metadata}
+
+
+def listed(values: Any) -> Any:
+    """Arrays as nested lists for JSON, None in place of NaN."""
+    array = np.asarray(values)
+    if array.dtype.kind != "f" or not np.isnan(array).any():
+        return array.tolist()
+    plain = array.astype(object)
+    plain[np.isnan(array)] = None
+    return plain.tolist()
 
 
 def to_group(value: Any) -> Group:

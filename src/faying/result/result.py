@@ -16,7 +16,7 @@ from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse, ModelModes
 from faying.netcdf import Group, Variable
 from faying.notes import Note
-from faying.result.fields import declared, from_group, same, to_group, variable
+from faying.result.fields import declared, from_group, listed, same, to_group, variable
 from faying.typing import Array, Complex, Index
 
 Point = tuple[float, float, float]
@@ -35,6 +35,9 @@ class Comparison:
         "load", "test_mode", unit="Hz", long_name="frequencies of a published model", default=None
     )
     published_name: str = "published"
+    beside: Array | None = variable(
+        "beside", "load", "test_mode", unit="Hz", long_name="frequencies under another law", gaps=True, default=None
+    )
 
     def sensitivity(self, values: Array, loads: Array) -> Array:
         """Change of frequency with preload, d f/d preload [Hz/N] (mode,), by a straight line through all loads."""
@@ -88,14 +91,17 @@ class Result:
 
     Frequencies, loss factors and shapes are those of the complex modes; "bonded" are the frequencies with the faces of
     every joint grown together, "free" those with the faces apart. `surfaces` and `laws` hold, per joint, what the law
-    was made from and its own numbers. `tightening` names the bolts in the order in which they were pulled, and is empty
-    where all were pulled at once.
+    was made from and its own numbers. low and high: the frequencies at the ends of the range of stiffness that the laws
+    state, None where none states one; `beside` names other laws, whose frequencies stand in `beside_frequencies`.
+    `tightening` names the bolts in the order in which they were pulled, and is empty where all were pulled at once.
     """
 
     title: str
     loads: Array = variable("load", unit="N", long_name="preload of the first bolt", name="load")
     frequencies: Array = variable("load", "mode", unit="Hz", long_name="frequency")
-    loss_factors: Array = variable("load", "mode", unit="1", long_name="loss factor")
+    loss_factors: Array = variable(
+        "load", "mode", unit="1", long_name="loss factor, NaN where no joint predicts one", gaps=True
+    )
     loss_error: Array = variable("load", "mode", unit="1", long_name="estimated relative error of the loss factor")
     free: Array = variable("mode", unit="Hz", long_name="frequency with the faces apart")
     bonded: Array = variable("mode", unit="Hz", long_name="frequency with the faces bonded")
@@ -120,6 +126,19 @@ class Result:
     shapes: Any = variable(
         "load", "mode", "node", "axis", unit="kg^-1/2", long_name="mass-normalised mode shapes", dtype="f4"
     )
+    low: Array | None = variable(
+        "load", "mode", unit="Hz", long_name="frequency at the lower end of the laws' range", default=None
+    )
+    high: Array | None = variable(
+        "load", "mode", unit="Hz", long_name="frequency at the upper end of the laws' range", default=None
+    )
+    beside_frequencies: Array | None = variable(
+        "beside", "load", "mode", unit="Hz", long_name="frequency under another law", gaps=True, default=None
+    )
+    beside_loss_factors: Array | None = variable(
+        "beside", "load", "mode", unit="1", long_name="loss factor under another law", gaps=True, default=None
+    )
+    beside: tuple[str, ...] = ()
     joints: tuple[str, ...]
     bolts: tuple[str, ...]
     unknowns: int
@@ -138,8 +157,10 @@ class Result:
 
     def __post_init__(self) -> None:
         for name, meta in declared(type(self)).items():
+            if getattr(self, name) is None:
+                continue
             value = np.asarray(getattr(self, name), dtype=meta.dtype)
-            if not np.all(np.isfinite(value)):
+            if not np.all(np.isfinite(value) | (meta.gaps and np.isnan(value))):
                 raise InputError(
                     f"the study gave NaN in {name}; this is a fault of its input or of Faying, please report it"
                 )
@@ -219,17 +240,18 @@ class Result:
         out: dict[str, Any] = {"title": self.title, "unknowns": self.unknowns, "solver": self.solver}
         out["factor_memory"] = {"unit": "B", "values": self.factor_memory}
         for name, meta in declared(type(self)).items():
-            if not set(MAPS) & set(meta.dims):
-                out[name] = {"unit": meta.unit, "values": getattr(self, name).tolist()}
+            if not set(MAPS) & set(meta.dims) and getattr(self, name) is not None:
+                out[name] = {"unit": meta.unit, "values": listed(getattr(self, name))}
         out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
         out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
+        out["beside"] = list(self.beside)
         out |= {"joints": list(self.joints), "bolts": list(self.bolts), "tightening": list(self.tightening)}
         out |= {"damping": self.damping, "surfaces": list(self.surfaces), "laws": list(self.laws)}
         if self.comparison is not None:
             c = self.comparison
             names = [name for name in declared(Comparison) if getattr(c, name) is not None]
             out["comparison"] = {"source": c.source, "published_name": c.published_name} | {
-                name: {"unit": declared(Comparison)[name].unit, "values": getattr(c, name).tolist()} for name in names
+                name: {"unit": declared(Comparison)[name].unit, "values": listed(getattr(c, name))} for name in names
             }
         if self.hammer is not None:
             out["hammer_test"] = self.hammer.to_dict()
@@ -242,6 +264,8 @@ class Result:
         at all."""
         group = to_group(self)
         names = {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
+        if self.beside:
+            names["beside"] = self.beside
         labels = {name: np.array(values, dtype=object) for name, values in names.items()}
         labels["mode"] = np.arange(1, len(self.free) + 1)
         coordinates = {name: Variable(dims=(name,), values=values) for name, values in labels.items()}
@@ -284,11 +308,14 @@ class Result:
         """Return the rows of to_csv as text."""
         out = io.StringIO()
         rows = csv.writer(out, lineterminator="\n")
-        rows.writerow(["preload [N]", "mode", "frequency [Hz]", "loss factor [-]", "free [Hz]", "bonded [Hz]"])
+        low, high = (self.frequencies if end is None else end for end in (self.low, self.high))
+        heads = ["frequency [Hz]", "loss factor [-]", "free [Hz]", "bonded [Hz]", "low [Hz]", "high [Hz]"]
+        rows.writerow(["preload [N]", "mode", *heads])
         for i, load in enumerate(self.loads):
             for j in range(len(self.bonded)):
                 values = (self.frequencies[i, j], self.loss_factors[i, j], self.free[j], self.bonded[j])
-                rows.writerow([f"{load:.6g}", j + 1, *(f"{value:.8g}" for value in values)])
+                row = [*values, low[i, j], high[i, j]]
+                rows.writerow([f"{load:.6g}", j + 1, *("" if np.isnan(v) else f"{v:.8g}" for v in row)])
         return out.getvalue()
 
 

@@ -80,7 +80,7 @@ class Case:
                 "is wrong"
             )
             notes.append(Note(code="size", text=text))
-        notes += structure.notes
+        notes += law_reasons(structure, surfaces) + list(structure.notes)
         return cls(
             study=study,
             structure=structure,
@@ -111,6 +111,26 @@ class Case:
         return self.rigid_count + self.study.modes.count + SPARE_MODES
 
 
+def law_reasons(structure: Structure, surfaces: tuple[Surface, ...]) -> list[Note]:
+    """Why each law was taken where none was named, and what it assumes; joints that share all of it have one note."""
+    out = []
+    for joint, surface in zip(structure.joints, surfaces, strict=True):
+        law = joint.law
+        if law.reason:
+            out.append(Note(code="law-choice", text=f"contact law: {law.reason}"))
+        if surface.counter and surface.scans is not None and surface.scans[1] == "same":
+            out.append(Note(code="counter", text=f"{surface.origin}: {surface.counter}; surface.counter names another"))
+        if law.assumes_mindlin and law.tangential is None:
+            ratio = 2 * (1 - law.nu) / (2 - law.nu)
+            text = f"{law.model.name} defines no tangential stiffness: k_t/k_n = {ratio:.3f} is Mindlin's, assumed"
+            out.append(Note(code="assumed", text=text))
+        out += [Note(code="assumed", text=f"{law.model.name}: {text}") for text in law.model.assumptions]
+        if not law.predicts_loss:
+            text = f"{joint.name}: {law.model.name} predicts no loss; give measured damping, or a law that has one"
+            out.append(Note(code="no-loss", joint=joint.name, text=text))
+    return list(dict.fromkeys(out))
+
+
 def surfaces_of(study: Study) -> tuple[Surface, ...]:
     """Return the surface of each joint; a scan that several joints share is read once."""
     read: dict[SurfaceChoice, Surface] = {}
@@ -130,7 +150,8 @@ def surfaces_of(study: Study) -> tuple[Surface, ...]:
 
 def joint_law(joint: JointChoice, law: LawChoice, surface: Surface, rough: Material, other: Material) -> JointLaw:
     """Lay the law on a joint between the rough face's material and the other one, for run, sweep and attach alike."""
-    return JointLaw(model=law.make(surface, rough, other), tangential=joint.tangential, nu=rough.nu)
+    choice = law.make(surface, rough, other)
+    return JointLaw(model=choice.law, tangential=joint.tangential, nu=rough.nu, reason=choice.reason)
 
 
 def materials_of(study: Study, mesh: Mesh) -> dict[str, Material]:

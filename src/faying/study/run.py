@@ -17,7 +17,9 @@ from faying.joint.structure import bond
 from faying.joint.support_check import RIGID_BELOW
 from faying.notes import Note
 from faying.result import Comparison, Provenance, Receptance, Result
+from faying.study.beside import Beside, solve_beside, stacked
 from faying.study.case import Case, Progress, Report
+from faying.study.findings import against_exact_contact, falling
 from faying.study.solve import State, solve
 from faying.study.study import Study
 from faying.typing import Array, Complex
@@ -45,15 +47,21 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     case = Case.of(study, progress)
     problem = case.structure.assembly(solver=study.modes.solver)
     states = [solve(case, number, problem, progress) for number in range(len(study.loads))]
+    besides = [solve_beside(case, choice, progress) for choice in study.beside]
     progress.begin("modes free and bonded")
     free, bonded, notes = bounds(case)
-    return collect(case, states, free, bonded, notes)
+    return collect(case, states, (free, bonded), [*notes, *findings(case, states)], besides)
+
+
+def findings(case: Case, states: Sequence[State]) -> list[Note]:
+    """What the states say of the laws and the joint, beyond where a law ends."""
+    return [*falling(case, states), *against_exact_contact(case, states[0])]
 
 
 def stage_count(study: Study) -> int:
     """How many stages `run` reports for a study."""
     tested = 0 if study.hammer is None else 2
-    return 3 + tested + len(study.loads) * (2 + (study.response is not None))
+    return 3 + tested + len(study.loads) * (2 + 2 * len(study.beside) + (study.response is not None))
 
 
 def bounds(case: Case) -> tuple[Array, Array, list[Note]]:
@@ -85,26 +93,48 @@ def _bonded(case: Case) -> tuple[Modes, list[Note]]:
     return modes, [Note(code="bonded-by-springs", text=text)]
 
 
-def collect(case: Case, states: Sequence[State], free: Array, bonded: Array, notes: Sequence[Note]) -> Result:
-    """Stack the states of a case into its result."""
+def collect(
+    case: Case,
+    states: Sequence[State],
+    bounds: tuple[Array, Array],
+    notes: Sequence[Note],
+    besides: Sequence[Beside] = (),
+) -> Result:
+    """Stack the states of a case into its result.
+
+    Args:
+        case, states: the case and its state under each load.
+        bounds: frequencies [Hz] with the faces apart and with them bonded.
+        notes: what is to be said beyond the notes of case and states.
+        besides: the same under other laws.
+    """
     study, structure = case.study, case.structure
     nodes, triangles = structure.outline()
     # those of the complex modes, whose frequencies stand beside them: real modes that lie close mix otherwise
     mass = structure.vibrating[1]
     shapes = [s.damped.real_shapes(mass).T.reshape(len(s.damped.frequencies), -1, 3) for s in states]
     comparison, more = _compare(case, states, shapes)
+    if comparison is not None and besides:
+        comparison = replace(comparison, beside=np.stack([_predicted(b, comparison) for b in besides]))
+    lossless = not any(joint.law.predicts_loss for joint in structure.joints)
     rigid = np.max([s.modes.frequencies[: case.rigid_count] for s in states], axis=0)
-    every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more, *_closing_notes(study, rigid)]
+    every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more]
+    every += [*(note for b in besides for note in b.notes), *_closing_notes(study, rigid)]
     totals = np.array([[spring.total() for spring in s.springs] for s in states])
     interfaces = [spring.interface for spring in states[0].springs]
     result = Result(
         title=study.title,
         loads=case.loads,
         frequencies=np.stack([s.damped.frequencies for s in states]),
-        loss_factors=np.stack([s.damped.loss_factors for s in states]),
+        loss_factors=np.stack([np.where(lossless, np.nan, s.damped.loss_factors) for s in states]),
         loss_error=np.stack([s.damped.error for s in states]),
-        free=free,
-        bonded=bonded,
+        free=bounds[0],
+        bonded=bounds[1],
+        low=_stacked([s.low for s in states]),
+        high=_stacked([s.high for s in states]),
+        beside=tuple(b.name for b in besides),
+        beside_frequencies=stacked(besides, "frequencies", len(states), len(bounds[0])),
+        beside_loss_factors=stacked(besides, "loss_factors", len(states), len(bounds[0])),
         rigid=rigid,
         mac=np.stack([_mac(states[0].damped.shapes, s.damped.shapes) for s in states]),
         points=np.concatenate([i.positions for i in interfaces]),
@@ -141,6 +171,22 @@ def collect(case: Case, states: Sequence[State], free: Array, bonded: Array, not
         return result
     full = next((s.test_response for s in states if s.test_response is not None), None)
     return replace(result, hammer=case.hammer.beside(result, full))
+
+
+def _stacked(rows: Sequence[Array | None]) -> Array | None:
+    kept = [row for row in rows if row is not None]
+    return np.stack(kept) if len(kept) == len(rows) else None
+
+
+def _predicted(beside: Beside, comparison: Comparison) -> Array:
+    """Frequencies [Hz] that another law predicts of the test's modes; NaN where it has no answer."""
+    if beside.case is not None:
+        mass = beside.case.structure.vibrating[1]
+        shapes = [s.damped.real_shapes(mass).T.reshape(len(s.damped.frequencies), -1, 3) for s in beside.states]
+        found, _ = _compare(beside.case, beside.states, shapes)
+        if found is not None:
+            return found.predicted
+    return np.full(comparison.frequencies.shape, np.nan)
 
 
 def _response(study: Study, states: Sequence[State]) -> Receptance | None:

@@ -1,12 +1,14 @@
 """One load of a case: the preload of its joints, their springs, the modes and the response."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
 from faying.fe.damped import DampedModes, damped_modes
 from faying.fe.interface import Interface
 from faying.fe.modes import Modes, lowest_modes
+from faying.fe.nearby import nearby_modes
 from faying.joint.equilibrium import PreloadState
 from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
@@ -16,6 +18,7 @@ from faying.measured.model import FullResponse
 from faying.notes import Note
 from faying.study.case import Case, Progress
 from faying.study.response import LoadedStructure, ResponseAtLoad
+from faying.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,6 +30,7 @@ class State:
         preload: the equilibrium of the joints.
         springs: stiffness and loss of each joint at its points.
         modes, damped: real modes with the springs, and complex modes with their loss.
+        low, high: frequencies [Hz] (m,) at the ends of the range that the laws state; None where none states one.
         response: what [response] asks for; test_response: that at the points of a hammer test.
         notes: where a law leaves its validity range, and the like.
     """
@@ -36,6 +40,8 @@ class State:
     springs: tuple[Springs[Interface], ...]
     modes: Modes
     damped: DampedModes
+    low: Array | None
+    high: Array | None
     response: ResponseAtLoad | None
     test_response: FullResponse | None
     notes: tuple[Note, ...]
@@ -87,10 +93,24 @@ def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress) 
         springs=springs,
         modes=modes,
         damped=damped,
+        low=_at_end("low", case, preload, modes),
+        high=_at_end("high", case, preload, modes),
         response=response,
         test_response=test_response,
         notes=(*notes, *law_notes(structure, preload, load)),
     )
+
+
+def _at_end(end: Literal["low", "high"], case: Case, preload: PreloadState, modes: Modes) -> Array | None:
+    """Frequencies [Hz] with every law that states a range at one end of it, under the same pressures."""
+    structure = case.structure
+    if not any(joint.law.has_range for joint in structure.joints):
+        return None
+    joints = [replace(j, law=replace(j.law, end=end)) if j.law.has_range else j for j in structure.joints]
+    changed = replace(structure, joints=tuple(joints))
+    stiffness, _ = changed.joined(changed.springs(preload.pressures))
+    mass = structure.vibrating[1]
+    return nearby_modes(modes, stiffness, mass, rigid=case.rigid_count, count=case.study.modes.count)[0]
 
 
 def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[Note]:
@@ -112,9 +132,6 @@ def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[
             )
             out.append(Note(code="beyond-law", joint=joint.name, load=load, share=share, text=text))
         answer = joint.law.answer(pressure)
-        if answer.loss_n is None and answer.loss_t is None:
-            text = f"{joint.name}: {model.name} defines no loss; the joint damps nothing"
-            out.append(Note(code="no-loss", joint=joint.name, text=text))
         for reason, mask in answer.reasons.items():
             share = float(weights @ mask / area)
             if share > 0:

@@ -10,6 +10,7 @@ from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt
 from faying.joint.solid_bolt import SolidBolt
 from faying.materials import Material
+from faying.study.keys.beside import BesideChoice
 from faying.study.keys.bolt import read_bolt
 from faying.study.keys.geometry import GeometryChoice, read_geometry
 from faying.study.keys.joint import JointChoice
@@ -31,6 +32,7 @@ class Study:
         text: the study file as it was read; files: all files that it names, so that a result depends on them.
         materials, parts: materials by name; name of the material of each part.
         geometry, surface, law, joints, bolts, supports, masses, modes, response, test, hammer: the tables of the file.
+        beside: other laws and surfaces whose modes stand beside those of the study.
         order: the order of tightening as indices of bolts, pass after pass; None where all are pulled at once.
     """
 
@@ -50,6 +52,7 @@ class Study:
     response: ResponseChoice | None = None
     test: TestChoice | None = None
     hammer: HammerChoice | None = None
+    beside: tuple[BesideChoice, ...] = ()
     text: str = field(default="", repr=False)
     files: tuple[Path, ...] = ()
 
@@ -97,6 +100,7 @@ class Study:
         law = LawChoice.of(top.table("law") or Table({}, "law", faults))
         shared = top.table("surface")
         surface = None if shared is None else SurfaceChoice.of(shared)
+        beside = tuple(BesideChoice.of(t, i) for i, t in enumerate(top.tables("beside")))
         _note_lacking(faults, joints, law, surface)
         read = [read_bolt(t, i, materials) for i, t in enumerate(top.tables("bolt", required=True))]
         bolts = tuple(bolt for bolt in read if bolt is not None)
@@ -130,6 +134,7 @@ class Study:
             response=response,
             test=test,
             hammer=hammer,
+            beside=beside,
             text=text,
             files=tuple(dict.fromkeys(faults.files)),
         )

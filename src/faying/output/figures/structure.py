@@ -115,7 +115,9 @@ def mode_shape(ax: Any, result: Result, mode: int, load: int = -1) -> Any:
     ax.set_axis_off()
     ax.view_init(elev=12, azim=-62)
     ax.set_title(
-        f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz, loss {result.loss_factors[load, mode]:.1e}", fontsize=9
+        f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz"
+        + ("" if np.isnan(eta := result.loss_factors[load, mode]) else f", loss {eta:.1e}"),
+        fontsize=9,
     )
     return ax
 

@@ -21,7 +21,7 @@ class JointChoice:
     name: str
     faces: tuple[str, str]
     springs: Literal["per-area", "per-node"] = "per-area"
-    tangential: Literal["law", "mindlin"] = "law"
+    tangential: Literal["law", "mindlin"] | None = None
     friction: float | None = None
     search_distance: float | None = None
     surface: SurfaceChoice | None = None
@@ -39,7 +39,7 @@ class JointChoice:
             name=table.text("name", f"joint {index + 1}"),
             faces=tuple(table.texts("faces", 2) or ("", "")),
             springs=table.text("springs", "per-area", ("per-area", "per-node")),
-            tangential=table.text("tangential", "law", ("law", "mindlin")),
+            tangential=table.text("tangential", None, ("law", "mindlin")),
             friction=table.number("friction", None),
             search_distance=table.quantity("search_distance", "m", None),
             surface=None if surface is None else SurfaceChoice.of(surface),

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import Literal
 
-from faying.contact.build import LawKind, build, check_entries, find, laws
+from faying.contact.auto import Choice, pick
+from faying.contact.build import AUTO, LawKind, build, check_entries, find, laws
 from faying.contact.inputs import RoughSurface
-from faying.contact.law import ContactLaw
 from faying.errors import InputError
 from faying.materials import CATALOGUE, RIGID, ContactPair, Material
 from faying.study.keys.reader import Table
@@ -21,7 +21,7 @@ OF_SURFACE = ("D", "G", "scan_area")
 class LawChoice:
     """The contact law of joints: its label, the values of its entries in SI units, what the rough face presses on."""
 
-    model: str = "JK"
+    model: str = AUTO
     counterbody: Literal["part", "rigid"] = "part"
     given: Mapping[str, object] = field(default_factory=dict)
     meant: frozenset[str] = field(
@@ -46,9 +46,6 @@ class LawChoice:
                 table.data.pop(name)
             elif (value := table.parameter(name, parameter)) is not None:
                 given[name] = value
-        if kind.law.joint_fault:
-            table.faults.add(f'{table.where}.model = "{kind.label.lower()}" {kind.law.joint_fault}')
-            return cls.unknown()
         moved = _note_misplaced(table, kind)
         meant = {name for name in kind.law.entries() if name in table.data and name not in given}
         for key in table.data:
@@ -100,10 +97,10 @@ class LawChoice:
             return f'[surface] is missing; model = "{self.model.lower()}" takes its inputs from a surface there'
         return self.kind.describe_missing(short, with_scan=surface == "scan") if short else ""
 
-    def make(self, surface: Surface, rough: Material, other: Material) -> ContactLaw:
-        """Return the law between the rough material and the other one. Raises InputError as `build`."""
+    def make(self, surface: Surface, rough: Material, other: Material) -> Choice:
+        """Return the law between the rough material and the other one, and why it. Raises InputError as `pick`."""
         pair = ContactPair(rough, RIGID if self.counterbody == "rigid" else other)
-        return build(self.kind, self.given, surface.rough, pair)
+        return pick(self.kind, self.given, surface.rough, pair)
 
 
 def _text(value: object, name: str) -> str:

@@ -1,26 +1,27 @@
 """[surface]: the scan of a rough face, or its D, G and area; read and fitted in one place."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from faying import units
-from faying.contact.inputs import FractalSurface, RoughSurface, SurfaceInputs
+from faying.contact.inputs import FractalSurface, RoughSurface
+from faying.contact.two_faces import COUNTERS, Counter, faces_of
 from faying.errors import InputError
 from faying.study.keys.reader import Table
-from faying.surface.form import prepared
-from faying.surface.fractal import FractalFit, fit_fractal
+from faying.surface.fractal import FractalFit
 from faying.surface.read import read_scan
-from faying.surface.scan import Scan
+from faying.surface.scan import Profile, Scan
+
+CACHE = ".faying"  # folder beside a scan that keeps its solved contacts
 
 
 @dataclass(frozen=True, kw_only=True)
 class SurfaceChoice:
     """The rough surface: a scan with its units and estimator, or D, G [m] and scan_area [m2] as given.
 
-    size or spacing [m]: of a scan whose file states neither.
+    size or spacing [m]: of a scan whose file states neither. counter: the other face, the file of its scan, "same" or
+    "smooth"; where D and G are given in place of a scan they are those of both faces together.
     """
 
     scan: Path | None = None
@@ -32,6 +33,7 @@ class SurfaceChoice:
     D: float | None = None
     G: float | None = None
     scan_area: float | None = None
+    counter: str = "same"
 
     @classmethod
     def of(cls, table: Table) -> "SurfaceChoice":
@@ -46,6 +48,7 @@ class SurfaceChoice:
             D=table.number("D", None),
             G=table.quantity("G", "m", None),
             scan_area=table.quantity("scan_area", "m^2", None),
+            counter=_counter(table),
         )
         if "scan" not in table.data:
             missing = [k for k in ("D", "G", "scan_area") if k not in table.data]
@@ -64,23 +67,43 @@ class SurfaceChoice:
             inputs = FractalSurface(D=self.D or 0.0, G=self.G or 0.0, scan_area=self.scan_area or 0.0)
             return Surface(rough=RoughSurface(inputs=inputs), origin="given in the study")
         scan = read_scan(self.scan, xy_unit=self.xy_unit, z_unit=self.z_unit, size=self.size, spacing=self.spacing)
-        if not isinstance(scan, Scan) and self.scan_area is None:
-            raise InputError(f"{self.scan.name} is a line scan, which covers no area; give surface.scan_area as well")
-        fit = fit_fractal(scan, method=self.method)
-        fractal: dict[str, Any] = {
-            "D": self.D or fit.D,
-            "G": self.G or fit.G,
-            "scan_area": self.scan_area or (scan.size[0] * scan.size[1] if isinstance(scan, Scan) else 0.0),
-        }
-        rough = RoughSurface(inputs=FractalSurface(**fractal))
-        if isinstance(scan, Scan):
-            ready = prepared(scan)
-            # slopes and curvatures come from measured heights alone: points that were filled in would smooth them
-            measured = np.where(ready.known, ready.scan.heights, np.nan)
-            inputs = SurfaceInputs.from_heights(measured, ready.scan.spacing, D=fractal["D"], G=fractal["G"])
-            rough = RoughSurface(inputs=replace(inputs, **fractal), scan=ready.scan)
-        source = f"scan {self.scan.name}: {' x '.join(map(str, scan.heights.shape))} points"
-        return Surface(rough=rough, origin=self.scan.name, fit=fit, source=source)
+        other: Counter = self.counter
+        if self.counter not in COUNTERS:
+            found = read_scan(Path(self.counter), xy_unit=self.xy_unit, z_unit=self.z_unit)
+            if not isinstance(found, Scan):
+                raise InputError(f"{Path(self.counter).name} is a line scan; two faces need two areal scans")
+            other = found
+        faces = faces_of(
+            scan,
+            other,
+            method=self.method,
+            D=self.D,
+            G=self.G,
+            scan_area=self.scan_area,
+            cache=self.scan.parent / CACHE,
+        )
+        source = f"scan {self.scan.name}: {' x '.join(map(str, scan.heights.shape))} points; {faces.counter}"
+        return Surface(
+            rough=faces.rough,
+            origin=self.scan.name,
+            fit=faces.fit,
+            source=source,
+            counter=faces.counter,
+            scans=(scan, other),
+            method=self.method,
+        )
+
+
+def _counter(table: Table) -> str:
+    value = table.data.get("counter", "same")
+    if value in COUNTERS:
+        return table.text("counter", "same") or "same"
+    if isinstance(value, str) and not (table.faults.folder / value).is_file():
+        table.faults.add(
+            f'{table.where}.counter = "{value}": no such file; give the scan of the other face, "same" or "smooth"'
+        )
+        table.data.pop("counter")
+    return str(table.file("counter", "same"))
 
 
 def _lengths(value: Any, name: str) -> tuple[float, float] | float:
@@ -91,12 +114,24 @@ def _lengths(value: Any, name: str) -> tuple[float, float] | float:
 
 @dataclass(frozen=True, kw_only=True)
 class Surface:
-    """What a law is made from, whence it comes, and the fit of D and G where a scan gave them."""
+    """What a law is made from, and whence it comes.
+
+    Args:
+        rough: both faces of a joint as one surface.
+        origin, source: the file, and a line on it.
+        fit: of D and G where a scan gave them.
+        counter: what the other face is, in words.
+        scans: of one face as it was read, and the other face.
+        method: estimator of D and G.
+    """
 
     rough: RoughSurface | None
     origin: str
     fit: FractalFit | None = None
     source: str = ""
+    counter: str = ""
+    scans: tuple[Scan | Profile, Counter] | None = None
+    method: str = "psd"
 
     @property
     def scan_area(self) -> float | None:
@@ -125,7 +160,7 @@ class Surface:
             "method": self.fit.method,
             "convention": self.fit.convention,
         }
-        return given | fitted | {"origin": self.origin}
+        return given | fitted | {"origin": self.origin, "counter": self.counter}
 
 
 NO_SURFACE = Surface(rough=None, origin="none: the contact law brings its own heights")

@@ -1,0 +1,139 @@
+"""The law for users who name none: the numerical contact of their scan, or the closed law that comes closest to it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import exp, log
+from pathlib import Path
+from typing import final
+
+import numpy as np
+
+from faying.contact.build import AUTO, LawKind, build, find, kinds
+from faying.contact.half_space import HalfSpace
+from faying.contact.inputs import RoughSurface
+from faying.contact.law import ContactLaw
+from faying.contact.two_faces import Counter, faces_of
+from faying.errors import FayingError, InputError
+from faying.materials import ContactPair
+from faying.surface.scan import Profile, Scan
+from faying.typing import Array
+
+CLOSE = 1.3  # a closed law stands for the numerical contact where their k_n differ by no more than this factor
+SHARES = np.array([10**-2.5, 1e-2, 10**-1.5])  # of the greatest pressure: where laws are compared
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class Choice:
+    """A law and why it was taken.
+
+    Args:
+        law: the law.
+        reason: one line; empty where the user named the law.
+        ratios: k_n of each closed law over that of the numerical contact, at the middle pressure.
+    """
+
+    law: ContactLaw
+    reason: str = ""
+    ratios: Mapping[str, float] = field(default_factory=dict)
+
+
+def pick(kind: LawKind | str, given: Mapping[str, object], surface: RoughSurface | None, pair: ContactPair) -> Choice:
+    """Return the law that a user names, or the choice among those of the surface for "auto".
+
+    "auto" takes the half-space contact of the scan where it resolves the contact at a hundredth of the hardness (at
+    least 30 points touch, and k_n moves by at most 25 % on half the points each way); else the closed law whose k_n
+    comes closest to it, where that lies within 30 %; else the half-space contact all the same, with its flags. With D
+    and G alone there is no contact to solve: JK is taken.
+
+    Raises:
+        InputError: as `build`, and for "auto" without a surface.
+    """
+    kind = find(kind) if isinstance(kind, str) else kind
+    if kind.label != AUTO:
+        return Choice(law=build(kind, given, surface, pair))
+    if surface is None:
+        raise InputError('model = "auto" takes its inputs from a surface; give [surface] with a scan, or name a law')
+    if surface.scan is None:
+        law = build("JK", given, surface, pair)
+        return Choice(law=law, reason="JK, for there is no areal scan to solve; a scan would give a better answer")
+    return _choose(surface, pair)
+
+
+def _choose(surface: RoughSurface, pair: ContactPair) -> Choice:
+    plastic = np.isfinite(pair.hardness)
+    law = build("half-space", {}, surface, pair)
+    assert isinstance(law, HalfSpace)
+    full = pair.hardness if plastic else law.greatest_pressure / 0.3
+    pressure = np.clip(SHARES * full, law.least_pressure, law.greatest_pressure)
+    exact = law.at_pressure(pressure)
+    assert exact.k_n is not None
+    ratios = closed_ratios(surface, pair, pressure, exact.k_n, plastic=bool(plastic))
+    middle = {name: float(row[1]) for name, row in ratios.items()}
+    nearest = min(ratios, key=lambda name: float(np.abs(np.log(ratios[name])).max()), default=None)
+    said = (
+        "" if nearest is None else f"; the closed law nearest to it, {nearest}, has {middle[nearest]:.2g} times its k_n"
+    )
+    at = f"at {pressure[1] / 1e6:.3g} MPa"
+    faults = [reason for reason, mask in exact.reasons.items() if mask[1]]
+    if not faults:
+        moved = float(np.interp(log(pressure[1]), np.log(law.ladder.pressure), np.abs(law.ladder.change[0])))
+        reason = (
+            f"half-space, which resolves the contact {at} (k_n moves by {exp(moved) - 1:.0%} on half the points){said}"
+        )
+        return Choice(law=law, reason=reason, ratios=middle)
+    if nearest is not None and np.abs(np.log(ratios[nearest])).max() <= log(CLOSE):
+        reason = (
+            f"{nearest}, with {middle[nearest]:.2g} times the k_n of the half-space, which does not resolve the contact"
+        )
+        return Choice(law=build(nearest, {}, surface, pair), reason=f"{reason} {at}: {faults[0]}", ratios=middle)
+    reason = f"half-space, though {faults[0]} {at}: no closed law lies within {CLOSE - 1:.0%} of it{said}"
+    return Choice(law=law, reason=reason, ratios=middle)
+
+
+def closed_ratios(
+    surface: RoughSurface, pair: ContactPair, pressure: Array, k_n: Array, *, plastic: bool
+) -> dict[str, Array]:
+    """k_n of the laws of summits over a given k_n [Pa/m] at pressures [Pa] (n,), by label; those that answer alone.
+
+    Metals that yield meet with the plastic asperities among them, others with Hertz's.
+    """
+    out = {}
+    for kind in kinds().values():
+        if kind.law.name != "GW" or bool(kind.fixed) is not plastic:
+            continue
+        try:
+            found = build(kind, {}, surface, pair).at_pressure(pressure).k_n
+        except FayingError:
+            continue
+        if found is not None and np.all(found > 0):
+            out[kind.label] = found / k_n
+    return out
+
+
+def law_for(
+    *,
+    scan: Scan | Profile,
+    pair: ContactPair,
+    counter: Counter = "same",
+    model: str = "auto",
+    cache: str | Path | None = None,
+) -> ContactLaw:
+    """Return the contact law of a joint from the scan of a face.
+
+    Args:
+        scan: of one face, as `read_scan` gives it.
+        pair: the materials that meet.
+        counter: the other face: its scan; "same", statistically alike but unrelated; or "smooth".
+        model: a law by name, or "auto": the half-space contact of the scan where it resolves the contact, else the
+            closed law nearest to it.
+        cache: folder that keeps solved contacts; None keeps nothing.
+
+    Returns:
+        The law. `faying.contact.auto.pick` gives the reason as well.
+
+    Raises:
+        InputError: for unknown names, and for scans from which the law cannot be made.
+    """
+    surface = faces_of(scan, counter, cache=None if cache is None else Path(cache)).rough
+    return pick(model, {}, surface, pair).law

@@ -1,0 +1,256 @@
+"""The contacts of one map at rising pressures, at three resolutions, and what they say of each other.
+
+A large map is solved at every fourth pressure only. Between them stands the map on half as many points each way, solved
+at every second, and that on a quarter, solved at all: ln k_n(full) is ln k_n(quarter) plus the two differences. These
+change little from one pressure to the next and are interpolated. A small map is solved everywhere.
+"""
+
+import hashlib
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol, final
+
+import numpy as np
+
+from faying.errors import InputError, NotConverged
+from faying.files import write_atomically
+from faying.halfspace.solution import HalfSpaceContact
+from faying.halfspace.solve import halved_map
+from faying.typing import Array
+
+LARGE = 256  # points on the shorter side above which a map is not solved at every pressure
+STRIDES = 4, 2, 1
+GROWTH = 2.5  # four times the points each way are two doublings; a quarter on top of what the last ones changed
+FEWEST_CELLS = 16  # on the side of a quarter of the window
+STORED = 1  # version of what the cache holds
+
+
+class Solve(Protocol):
+    """Solves one map at one pressure [Pa], from an earlier contact of it."""
+
+    def __call__(
+        self, heights: Array, spacing: tuple[float, float], pressure: float, *, start: HalfSpaceContact | None
+    ) -> HalfSpaceContact:
+        """Return the contact."""
+
+
+Numbers = Callable[[HalfSpaceContact, bool], dict[str, float]]
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Ladder:
+    """Numbers of the contact at rising pressures.
+
+    Args:
+        pressure: [Pa] (n,).
+        values: numbers by name (n,), on the full map.
+        points: how many points touch (n,).
+        change: of ln k_n from half of the points each way to all, and from a quarter to half [-] (2, n).
+        window: standard error of ln k_n that comes from the size of the window [-] (n,).
+    """
+
+    pressure: Array
+    values: Mapping[str, Array]
+    points: Array
+    change: Array
+    window: Array
+
+    @property
+    def least_factor(self) -> Array:
+        """Lower end of the range of k_n over k_n [-] (n,)."""
+        return np.asarray(np.exp(-(np.abs(self.change).max(axis=0) + self.window)))
+
+    @property
+    def greatest_factor(self) -> Array:
+        """Upper end of the range of k_n over k_n [-] (n,): four times the points each way, at the larger rate seen."""
+        return np.asarray(np.exp(GROWTH * np.abs(self.change).max(axis=0) + self.window))
+
+
+def climb(
+    heights: Array,
+    spacing: tuple[float, float],
+    pressure: Array,
+    solve: Solve,
+    numbers: Numbers,
+    progress: Callable[[int, int], object] | None = None,
+) -> Ladder:
+    """Solve a map at rising pressures.
+
+    Args:
+        heights: [m] (ny, nx), whole and levelled; spacing (dx, dy) [m].
+        pressure: [Pa] (n,), n >= 4.
+        solve: solves a map at a pressure.
+        numbers: area, k_n, energy_n of a contact; with True also k_t, k_load and the losses.
+        progress: called with (solutions done, solutions in all).
+
+    Returns:
+        The ladder, up to the last pressure at which some point of every map is open.
+    """
+    large = min(heights.shape) > LARGE
+    maps = [(heights, spacing)]
+    for _ in STRIDES[1:]:
+        maps.append(halved_map(*maps[-1]))
+    strides = STRIDES if large else (1, 1, 1)
+    parts = quarters(*maps[1 if large else 0])
+    n = len(pressure)
+    total = sum(len(_rungs(n, s)) for s in strides) + len(parts) * len(_rungs(n, STRIDES[0]))
+    done = 0
+    rows: list[dict[int, dict[str, float]]] = []
+
+    def solved(heights: Array, spacing: tuple[float, float], rungs: list[int], detail: bool) -> dict[int, Any]:
+        nonlocal done
+        contact, out = None, {}
+        for i in rungs:
+            contact = solve(heights, spacing, float(pressure[i]), start=contact)
+            out[i] = numbers(contact, detail) | {"points": float(np.count_nonzero(contact.traction))}
+            done += 1
+            if progress is not None:
+                progress(done, total)
+        return out
+
+    detailed = len(maps) - 1 if large else 0
+    for level, (level_map, stride) in enumerate(zip(maps, strides, strict=True)):
+        rows.append(solved(*level_map, _rungs(n, stride), level == detailed))
+    pieces = [solved(*part, _rungs(n, STRIDES[0]), False) for part in parts]
+    top = min(_closed(level, n) for level in rows)
+    if top < 2:
+        raise NotConverged(
+            f"every point of the scan touches from {pressure[max(top - 1, 0)]:.4g} Pa on: it has no roughness that a "
+            "joint feels; check the unit of its heights"
+        )
+    return _joined(np.asarray(pressure), rows, pieces, top, detailed)
+
+
+def _rungs(n: int, stride: int) -> list[int]:
+    return sorted({*range(0, n, stride), n - 1})
+
+
+def _closed(level: Mapping[int, Mapping[str, float]], n: int) -> int:
+    """The first rung at which every point of a map touches; n where there is none."""
+    return min((i for i, row in level.items() if not np.isfinite(row["k_n"])), default=n)
+
+
+def _joined(
+    pressure: Array, rows: list[dict[int, Any]], pieces: list[dict[int, Any]], top: int, detailed: int
+) -> Ladder:
+    """Put the levels together: the coarsest at all pressures, each finer one by what it changes."""
+    p = pressure[:top]
+    x = np.log(p)
+
+    def curve(level: Mapping[int, Mapping[str, float]], name: str) -> Array:
+        return np.array([level[i][name] for i in sorted(level) if i < top])
+
+    def at(level: Mapping[int, Any]) -> Array:
+        return np.array([i for i in sorted(level) if i < top])
+
+    def on_all(name: str) -> list[Array]:
+        """Logarithms of a positive number on each map, from the coarsest to the full one, at all pressures."""
+        known = [np.log(curve(rows[-1], name))]
+        for level in reversed(rows[:-1]):
+            rungs = at(level)
+            known.append(known[-1] + _between(x[rungs], np.log(curve(level, name)) - known[-1][rungs], x))
+        return known
+
+    coarse, half, full = on_all("k_n")
+    values = {name: np.exp(on_all(name)[-1]) for name in ("area", "energy_n")} | {"k_n": np.exp(full)}
+    base = {name: curve(rows[detailed], name) for name in rows[detailed][0]}
+    for name in set(base) - {*values, "points"}:
+        over = {"k_t": "k_n", "k_load": "k_n", "energy_t": "energy_n"}.get(name)
+        values[name] = base[name] if over is None else base[name] / base[over] * values[over]
+    points = np.exp(on_all("points")[-1])
+    return Ladder(
+        pressure=p,
+        values=values,
+        points=points,
+        change=np.stack([full - half, half - coarse]),
+        window=np.sqrt(_spread(pieces, x, at, curve, half if detailed else full) ** 2 + 1 / points),
+    )
+
+
+def _between(x: Array, y: Array, at: Array) -> Array:
+    from scipy.interpolate import PchipInterpolator
+
+    return np.asarray(PchipInterpolator(x, y)(at)) if len(x) > 1 else np.full(at.shape, y[0])
+
+
+def _spread(pieces: list[dict[int, Any]], x: Array, at: Any, curve: Any, whole: Array) -> Array:
+    """Standard error of ln k_n from the quarters of the window, with what their mean lies beside the whole."""
+    if not pieces:
+        return np.zeros(x.shape)
+    rungs = at(pieces[0])
+    logs = np.log(np.stack([curve(piece, "k_n") for piece in pieces]))
+    kept = rungs[np.all(np.isfinite(logs), axis=0)]
+    if not len(kept):
+        return np.zeros(x.shape)
+    logs = logs[:, np.all(np.isfinite(logs), axis=0)]
+    error = logs.std(axis=0, ddof=1) / np.sqrt(len(pieces))
+    beside = logs.mean(axis=0) - whole[kept]
+    return np.asarray(np.interp(x, x[kept], np.hypot(error, beside)))
+
+
+def quarters(heights: Array, spacing: tuple[float, float]) -> list[tuple[Array, tuple[float, float]]]:
+    """The four quarters of a map, each levelled; none where they would be smaller than 16 points a side."""
+    rows, columns = (n // 2 for n in heights.shape)
+    if min(rows, columns) < FEWEST_CELLS:
+        return []
+    out = []
+    y, x = np.meshgrid(np.linspace(-1, 1, rows), np.linspace(-1, 1, columns), indexing="ij")
+    for top in (0, heights.shape[0] - rows):
+        for left in (0, heights.shape[1] - columns):
+            part = heights[top : top + rows, left : left + columns]
+            part = part - part.mean()
+            part = part - x * ((x * part).mean() / (x * x).mean()) - y * ((y * part).mean() / (y * y).mean())
+            out.append((part, spacing))
+    return out
+
+
+def cached(make: Callable[[], Ladder], folder: Path | None, key: Mapping[str, object], heights: Array) -> Ladder:
+    """Return a ladder from the cache, or make it and keep it there.
+
+    Args:
+        make: solves it.
+        folder: where it is kept; None keeps nothing. FAYING_CACHE names another folder for all, or is "off".
+        key: all that the ladder depends on beside the heights [m].
+    """
+    asked = os.environ.get("FAYING_CACHE", "")
+    place = None if asked == "off" else Path(asked) if asked else folder
+    if place is None:
+        return make()
+    text = repr(sorted(key.items())) + f" {STORED}"
+    digest = hashlib.sha256(text.encode() + np.ascontiguousarray(heights).tobytes()).hexdigest()
+    file = place / f"half-space-{digest[:24]}.npz"
+    kept = _read(file)
+    if kept is not None:
+        return kept
+    ladder = make()
+    arrays = {f"value_{name}": value for name, value in ladder.values.items()}
+    arrays |= {name: getattr(ladder, name) for name in ("pressure", "points", "change", "window")}
+
+    def store(temporary: Path) -> None:
+        with temporary.open("wb") as stream:
+            np.savez(stream, allow_pickle=False, **arrays)
+
+    try:
+        place.mkdir(exist_ok=True)
+        write_atomically(file, store)
+    except (InputError, OSError):  # a folder that cannot be written: the ladder is solved anew next time
+        pass
+    return ladder
+
+
+def _read(file: Path) -> Ladder | None:
+    """A ladder as it was kept; None where there is none or its file is damaged."""
+    try:
+        with np.load(file, allow_pickle=False) as data:
+            values = {name.removeprefix("value_"): data[name] for name in data.files if name.startswith("value_")}
+            own = {name: data[name] for name in ("pressure", "points", "change", "window")}
+            return Ladder(values=values, **own)
+    except (OSError, ValueError, KeyError, EOFError):
+        return None
+    except Exception as fault:  # zipfile.BadZipFile, zlib.error: what a cut file raises
+        if type(fault).__module__ in ("zipfile", "zlib"):
+            return None
+        raise

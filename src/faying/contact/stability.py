@@ -1,0 +1,142 @@
+"""How far a law's stiffness depends on the window and on the resolution of the scan."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import log
+from typing import final
+
+import numpy as np
+
+from faying.contact.auto import pick
+from faying.contact.build import LawKind, find
+from faying.contact.half_space import HalfSpace
+from faying.contact.law import ContactLaw
+from faying.contact.two_faces import Counter, faces_of
+from faying.errors import FayingError, InputError
+from faying.halfspace.solve import halved_map
+from faying.materials import ContactPair
+from faying.surface.form import prepared
+from faying.surface.scan import Scan
+
+UNSTABLE = 0.25  # a greater relative change of k_n is told
+CUTS = {"half window": 0.5, "quarter window": 0.25}
+WHOLE, COARSE = "full scan", "half the points"
+CASES = (WHOLE, *CUTS, COARSE)
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class Stability:
+    """k_n of one law on parts of a scan.
+
+    Args:
+        label: of the law.
+        pressure: at which it was asked [Pa].
+        k_n: [Pa/m] on the full scan, on its middle half and quarter each way, and on half the points each way; NaN
+            where the law has no answer.
+    """
+
+    label: str
+    pressure: float
+    k_n: Mapping[str, float]
+
+    @property
+    def factors(self) -> dict[str, float]:
+        """k_n over that of the full scan [-]."""
+        return {name: value / self.k_n[WHOLE] for name, value in self.k_n.items()}
+
+    @property
+    def worst(self) -> tuple[str, float]:
+        """The part of the scan that moves k_n most, and its factor [-]; the whole and 1 where nothing was answered."""
+        moved = {name: f for name, f in self.factors.items() if np.isfinite(f) and f > 0}
+        return max(moved.items(), key=lambda item: abs(log(item[1])), default=(WHOLE, 1.0))
+
+    @property
+    def stable(self) -> bool:
+        """Whether no part of the scan moves k_n by more than 25 %."""
+        return abs(log(self.worst[1])) <= log(1 + UNSTABLE)
+
+
+def stability(
+    scan: Scan,
+    pair: ContactPair,
+    *,
+    model: LawKind | str = "auto",
+    given: Mapping[str, object] | None = None,
+    counter: Counter = "same",
+    method: str = "psd",
+    pressure: float,
+) -> Stability:
+    """Ask a law for k_n on the whole of a scan, on parts of it, and on fewer of its points.
+
+    Args:
+        scan: of one face, as it was measured.
+        pair: the materials that meet.
+        model: the law; "auto" stays with the law that it takes on the full scan.
+        given: entries of the law in SI units.
+        counter: the other face, as `faces_of` takes it; its scan is cut alike.
+        method: estimator of D and G.
+        pressure: nominal [Pa], above 0.
+
+    Returns:
+        The stiffnesses. Every part is levelled, filled and fitted anew, as a scan of that size would be.
+
+    Raises:
+        InputError: for unknown laws, and where the law has no answer on the full scan.
+    """
+    kind = find(model) if isinstance(model, str) else model
+    given = dict(given or {})
+    parts = {name: (cropped(scan, share), cropped(counter, share)) for name, share in CUTS.items()}
+    parts |= {WHOLE: (scan, counter), COARSE: (_halved(scan), _halved(counter))}
+    law = pick(kind, given, faces_of(scan, counter, method=method).rough, pair).law
+    kind = label_of(law)
+    values = {WHOLE: stiffness_at(law, pressure)}
+    for name in CASES[1:]:
+        one, other = parts[name]
+        try:
+            if not isinstance(one, Scan) or other is None:
+                raise InputError("too few points")
+            surface = faces_of(one, other, method=method).rough
+            values[name] = stiffness_at(pick(kind, given, surface, pair).law, pressure)
+        except FayingError:
+            values[name] = np.nan
+    return Stability(label=kind.label, pressure=pressure, k_n=values)
+
+
+def label_of(law: ContactLaw) -> LawKind:
+    """The kind that a law is of, its variant by what that fixes."""
+    for label, fixed in law.variants.items():
+        if all(getattr(law, name) == value for name, value in fixed.items()):
+            return find(label)
+    return find(law.name)
+
+
+def stiffness_at(law: ContactLaw, pressure: float) -> float:
+    """k_n [Pa/m] at one pressure [Pa]; of the half-space by the one contact, not by its ladder."""
+    if isinstance(law, HalfSpace):
+        return law.contact_at(pressure).normal_stiffness(loading=law.stiffness == "loading")
+    k_n = law.at_pressure(pressure).k_n
+    if k_n is None:
+        raise InputError(f"{law.name} defines no normal stiffness")
+    return float(k_n)
+
+
+def cropped(scan: Counter, share: float) -> Counter | None:
+    """The middle part of a scan, a word as it is; None where too few points are left."""
+    if not isinstance(scan, Scan):
+        return scan
+    try:
+        return scan.cropped(share)
+    except InputError:
+        return None
+
+
+def _halved(scan: Counter) -> Counter | None:
+    """A scan on half as many points each way, by means over four, a word as it is; None where too few are left."""
+    if not isinstance(scan, Scan):
+        return scan
+    if min(scan.shape) < 32:
+        return None
+    ready = prepared(scan).scan
+    heights, spacing = halved_map(ready.heights, ready.spacing)
+    return Scan(heights=heights, spacing=spacing, source=scan.source, instrument=scan.instrument)
