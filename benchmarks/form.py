@@ -3,8 +3,8 @@
     python benchmarks/form.py [--only t-specimen|brake-reuss]
 
 The T-specimen with a crown of 14 um, and the Brake-Reuss beam with its measured form where its data have been written
-(examples/brake-reuss-beam/make_data.py). For each: the preload alone and the whole run, what the preload took, and the ratio
-to the flat faces.
+(examples/brake-reuss-beam/make_data.py). For each: the preload alone and the whole run, what the preload took, and the
+ratio to the flat faces.
 """
 
 import argparse

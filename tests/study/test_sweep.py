@@ -109,11 +109,13 @@ def test_a_cluster_gives_the_same(plan, done, tmp_path, monkeypatch):
     assert there.frequencies == pytest.approx(done.frequencies, rel=1e-6)
 
 
-def test_points_beyond_the_law_have_no_answer_and_say_why(plan, tmp_path):
-    found = sweep(plan, axes("bolt.preload=1 kN,2 kN,400 kN"), tmp_path / "out.nc")
-    assert np.isfinite(found.frequencies[:2]).all()
-    assert np.isnan(found.frequencies[2]).all()
-    assert any("beyond the end of the law" in reason for reason in found.reasons)
+def test_points_beyond_the_law_are_held_there_and_counted(plan, tmp_path):
+    found = sweep(plan, axes("bolt.preload=1 kN,2 kN,400 kN,800 kN"), tmp_path / "out.nc")
+    assert np.isfinite(found.frequencies).all()
+    assert found.beyond_share[1] == 0
+    assert found.beyond_share[3] > 0.5
+    assert found.to_dict()["beyond_law"] == np.count_nonzero(found.beyond_share > 0.1)
+    assert found.frequencies[3] == pytest.approx(found.frequencies[2], rel=0.02)  # no law rises there any more
 
 
 def test_values_of_an_axis():
@@ -163,13 +165,22 @@ def test_the_path_through_the_grid_meets_every_point_once_and_steps_to_neighbour
     assert np.all(np.abs(np.diff(places, axis=0)).sum(axis=1) == 1)
 
 
-def test_a_sweep_whose_middle_has_no_answer(plan, tmp_path):
+def test_a_sweep_whose_middle_has_no_answer(plan, tmp_path, monkeypatch):
     """The bases begin where there is an answer; the rest is NaN and told."""
-    swept = sweep(plan, axes("bolt.preload=2 kN,400 kN"), tmp_path / "out.nc")
+    made = module.Recipe.laws
+
+    def some(recipe, index):
+        if recipe.grid.point(index).forces[0] > 3e3:
+            raise faying.InputError("no law here")
+        return made(recipe, index)
+
+    monkeypatch.setattr(module.Recipe, "laws", some)
+    swept = sweep(plan, axes("bolt.preload=2 kN,4 kN"), tmp_path / "out.nc")
     assert np.all(np.isfinite(swept.frequencies[0]))
     assert np.all(np.isnan(swept.frequencies[1]))
-    with pytest.raises(faying.InputError, match="lower the preload"):
-        sweep(plan, axes("bolt.preload=400 kN,500 kN"), tmp_path / "none.nc")
+    assert swept.reasons == {"no law here": 1}
+    with pytest.raises(faying.InputError, match="no law here"):
+        sweep(plan, axes("bolt.preload=4 kN,5 kN"), tmp_path / "none.nc")
     assert not list(tmp_path.glob("none*"))
 
 

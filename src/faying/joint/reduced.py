@@ -161,11 +161,11 @@ class ReducedModel:
             padded = np.concatenate([start, np.zeros(len(load) - len(start))])
             try:
                 balance = ReducedEquilibrium(self.static_stiffness, joints, friction=friction)
-                return balance.solve(load, start=padded, beyond=1.0, tolerance=BALANCED)
+                return balance.solve(load, start=padded, tolerance=BALANCED)
             except NotConverged:
                 pass
         balance = ReducedEquilibrium(self.static_stiffness, joints, friction=friction)
-        return balance.solve(load, beyond=1.0, tolerance=BALANCED)
+        return balance.solve(load, tolerance=BALANCED)
 
     def springs(self, laws: Sequence[JointLaw], pressures: Sequence[Array]) -> list[Springs[ReducedMotion]]:
         """Springs of all joints under pressures [Pa], one array for each joint."""

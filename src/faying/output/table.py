@@ -32,6 +32,21 @@ def ranges(result: Result) -> Rows:
     return rows
 
 
+def beyond(result: Result) -> Rows:
+    """One row per mode: held at the end of the law and bonded beyond it; empty where the law covers all pressures."""
+    if result.beyond_frequencies is None or result.beyond_loss_factors is None:
+        return []
+    rows: Rows = [["mode", *(f"{load / 1e3:g} kN held .. bonded [Hz] (loss)" for load in result.loads)]]
+    for j in range(len(result.bonded)):
+        cells = []
+        for i in range(len(result.loads)):
+            low, high = result.frequencies[i, j], result.beyond_frequencies[i, j]
+            losses = f"{result.loss_factors[i, j]:.1e} .. {result.beyond_loss_factors[i, j]:.1e}"
+            cells.append(f"{low:.2f} .. {high:.2f}, {high / low - 1:+.2%} ({losses})")
+        rows.append([str(j + 1), *cells])
+    return rows
+
+
 def comparison(result: Result) -> Rows:
     """One row per preload and source, errors relative to the test; then the change with preload for each."""
     c = result.comparison

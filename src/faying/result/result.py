@@ -132,6 +132,12 @@ class Result:
     high: Array | None = variable(
         "load", "mode", unit="Hz", long_name="frequency at the upper end of the laws' range", default=None
     )
+    beyond_frequencies: Array | None = variable(
+        "load", "mode", unit="Hz", long_name="frequency with what is beyond the law's end bonded", default=None
+    )
+    beyond_loss_factors: Array | None = variable(
+        "load", "mode", unit="1", long_name="loss factor with what is beyond the law's end bonded", default=None
+    )
     beside_frequencies: Array | None = variable(
         "beside", "load", "mode", unit="Hz", long_name="frequency under another law", gaps=True, default=None
     )

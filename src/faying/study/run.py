@@ -18,6 +18,7 @@ from faying.joint.support_check import RIGID_BELOW
 from faying.notes import Note
 from faying.result import Comparison, Provenance, Receptance, Result
 from faying.study.beside import Beside, solve_beside, stacked
+from faying.study.beyond import stiff_as_bonded
 from faying.study.case import Case, Progress, Report
 from faying.study.findings import against_exact_contact, falling
 from faying.study.solve import State, solve
@@ -85,7 +86,7 @@ def _bonded(case: Case) -> tuple[Modes, list[Note]]:
     apart = [joint.name for joint in structure.joints if bond(structure.mesh, [joint.faces]) is None]
     why = f"the faces of {', '.join(apart)} do not match node for node" if apart else "supports hold some of the nodes"
     text = f"{why}: the bonded modes use springs a thousand times as stiff as the parts in place of bonded faces"
-    stiff = 1e3 * max(m.E for m in structure.materials.values()) / structure.mesh.size
+    stiff = stiff_as_bonded(structure)
     for joint in structure.joints:
         springs = joint.interface.springs(*2 * (np.full(len(joint.interface.weights), stiff),))
         K = K + constrain(springs, structure.fixed, 0.0)
@@ -110,9 +111,7 @@ def collect(
     """
     study, structure = case.study, case.structure
     nodes, triangles = structure.outline()
-    # those of the complex modes, whose frequencies stand beside them: real modes that lie close mix otherwise
-    mass = structure.vibrating[1]
-    shapes = [s.damped.real_shapes(mass).T.reshape(len(s.damped.frequencies), -1, 3) for s in states]
+    shapes = _shapes(case, states)
     comparison, more = _compare(case, states, shapes)
     if comparison is not None and besides:
         comparison = replace(comparison, beside=np.stack([_predicted(b, comparison) for b in besides]))
@@ -120,7 +119,6 @@ def collect(
     rigid = np.max([s.modes.frequencies[: case.rigid_count] for s in states], axis=0)
     every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more]
     every += [*(note for b in besides for note in b.notes), *_closing_notes(study, rigid)]
-    totals = np.array([[spring.total() for spring in s.springs] for s in states])
     interfaces = [spring.interface for spring in states[0].springs]
     result = Result(
         title=study.title,
@@ -132,6 +130,8 @@ def collect(
         bonded=bounds[1],
         low=_stacked([s.low for s in states]),
         high=_stacked([s.high for s in states]),
+        beyond_frequencies=_bonded_beyond(states, "frequencies"),
+        beyond_loss_factors=_bonded_beyond(states, "loss_factors"),
         beside=tuple(b.name for b in besides),
         beside_frequencies=stacked(besides, "frequencies", len(states), len(bounds[0])),
         beside_loss_factors=stacked(besides, "loss_factors", len(states), len(bounds[0])),
@@ -144,8 +144,8 @@ def collect(
         k_n=np.stack([np.concatenate([spring.k_n for spring in s.springs]) for s in states]),
         k_t=np.stack([np.concatenate([spring.k_t for spring in s.springs]) for s in states]),
         slipping=np.array([s.preload.slipping for s in states]),
-        total_k_n=totals[:, :, 0],
-        total_k_t=totals[:, :, 1],
+        total_k_n=np.array([[spring.total()[0] for spring in s.springs] for s in states]),
+        total_k_t=np.array([[spring.total()[1] for spring in s.springs] for s in states]),
         bolt_forces=np.array([s.preload.bolt_forces for s in states]),
         imbalance=np.array([s.preload.imbalance for s in states]),
         newton_steps=np.array([s.preload.newton_steps for s in states]),
@@ -181,12 +181,17 @@ def _stacked(rows: Sequence[Array | None]) -> Array | None:
 def _predicted(beside: Beside, comparison: Comparison) -> Array:
     """Frequencies [Hz] that another law predicts of the test's modes; NaN where it has no answer."""
     if beside.case is not None:
-        mass = beside.case.structure.vibrating[1]
-        shapes = [s.damped.real_shapes(mass).T.reshape(len(s.damped.frequencies), -1, 3) for s in beside.states]
-        found, _ = _compare(beside.case, beside.states, shapes)
+        found, _ = _compare(beside.case, beside.states, _shapes(beside.case, beside.states))
         if found is not None:
             return found.predicted
     return np.full(comparison.frequencies.shape, np.nan)
+
+
+def _bonded_beyond(states: Sequence[State], name: str) -> Array | None:
+    """Frequencies or loss factors with what is beyond the end of a law bonded; None where nothing is at any load."""
+    if all(s.beyond is None for s in states):
+        return None
+    return np.stack([getattr(s.damped if s.beyond is None else s.beyond, name) for s in states])
 
 
 def _response(study: Study, states: Sequence[State]) -> Receptance | None:
@@ -204,6 +209,12 @@ def _response(study: Study, states: Sequence[State]) -> Receptance | None:
         error=np.array([one.error for one in found]),
         **sides,
     )
+
+
+def _shapes(case: Case, states: Sequence[State]) -> list[Array]:
+    """Shapes (m, nodes, 3) at each load: those of the complex modes, for real modes that lie close mix."""
+    mass = case.structure.vibrating[1]
+    return [s.damped.real_shapes(mass).T.reshape(len(s.damped.frequencies), -1, 3) for s in states]
 
 
 def _mac(first: Complex, other: Complex) -> Array:

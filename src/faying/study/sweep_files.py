@@ -17,6 +17,8 @@ from faying.netcdf import Variable
 from faying.study.axes import Axis, Grid
 from faying.typing import Array
 
+BEYOND = 0.1  # share of the contact beyond the end of the law from which a point is told
+
 
 @dataclass(frozen=True, kw_only=True)
 class Sweep:
@@ -58,6 +60,7 @@ class Sweep:
             "tolerance": self.tolerance,
             "basis": {"equilibrium": self.basis[0], "vibration": self.basis[1]},
             "without_answer": self.reasons,
+            "beyond_law": int(np.count_nonzero(self.beyond_share > BEYOND)),
             "file": str(self.path),
         }
 
