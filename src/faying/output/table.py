@@ -41,8 +41,8 @@ def beyond(result: Result) -> Rows:
         cells = []
         for i in range(len(result.loads)):
             low, high = result.frequencies[i, j], result.beyond_frequencies[i, j]
-            losses = f"{result.loss_factors[i, j]:.1e} .. {result.beyond_loss_factors[i, j]:.1e}"
-            cells.append(f"{low:.2f} .. {high:.2f}, {high / low - 1:+.2%} ({losses})")
+            losses = f" ({result.loss_factors[i, j]:.1e} .. {result.beyond_loss_factors[i, j]:.1e})"
+            cells.append(f"{low:.2f} .. {high:.2f}, {high / low - 1:+.2%}{'' if 'nan' in losses else losses}")
         rows.append([str(j + 1), *cells])
     return rows
 

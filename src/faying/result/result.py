@@ -136,7 +136,12 @@ class Result:
         "load", "mode", unit="Hz", long_name="frequency with what is beyond the law's end bonded", default=None
     )
     beyond_loss_factors: Array | None = variable(
-        "load", "mode", unit="1", long_name="loss factor with what is beyond the law's end bonded", default=None
+        "load",
+        "mode",
+        unit="1",
+        long_name="loss factor with what is beyond the law's end bonded",
+        gaps=True,
+        default=None,
     )
     beside_frequencies: Array | None = variable(
         "beside", "load", "mode", unit="Hz", long_name="frequency under another law", gaps=True, default=None

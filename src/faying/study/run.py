@@ -119,7 +119,6 @@ def collect(
     rigid = np.max([s.modes.frequencies[: case.rigid_count] for s in states], axis=0)
     every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more]
     every += [*(note for b in besides for note in b.notes), *_closing_notes(study, rigid)]
-    interfaces = [spring.interface for spring in states[0].springs]
     result = Result(
         title=study.title,
         loads=case.loads,
@@ -130,22 +129,13 @@ def collect(
         bonded=bounds[1],
         low=_stacked([s.low for s in states]),
         high=_stacked([s.high for s in states]),
-        beyond_frequencies=_bonded_beyond(states, "frequencies"),
-        beyond_loss_factors=_bonded_beyond(states, "loss_factors"),
+        **_bonded_beyond(states, lossless),
         beside=tuple(b.name for b in besides),
         beside_frequencies=stacked(besides, "frequencies", len(states), len(bounds[0])),
         beside_loss_factors=stacked(besides, "loss_factors", len(states), len(bounds[0])),
         rigid=rigid,
         mac=np.stack([_mac(states[0].damped.shapes, s.damped.shapes) for s in states]),
-        points=np.concatenate([i.positions for i in interfaces]),
-        weights=np.concatenate([i.weights for i in interfaces]),
-        joint_of_point=np.concatenate([np.full(len(i.weights), k) for k, i in enumerate(interfaces)]),
-        pressure=np.stack([np.concatenate([spring.pressure for spring in s.springs]) for s in states]),
-        k_n=np.stack([np.concatenate([spring.k_n for spring in s.springs]) for s in states]),
-        k_t=np.stack([np.concatenate([spring.k_t for spring in s.springs]) for s in states]),
-        slipping=np.array([s.preload.slipping for s in states]),
-        total_k_n=np.array([[spring.total()[0] for spring in s.springs] for s in states]),
-        total_k_t=np.array([[spring.total()[1] for spring in s.springs] for s in states]),
+        **_at_points(states),
         bolt_forces=np.array([s.preload.bolt_forces for s in states]),
         imbalance=np.array([s.preload.imbalance for s in states]),
         newton_steps=np.array([s.preload.newton_steps for s in states]),
@@ -187,11 +177,32 @@ def _predicted(beside: Beside, comparison: Comparison) -> Array:
     return np.full(comparison.frequencies.shape, np.nan)
 
 
-def _bonded_beyond(states: Sequence[State], name: str) -> Array | None:
-    """Frequencies or loss factors with what is beyond the end of a law bonded; None where nothing is at any load."""
+def _at_points(states: Sequence[State]) -> dict[str, Any]:
+    """Fields of the result at the points of the joints, and their sums over each joint."""
+    interfaces = [spring.interface for spring in states[0].springs]
+    totals = np.array([[spring.total() for spring in s.springs] for s in states])
+    return {
+        "points": np.concatenate([i.positions for i in interfaces]),
+        "weights": np.concatenate([i.weights for i in interfaces]),
+        "joint_of_point": np.concatenate([np.full(len(i.weights), k) for k, i in enumerate(interfaces)]),
+        "pressure": np.stack([np.concatenate([spring.pressure for spring in s.springs]) for s in states]),
+        "k_n": np.stack([np.concatenate([spring.k_n for spring in s.springs]) for s in states]),
+        "k_t": np.stack([np.concatenate([spring.k_t for spring in s.springs]) for s in states]),
+        "slipping": np.array([s.preload.slipping for s in states]),
+        "total_k_n": totals[:, :, 0],
+        "total_k_t": totals[:, :, 1],
+    }
+
+
+def _bonded_beyond(states: Sequence[State], lossless: bool) -> dict[str, Any]:
+    """Frequencies and loss factors with what is beyond the end of a law bonded, where anything is at any load."""
     if all(s.beyond is None for s in states):
-        return None
-    return np.stack([getattr(s.damped if s.beyond is None else s.beyond, name) for s in states])
+        return {}
+    both = [s.damped if s.beyond is None else s.beyond for s in states]
+    return {
+        "beyond_frequencies": np.stack([one.frequencies for one in both]),
+        "beyond_loss_factors": np.stack([np.where(lossless, np.nan, one.loss_factors) for one in both]),
+    }
 
 
 def _response(study: Study, states: Sequence[State]) -> Receptance | None:
