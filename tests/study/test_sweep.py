@@ -7,6 +7,7 @@ import pytest
 import xarray
 
 import faying
+from faying.joint.form import Form
 from faying.study import Study, run
 from faying.study import sweep as module
 from faying.study.axes import Grid, axis_of
@@ -223,3 +224,28 @@ def test_what_a_sweep_cannot_do(plan, tmp_path):
         sweep(plan, axes(), tmp_path / "out.csv")
     with pytest.raises(faying.InputError, match="between 1e-10 and 1e-2"):
         sweep(plan, axes(), tmp_path / "out.nc", tolerance=1.0)
+
+
+def test_a_sweep_over_the_crown_is_that_of_full_runs(plan, tmp_path):
+    """Hollow to crowned: the same frequencies as full solutions at places that were not trained on."""
+    key = "joint.form.crown_along"
+    plan = replace(plan, modes=ModesChoice(count=4))
+    swept = sweep(plan, axes(f"{key}=-6 um:20 um:27"), tmp_path / "out.nc")
+    assert np.isfinite(swept.frequencies).all()
+    assert np.abs(swept.frequencies[-1] / swept.frequencies[6] - 1).max() > 0.01  # 20 um beside flat
+    for i in (2, 15):
+        form = Form(crown_along=swept.axes[0].values[i])
+        full = run(replace(plan, joints=tuple(replace(joint, form=form) for joint in plan.joints)))
+        assert swept.frequencies[i] == pytest.approx(full.frequencies[0], rel=1e-5)
+        assert swept.loss_factors[i] == pytest.approx(full.loss_factors[0], rel=1e-3)
+
+
+def test_axes_of_a_form(plan):
+    assert axis_of("joint.form.crown_along=0 um:30 um:31").values[10] == pytest.approx(1e-5)
+    assert axis_of("joint.form.seed=1,2,3").values == (1.0, 2.0, 3.0)
+    named = Grid(study=plan, surfaces=surfaces_of(plan), axes=axes(f"joint.{plan.joints[0].name}.form.twist=0 um,4 um"))
+    assert [named.point(i).study.joints[0].form.twist for i in (0, 1)] == pytest.approx([0, 4e-6])
+    with pytest.raises(faying.InputError, match="no joint is called 'x'; the joints are joint"):
+        Grid(study=plan, surfaces=surfaces_of(plan), axes=axes("joint.x.form.twist=0 um,4 um"))
+    with pytest.raises(faying.InputError, match=r"joint\.form\.\{crown_along, crown_across, twist"):
+        axis_of("joint.form.bump=0 um:3 um:4")

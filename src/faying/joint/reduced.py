@@ -4,7 +4,7 @@
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -143,6 +143,10 @@ class ReducedModel:
     dynamic_relative: Sequence[Array]
     count: int
     coarse: int
+
+    def with_gaps(self, gaps: Sequence[Array] | None) -> "ReducedModel":
+        """The same structure with other gaps [m] (q,) of its joints before any load; itself where None."""
+        return self if gaps is None else replace(self, gaps=gaps)
 
     def _motions(self, relative: Sequence[Array]) -> list[ReducedMotion]:
         found = zip(self.weights, self.gaps, relative, strict=True)
