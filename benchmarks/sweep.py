@@ -70,7 +70,7 @@ def main():
     print(f"{mesh.unknowns:,} unknowns: one full solution {single:.1f} CPU s", flush=True)
 
     begin = clock()
-    model = _Trainer(plan, structure, near, 4e-6, lambda *_: None).trained().model
+    model = _Trainer(plan, structure, near, 4e-6, lambda *_: None).model()
     training = clock() - begin
     print(
         f"bases of {len(model.static_stiffness)} and {len(model.dynamic_mass)} vectors: {training:.1f} CPU s, "

@@ -10,6 +10,10 @@ from .errors import FayingError, InputError, NotConverged, ReadError
 from .fe.mesh import Mesh
 from .halfspace import solve_half_space
 from .joint.bolt import Bolt, Washer
+from .joint.flatness import minimum_zone
+from .joint.form import Form
+from .joint.form_fit import fit_form
+from .joint.gap_map import FaceMap, GapMap
 from .joint.solid_bolt import SolidBolt
 from .joint.structure import Joint, Structure
 from .materials import CATALOGUE, RIGID, ContactPair, Material

@@ -136,9 +136,49 @@ def test_names_that_do_not_fit_the_geometry_are_reported_together(study):
     assert "[part] says nothing of 'lower'" in text
 
 
-def test_a_preload_that_the_law_does_not_cover(study):
-    with pytest.raises(faying.InputError, match="than JK covers with this surface"):
-        run(replace(study, bolts=(replace(study.bolts[0], preload=(5e5,)),)))
+def test_a_preload_that_the_law_covers_has_one_answer(result):
+    assert result.beyond_frequencies is None
+    assert not any(note.code.startswith("beyond-law") for note in result.notes)
+
+
+def test_a_preload_that_the_law_does_not_cover_has_two_answers(study):
+    """Held below, bonded above; what goes on rising beyond the law lies between them."""
+    pulled = replace(study, bolts=(replace(study.bolts[0], preload=(1e3, 5e5)),))
+    found = run(pulled)
+    assert found.beyond_frequencies[0] == pytest.approx(found.frequencies[0], rel=1e-12)  # inside the law
+    assert np.all(found.beyond_frequencies[1] >= found.frequencies[1])
+    assert np.all(found.beyond_frequencies[1] <= found.bonded * (1 + found.beyond_loss_factors[1] ** 2) * (1 + 1e-4))
+    assert np.all(found.beyond_loss_factors[1] <= found.loss_factors[1].max())
+    notes = {note.code: note for note in found.notes if note.code.startswith("beyond")}
+    assert set(notes) == {"beyond-law", "beyond-law-matters"}
+    assert all(note.load == 5e5 for note in notes.values())
+    change = found.beyond_frequencies[1] / found.frequencies[1] - 1
+    assert f"{change.max():.1%}" in notes["beyond-law-matters"].text
+    assert "JK cannot answer" in notes["beyond-law-matters"].text
+
+
+@pytest.mark.parametrize("factor", [2.0, 30.0, 3000.0])
+def test_any_continuation_beyond_the_law_lies_in_the_bracket(study, factor):
+    """The springs beyond the law made stiffer by any factor: each frequency stays between held and bonded."""
+    from faying.fe.modes import lowest_modes
+    from faying.study.beyond import bonded_beyond
+    from faying.study.case import Case, Progress
+    from faying.study.solve import solve
+
+    small = replace(study, bolts=(replace(study.bolts[0], preload=(5e5,)),), modes=ModesChoice(count=4))
+    case = Case.of(small)
+    structure = case.structure
+    state = solve(case, 0, structure.assembly(), Progress(0))
+    springs = state.springs[0]
+    past = springs.pressure > structure.joints[0].law.model.greatest_pressure
+    assert 0 < past.mean() < 1
+    stiffer = replace(springs, k_n=np.where(past, factor, 1) * springs.k_n, k_t=np.where(past, factor, 1) * springs.k_t)
+    K, _ = structure.joined([stiffer])
+    modes = lowest_modes(K, structure.vibrating[1], case.mode_count, shift_frequency=case.shift_frequency)
+    held, found = state.modes.frequencies[6:10], modes.frequencies[6:10]
+    bonded = bonded_beyond(case, 5e5, [replace(springs, loss_n=0 * springs.k_n, loss_t=0 * springs.k_n)], state.damped)
+    assert np.all(found >= held * (1 - 1e-9))
+    assert np.all(found <= bonded.frequencies * (1 + 1e-9))
 
 
 def test_a_file_that_is_not_step(study, tmp_path):

@@ -8,6 +8,7 @@ import pytest
 import xarray
 
 import faying
+from faying.joint.form import Form
 from faying.study import Study, run
 from faying.study import sweep as module
 from faying.study.axes import Grid, axis_of
@@ -154,11 +155,13 @@ def test_a_cluster_gives_the_same(plan, done, tmp_path, monkeypatch):
     assert there.frequencies == pytest.approx(done.frequencies, rel=1e-6)
 
 
-def test_points_beyond_the_law_have_no_answer_and_say_why(plan, tmp_path):
-    found = sweep(plan, axes("bolt.preload=1 kN,2 kN,400 kN"), tmp_path / "out.nc")
-    assert np.isfinite(found.frequencies[:2]).all()
-    assert np.isnan(found.frequencies[2]).all()
-    assert any("beyond the end of the law" in reason for reason in found.reasons)
+def test_points_beyond_the_law_are_held_there_and_counted(plan, tmp_path):
+    found = sweep(plan, axes("bolt.preload=1 kN,2 kN,400 kN,800 kN"), tmp_path / "out.nc")
+    assert np.isfinite(found.frequencies).all()
+    assert found.beyond_share[1] == 0
+    assert found.beyond_share[3] > 0.5
+    assert found.to_dict()["beyond_law"] == np.count_nonzero(found.beyond_share > 0.1)
+    assert found.frequencies[3] == pytest.approx(found.frequencies[2], rel=0.02)  # no law rises there any more
 
 
 def test_values_of_an_axis():
@@ -208,13 +211,22 @@ def test_the_path_through_the_grid_meets_every_point_once_and_steps_to_neighbour
     assert np.all(np.abs(np.diff(places, axis=0)).sum(axis=1) == 1)
 
 
-def test_a_sweep_whose_middle_has_no_answer(plan, tmp_path):
+def test_a_sweep_whose_middle_has_no_answer(plan, tmp_path, monkeypatch):
     """The bases begin where there is an answer; the rest is NaN and told."""
-    swept = sweep(plan, axes("bolt.preload=2 kN,400 kN"), tmp_path / "out.nc")
+    made = module.Recipe.laws
+
+    def some(recipe, index):
+        if recipe.grid.point(index).forces[0] > 3e3:
+            raise faying.InputError("no law here")
+        return made(recipe, index)
+
+    monkeypatch.setattr(module.Recipe, "laws", some)
+    swept = sweep(plan, axes("bolt.preload=2 kN,4 kN"), tmp_path / "out.nc")
     assert np.all(np.isfinite(swept.frequencies[0]))
     assert np.all(np.isnan(swept.frequencies[1]))
-    with pytest.raises(faying.InputError, match="lower the preload"):
-        sweep(plan, axes("bolt.preload=400 kN,500 kN"), tmp_path / "none.nc")
+    assert swept.reasons == {"no law here": 1}
+    with pytest.raises(faying.InputError, match="no law here"):
+        sweep(plan, axes("bolt.preload=4 kN,5 kN"), tmp_path / "none.nc")
     assert not list(tmp_path.glob("none*"))
 
 
@@ -257,3 +269,28 @@ def test_what_a_sweep_cannot_do(plan, tmp_path):
         sweep(plan, axes(), tmp_path / "out.csv")
     with pytest.raises(faying.InputError, match="between 1e-10 and 1e-2"):
         sweep(plan, axes(), tmp_path / "out.nc", tolerance=1.0)
+
+
+def test_a_sweep_over_the_crown_is_that_of_full_runs(plan, tmp_path):
+    """Hollow to crowned: the same frequencies as full solutions at places that were not trained on."""
+    key = "joint.form.crown_along"
+    plan = replace(plan, modes=ModesChoice(count=4))
+    swept = sweep(plan, axes(f"{key}=-6 um:20 um:27"), tmp_path / "out.nc")
+    assert np.isfinite(swept.frequencies).all()
+    assert np.abs(swept.frequencies[-1] / swept.frequencies[6] - 1).max() > 0.01  # 20 um beside flat
+    for i in (2, 15):
+        form = Form(crown_along=swept.axes[0].values[i])
+        full = run(replace(plan, joints=tuple(replace(joint, form=form) for joint in plan.joints)))
+        assert swept.frequencies[i] == pytest.approx(full.frequencies[0], rel=1e-5)
+        assert swept.loss_factors[i] == pytest.approx(full.loss_factors[0], rel=1e-3)
+
+
+def test_axes_of_a_form(plan):
+    assert axis_of("joint.form.crown_along=0 um:30 um:31").values[10] == pytest.approx(1e-5)
+    assert axis_of("joint.form.seed=1,2,3").values == (1.0, 2.0, 3.0)
+    named = Grid(study=plan, surfaces=surfaces_of(plan), axes=axes(f"joint.{plan.joints[0].name}.form.twist=0 um,4 um"))
+    assert [named.point(i).study.joints[0].form.twist for i in (0, 1)] == pytest.approx([0, 4e-6])
+    with pytest.raises(faying.InputError, match="no joint is called 'x'; the joints are joint"):
+        Grid(study=plan, surfaces=surfaces_of(plan), axes=axes("joint.x.form.twist=0 um,4 um"))
+    with pytest.raises(faying.InputError, match=r"joint\.form\.\{crown_along, crown_across, twist"):
+        axis_of("joint.form.bump=0 um:3 um:4")

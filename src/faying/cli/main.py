@@ -13,6 +13,7 @@ COMMANDS = {
     "asperity": ("asperity", "Press one asperity by finite elements: force, area, stresses."),
     "attach": ("attach", "Lay a joint on a model of another solver, and write it in its words."),
     "compare": ("compare", "Set a hammer test beside the result of a study: MAC, pairs, FRFs."),
+    "form": ("form", "Flatness, crowns and twist of a measured face or gap."),
     "init": ("init", "Write a commented study file to start from."),
     "law": ("law", "Curves of a contact law: area, stiffness and loss against pressure."),
     "models": ("models", "List the contact models with their sources, inputs and ranges."),

@@ -1,14 +1,20 @@
-"""A measured form error between two faces, laid on a joint as its gap before any load."""
+"""Measured form: the gap between two faces, or the heights of one, laid on a joint as its gap before any load."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from faying.errors import InputError
 from faying.fe.interface import Interface
 from faying.files import read_numbers
+from faying.joint.face_axes import FaceAxes
+from faying.joint.flatness import minimum_zone
 from faying.typing import Array
+
+LISTS = (".csv", ".txt", ".dat", ".xyz", ".asc")  # endings of lists of points; all else is a scan
+MOST = 150  # places kept along each side of a scan: roughness is the law's, and is averaged out of the form
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,12 +30,10 @@ class GapMap:
     def __post_init__(self) -> None:
         good = np.isfinite(self.gaps) & np.isfinite(self.places).all(axis=1)
         if np.count_nonzero(good) < 4:
-            raise InputError(f"the gap map has {np.count_nonzero(good)} points with numbers; a map needs four or more")
+            raise InputError(f"the map has {np.count_nonzero(good)} points with numbers; a map needs four or more")
         spread = np.linalg.svd(self.places[good] - self.places[good].mean(axis=0), compute_uv=False)
         if spread[1] < 1e-9 * spread[0]:
-            raise InputError(
-                "the points of the gap map lie on one line; a map covers an area, with x and y both varying"
-            )
+            raise InputError("the points of the map lie on one line; a map covers an area, with x and y both varying")
         object.__setattr__(self, "places", self.places[good])
         object.__setattr__(self, "gaps", self.gaps[good])
 
@@ -39,13 +43,13 @@ class GapMap:
 
         axes = np.stack([np.array(axis) / np.linalg.norm(axis) for axis in (self.x_axis, self.y_axis)])
         if abs(axes[0] @ axes[1]) > 1e-6:
-            raise InputError("the axes of the gap map are not at right angles; give x_axis and y_axis that are")
+            raise InputError("the axes of the map are not at right angles; give x_axis and y_axis that are")
         local = (positions - np.array(self.origin)) @ axes.T
         low, high = self.places.min(axis=0), self.places.max(axis=0)
         outside = np.any((local < low - 0.25 * (high - low)) | (local > high + 0.25 * (high - low)), axis=1)
         if outside.mean() > 0.2:
             raise InputError(
-                f"{outside.mean():.0%} of the joint lies far from the gap map, which covers {_box(low, high)} while "
+                f"{outside.mean():.0%} of the joint lies far from the map, which covers {_box(low, high)} while "
                 f"the joint lies at {_box(local.min(axis=0), local.max(axis=0))}; check origin, axes and units"
             )
         inside = LinearNDInterpolator(self.places, self.gaps)(local)
@@ -58,6 +62,54 @@ class GapMap:
 
 def _box(low: Array, high: Array) -> str:
     return " x ".join(f"{1e3 * a:.4g} to {1e3 * b:.4g} mm" for a, b in zip(low, high, strict=True))
+
+
+@dataclass(frozen=True, kw_only=True)
+class FaceMap:
+    """Measured heights of one face, its form: the higher, the nearer to the other face.
+
+    Args:
+        places: Where the heights were measured (n, 2) [m], in the instrument's own axes; seen from outside the face x
+            goes to the right and y up, unless y_axis says otherwise.
+        heights: Heights out of the face (n,) [m]; NaN are left out. Tilt and offset are those of the instrument and do
+            not count: depths are taken from the upper plane of the minimum zone.
+        origin: Where x = y = 0 lies in the model (3,) [m]; None puts the middle of the map on the middle of the joint.
+        x_axis, y_axis: Directions of x and y in the model (3,); None takes the longer side of the joint as x, and the y
+            that an observer outside the face sees.
+
+    Raises:
+        InputError: Fewer than four points, or points on one line.
+    """
+
+    places: Array
+    heights: Array
+    origin: tuple[float, float, float] | None = None
+    x_axis: tuple[float, float, float] | None = None
+    y_axis: tuple[float, float, float] | None = None
+
+    def __post_init__(self) -> None:
+        checked = GapMap(places=self.places, gaps=self.heights)
+        object.__setattr__(self, "places", checked.places)
+        object.__setattr__(self, "heights", checked.gaps)
+
+    def placed(self, axes: FaceAxes, outward: Array) -> GapMap:
+        """Return the depths below the highest plane on a joint with these axes; outward (3,): normal of this face."""
+        if self.x_axis is None:
+            axes.check("a map without x_axis")
+        x = axes.x_axis if self.x_axis is None else np.array(self.x_axis)
+        y = np.cross(outward, x) if self.y_axis is None else np.array(self.y_axis)
+        origin = axes.origin
+        if self.origin is None:
+            middle = (self.places.min(axis=0) + self.places.max(axis=0)) / 2
+            origin = origin - (middle[0] * x / np.linalg.norm(x) + middle[1] * y / np.linalg.norm(y))
+        else:
+            origin = np.array(self.origin)
+        depth = minimum_zone(self.places, self.heights).depth(self.places, self.heights)
+        return GapMap(places=self.places, gaps=depth, origin=_three(origin), x_axis=_three(x), y_axis=_three(y))
+
+
+def _three(vector: Array) -> tuple[float, float, float]:
+    return float(vector[0]), float(vector[1]), float(vector[2])
 
 
 def read_gap_map(
@@ -74,3 +126,44 @@ def read_gap_map(
     return GapMap(
         places=table[:, :2] * xy_unit, gaps=table[:, 2] * gap_unit, origin=origin, x_axis=x_axis, y_axis=y_axis
     )
+
+
+def read_heights(path: Path, *, xy_unit: str | None = None, z_unit: str | None = None) -> tuple[Array, Array]:
+    """Read measured form: places (n, 2) [m] and heights (n,) [m].
+
+    A file that ends in one of `LISTS` holds three columns x, y, z, anywhere, whose units must be given. Any other is a
+    scan, which is averaged over cells to at most `MOST` places along each side; units are given where it states none.
+    Raises InputError and ReadError.
+    """
+    from faying import units
+
+    if path.suffix.lower() in LISTS:
+        for name, text in (("xy_unit", xy_unit), ("z_unit", z_unit)):
+            if text is None:
+                raise InputError(f'{path.name} is a list of points without units; give {name}, for example "mm"')
+        table = read_numbers(path, 3, "a list of measured points has the columns x, y, z")
+        scales = units.scale(xy_unit or "", "m", name="xy_unit"), units.scale(z_unit or "", "m", name="z_unit")
+        return table[:, :2] * scales[0], table[:, 2] * scales[1]
+    from faying.surface.read import read_scan
+
+    scan: Any = read_scan(path, xy_unit=xy_unit, z_unit=z_unit)
+    if scan.heights.ndim != 2:
+        raise InputError(f"{path.name} is a profile; the form of a face takes an areal scan or a list of points")
+    return _averaged(scan)
+
+
+def _averaged(scan: Any) -> tuple[Array, Array]:
+    """Places (n, 2) and mean heights (n,) of cells of a scan; cells without a known point are left out."""
+    rows, columns = (np.minimum(np.arange(n) * min(n, MOST) // n, MOST - 1) for n in scan.shape)
+    shape = rows[-1] + 1, columns[-1] + 1
+    cell = (rows[:, None] * shape[1] + columns[None, :]).ravel()
+    values = scan.heights.ravel()
+    known = np.isfinite(values)
+    y, x = np.divmod(np.arange(values.size), scan.shape[1])
+    count = np.bincount(cell[known], minlength=shape[0] * shape[1])
+    here = count > 0
+    means = [
+        np.bincount(cell[known], value[known], minlength=len(count))[here] / count[here]
+        for value in (x * scan.spacing[0], y * scan.spacing[1], values)
+    ]
+    return np.stack(means[:2], axis=1), means[2]

@@ -19,6 +19,10 @@ from faying.typing import Array, Index
 
 AGED = 40  # conjugate-gradient steps after which a new factorisation is cheaper: one step costs a fiftieth of it
 
+# a tangent factorisation takes one or two steps a decade, and Newton has some fifteen decades in all before it once the
+# faces lie about where they end up: between these decades of imbalance, above this rate, a new one pays
+EARLY, LATE, SLOW = -0.5, -3.5, 4.8
+
 FLAT = 1e-9  # curvature over that of the factor below which a direction costs no energy
 
 
@@ -46,9 +50,11 @@ class PreloadProblem(Equilibrium):
         self.mass_shift = (2 * np.pi * shift_frequency) ** 2 * mass
         self._rigid = np.linalg.qr(rigid)[0] if rigid.size else rigid
         self.factor: Factorisation | None = None
+        self._rate = 0.0  # conjugate-gradient steps for each decade of the residual, with this factorisation
+        self._scale = 1.0
 
     def _check_load(self, load: Array) -> None:
-        scale = float(np.linalg.norm(load))
+        scale = self._scale = float(np.linalg.norm(load))
         net = float(np.linalg.norm(self._rigid.T @ load)) if self._rigid.size else 0.0
         if net > 1e-9 * scale:
             raise InputError(
@@ -76,6 +82,7 @@ class PreloadProblem(Equilibrium):
         self.factor = None
         self.factor = factorise(constrain(matrix.tocsr(), self.fixed), self.solver)
         self.factorisations += 1
+        self._rate = 0.0
 
     def _admissible(self, force: Array) -> Array:
         if self._rigid.size:
@@ -98,14 +105,20 @@ class PreloadProblem(Equilibrium):
                 y[self.fixed] = 0.0
             return np.asarray(y)
 
-        if self.factor is None:
+        if self.factor is None or self._worn(force):
             self._renew(tangents)
         x, count = self._conjugate_gradients(product, force, accuracy)
+        self._rate = count / -np.log10(accuracy)
         if count >= AGED:
             self._renew(tangents)
             x, more = self._conjugate_gradients(product, force, accuracy, limit=400)
             count += more
         return x, count
+
+    def _worn(self, force: Array) -> bool:
+        """Whether a new factorisation costs less than the conjugate-gradient steps that the old one still asks for."""
+        left = np.log10(float(np.linalg.norm(force)) / self._scale)  # decades of imbalance, below 0
+        return bool(LATE < left < EARLY and self._rate > SLOW)
 
     def _renew(self, tangents: list[tuple[Any, Array, Array]]) -> None:
         springs = self.stiffness + self.mass_shift

@@ -290,11 +290,14 @@ class Reduction:
         *,
         tolerance: float,
         start: Array | None = None,
+        gaps: Sequence[Array] | None = None,
     ) -> Array:
         """Make the bases fit one variant; tolerance: relative error of a frequency; start: see `ReducedModel.evaluate`.
 
+        gaps: of the joints before any load [m] (q,), those of the model where None; the model has them from then on.
         Returns the coefficients from which a like variant may start.
         """
+        self.model = self.model.with_gaps(gaps)
         found = self.train_static(laws, forces, friction, STATIC_SHARE * tolerance, start)
         self.train_dynamic(laws, found.pressures, 2 * tolerance)
         self._seen.append((tuple(laws), found.pressures))

@@ -4,7 +4,7 @@
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -144,6 +144,10 @@ class ReducedModel:
     count: int
     coarse: int
 
+    def with_gaps(self, gaps: Sequence[Array] | None) -> "ReducedModel":
+        """The same structure with other gaps [m] (q,) of its joints before any load; itself where None."""
+        return self if gaps is None else replace(self, gaps=gaps)
+
     def _motions(self, relative: Sequence[Array]) -> list[ReducedMotion]:
         found = zip(self.weights, self.gaps, relative, strict=True)
         return [ReducedMotion(weights=w, gap=gap, relative=motion) for w, gap, motion in found]
@@ -161,11 +165,11 @@ class ReducedModel:
             padded = np.concatenate([start, np.zeros(len(load) - len(start))])
             try:
                 balance = ReducedEquilibrium(self.static_stiffness, joints, friction=friction)
-                return balance.solve(load, start=padded, beyond=1.0, tolerance=BALANCED)
+                return balance.solve(load, start=padded, tolerance=BALANCED)
             except NotConverged:
                 pass
         balance = ReducedEquilibrium(self.static_stiffness, joints, friction=friction)
-        return balance.solve(load, beyond=1.0, tolerance=BALANCED)
+        return balance.solve(load, tolerance=BALANCED)
 
     def springs(self, laws: Sequence[JointLaw], pressures: Sequence[Array]) -> list[Springs[ReducedMotion]]:
         """Springs of all joints under pressures [Pa], one array for each joint."""

@@ -8,15 +8,22 @@ from faying.errors import InputError
 from faying.typing import Array
 
 
-def mac(a: Any, b: Any) -> Array:
+def mac(a: Any, b: Any, mass: Any | None = None) -> Array:
     """Modal assurance criterion |a* . b|2 / (a* . a)(b* . b) of shapes a (m, d) and b (k, d), complex or real: (m, k).
 
     Allemang 2003, Sound and Vibration 37(8), eq. (5). Scale and phase of a shape do not matter. A shape without motion
-    has a MAC of 0 with all. Raises InputError where the degrees of freedom differ in number.
+    has a MAC of 0 with all. mass (d, d) [kg], sparse or not, weights the products of shapes of a whole model:
+    modes of one structure are orthogonal in it and in nothing else. Raises InputError where the degrees of freedom
+    differ in number.
     """
     a, b = np.atleast_2d(a), np.atleast_2d(b)
     if a.shape[1] != b.shape[1]:
         raise InputError(f"shapes at {a.shape[1]} and at {b.shape[1]} degrees of freedom; give both at the same ones")
+    if mass is not None:
+        momentum = (mass @ b.T).T
+        sizes = [np.einsum("md,md->m", x.conj(), (mass @ x.T).T).real for x in (a, b)]
+        product = np.outer(*(np.where(size > 0, size, np.inf) for size in sizes))
+        return np.asarray(np.minimum(np.abs(a.conj() @ momentum.T) ** 2 / product, 1.0))
     a, b = _unit(a), _unit(b)
     return np.asarray(np.minimum(np.abs(a.conj() @ b.T) ** 2, 1.0))
 

@@ -1,11 +1,92 @@
-"""Which mode of the test is which of the model: MAC first, frequency second, each mode once."""
+"""Which mode of the test is which of the model, each once: by MAC and frequency, or by frequency and visibility."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from faying.errors import InputError
-from faying.typing import Index
+from faying.typing import Array, Index
+
+NEAR = 0.05  # relative difference in frequency that costs 1
+FARTHEST = 0.3  # relative difference in frequency up to which modes are paired at all
+MIXED = 0.9  # MAC of a mode with its own successor below which it has mixed with others
+SHARE = 0.1  # MAC with another from which that one takes part
+
+
+def follow(macs: Sequence[Any]) -> Index:
+    """Follow modes over loads: (loads, m), the index at each load of the modes that are 0 to m-1 at the first.
+
+    macs: MAC (m, m) of the modes at each load with those at the next; of all one-to-one successions the one with the
+    greatest sum is taken.
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    count = len(macs[0]) if len(macs) else 0
+    tracks = [np.arange(count)]
+    for table in macs:
+        rows, columns = linear_sum_assignment(table, maximize=True)
+        successor = np.empty(count, dtype=np.int64)
+        successor[rows] = columns
+        tracks.append(successor[tracks[-1]])
+    return np.array(tracks, dtype=np.int64)
+
+
+def changes(macs: Sequence[Any]) -> tuple[list[tuple[int, int, int]], list[tuple[int, int, int]]]:
+    """Name crossings and couplings: lists of (step, mode, mode), modes as indices at the load where the step begins.
+
+    Two modes cross where their order changes from one load to the next; they couple where one of them, at the next
+    load, is less than `MIXED` alike to itself and at least `SHARE` alike to the other.
+    """
+    cross, couple = [], []
+    tracks = [follow([table])[1] for table in macs]
+    for step, (table, after) in enumerate(zip(macs, tracks, strict=True)):
+        for i in range(len(after)):
+            for j in range(i + 1, len(after)):
+                if after[i] > after[j]:
+                    cross.append((step, i, j))
+                mixed = min(table[i][after[i]], table[j][after[j]]) < MIXED
+                if mixed and max(table[i][after[j]], table[j][after[i]]) >= SHARE:
+                    couple.append((step, i, j))
+    return cross, couple
+
+
+def pair_frequencies(test: Any, model: Any, visibility: Any, *, threshold: float = 0.1) -> Index:
+    """The model's mode (t,) of each of the test's, -1 where none fits: one assignment over all modes and loads.
+
+    A pair costs the mean over the loads of (d/.05)^2 - lg v, with d the logarithm of the ratio of the frequencies and v
+    the visibility: 5 % in frequency count as much as a factor of ten in motion. No pair is made beyond 30 % in
+    frequency, the mean over the loads, nor of a mode that no load shows above the threshold; a mode of the test left
+    alone costs as much as the farthest pair. The set of pairs with the least sum is taken.
+
+    Args:
+        test: frequencies [Hz] (loads, t).
+        model: frequencies [Hz] (loads, m), each column one mode followed over the loads.
+        visibility: of the model's modes at the points of the test (loads, m) [-], 1 for the one that moves most.
+        threshold: least visibility.
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    test, model, visibility = (np.atleast_2d(np.asarray(x, dtype=float)) for x in (test, model, visibility))
+    apart = np.log(model[:, None, :] / test[:, :, None])
+    seen = np.maximum(visibility, 1e-300)
+    alone = (np.log1p(FARTHEST) / NEAR) ** 2 - np.log10(threshold)
+    cost = (apart / NEAR) ** 2 - np.log10(np.maximum(seen, threshold))[:, None, :]
+    cost = cost.mean(axis=0)
+    barred = (np.abs(apart).mean(axis=0) > np.log1p(FARTHEST)) | (visibility.max(axis=0) < threshold)[None]
+    cost = np.where(barred, 1e6, cost)
+    spare = np.full((len(cost), len(cost)), alone)
+    rows, columns = linear_sum_assignment(np.concatenate([cost, spare], axis=1))
+    out = np.full(len(cost), -1)
+    for row, column in zip(rows, columns, strict=True):
+        if column < cost.shape[1]:
+            out[row] = column
+    return out.astype(np.int64)
+
+
+def by_track(tracks: Index, values: Array) -> Array:
+    """Values (loads, m) of each load's own modes, sorted so that each column follows one mode."""
+    return np.take_along_axis(values, tracks, axis=1)
 
 
 def pair_modes(

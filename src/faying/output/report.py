@@ -31,6 +31,8 @@ def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
     ]
     if result.low is not None:
         parts += ["<h2>Range of the frequencies, from that of the stiffness</h2>", page.table(table.ranges(result))]
+    if result.beyond_frequencies is not None:
+        parts += ["<h2>Beyond the end of a law: stiffness held, and bonded</h2>", page.table(table.beyond(result))]
     if result.comparison is not None:
         parts += [
             "<h2>Comparison with the test</h2>",

@@ -32,6 +32,26 @@ def ranges(result: Result) -> Rows:
     return rows
 
 
+def beyond(result: Result) -> Rows:
+    """One row per mode: held at the end of the law and bonded beyond it; empty where the law covers all pressures."""
+    if result.beyond_frequencies is None or result.beyond_loss_factors is None:
+        return []
+    rows: Rows = [["mode", *(f"{load / 1e3:g} kN held .. bonded [Hz] (loss)" for load in result.loads)]]
+    for j in range(len(result.bonded)):
+        cells = []
+        for i in range(len(result.loads)):
+            low, high = result.frequencies[i, j], result.beyond_frequencies[i, j]
+            losses = f" ({result.loss_factors[i, j]:.1e} .. {result.beyond_loss_factors[i, j]:.1e})"
+            cells.append(f"{low:.2f} .. {high:.2f}, {high / low - 1:+.2%}{'' if 'nan' in losses else losses}")
+        rows.append([str(j + 1), *cells])
+    return rows
+
+
+def _or_dash(value: float, form: str) -> str:
+    """A number, or a dash where there is none: a mode of the test without partner."""
+    return "-" if np.isnan(value) else format(value, form)
+
+
 def comparison(result: Result) -> Rows:
     """One row per preload and source, errors relative to the test; then the change with preload for each."""
     c = result.comparison
@@ -45,13 +65,13 @@ def comparison(result: Result) -> Rows:
     for i, load in enumerate(result.loads):
         rows.append([f"{load / 1e3:g} kN", "test [Hz]", *(f"{f:.1f}" for f in c.frequencies[i])])
         for name, values in (*theirs, *ours):
-            rows.append(["", f"{name} [Hz]", *(f"{f:.1f}" for f in values[i])])
+            rows.append(["", f"{name} [Hz]", *(_or_dash(f, ".1f") for f in values[i])])
             errors = 100 * (values[i] / c.frequencies[i] - 1)
-            rows.append(["", f"{name} error [%]", *(f"{e:+.2f}" for e in errors)])
+            rows.append(["", f"{name} error [%]", *(_or_dash(e, "+.2f") for e in errors)])
     if len(result.loads) > 1:
         for name, values in (("test", c.frequencies), *theirs, *ours):
             slope = c.sensitivity(values, result.loads) * 1e3
-            rows.append(["d f/d preload", f"{name} [Hz/kN]", *(f"{s:+.3f}" for s in slope)])
+            rows.append(["d f/d preload", f"{name} [Hz/kN]", *(_or_dash(s, "+.3f") for s in slope)])
     return rows
 
 

@@ -29,8 +29,8 @@ class Comparison:
 
     source: str
     frequencies: Array = variable("load", "test_mode", unit="Hz", long_name="measured frequencies")
-    predicted: Array = variable("load", "test_mode", unit="Hz", long_name="frequencies of the paired modes")
-    modes: Index = variable("load", "test_mode", unit="1", long_name="index of the paired mode", dtype="i8")
+    predicted: Array = variable("load", "test_mode", unit="Hz", long_name="frequencies of the paired modes", gaps=True)
+    modes: Index = variable("load", "test_mode", unit="1", long_name="index of the paired mode, -1: none", dtype="i8")
     published: Array | None = variable(
         "load", "test_mode", unit="Hz", long_name="frequencies of a published model", default=None
     )
@@ -43,7 +43,8 @@ class Comparison:
         """Change of frequency with preload, d f/d preload [Hz/N] (mode,), by a straight line through all loads."""
         if len(loads) < 2:
             return np.full(values.shape[1], np.nan)
-        return np.asarray(np.polyfit(loads, values, 1)[0])
+        about = loads - loads.mean()
+        return np.asarray(about @ values / (about @ about))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -107,7 +108,11 @@ class Result:
     bonded: Array = variable("mode", unit="Hz", long_name="frequency with the faces bonded")
     rigid: Array = variable("rigid_motion", unit="Hz", long_name="largest frequency of each rigid motion, ideally 0")
     mac: Array = variable(
-        "load", "mode", "mode_other", unit="1", long_name="MAC of the modes at the first load with those at each"
+        "load",
+        "mode",
+        "mode_other",
+        unit="1",
+        long_name="MAC by mass of the modes at the first load with those at each",
     )
     points: Array = variable("point", "axis", unit="m", long_name="points of the joints")
     weights: Array = variable("point", unit="m2", long_name="area of each point")
@@ -131,6 +136,17 @@ class Result:
     )
     high: Array | None = variable(
         "load", "mode", unit="Hz", long_name="frequency at the upper end of the laws' range", default=None
+    )
+    beyond_frequencies: Array | None = variable(
+        "load", "mode", unit="Hz", long_name="frequency with what is beyond the law's end bonded", default=None
+    )
+    beyond_loss_factors: Array | None = variable(
+        "load",
+        "mode",
+        unit="1",
+        long_name="loss factor with what is beyond the law's end bonded",
+        gaps=True,
+        default=None,
     )
     beside_frequencies: Array | None = variable(
         "beside", "load", "mode", unit="Hz", long_name="frequency under another law", gaps=True, default=None

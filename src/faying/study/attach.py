@@ -341,7 +341,7 @@ def _paper_dampers(pairs: NodePairs, mesh: Mesh, materials: Mapping[str, Materia
 
 def _contact(law: JointLaw, spec: JointChoice, greatest: float, mean: float) -> Contact | None:
     """Sample the law from a ten-thousandth of the end of the table, three times the greatest pressure."""
-    if mean <= law.least_pressure or spec.gap is not None:
+    if mean <= law.least_pressure or spec.form is not None:
         return None
     end = min(law.model.greatest_pressure, 3 * greatest)
     pressure = np.geomspace(max(1e-4 * end, law.least_pressure), end, 199)

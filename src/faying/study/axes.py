@@ -10,6 +10,8 @@ from faying import units
 from faying.contact.build import check_entries, find, kinds
 from faying.contact.parameter import FILE, TABLE, Parameter
 from faying.errors import InputError
+from faying.joint.form import PARAMETERS, Form
+from faying.study.keys.joint import JointChoice
 from faying.study.keys.law import OF_SURFACE
 from faying.study.keys.surface import Surface
 from faying.study.study import Study
@@ -33,12 +35,19 @@ def _swept(key: str) -> Parameter | None:
     parts = key.split(".")
     if parts[0] == "bolt" and parts[-1] == "preload" and len(parts) in (2, 3):
         return OWN["bolt.preload"]
+    if _formed(parts):
+        return PARAMETERS.get(parts[-1])
     if key in OWN:
         return OWN[key]
     if parts[0] != "law" or len(parts) != 2 or parts[1] in OF_SURFACE:
         return None
     entries = [kind.law.entries().get(parts[1]) for kind in kinds().values()]
     return next((p for p in entries if p is not None and p.unit not in (FILE, TABLE)), None)
+
+
+def _formed(parts: list[str]) -> bool:
+    """Whether a key is joint.form.SHAPE, or joint.NAME.form.SHAPE for one joint."""
+    return parts[0] == "joint" and len(parts) in (3, 4) and parts[-2] == "form"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,7 +87,8 @@ def axis_of(text: str) -> Axis:
         return Axis(key=key, unit="", values=tuple(find(word).label for word in given.split(",")))
     parameter = _swept(key)
     if parameter is None:
-        known = ", ".join((*OWN, "bolt.NAME.preload", MODEL, "law.NAME (a parameter of the law)"))
+        forms = f"joint.form.{{{', '.join(PARAMETERS)}}}", "joint.NAME.form.SHAPE"
+        known = ", ".join((*OWN, "bolt.NAME.preload", *forms, MODEL, "law.NAME (a parameter of the law)"))
         raise InputError(
             f"--set {key}: a sweep varies what acts on the joints alone, which is {known}; anything else changes "
             "the parts, and takes a study of its own"
@@ -153,6 +163,10 @@ class Grid:
             names = [bolt.name for bolt in study.bolts]
             if parts[1] not in names:
                 raise InputError(f"--set {key}: no bolt is called {parts[1]!r}; the bolts are {', '.join(names)}")
+        if _formed(parts):
+            names = [joint.name for joint in study.joints]
+            if len(parts) == 4 and parts[1] not in names:
+                raise InputError(f"--set {key}: no joint is called {parts[1]!r}; the joints are {', '.join(names)}")
         if parts[0] == "surface":
             if all(joint.surface is not None for joint in study.joints):
                 raise InputError(
@@ -201,6 +215,8 @@ class Grid:
                 else:
                     law = replace(law, given={**law.given, name: value})
                 study = replace(study, law=law)
+            elif _formed(axis.key.split(".")):
+                study = replace(study, joints=tuple(_with_form(j, axis.key.split("."), value) for j in study.joints))
             elif room == "joint":
                 study = replace(study, joints=tuple(replace(j, friction=value) for j in study.joints))
             elif name == "preload":
@@ -210,9 +226,19 @@ class Grid:
         return Point(study=study, surfaces=surfaces, forces=forces)
 
     def corners(self, most: int) -> list[int]:
-        """Indices of the grid's corners, at most so many, and every text value once."""
-        ends = [range(len(a.values)) if not a.numeric else sorted({0, len(a.values) - 1}) for a in self.axes]
-        found = [int(np.ravel_multi_index(place, self.shape)) for place in product(*ends)]
+        """Indices of the grid's corners, at most so many, and every text value once.
+
+        A form opens and closes parts of the joint on its way, so that three values between its ends count, too.
+        """
+
+        def ends(axis: Axis) -> list[int]:
+            last = len(axis.values) - 1
+            if not axis.numeric:
+                return list(range(last + 1))
+            steps = 4 if _formed(axis.key.split(".")) else 1
+            return sorted({round(k * last / steps) for k in range(steps + 1)})
+
+        found = [int(np.ravel_multi_index(place, self.shape)) for place in product(*map(ends, self.axes))]
         if len(found) <= most:
             return found
         return sorted(np.random.default_rng(0).choice(found, most, replace=False).tolist())
@@ -227,6 +253,13 @@ class Grid:
                 for i in (range(size) if k % 2 == 0 else reversed(range(size)))
             ]
         return [int(np.ravel_multi_index(place, self.shape)) for place in order]
+
+
+def _with_form(joint: JointChoice, key: list[str], value: float) -> JointChoice:
+    """The joint with one number of its form changed, where the key is for it."""
+    if len(key) == 4 and key[1] != joint.name:
+        return joint
+    return replace(joint, form=(joint.form or Form()).with_value(key[-1], value))
 
 
 def _with(surface: Surface, name: str, value: float) -> Surface:

@@ -224,7 +224,7 @@ def structure_of(
             Joint(
                 name=joint.name,
                 faces=joint.faces,
-                interface=interface if joint.gap is None else joint.gap.on(interface),
+                interface=interface if joint.form is None else joint.form.on(interface, mesh, joint.faces),
                 law=law,
                 per_node=joint.springs == "per-node",
                 scan_area=surface.scan_area,

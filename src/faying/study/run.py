@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -15,14 +16,17 @@ from faying.fe.modes import Modes, lowest_modes
 from faying.fe.solve import chosen
 from faying.joint.structure import bond
 from faying.joint.support_check import RIGID_BELOW
+from faying.measured.mac import mac
+from faying.measured.pairing import by_track, changes, follow, pair_frequencies
 from faying.notes import Note
 from faying.result import Comparison, Provenance, Receptance, Result
 from faying.study.beside import Beside, solve_beside, stacked
+from faying.study.beyond import stiff_as_bonded
 from faying.study.case import Case, Progress, Report
 from faying.study.findings import against_exact_contact, falling
 from faying.study.solve import State, solve
 from faying.study.study import Study
-from faying.typing import Array, Complex
+from faying.typing import Array, Index
 
 VERSIONS = ("faying", "numpy", "scipy", "netgen-mesher", "pypardiso", "mkl")
 NOT_ZERO = 1e-2  # Hz: a rigid motion above it is noted
@@ -85,7 +89,7 @@ def _bonded(case: Case) -> tuple[Modes, list[Note]]:
     apart = [joint.name for joint in structure.joints if bond(structure.mesh, [joint.faces]) is None]
     why = f"the faces of {', '.join(apart)} do not match node for node" if apart else "supports hold some of the nodes"
     text = f"{why}: the bonded modes use springs a thousand times as stiff as the parts in place of bonded faces"
-    stiff = 1e3 * max(m.E for m in structure.materials.values()) / structure.mesh.size
+    stiff = stiff_as_bonded(structure)
     for joint in structure.joints:
         springs = joint.interface.springs(*2 * (np.full(len(joint.interface.weights), stiff),))
         K = K + constrain(springs, structure.fixed, 0.0)
@@ -110,17 +114,15 @@ def collect(
     """
     study, structure = case.study, case.structure
     nodes, triangles = structure.outline()
-    # those of the complex modes, whose frequencies stand beside them: real modes that lie close mix otherwise
-    mass = structure.vibrating[1]
-    shapes = [s.damped.real_shapes(mass).T.reshape(len(s.damped.frequencies), -1, 3) for s in states]
+    shapes = _shapes(case, states)
     comparison, more = _compare(case, states, shapes)
     if comparison is not None and besides:
         comparison = replace(comparison, beside=np.stack([_predicted(b, comparison) for b in besides]))
     lossless = not any(joint.law.predicts_loss for joint in structure.joints)
     rigid = np.max([s.modes.frequencies[: case.rigid_count] for s in states], axis=0)
     every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more]
+    every += _encounters(case, states)
     every += [*(note for b in besides for note in b.notes), *_closing_notes(study, rigid)]
-    totals = np.array([[spring.total() for spring in s.springs] for s in states])
     result = Result(
         title=study.title,
         loads=case.loads,
@@ -131,15 +133,13 @@ def collect(
         bonded=bounds[1],
         low=_stacked([s.low for s in states]),
         high=_stacked([s.high for s in states]),
+        **_bonded_beyond(states, lossless),
         beside=tuple(b.name for b in besides),
         beside_frequencies=stacked(besides, "frequencies", len(states), len(bounds[0])),
         beside_loss_factors=stacked(besides, "loss_factors", len(states), len(bounds[0])),
         rigid=rigid,
-        mac=np.stack([_mac(states[0].damped.shapes, s.damped.shapes) for s in states]),
-        **_on_joints(states),
-        slipping=np.array([s.preload.slipping for s in states]),
-        total_k_n=totals[:, :, 0],
-        total_k_t=totals[:, :, 1],
+        mac=_macs(case, states),
+        **_at_points(states),
         bolt_forces=np.array([s.preload.bolt_forces for s in states]),
         imbalance=np.array([s.preload.imbalance for s in states]),
         newton_steps=np.array([s.preload.newton_steps for s in states]),
@@ -167,20 +167,6 @@ def collect(
     return replace(result, hammer=case.hammer.beside(result, full))
 
 
-def _on_joints(states: Sequence[State]) -> dict[str, Any]:
-    """Points of all joints, one after the other, and what the springs are there under each load."""
-    interfaces = [spring.interface for spring in states[0].springs]
-    maps = {
-        name: np.stack([np.concatenate([getattr(spring, name) for spring in s.springs]) for s in states])
-        for name in ("pressure", "k_n", "k_t")
-    }
-    return maps | {
-        "points": np.concatenate([i.positions for i in interfaces]),
-        "weights": np.concatenate([i.weights for i in interfaces]),
-        "joint_of_point": np.concatenate([np.full(len(i.weights), k) for k, i in enumerate(interfaces)]),
-    }
-
-
 def _stacked(rows: Sequence[Array | None]) -> Array | None:
     kept = [row for row in rows if row is not None]
     return np.stack(kept) if len(kept) == len(rows) else None
@@ -189,12 +175,38 @@ def _stacked(rows: Sequence[Array | None]) -> Array | None:
 def _predicted(beside: Beside, comparison: Comparison) -> Array:
     """Frequencies [Hz] that another law predicts of the test's modes; NaN where it has no answer."""
     if beside.case is not None:
-        mass = beside.case.structure.vibrating[1]
-        shapes = [s.damped.real_shapes(mass).T.reshape(len(s.damped.frequencies), -1, 3) for s in beside.states]
-        found, _ = _compare(beside.case, beside.states, shapes)
+        found, _ = _compare(beside.case, beside.states, _shapes(beside.case, beside.states))
         if found is not None:
             return found.predicted
     return np.full(comparison.frequencies.shape, np.nan)
+
+
+def _at_points(states: Sequence[State]) -> dict[str, Any]:
+    """Fields of the result at the points of the joints, and their sums over each joint."""
+    interfaces = [spring.interface for spring in states[0].springs]
+    totals = np.array([[spring.total() for spring in s.springs] for s in states])
+    return {
+        "points": np.concatenate([i.positions for i in interfaces]),
+        "weights": np.concatenate([i.weights for i in interfaces]),
+        "joint_of_point": np.concatenate([np.full(len(i.weights), k) for k, i in enumerate(interfaces)]),
+        "pressure": np.stack([np.concatenate([spring.pressure for spring in s.springs]) for s in states]),
+        "k_n": np.stack([np.concatenate([spring.k_n for spring in s.springs]) for s in states]),
+        "k_t": np.stack([np.concatenate([spring.k_t for spring in s.springs]) for s in states]),
+        "slipping": np.array([s.preload.slipping for s in states]),
+        "total_k_n": totals[:, :, 0],
+        "total_k_t": totals[:, :, 1],
+    }
+
+
+def _bonded_beyond(states: Sequence[State], lossless: bool) -> dict[str, Any]:
+    """Frequencies and loss factors with what is beyond the end of a law bonded, where anything is at any load."""
+    if all(s.beyond is None for s in states):
+        return {}
+    both = [s.damped if s.beyond is None else s.beyond for s in states]
+    return {
+        "beyond_frequencies": np.stack([one.frequencies for one in both]),
+        "beyond_loss_factors": np.stack([np.where(lossless, np.nan, one.loss_factors) for one in both]),
+    }
 
 
 def _response(study: Study, states: Sequence[State]) -> Receptance | None:
@@ -214,10 +226,16 @@ def _response(study: Study, states: Sequence[State]) -> Receptance | None:
     )
 
 
-def _mac(first: Complex, other: Complex) -> Array:
-    """Modal assurance criterion [-] (m, m) of two sets of modes (unknowns, m) (Allemang 2003, eq. 4)."""
-    sizes = [np.einsum("im,im->m", a.conj(), a).real for a in (first, other)]
-    return np.asarray(np.abs(first.conj().T @ other) ** 2 / np.outer(*sizes))
+def _macs(case: Case, states: Sequence[State]) -> Array:
+    """MAC (load, m, m), weighted by mass, of the modes at the first load with those at each."""
+    mass = case.structure.vibrating[1]
+    return np.stack([mac(states[0].damped.shapes.T, s.damped.shapes.T, mass) for s in states])
+
+
+def _shapes(case: Case, states: Sequence[State]) -> list[Array]:
+    """Shapes (m, nodes, 3) at each load: those of the complex modes, for real modes that lie close mix."""
+    mass = case.structure.vibrating[1]
+    return [s.damped.real_shapes(mass).T.reshape(len(s.damped.frequencies), -1, 3) for s in states]
 
 
 def _closing_notes(study: Study, rigid: Array) -> list[Note]:
@@ -235,7 +253,7 @@ def _closing_notes(study: Study, rigid: Array) -> list[Note]:
 
 
 def _compare(case: Case, states: Sequence[State], shapes: Sequence[Array]) -> tuple[Comparison | None, list[Note]]:
-    """Pair the test's frequencies, in order, with the modes that the test can see."""
+    """Pair the test's frequencies with the computed modes, followed over the loads; see `pair_frequencies`."""
     test = case.study.test
     if test is None:
         return None, []
@@ -243,27 +261,61 @@ def _compare(case: Case, states: Sequence[State], shapes: Sequence[Array]) -> tu
     axis = np.array(test.direction) / np.linalg.norm(test.direction)
     points = case.structure.mesh.points
     here = [int(np.argmin(np.linalg.norm(points - np.array(p), axis=1))) for p in test.points]
-    predicted, paired = np.empty_like(measured), np.empty(measured.shape, dtype=np.int64)
-    for row, (state, found) in enumerate(zip(states, shapes, strict=True)):
-        motion = np.abs(found[:, here] @ axis).max(axis=1)
-        seen = np.flatnonzero(motion >= test.threshold * motion.max())
-        if len(seen) < measured.shape[1]:
-            text = (
-                f"the test lists {measured.shape[1]} modes but only {len(seen)} of those computed move at its points; "
-                "raise modes.count"
-            )
-            return None, [Note(code="test-modes", text=text)]
-        paired[row] = seen[: measured.shape[1]]
-        predicted[row] = state.damped.frequencies[paired[row]]
+    tracks = follow(_successive(case, states)) if len(states) > 1 else np.arange(len(shapes[0]))[None]
+    motion = np.array([np.abs(found[:, here] @ axis).max(axis=1) for found in shapes])
+    visibility = by_track(tracks, motion / motion.max(axis=1, keepdims=True))
+    frequencies = by_track(tracks, np.stack([s.damped.frequencies for s in states]))
+    found = pair_frequencies(measured, frequencies, visibility, threshold=test.threshold)
+    none = found < 0
     comparison = Comparison(
         source=test.source,
         frequencies=measured,
-        predicted=predicted,
-        modes=paired,
+        predicted=np.where(none, np.nan, frequencies[:, found]),
+        modes=np.where(none, -1, tracks[:, found]),
         published=None if test.published is None else np.array(test.published),
         published_name=test.published_name,
     )
-    return comparison, []
+    return comparison, _unmatched(found, measured, frequencies, visibility, test.threshold)
+
+
+def _unmatched(found: Index, measured: Array, frequencies: Array, visibility: Array, threshold: float) -> list[Note]:
+    """Say which modes of the test, and which visible ones of the model among them, have no partner."""
+    out = []
+    lost = np.flatnonzero(found < 0)
+    if len(lost):
+        which = ", ".join(f"{k + 1} ({measured[0, k]:.1f} Hz)" for k in lost)
+        text = (
+            f"test mode {which}: no computed mode that moves at the points of the test lies within 30 % of it; it is "
+            "left out. Raise modes.count, or look whether the test has a mode of something else"
+        )
+        out.append(Note(code="test-modes", text=text))
+    inside = (frequencies[0] > 0.97 * measured.min()) & (frequencies[0] < 1.03 * measured.max())
+    rest = [k for k in np.flatnonzero(inside & (visibility.max(axis=0) >= threshold)) if k not in found]
+    if rest:
+        which = ", ".join(f"{k + 1} ({frequencies[0, k]:.1f} Hz)" for k in rest)
+        text = f"computed mode {which} moves at the points of the test, which lists none for it"
+        out.append(Note(code="model-modes", text=text))
+    return out
+
+
+def _successive(case: Case, states: Sequence[State]) -> list[Array]:
+    """MAC, weighted by mass, of the modes at each load with those at the next."""
+    mass = case.structure.vibrating[1]
+    return [mac(a.damped.shapes.T, b.damped.shapes.T, mass) for a, b in pairwise(states)]
+
+
+def _encounters(case: Case, states: Sequence[State]) -> list[Note]:
+    """Say which modes cross and which couple from one load to the next."""
+    out = []
+    for code, word, found in zip(
+        ("modes-cross", "modes-couple"), ("cross", "couple"), changes(_successive(case, states)), strict=True
+    ):
+        for step in sorted({k for k, _, _ in found}):
+            pairs = ", ".join(f"{i + 1} and {j + 1}" for k, i, j in found if k == step)
+            before, after = (f"{states[step + k].load / 1e3:g} kN" for k in (0, 1))
+            text = f"modes {pairs} {word} between {before} and {after} (MAC weighted by mass)"
+            out.append(Note(code=code, load=states[step + 1].load, text=text))
+    return out
 
 
 def _sources(case: Case) -> tuple[str, ...]:

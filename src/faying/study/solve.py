@@ -3,8 +3,6 @@
 from dataclasses import dataclass, replace
 from typing import Literal
 
-import numpy as np
-
 from faying.fe.damped import DampedModes, damped_modes
 from faying.fe.interface import Interface
 from faying.fe.modes import Modes, lowest_modes
@@ -16,6 +14,7 @@ from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions, checked_preload, open_joints
 from faying.measured.model import FullResponse
 from faying.notes import Note
+from faying.study.beyond import Beyond, bonded_beyond
 from faying.study.case import Case, Progress
 from faying.study.response import LoadedStructure, ResponseAtLoad
 from faying.typing import Array
@@ -32,6 +31,7 @@ class State:
         modes, damped: real modes with the springs, and complex modes with their loss.
         low, high: frequencies [Hz] (m,) at the ends of the range that the laws state; None where none states one.
         response: what [response] asks for; test_response: that at the points of a hammer test.
+        beyond: what bonding the points beyond the end of their law makes of the modes; None where there are none.
         notes: where a law leaves its validity range, and the like.
     """
 
@@ -44,6 +44,7 @@ class State:
     high: Array | None
     response: ResponseAtLoad | None
     test_response: FullResponse | None
+    beyond: Beyond | None
     notes: tuple[Note, ...]
 
 
@@ -90,6 +91,7 @@ def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress) 
         progress.begin("frequency response at the points of the test")
         test_response, more = hammer.response(loaded, case.test_points)
         notes += more
+    beyond = bonded_beyond(case, load, springs, damped)
     return State(
         load=load,
         preload=preload,
@@ -100,7 +102,8 @@ def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress) 
         high=_at_end("high", case, preload, modes),
         response=response,
         test_response=test_response,
-        notes=(*notes, *law_notes(structure, preload, load)),
+        beyond=beyond,
+        notes=(*notes, *(() if beyond is None else beyond.notes), *law_notes(structure, preload, load)),
     )
 
 
@@ -127,15 +130,6 @@ def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[
     ]
     for joint, pressure in zip(structure.joints, preload.pressures, strict=True):
         model, weights, area = joint.law.model, joint.interface.weights, joint.interface.area
-        end = model.greatest_pressure
-        if np.any(pressure > end):
-            share = float(weights @ (pressure > end) / area)
-            text = (
-                f"{joint.name}, {kilo}: on {share:.2%} of the joint the pressure exceeds the {end / 1e6:.3g} MPa at "
-                f"which "
-                f"{model.name} ends with this surface; stiffness is held there"
-            )
-            out.append(Note(code="beyond-law", joint=joint.name, load=load, share=share, text=text))
         answer = joint.law.answer(pressure)
         for reason, mask in answer.reasons.items():
             share = float(weights @ mask / area)

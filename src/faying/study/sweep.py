@@ -4,7 +4,7 @@ import hashlib
 import json
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,8 @@ import numpy as np
 
 from faying import __version__
 from faying.errors import FayingError, InputError
+from faying.joint.face_axes import FaceAxes
+from faying.joint.form import Form
 from faying.joint.joint_law import JointLaw
 from faying.joint.reduce import STATIC_SHARE, Reduction
 from faying.joint.reduced import ReducedModel
@@ -25,13 +27,39 @@ from faying.study.sweep_files import Store, Sweep
 from faying.typing import Array
 
 CORNERS, RANDOM, CHECKS = 16, 8, 5  # variants trained on, and those that are looked at afterwards
+SPARE_MODES = 3  # trained beyond those wanted: a mode that comes down between the corners is in the basis then
 CHUNK = 25  # evaluations between two writings to disk
 # the estimate is that of a basis a hundred times coarser; beyond this multiple of the tolerance a point is trained on
 FAR = 60.0
-BEYOND = 0.1  # share of the contact beyond the end of the law up to which a point counts
 SEED = 20241121
 MOST_LAWS = 100  # looked at before there is a mesh
 LATELY = 32  # laws kept with their tables
+
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """Where a joint lies: its points (q, 3) [m], the gap of its geometry there (q,) [m], and the face's own axes."""
+
+    positions: Array
+    geometry: Array
+    axes: FaceAxes
+
+    @classmethod
+    def all(cls, structure: Structure, grid: Grid) -> "tuple[Place, ...]":
+        """The place of each joint; none where no axis varies a form."""
+        if not any(".form." in axis.key for axis in grid.axes):
+            return ()
+        out = []
+        for joint, choice in zip(structure.joints, grid.study.joints, strict=True):
+            interface, form = joint.interface, choice.form
+            axes = FaceAxes.of(structure.mesh, joint.faces, interface, None if form is None else form.along)
+            laid = 0.0 if form is None else form.at(interface.positions, axes)
+            out.append(cls(positions=interface.positions, geometry=interface.gap - laid, axes=axes))
+        return tuple(out)
+
+    def gap(self, form: Form | None) -> Array:
+        """Gap [m] (q,) before any load with a form on the geometry."""
+        return self.geometry if form is None else self.geometry + form.at(self.positions, self.axes)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,11 +68,19 @@ class Recipe:
 
     grid: Grid
     pairs: tuple[tuple[Material, Material], ...]
+    places: tuple["Place", ...] = ()  # of each joint, where its form varies; empty where none does
     # laws made lately, with their tables: along an axis of preload they stay the same
     _lately: dict[tuple[Any, ...], JointLaw] = field(default_factory=dict, repr=False, compare=False)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"grid": self.grid, "pairs": self.pairs, "_lately": {}}
+        return {"grid": self.grid, "pairs": self.pairs, "places": self.places, "_lately": {}}
+
+    def gaps(self, index: int) -> list[Array] | None:
+        """Gap [m] (q,) of each joint at one point of the grid; None where no axis varies a form."""
+        if not self.places:
+            return None
+        joints = self.grid.point(index).study.joints
+        return [place.gap(joint.form) for place, joint in zip(self.places, joints, strict=True)]
 
     def laws(self, index: int) -> tuple[list[JointLaw], Array, list[float | None]]:
         """Law of each joint, force of each bolt [N] and friction of each joint at one point of the grid."""
@@ -79,7 +115,7 @@ def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dic
         reason = ""
         try:
             laws, forces, friction = recipe.laws(index)
-            found = model.evaluate(laws, forces, friction, start)
+            found = model.with_gaps(recipe.gaps(index)).evaluate(laws, forces, friction, start)
             start = found.preload.displacement
             p = np.concatenate(found.preload.pressures)
             end = np.concatenate(
@@ -93,10 +129,8 @@ def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dic
                 "beyond_share": beyond,
                 "open_share": 1 - touching / weights.sum(),
             }
-            if beyond > BEYOND:
-                reason = f"more than {BEYOND:.0%} of the contact is pressed beyond the end of the law"
-            else:
-                row |= {"frequencies": found.frequencies, "loss_factors": found.loss_factors}
+            lost = found.loss_factors if any(law.predicts_loss for law in laws) else nothing
+            row |= {"frequencies": found.frequencies, "loss_factors": lost}
         except FayingError as fault:
             reason = str(fault)
             start = None
@@ -167,11 +201,12 @@ def _begun(
     mesh = checked_mesh(study)
     materials = materials_of(study, mesh)
     pairs = [tuple(materials[mesh.face_part[face]] for face in joint.faces) for joint in study.joints]
-    recipe = Recipe(grid=grid, pairs=tuple(pairs))  # type: ignore[arg-type]
-    trainer = _Trainer(study, structure_of(study, mesh, grid.surfaces), recipe, tolerance, report)
+    structure = structure_of(study, mesh, grid.surfaces)
+    recipe = Recipe(grid=grid, pairs=tuple(pairs), places=Place.all(structure, grid))  # type: ignore[arg-type]
+    trainer = _Trainer(study, structure, recipe, tolerance, report)
     model = store.model()
     if model is None:
-        model = trainer.trained().model
+        model = trainer.model()
         store.keep_model(model)
     return trainer, model
 
@@ -213,7 +248,7 @@ def _enriched(model: ReducedModel, trainer: "_Trainer", store: Store, recipe: Re
             break
         worst = far[np.argsort(-store.rows["estimate"][far])][:4]
         trainer.report(f"enrichment: {len(far)} points", 0)
-        model = trainer.trained(worst.tolist()).model
+        model = trainer.model(worst.tolist())
         store.keep_model(model)
         before = store.rows["estimate"][far].copy()
         for indices, rows in _each(model, recipe, [far.tolist()], 1, None):
@@ -233,6 +268,10 @@ class _Trainer:
         self.report = report
         self.reduction: Reduction | None = None
 
+    def model(self, more: Sequence[int] = ()) -> ReducedModel:
+        """Return the bases as `trained` leaves them, for the modes that are wanted."""
+        return replace(self.trained(more).model, count=self.study.modes.count)
+
     def trained(self, more: Sequence[int] = ()) -> Reduction:
         """Return the bases, trained on the corners and some points between, and on the points of `more`."""
         grid = self.recipe.grid
@@ -244,7 +283,9 @@ class _Trainer:
             self.reduction = self._begun([middle, *points])
             self._train(self.reduction, [*points, *more], "training")
             self.reduction.compress(self.tolerance)
-            checks = generator.choice(grid.size, min(CHECKS, grid.size), replace=False).tolist()
+            # a form changes which points touch: more of its grid is looked at
+            count = (3 if self.recipe.places else 1) * CHECKS
+            checks = generator.choice(grid.size, min(count, grid.size), replace=False).tolist()
             self._check(self.reduction, checks)
         else:
             self._train(self.reduction, more, "training")
@@ -258,10 +299,10 @@ class _Trainer:
             try:
                 laws, forces, _ = self.recipe.laws(index)
                 return Reduction.of(
-                    self.structure,
+                    _with_gaps(self.structure, self.recipe.gaps(index)),
                     laws,
                     forces,
-                    count=self.study.modes.count,
+                    count=self.study.modes.count + SPARE_MODES,
                     shift_frequency=self.study.modes.shift_frequency,
                     solver=self.study.modes.solver,
                 )
@@ -276,7 +317,8 @@ class _Trainer:
         for number, index in enumerate(points):
             self.report(f"{what} {number + 1}", 0)
             try:
-                start = reduction.train(*self.recipe.laws(index), tolerance=self.tolerance, start=start)
+                gaps = self.recipe.gaps(index)
+                start = reduction.train(*self.recipe.laws(index), tolerance=self.tolerance, start=start, gaps=gaps)
             except FayingError as met:  # a point without an answer is reported when it is evaluated
                 fault = met
                 start = None
@@ -290,6 +332,7 @@ class _Trainer:
             self.report("check", 0)
             try:
                 laws, forces, friction = self.recipe.laws(index)
+                reduction.model = reduction.model.with_gaps(self.recipe.gaps(index))
                 found = reduction.model.equilibrium(laws, forces, friction)
                 error, _ = reduction.modal_error(laws, found.pressures)
                 balance, _ = reduction.static_error(laws, forces, friction, found)
@@ -298,6 +341,16 @@ class _Trainer:
             if error.max() > 4 * self.tolerance or balance > 4 * STATIC_SHARE * self.tolerance:
                 poor.append(index)
         self._train(reduction, poor, "training")
+
+
+def _with_gaps(structure: Structure, gaps: Sequence[Array] | None) -> Structure:
+    """The structure with other gaps [m] (q,) of its joints before any load; itself where None."""
+    if gaps is None:
+        return structure
+    pairs = zip(structure.joints, gaps, strict=True)
+    return replace(
+        structure, joints=tuple(replace(joint, interface=replace(joint.interface, gap=gap)) for joint, gap in pairs)
+    )
 
 
 def _each(

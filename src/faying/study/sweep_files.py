@@ -19,6 +19,8 @@ from faying.netcdf import Variable
 from faying.study.axes import Axis, Grid
 from faying.typing import Array
 
+BEYOND = 0.1  # share of the contact beyond the end of the law from which a point is told
+
 
 @dataclass(frozen=True, kw_only=True)
 class Sweep:
@@ -63,6 +65,7 @@ class Sweep:
             "basis": {"equilibrium": self.basis[0], "vibration": self.basis[1]},
             "without_answer": self.reasons,
             "found": self.found,
+            "beyond_law": int(np.count_nonzero(self.beyond_share > BEYOND)),
             "file": str(self.path),
         }
 

@@ -1,0 +1,56 @@
+"""`faying form FILE`: a measured form of a face, or of a gap: map, flatness, crowns and twist."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
+@click.option("--xy-unit", help='Unit of x and y where the file states none, for example "mm".')
+@click.option("--z-unit", help='Unit of the heights or gaps where the file states none, for example "um".')
+@click.option("--gap", "is_gap", is_flag=True, help="The values are gaps between two faces, not heights of one.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of text.")
+@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Write the map (png, pdf, svg).")
+def command(
+    file: Path, xy_unit: str | None, z_unit: str | None, is_gap: bool, as_json: bool, plot: Path | None
+) -> None:
+    """Flatness, crowns and twist of the form in FILE: a list of points x, y, z (csv, txt, dat, xyz, asc) or a scan."""
+    from faying.errors import ReadError
+    from faying.joint.form_fit import fit_form
+    from faying.joint.gap_map import read_heights
+    from faying.output.figures import form as drawing
+    from faying.output.figures.save import check_ending, save
+
+    if plot:
+        check_ending(plot)
+    if not file.is_file():
+        raise ReadError(f"no file {file}")
+    fit = fit_form(*read_heights(file, xy_unit=xy_unit, z_unit=z_unit), is_gap=is_gap)
+    if plot:
+        save(drawing.figure(fit, file.name), plot)
+    if as_json:
+        click.echo(json.dumps({"file": str(file), **fit.to_dict()}, indent=2))
+        return
+    click.echo(text(file.name, fit))
+    if plot:
+        click.echo(f"\nwritten to {plot}")
+
+
+def text(name: str, fit: Any) -> str:
+    """The numbers, and the table of a study that stands for them."""
+    from faying.units import show
+
+    sides = " x ".join(show(side, "m") for side in fit.lengths)
+    lines = [
+        f"{name}: {len(fit.values):,} {'gaps' if fit.is_gap else 'heights'} over {sides}, longer along {fit.along}",
+        f"flatness (minimum zone)     {show(fit.zone.flatness, 'm', digits=4)}",
+        f"left by crowns and twist    {show(fit.rest, 'm', digits=4)}",
+        "",
+        "as named shapes in a study:",
+        "[joint.form]",
+    ]
+    shapes = ("crown_along", "crown_across", "twist")
+    return "\n".join([*lines, *(f'{shape} = "{show(getattr(fit, shape), "m", digits=3)}"' for shape in shapes)])
