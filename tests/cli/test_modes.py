@@ -14,7 +14,7 @@ from scipy.sparse import load_npz
 
 import faying.fe.slepc_worker as worker
 from faying.cli import main
-from faying.study.template import write
+from tests.helpers.studies import write
 
 WORKER = Path(worker.__file__)
 

@@ -9,7 +9,7 @@ import pytest
 import faying
 from faying.joint.bolt import torque_to_preload
 from faying.study import Study
-from faying.study.template import TEXT
+from tests.helpers.studies import TEXT
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import faying
 from faying.study import Study, build, case, run
 from faying.study.axes import axis_of
 from faying.study.sweep import sweep
-from faying.study.template import write
+from tests.helpers.studies import write
 
 IN_FULL = {"density": "3e9 1/m^2", "radius": "60 um", "sigma": "0.5 um"}
 

@@ -5,7 +5,7 @@ import pytest
 
 import faying
 from faying.study import Study, build
-from faying.study.template import write
+from tests.helpers.studies import write
 
 
 @pytest.fixture(scope="module")

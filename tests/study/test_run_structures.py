@@ -7,7 +7,7 @@ import pytest
 
 import faying
 from faying.study import Study, build, run
-from faying.study.template import write
+from tests.helpers.studies import write
 
 MORE = """
 [tightening]

@@ -4,7 +4,7 @@ import pytest
 
 import faying
 from faying.study import Study
-from faying.study.template import TEXT
+from tests.helpers.studies import TEXT
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ from faying.study.case import surfaces_of
 from faying.study.keys.law import LawChoice
 from faying.study.keys.solution import ModesChoice
 from faying.study.sweep import sweep
-from faying.study.template import write
+from tests.helpers.studies import write
 
 
 @pytest.fixture(scope="module")

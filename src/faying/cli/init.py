@@ -10,7 +10,7 @@ import click
 @click.option("--force", is_flag=True, help="Replace files that exist with other content.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was written as JSON.")
 def command(study: Path, force: bool, as_json: bool) -> None:
-    """Write a commented study to STUDY, with a small bolted pair (STEP) beside it, so that it runs as it is."""
+    """Write a commented study to STUDY, with the geometry and the scan of a small bolted pair, so that it runs."""
     from faying.study.template import write
 
     made = write(study, force=force)

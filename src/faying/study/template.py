@@ -3,8 +3,11 @@
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from faying.errors import InputError
+import numpy as np
+
+from faying.errors import FayingError, InputError
 from faying.files import write_atomically
+from faying.surface.scan import Scan
 
 TEXT = """# A Faying study. Quantities are text with a unit; plain numbers have no dimension.
 # Run it with: faying run {name}
@@ -37,31 +40,38 @@ material = "45 steel"
 # hardness = "994 MPa"         # 2.8 times the yield strength where left out
 # friction = 0.25
 
-# The rough surface: a scan ...
-# [surface]
-# scan = "scan.x3p"            # X3P, x,y,z text; more formats with the extra `instruments`
+# The rough surface: the scan of one face.
+[surface]
+scan = "{scan}"      # synthetic; X3P, x,y,z text; more formats with the extra `instruments`
+counter = "same"               # the other face: alike but unrelated; "smooth"; or the file of its own scan
 # xy_unit = "mm"               # only where the file does not say
 # z_unit = "um"
-# method = "psd"               # psd, structure or moments
-# ... or its fractal parameters.
-[surface]
-D = 2.39                       # fractal dimension of the surface, between 2 and 3
-G = "1.53e-10 m"               # fractal roughness, Yan-Komvopoulos convention
-scan_area = "16 mm^2"          # area of the scan that D and G come from
+# size = "4 mm x 3 mm"         # or spacing = "5 um", where the file has neither
+# method = "psd"               # estimator of D and G; `faying surface` lists them
+# ... or the fractal parameters of both faces together, in place of scan and counter.
+# D = 2.39                     # fractal dimension, between 2 and 3
+# G = "1.53e-10 m"             # fractal roughness, Yan-Komvopoulos convention
+# scan_area = "16 mm^2"        # area of the scan that D and G come from
 
 [law]
-model = "jk"                   # any name that `faying models` lists; all but jk take their inputs from a scan
-closure = "consistent"         # or "printed": the numbers of the paper
-loss = "held"                  # or "literal"
-cutoff = 0.01                  # smallest asperity that counts for stiffness, as a share of a1c'
-substrate = 1.0                # share of the deformation that the asperity takes, or "exact", "computed"
-counterbody = "part"           # or "rigid", as the paper has it
+model = "auto"                 # the contact solved on the scan, or the law nearest to it; `faying models` lists others
+counterbody = "part"           # or "rigid": the other body does not yield
+# model = "jk"                 # Zhang et al. 2024, with its own keys:
+# closure = "consistent"       # or "printed": the numbers of the paper
+# loss = "held"                # or "literal"
+# cutoff = 0.01                # smallest asperity that counts for stiffness, as a share of a1c'
+# substrate = 1.0              # share of the deformation that the asperity takes, or "exact", "computed"
+
+# The same joints under another law, beside the study's own.
+# [[beside]]
+# name = "JK"
+# law = {{ model = "jk" }}
 
 [[joint]]
 name = "joint"
 faces = ["upper.joint", "lower.joint"]
 springs = "per-area"           # or "per-node": the paper's use, which depends on the mesh
-tangential = "law"             # or "mindlin": k_t = k_n 2(1-nu)/(2-nu)
+# tangential = "mindlin"       # k_t = k_n 2(1-nu)/(2-nu), whatever the law says; else its own where it has one
 
 [[bolt]]
 name = "bolt"
@@ -126,20 +136,50 @@ def blocks(path: Path) -> None:
     Compound([upper, lower]).WriteStep(str(path))
 
 
+def surface(path: Path) -> None:
+    """Write a synthetic scan of a milled finish as X3P: 1.6 mm square, rms height 1 um, waves up to 0.1 mm."""
+    from faying.surface.synthesize import spectral
+    from faying.surface.write import write_scan
+
+    scan = spectral((320, 320), spacing=5e-6, D=2.2, Rq=1e-6, longest=1e-4, seed=7)
+    assert isinstance(scan, Scan)
+    with TemporaryDirectory() as folder:  # the writer goes by the suffix
+        path.write_bytes(write_scan(scan, Path(folder) / "surface.x3p", precision="F").read_bytes())
+
+
 def write(study: Path, *, force: bool = False) -> list[Path]:
-    """Write the study and its geometry; InputError where a file of other content exists already, unless `force`."""
-    step = study.with_name("two-blocks.step")
-    text = TEXT.format(name=study.name, step=step.name)
+    """Write the study, its geometry and its scan; InputError where a file of other content exists, unless `force`."""
+    step, scan = study.with_name("two-blocks.step"), study.with_name("surface.x3p")
+    text = TEXT.format(name=study.name, step=step.name, scan=scan.name)
     kept = not force and step.exists() and _solids(step) == _solids(None)
-    for path, same in ((study, not study.exists() or _text(study) == text), (step, kept or not step.exists())):
+    measured = not force and scan.exists() and _same_heights(scan)
+    for path, same in (
+        (study, not study.exists() or _text(study) == text),
+        (step, kept or not step.exists()),
+        (scan, measured or not scan.exists()),
+    ):
         if not (same or force):
             raise InputError(
                 f"{path} exists already, with other content; name another file, or replace it with --force"
             )
     return [
         step if kept else write_atomically(step, blocks),
+        scan if measured else write_atomically(scan, surface),
         write_atomically(study, lambda path: path.write_text(text, encoding="utf-8")),
     ]
+
+
+def _same_heights(scan: Path) -> bool:
+    """Whether a file holds the scan that `surface` writes."""
+    from faying.surface.read import read_scan
+
+    with TemporaryDirectory() as folder:
+        fresh = Path(folder) / "surface.x3p"
+        surface(fresh)
+        try:
+            return bool(np.array_equal(read_scan(scan).heights, read_scan(fresh).heights))
+        except FayingError:
+            return False
 
 
 def _solids(step: Path | None) -> list[str]:
