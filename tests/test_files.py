@@ -2,6 +2,7 @@
 
 import errno
 import os
+import signal
 import subprocess
 import sys
 
@@ -9,7 +10,7 @@ import pytest
 
 import faying
 from faying.errors import ReadError
-from faying.files import read_numbers, write_atomically
+from faying.files import read_numbers, together, uninterrupted, write_atomically
 from faying.study.template import write
 
 
@@ -80,3 +81,96 @@ def test_separators_are_no_decimal_commas(tmp_path, line):
     path = tmp_path / "table.csv"
     path.write_text(line + "\n")
     assert read_numbers(path, 3, "three numbers").shape == (1, 3)
+
+
+def files_of(folder):
+    return {path.name: path.read_text() for path in sorted(folder.rglob("*"))}
+
+
+@pytest.mark.parametrize("there", [True, False])
+@pytest.mark.parametrize("fault", [KeyboardInterrupt, faying.InputError("no"), OSError("disk")])
+def test_files_appear_together_or_not_at_all(tmp_path, there, fault):
+    folder = tmp_path / "deep" / "results"
+    if there:
+        folder.mkdir(parents=True)
+        (folder / "result.nc").write_text("old")
+        (folder / "mine.txt").write_text("mine")
+    before = files_of(tmp_path) if not there else files_of(folder)
+
+    def stopped():
+        with together(folder, "remedy") as hidden:
+            (hidden / "result.nc").write_text("new")
+            raise fault
+
+    with pytest.raises(type(fault) if isinstance(fault, Exception) else fault):
+        stopped()
+    assert (files_of(folder) if there else files_of(tmp_path)) == before
+    assert there or not folder.parent.exists()
+    with together(folder, "remedy") as hidden:
+        for name in ("result.nc", "report.html"):
+            (hidden / name).write_text("new")
+        assert not there or (folder / "result.nc").read_text() == "old"
+    mine = {"mine.txt": "mine"} if there else {}
+    assert files_of(folder) == {"result.nc": "new", "report.html": "new"} | mine
+
+
+def test_a_fault_names_the_place_where_the_file_would_have_been(tmp_path):
+    def full(temporary):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    target = tmp_path / "out"
+    with pytest.raises(faying.InputError) as fault, together(target, "remedy") as hidden:
+        write_atomically(hidden / "result.nc", full)
+    assert str(fault.value) == f"cannot write {target / 'result.nc'}: No space left on device"
+    (tmp_path / "file").write_text("")
+    with pytest.raises(faying.InputError, match="a file has this name; remedy"), together(tmp_path / "file", "remedy"):
+        raise AssertionError
+
+
+def test_an_interruption_waits_for_the_files_and_then_counts():
+    done = []
+
+    def stopped():
+        with uninterrupted():
+            signal.raise_signal(signal.SIGINT)
+            done.append(True)
+
+    with pytest.raises(KeyboardInterrupt):
+        stopped()
+    assert done == [True]
+
+
+STOPPED = """
+import os, signal, sys, time
+from faying.output.figures import save
+
+def wait(*given):
+    print("drawing", flush=True)
+    time.sleep(60)
+
+save.save.__code__ = wait.__code__
+save.time = time
+from faying.cli import main
+main(sys.argv[1:])
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_run_that_is_stopped_while_it_writes_leaves_what_was_there(tmp_path, number):
+    """The data are written when the first figure begins: neither they nor a new folder stay."""
+    write(tmp_path / "study.toml")
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "result.nc").write_text("old")
+    command = [sys.executable, "-c", STOPPED, "run", str(tmp_path / "study.toml"), "--out", str(out)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "drawing\n"
+        assert any(path.name == "result.nc" for path in out.glob(".*/*"))
+        process.send_signal(number)
+        _, said = process.communicate(timeout=30)
+    assert process.returncode == 1
+    assert said.endswith("faying: interrupted\n")
+    assert "Traceback" not in said
+    assert files_of(out) == {"result.nc": "old"}

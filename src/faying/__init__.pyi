@@ -1,6 +1,7 @@
 # The public names. Each is imported when it is first used (lazy_loader reads this file).
 from . import contact
 from .asperity_fe import solve_asperity
+from .contact.auto import law_for
 from .contact.half_space import HalfSpace
 from .contact.jk import JK
 from .decks.matrices import read_matrices

@@ -2,6 +2,9 @@
 
 import os
 import re
+import shutil
+import signal
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -20,6 +23,7 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
     temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         write(temporary)
+        _flush(temporary)
         os.replace(temporary, path)
     except OSError as fault:
         raise InputError(f"cannot write {path}: {fault.strerror or fault}") from None
@@ -37,6 +41,12 @@ def make_folder(folder: Path, remedy: str) -> Path:
     return folder
 
 
+def _flush(path: Path) -> None:
+    """Wait until a file is on the disk, so that a power cut after the renaming finds it whole."""
+    with path.open("rb+") as file:
+        os.fsync(file.fileno())
+
+
 @contextmanager
 def new_folder(folder: Path, remedy: str) -> Iterator[Path]:
     """Make a folder before hours of work, and take away what is new and empty if they come to nothing."""
@@ -49,6 +59,54 @@ def new_folder(folder: Path, remedy: str) -> Iterator[Path]:
             with suppress(OSError):  # it holds something by now
                 path.rmdir()
         raise
+
+
+@contextmanager
+def together(folder: Path, remedy: str) -> Iterator[Path]:
+    """Give a hidden folder to write in, whose files appear in `folder` together, or not at all after any fault.
+
+    The hidden folder stands in `folder` where that exists, so that both are on one disk, else beside it. Made before
+    the work, it shows in time where nothing can be written. Files of other names in `folder` stay as they are.
+
+    Raises:
+        InputError: the folder cannot be made; faults of writing inside it name the file's final place.
+    """
+    name = f".{folder.name}.{os.getpid()}.part"
+    with new_folder(folder.parent, remedy):
+        hidden = folder / name if folder.is_dir() else folder.with_name(name)
+        if folder.exists() and not folder.is_dir():
+            raise InputError(f"cannot make the folder {folder}: a file has this name; {remedy}")
+        make_folder(hidden, remedy)
+        try:
+            try:
+                yield hidden
+            except InputError as fault:
+                raise InputError(str(fault).replace(str(hidden), str(folder))) from None
+            with uninterrupted():
+                if hidden.parent != folder:
+                    hidden.rename(folder)
+                else:
+                    for file in sorted(hidden.iterdir()):
+                        os.replace(file, folder / file.name)
+        finally:
+            shutil.rmtree(hidden, ignore_errors=True)
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Hold Ctrl-C and SIGTERM back for the moment; what came is passed on at the end."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came: list[int] = []
+    before = {n: signal.signal(n, lambda n, _: came.append(n)) for n in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for which, handler in before.items():
+            signal.signal(which, signal.SIG_DFL if handler is None else handler)
+    for number in came[:1]:
+        signal.raise_signal(number)
 
 
 _DECIMAL_COMMA = re.compile(r"(?<![\d.,])\d+,\d+(?:[eE][-+]?\d+)?(?=\s*[;\t]|[ ]+[-+.\d]|$)")

@@ -21,11 +21,12 @@ def run(*words: str) -> str:
 def test_table_holds_the_law() -> None:
     out = run(*SPECIMEN, "--pressure", "1 MPa:4 MPa:3")
     assert "doi:10.3390/fractalfract8100611" in out
-    rows = [[float(v) for v in line.split()] for line in out.splitlines()[-3:]]
+    rows = [[float(v) for v in line.split()] for line in out.splitlines()[-4:-1]]
     expected = LAW.at_pressure([1e6, 2e6, 4e6])
     assert [row[0] for row in rows] == pytest.approx([1, 2, 4], rel=1e-3)
     assert [row[2] for row in rows] == pytest.approx((expected.k_n * 1e-12).tolist(), rel=1e-3)
     assert "outside the validity range" not in out
+    assert out.splitlines()[-1] == "note: its loss rests on an assumed elastic-plastic load index, alpha = 0.2"
 
 
 def test_json_agrees_with_the_library() -> None:

@@ -61,13 +61,27 @@ def test_one_scan_all_models(tmp_path: Path) -> None:
         "--csv",
         str(table),
     )
-    for name in ("JK", "MB", "WK", "YK", "ME", "JS", "Persson", "GW", "GW-CEB", "GW-KE", "GW-ZMC", "GW-JG"):
+    for name in (
+        "JK",
+        "MB",
+        "WK",
+        "YK",
+        "ME",
+        "JS",
+        "Persson",
+        "GW",
+        "half-space",
+        "GW-CEB",
+        "GW-KE",
+        "GW-ZMC",
+        "GW-JG",
+    ):
         assert f"\n  {name} " in out
-    assert out.count("max / min") == 2
+    assert out.count("max / min") == out.count("times that of the half-space") == 2
     assert "without a stiffness of their own: JS, MB, WK, YK" in out
     assert "<svg" in figure.read_text()
     rows = table.read_text().splitlines()
-    assert len(rows) == 1 + 9 * 12
+    assert len(rows) == 1 + 9 * 13
     assert rows[0].startswith("law,pressure [Pa],area [-],k_n [Pa/m]")
 
 
@@ -79,7 +93,8 @@ def test_each_law_gets_its_inputs_from_the_same_scan() -> None:
     assert set(tree["laws"]) == {"JK", "GW", "Persson"}
     fit = fit_fractal(read_scan(SCAN))
     assert tree["surface"]["D"]["values"] == pytest.approx(fit.D)
-    assert tree["surface"]["G"]["values"] == pytest.approx(fit.G)
+    # twice the spectral density, that of two like faces, is a G greater by 2^(1/(2D - 4))
+    assert tree["surface"]["G"]["values"] == pytest.approx(fit.G * 2 ** (1 / (2 * fit.D - 4)), rel=1e-9)
     pair = ContactPair(CATALOGUE["45 steel"], RIGID)
     jk = JK.from_surface(SurfaceInputs(**{name: q["values"] for name, q in tree["surface"].items()}), pair)
     assert tree["laws"]["JK"]["k_n"]["values"] == pytest.approx(jk.at_pressure([1e6, 2e6]).k_n.tolist(), rel=1e-9)
@@ -95,7 +110,7 @@ def test_a_law_without_a_way_from_a_scan_says_so() -> None:
 
 @needs_scan
 def test_one_law_of_a_scan_with_a_change() -> None:
-    words = ["--scan", str(SCAN), *STEEL, "--pressure", "1 MPa", "--json"]
+    words = ["--scan", str(SCAN), *STEEL, "--model", "jk", "--pressure", "1 MPa", "--json"]
     plain, changed = (json.loads(run(law, *words, *more)) for more in ([], ["--set", "cutoff=0.001"]))
     assert plain["parameters"]["cutoff"]["values"] == 0.01
     assert changed["k_n"]["values"][0] > plain["k_n"]["values"][0]

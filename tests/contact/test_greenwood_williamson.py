@@ -11,7 +11,9 @@ from scipy.integrate import quad
 from scipy.special import ndtr, pbdv
 
 from faying import RIGID, ContactPair, InputError, Material
-from faying.contact import GreenwoodWilliamson, asperity
+from faying.contact import GreenwoodWilliamson, SurfaceInputs, asperity
+from faying.contact.build import build
+from faying.contact.inputs import RoughSurface
 
 PAIR = ContactPair(Material(name="m", E=200e9, nu=0.3, hardness=994e6, yield_strength=355e6), RIGID)
 LAW = GreenwoodWilliamson(density=1e10, radius=20e-6, sigma=0.5e-6, pair=PAIR)
@@ -124,3 +126,34 @@ def test_parameters_out_of_range_are_refused(change: dict[str, object], message:
 def test_separations_out_of_range_are_refused(h: float) -> None:
     with pytest.raises(InputError, match="-3 to 6 sigma"):
         LAW.at_closure(h * LAW.sigma)
+
+
+def test_numbers_of_a_surface_are_those_of_its_own_summits() -> None:
+    """A Gaussian surface of waves of 12 to 48 points: the law against a count of its summits, and Hertz on each.
+
+    McCool's density and radius hold for every random surface, his deviation for the isotropic Gaussian one. Some 3500
+    summits scatter by 2 %; differences over a spacing take 2 to 4 % off the curvature of waves of 12 points.
+    """
+    n, step = 1024, 1e-6
+    rng = np.random.default_rng(7)
+    q = np.hypot(*np.meshgrid(np.fft.fftfreq(n), np.fft.fftfreq(n)))
+    noise = np.fft.fft2(rng.standard_normal((n, n)))
+    z = np.fft.ifft2(np.where((q > 1 / 48) & (q < 1 / 12), noise, 0)).real
+    z *= 1e-7 / z.std()
+    inputs = SurfaceInputs.from_heights(z, (step, step), D=2.4, G=1e-10)
+    law = build("gw", {}, RoughSurface(inputs=inputs), PAIR)
+    assert isinstance(law, GreenwoodWilliamson)
+
+    ring = [np.roll(z, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
+    top = np.all([z > other for other in ring], axis=0)
+    heights = z[top]
+    bend = -sum(np.roll(z, 1, axis) - 2 * z + np.roll(z, -1, axis) for axis in (0, 1))[top] / (2 * step**2)
+    area = (n * step) ** 2
+    assert law.density == pytest.approx(len(heights) / area, rel=0.08)
+    assert law.radius == pytest.approx(1 / bend.mean(), rel=0.08)
+    assert law.sigma == pytest.approx(heights.std(), rel=0.05)
+    # one radius for all is the model's own simplification: high summits are sharper, by a fifth at one deviation
+    for h in (0.0, 1.0):
+        depth = np.maximum(heights - heights.mean() - h * law.sigma, 0.0)
+        pressure = 4 / 3 * PAIR.E_star * np.sum(depth**1.5 / np.sqrt(bend)) / area
+        assert float(law.at_closure(h * law.sigma).pressure) == pytest.approx(pressure, rel=0.25)

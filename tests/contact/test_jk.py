@@ -1,12 +1,14 @@
 """The JK law beyond its printed totals: the consistent closure, limits, losses, inversion, and what it refuses."""
 
 import warnings
+from collections.abc import Callable
 from math import inf, log, pi, sqrt
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 
 from faying import JK, RIGID, ContactPair, InputError, Material
 from faying.contact.jk import asperity_regimes, slip_share
@@ -316,7 +318,8 @@ def test_held_loss_keeps_the_value_at_the_end_of_the_small_stage() -> None:
     assert np.all(np.diff(literal.loss_n) < 0)
     assert literal.loss_n[3] == pytest.approx(0, abs=1e-14)
     # nearly all energy there is elastic-plastic: alpha/(1 - alpha)
-    assert held.loss_n[1] == pytest.approx(0.25, rel=0.01)
+    assert LAW.specific_damping(al[1])[0] == pytest.approx(0.25, rel=0.01)
+    assert held.loss_n[1] == pytest.approx(0.25 / (2 * pi), rel=0.01)
 
 
 @given(st.floats(1e-6, 0.99))
@@ -408,6 +411,28 @@ def test_every_sign_of_leaving_the_ground_is_reported() -> None:
     rough = LAW.with_(D=2.1, G=1e-8)
     assert "not in the order" in reasons(rough, 1e-10)
     assert "D outside" in reasons(LAW.with_(D=2.05), 1e-10)
+
+
+def test_flags_begin_at_their_limits() -> None:
+    """Each flag one part in a million on either side of the value that the docstring states."""
+
+    def flagged(law: JK, al: float, text: str) -> bool:
+        (mask,) = (mask for reason, mask in law.at_closure(al).reasons.items() if text in reason)
+        return bool(mask)
+
+    def where(law: JK, excess: Callable[[float], float]) -> float:
+        top = law.closure_range[1]
+        return float(np.exp(brentq(lambda x: excess(float(np.exp(x))), np.log(top * 1e-20), np.log(top), xtol=1e-13)))
+
+    crowded = where(LAW, lambda al: float(LAW.at_closure(al).area) - 0.3)
+    smooth = LAW.with_(G=1e-16)
+    bulk = 2 * PAIR.E_star / sqrt(pi * smooth.scan_area)
+    stiff = where(smooth, lambda al: float(smooth.at_closure(al).k_n) - bulk)
+    for law, al, text in ((LAW, crowded, "0.3 of the nominal area"), (smooth, stiff, "stiffness of the bulk")):
+        assert not flagged(law, al * (1 - 1e-6), text)
+        assert flagged(law, al * (1 + 1e-6), text)
+    for D, inside in ((2.1 - 1e-6, False), (2.1, True), (2.9, True), (2.9 + 1e-6, False)):
+        assert flagged(LAW.with_(D=D), 1e-12, "D outside 2.1 to 2.9") is not inside
 
 
 @pytest.mark.parametrize(

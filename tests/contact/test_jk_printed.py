@@ -307,8 +307,8 @@ def printed(case: Case) -> dict[str, float]:
             "area": (Are + Arep + Arp) / A0,
             "k_n": (Kne + Knep) / A0,
             "k_t": (Kte + Ktep) / A0,
-            "loss_n": (alpha * Wnep + Wnp) / (Wne + (1 - alpha) * Wnep),
-            "loss_t": (alpha * Wtep + Wtp) / (Wte + (1 - alpha) * Wtep),
+            "loss_n": (alpha * Wnep + Wnp) / (Wne + (1 - alpha) * Wnep) / (2 * pi_),
+            "loss_t": (alpha * Wtep + Wtp) / (Wte + (1 - alpha) * Wtep) / (2 * pi_),
             "energy_n": (Wne + Wnep + Wnp) / A0,
             "energy_t": (Wte + Wtep + Wtp) / A0,
         }

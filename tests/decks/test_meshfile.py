@@ -89,6 +89,104 @@ def test_gmsh(tmp_path, kinds, version):
 
 
 @pytest.mark.parametrize("kinds", ALL, ids="-".join)
+@pytest.mark.parametrize("version", ["2.2", "4.1"])
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_gmsh_in_binary(tmp_path, kinds, version, order):
+    expected = two(kinds, gap=1e-4)
+    path = tmp_path / "m.msh"
+    path.write_bytes(meshfiles.gmsh_binary(expected, version=version, order=order))
+    mesh = faying.read_mesh(path, unit="mm")
+    same(mesh, expected)
+    assert set(mesh.numbers) == set(meshfiles.numbers(expected))
+
+
+def test_binary_gmsh_cut_short(tmp_path):
+    """Any cut is seen: the sections have ends, and the counts are those of the records."""
+    for version in ("2.2", "4.1"):
+        data = meshfiles.gmsh_binary(two(gap=1e-4), version=version)
+        path = tmp_path / "m.msh"
+        for share in np.linspace(0.05, 0.99, 25):
+            path.write_bytes(data[: int(share * len(data))])
+            with pytest.raises(faying.ReadError):
+                faying.read_mesh(path, unit="mm")
+        end = data.index(b"$EndElements")
+        path.write_bytes(data[: end - 60] + data[end:])
+        with pytest.raises(faying.ReadError, match="middle of a record"):
+            faying.read_mesh(path, unit="mm")
+
+
+@pytest.mark.parametrize("kinds", ALL, ids="-".join)
+@pytest.mark.parametrize("faces", ["shells", "nodes"])
+def test_universal_files(tmp_path, kinds, faces):
+    expected = two(kinds, gap=1e-4)
+    mesh = faying.read_mesh(written(tmp_path, meshfiles.unv(expected, faces=faces), "m.unv"), unit="mm")
+    same(mesh, expected)
+    assert set(mesh.numbers) == set(meshfiles.numbers(expected))
+    fault(tmp_path, meshfiles.unv(expected)[:-200], "has no end .-1.; the file is cut short", "m.unv")
+
+
+MESHIO = {"tet4": "tetra", "tet10": "tetra10", "hex8": "hexahedron", "hex20": "hexahedron20", "wedge6": "wedge"}
+MESHIO |= {"wedge15": "wedge15", 3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8"}
+
+
+def cells_of(kinds, mesh):
+    """Blocks for meshio, and the part or face of each."""
+    cells = [(MESHIO[kind], block) for kind, block in zip(kinds, mesh.blocks, strict=True)]
+    names = list(mesh.parts)
+    for name, face in mesh.faces.items():
+        cells += [(MESHIO[block.shape[1]], block) for block in face]
+        names += [name for _ in face]
+    return cells, names
+
+
+@pytest.mark.parametrize("kinds", ALL, ids="-".join)
+def test_arrays_of_flags_name_parts_and_faces_of_a_vtu(tmp_path, kinds):
+    meshio = pytest.importorskip("meshio")
+    meshio._mesh.topological_dimension["wedge15"] = 3
+    expected = two(kinds, gap=1e-4)
+    cells, names = cells_of(kinds, expected)
+    data = {
+        name: [np.full(len(block), int(name == of)) for (_, block), of in zip(cells, names, strict=True)]
+        for name in dict.fromkeys(names)
+    }
+    meshio.Mesh(expected.points * 1e3, cells, cell_data=data).write(tmp_path / "m.vtu")
+    same(faying.read_mesh(tmp_path / "m.vtu", unit="mm"), expected)
+
+
+MIRRORED = {  # as MED has them: corners the other way round, middle nodes along its own list of edges
+    "tet4": [0, 2, 1, 3],
+    "tet10": [0, 2, 1, 3, 6, 5, 4, 7, 9, 8],
+    "hex8": [0, 3, 2, 1, 4, 7, 6, 5],
+    "hex20": [0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17],
+    "wedge6": [0, 2, 1, 3, 5, 4],
+    "wedge15": [0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13],
+}
+
+
+@pytest.mark.parametrize("kinds", [k for k in ALL if k[0] != k[1]] or ALL, ids="-".join)
+@pytest.mark.parametrize("turned", [True, False])
+def test_med(tmp_path, kinds, turned):
+    """MED's cells run the other way round than VTK's; groups name parts and faces."""
+    meshio = pytest.importorskip("meshio")
+    meshio._mesh.topological_dimension["wedge15"] = 3
+    expected = two(kinds, gap=1e-4)
+    cells, names = cells_of(kinds, expected)
+    if turned:
+        back = {MESHIO[kind]: order for kind, order in MIRRORED.items()}
+        cells = [(kind, block[:, back[kind]] if kind in back else block) for kind, block in cells]
+    family = {name: -1 - k for k, name in enumerate(dict.fromkeys(names))}
+    tags = {}
+    for (kind, block), name in zip(cells, names, strict=True):  # MED holds one block of a kind
+        tags.setdefault(kind, []).append((block, np.full(len(block), family[name])))
+    merged = [(kind, np.concatenate([b for b, _ in some])) for kind, some in tags.items()]
+    data = {"cell_tags": [np.concatenate([t for _, t in some]) for some in tags.values()]}
+    out = meshio.Mesh(expected.points * 1e3, merged, cell_data=data)
+    out.cell_tags = {number: [name] for name, number in family.items()}
+    out.write(tmp_path / "m.med")
+    same(faying.read_mesh(tmp_path / "m.med", unit="mm"), expected)
+
+
+@pytest.mark.parametrize("kinds", ALL, ids="-".join)
 def test_ansys(tmp_path, kinds):
     expected = two(kinds, gap=1e-4)
     mesh = faying.read_mesh(written(tmp_path, meshfiles.ansys(expected), "m.cdb"), unit="mm")
@@ -281,8 +379,8 @@ def test_faults_of_other_formats(tmp_path):
     fault(tmp_path, bulk.replace("GRID,100,,", "GRID,100,,x"), "GRID 100 cannot be read", "m.bdf")
     fault(tmp_path, "BEGIN BULK\nENDDATA\n", "holds 0 GRID cards", "m.bdf")
     text = meshfiles.gmsh(mesh)
-    fault(tmp_path, text.replace("2.2 0 8", "2.2 1 8"), "is a binary mesh file; save it as text", "m.msh")
-    fault(tmp_path, text.replace("2.2 0 8", "3 0 8"), "has format 3; save it in 4.1 or 2.2", "m.msh")
+    fault(tmp_path, text.replace("2.2 0 8", "2.2 1 8"), "is a binary file whose order of bytes is not known", "m.msh")
+    fault(tmp_path, text.replace("2.2 0 8", "3 0 8"), "has format '3 0 8'; save it in 4.1 or 2.2", "m.msh")
     fault(tmp_path, text[:-100], "has no .EndElements; the file is cut short", "m.msh")
     fault(tmp_path, re.sub(r"^(\d+) 17 2", r"\1 12 2", text, flags=re.M), "bricks of 27 nodes are not known", "m.msh")
     fault(

@@ -205,3 +205,24 @@ def test_a_hundred_and_fifty_thousand_unknowns():
 def test_too_few_modes_that_oscillate_are_told():
     with pytest.raises(faying.NotConverged, match="only 1 of 2 modes oscillate"):
         followers(np.ones((2, 1), dtype=complex))
+
+
+def test_no_two_modes_follow_the_same_one():
+    """Two real modes that have mixed both overlap the first complex mode most; each still gets its own."""
+    assert followers(np.array([[0.9, 0.5, 0.1], [0.8, 0.6, 0.2], [0.1, 0.2, 0.7]])).tolist() == [0, 1, 2]
+
+
+def test_a_mode_that_creeps_is_none_that_oscillates():
+    """Two masses on springs, one beyond critical damping: its two real roots are no mode, the other's pair is."""
+    from scipy.sparse import csr_array
+
+    M, K = csr_array(np.eye(2)), csr_array(np.diag([1e6, 4e6]))
+    modes = lowest_modes(K, M, 2, shift_frequency=10.0)
+    for ratio, oscillate in ((0.5, True), (1.5, False)):
+        C = csr_array(np.diag([2 * ratio * 1e3, 2 * 0.01 * 2e3]))
+        if oscillate:
+            found = damped_modes(modes, K, M, C, rigid=0, kind="viscous")
+            assert found.loss_factors == pytest.approx([2 * ratio, 0.02], rel=1e-6)
+        else:
+            with pytest.raises(faying.NotConverged, match="only 1 of 2 modes oscillate"):
+                damped_modes(modes, K, M, C, rigid=0, kind="viscous")

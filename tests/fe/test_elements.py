@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import faying
-from faying.fe.elasticity import assemble, rigid_motions
+from faying.fe.elasticity import assemble, element_mass, element_stiffness, rigid_motions
 from faying.fe.elements import KINDS, SOLIDS
 from faying.fe.faces import face_centre
 from faying.fe.interface import join
@@ -294,3 +294,22 @@ def test_faults_of_blocks():
     assert mesh.numbers.tolist() == list(range(1, 9))
     with pytest.raises(faying.InputError, match="no part is called 'q'; the parts are 'p'"):
         mesh.part_nodes("q")
+
+
+def test_the_mass_of_a_tetrahedron_by_both_rules():
+    """Corner of a straight tet10: 1/70 of the mass exactly; by four points, where its function is +-1/10, 1/100."""
+    points, cells = block("tet10", (1, 1, 1), SIZE)
+    volume = SIZE.prod() / len(cells)
+    exact = element_mass(points, cells, 7800.0)[:, 0, 0]
+    coarse = element_mass(points, cells, 7800.0, "stiffness")[:, 0, 0]
+    assert exact.mean() == pytest.approx(7800.0 * volume / 70, rel=1e-9)
+    assert coarse.mean() == pytest.approx(7800.0 * volume / 100, rel=1e-6)
+
+
+def test_a_brick_does_not_know_where_its_numbering_begins():
+    """The incompatible modes are laid out by the middle of the element: any turn of its numbers gives the same."""
+    points, cells = block("hex8", (1, 1, 1), SIZE)
+    points = points + 0.05 * np.random.default_rng(3).standard_normal(points.shape)
+    turn = [1, 2, 3, 0, 5, 6, 7, 4]
+    first, turned = (element_stiffness(points, c, 200e9, 0.3)[0] for c in (cells, cells[:, turn]))
+    assert turned == pytest.approx(first[turn][:, :, turn], rel=1e-9, abs=1e-9 * np.abs(first).max())

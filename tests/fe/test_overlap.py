@@ -180,3 +180,20 @@ def test_matched_faces_keep_their_points():
     for kind, per_face in (("tet10", 6), ("hex20", 9), ("hex8", 4)):
         mesh = row([1.0, 0.5], [2, 2], kinds=(kind, kind), sections=((2, 3), (2, 3)), width=WIDTH, height=HEIGHT)
         assert len(join(mesh, "p0.right", "p1.left").weights) == per_face * len(mesh.face("p0.right")[0])
+
+
+def test_only_faces_that_look_at_each_other_overlap():
+    """A plate 1 mm thick in front of a face: its near side counts, its far side does not, though it is as near."""
+    mesh = row([1.0, 1e-3], [1, 1], kinds=("hex8", "hex8"), sections=((2, 2), (3, 3)), width=WIDTH, height=HEIGHT)
+    both = (*mesh.face("p1.left"), *mesh.face("p1.right"))
+    found = overlap(mesh.points, mesh.face("p0.right"), both, search_distance=0.1, degree=2)
+    assert found.weights.sum() == pytest.approx(WIDTH * HEIGHT, rel=1e-12)
+
+
+def test_faces_are_found_as_far_as_asked():
+    """A gap many elements wide: all within the search distance meet."""
+    mesh = row(
+        [1.0, 0.5], [1, 1], kinds=("hex8", "hex8"), sections=((20, 20), (15, 15)), width=0.04, height=0.03, gap=0.1
+    )
+    found = overlap(mesh.points, mesh.face("p0.right"), mesh.face("p1.left"), search_distance=0.11, degree=2)
+    assert found.weights.sum() == pytest.approx(0.04 * 0.03, rel=1e-12)

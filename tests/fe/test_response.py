@@ -143,3 +143,30 @@ def test_structural_loss_is_that_of_the_parts_alone(bar):
     assert share < 0.2
     assert width(0.05) == pytest.approx(ETA, rel=0.03)
     assert width(0.05 * share, parts=parts) == pytest.approx(ETA * share, rel=0.03)
+
+
+@pytest.mark.parametrize("eta", [0.02, 0.8])
+def test_the_residual_is_that_of_the_full_equations(bar, eta):
+    """In the norm of K + s M, by a dense solution: the force left unanswered, as displacement, over the answer."""
+    mesh, K, M, loss, modes, damped = bar
+    push = end_force(mesh, L)[:, None]
+    where = np.array([3.0, 4000.0, 70e3])  # rigid motion, resonance, beyond the basis
+    every = np.eye(K.shape[0])
+    vibration = Vibration(stiffness=K, mass=M, loss=loss, rigid=6, structural_loss=eta)
+    found = frequency_response(vibration, modes, damped, forces=push, outputs=every, frequencies=where, checks=3)
+    norm = (K + modes.shift * M).toarray()
+    for u, error, f in zip(found.receptance[:, :, 0], found.error, where, strict=True):
+        w = 2 * np.pi * f
+        miss = push[:, 0] - K @ u * (1 + 1j * eta) + w**2 * (M @ u)
+        left = sum(part @ np.linalg.solve(norm, part) for part in (miss.real, miss.imag))
+        assert error == pytest.approx(np.sqrt(left / abs(np.vdot(u, norm @ u))), rel=1e-3)
+
+
+def test_a_free_body_far_below_its_first_mode_moves_as_a_whole(bar):
+    """1/(-w^2 m) and nothing else at a thousandth of a hertz, where one digit in 1e16 of K would outweigh the mass."""
+    mesh = bar[0]
+    push = end_force(mesh, L)[:, None]
+    found = respond(bar, push, push, frequencies=np.array([1e-3, 1e-2]), structural_loss=0.0)
+    mass = BAR.density * L * SIDE**2
+    rigid = -1 / ((2 * np.pi * found.frequencies) ** 2 * mass)
+    assert found.receptance[:, 0, 0] == pytest.approx(rigid, rel=1e-6)

@@ -101,9 +101,14 @@ def meshes(folder):
         "two.msh": meshfiles.gmsh(mesh),
         "four.msh": meshfiles.gmsh(mesh, version="4.1"),
         "a.cdb": meshfiles.ansys(mesh),
+        "u.unv": meshfiles.unv(mesh),
     }.items():
         (folder / name).write_text(text)
         yield "mesh", folder / name
+    for version in ("2.2", "4.1"):
+        path = folder / f"binary-{version[0]}.msh"
+        path.write_bytes(meshfiles.gmsh_binary(mesh, version=version))
+        yield "mesh", path
 
 
 def matrices(folder):

@@ -39,7 +39,9 @@ def test_on_a_rung_the_law_is_the_contact_itself(law):
         assert said.k_n == pytest.approx(tangent.k_n_unloading, rel=2e-3)
         assert said.k_t == pytest.approx(tangent.k_t, rel=2e-3)
         assert said.energy_n == pytest.approx(contact.elastic_energy, rel=1e-3)
-        assert (said.loss_n, said.loss_t) == (0, 0)  # a small swing of the load is elastic and without slip
+        # a small swing of the load is elastic and without slip: no loss is predicted
+        assert said.loss_n is None
+        assert said.loss_t is None
 
 
 def test_between_rungs_the_law_is_near_the_contact(law):
@@ -68,7 +70,7 @@ def test_choices_of_area_and_stiffness(law):
     first = law.with_(stiffness="loading").at_pressure(p)
     contact = law.contact_at(p)
     assert first.k_n < said.k_n
-    assert first.loss_n == pytest.approx(contact.plastic_work / contact.elastic_energy, rel=0.05)
+    assert first.loss_n == pytest.approx(contact.plastic_work / (2 * np.pi * contact.elastic_energy), rel=0.05)
     assert first.energy_n == pytest.approx(contact.plastic_work + contact.elastic_energy, rel=0.05)
     elastic = law.with_(elastic=True, stiffness="loading").at_pressure(p)
     assert elastic.loss_n == 0
@@ -94,20 +96,23 @@ def test_too_few_points_and_closed_surfaces_are_flagged(rough):
     assert not law.at_pressure(2e4).valid
     assert law.at_pressure(100e6).valid
     smooth = SimpleNamespace(heights=rough(64) * 1e-6, spacing=(1e-3 / 64, 1e-3 / 64))
-    closed = HalfSpace(smooth, PAIR, points=5, lowest=1e6, highest=800e6, elastic=True).at_pressure(790e6)
-    assert not closed.valid
-    assert closed.k_n == np.inf
-    assert closed.area == 1
+    closing = HalfSpace(smooth, PAIR, points=9, lowest=1e3, highest=800e6, elastic=True)
+    # the law ends before the pressure at which every point touches, and where some are open still
+    assert 1e3 < closing.greatest_pressure < 800e6
+    last = closing.at_pressure(closing.greatest_pressure)
+    assert last.area < 1
+    assert np.isfinite(last.k_n)
+    assert not np.isfinite(closing.contact_at(800e6).tangent().k_n_unloading)
 
 
 def test_a_scan_that_does_not_resolve_its_stiffness_is_flagged(rough):
-    words = "k_n changes by more than 10% on half the points each way"
+    words = "k_n changes by more than 25% on half the points each way"
     noise = SimpleNamespace(heights=np.random.default_rng(0).standard_normal((64, 64)) * 1e-6, spacing=(1e-6, 1e-6))
     law = HalfSpace(noise, PAIR, points=4, lowest=20e6, highest=400e6)
     pressure = np.geomspace(20e6, 400e6, 4)
     change = np.array([law.resolution_error(float(p))["k_n"] for p in pressure])
     said = law.at_pressure(pressure)
-    assert said.reasons[words].tolist() == (np.abs(change) > 0.1).tolist()
+    assert said.reasons[words].tolist() == (np.abs(np.log1p(change)) > 0.25).tolist()
     assert said.reasons[words].any()
     smooth = HalfSpace(scan_of(rough, 256), PAIR, elastic=True, points=4, lowest=300e6, highest=900e6)
     assert not smooth.at_pressure(400e6).reasons[words]

@@ -226,6 +226,103 @@ def gmsh(mesh, unit=1e-3, version="2.2"):
     return "\n".join([*lines, "$EndElements"]) + "\n"
 
 
+def gmsh_binary(mesh, unit=1e-3, version="4.1", order="<"):
+    """The text of `gmsh`, its numbers packed as the format says: int 4 bytes, size_t and double 8."""
+    import struct
+
+    def pack(kinds, words):
+        return struct.pack(
+            order + kinds, *(float(w) if k == "d" else int(w) for k, w in zip(kinds, words, strict=True))
+        )
+
+    lines = gmsh(mesh, unit, version).splitlines()
+    out = f"$MeshFormat\n{version} 1 8\n".encode() + struct.pack(order + "i", 1) + b"\n$EndMeshFormat\n"
+    start = lines.index("$PhysicalNames")
+    out += ("\n".join(lines[start : lines.index("$EndPhysicalNames") + 1]) + "\n").encode()
+
+    def body(name):
+        rows = lines[lines.index(f"${name}") + 1 : lines.index(f"$End{name}")]
+        return iter([row.split() for row in rows])
+
+    if version == "2.2":
+        rows = list(body("Nodes"))
+        out += f"$Nodes\n{rows[0][0]}\n".encode() + b"".join(pack("iddd", r) for r in rows[1:]) + b"\n$EndNodes\n"
+        rows = list(body("Elements"))
+        out += f"$Elements\n{rows[0][0]}\n".encode()
+        for r in rows[1:]:  # each with a head of its own
+            out += pack("iii", (r[1], 1, r[2])) + pack("i" * (len(r) - 2), (r[0], *r[3:]))
+        return out + b"\n$EndElements\n"
+    rows = body("Entities")
+    counts = next(rows)
+    out += b"$Entities\n" + pack("QQQQ", counts)
+    for r in rows:
+        out += pack("idddddd", r[:7]) + pack("Q", r[7:8]) + pack("i", r[8:9]) + pack("Q", r[9:10])
+    rows = body("Nodes")
+    out += b"\n$EndEntities\n$Nodes\n" + pack("QQQQ", next(rows))
+    head = next(rows)
+    count = int(head[3])
+    out += pack("iiiQ", head) + b"".join(pack("Q", next(rows)) for _ in range(count))
+    out += b"".join(pack("ddd", next(rows)) for _ in range(count))
+    rows = body("Elements")
+    head = next(rows)
+    out += b"\n$EndNodes\n$Elements\n" + pack("QQQQ", head)
+    for _ in range(int(head[0])):
+        block = next(rows)
+        out += pack("iiiQ", block)
+        for _ in range(int(block[3])):
+            row = next(rows)
+            out += pack("Q" * len(row), row)
+    return out + b"\n$EndElements\n"
+
+
+UNV = {
+    "tet4": (111, range(4)),
+    "wedge6": (112, range(6)),
+    "hex8": (115, range(8)),
+    "tet10": (118, [0, 4, 1, 5, 2, 6, 7, 8, 9, 3]),
+    "wedge15": (113, [0, 6, 1, 7, 2, 8, 12, 13, 14, 3, 9, 4, 10, 5, 11]),
+    "hex20": (116, [0, 8, 1, 9, 2, 10, 3, 11, 16, 17, 18, 19, 4, 12, 5, 13, 6, 14, 7, 15]),
+}
+UNV_FACE = {3: (91, range(3)), 4: (94, range(4)), 6: (92, [0, 3, 1, 4, 2, 5]), 8: (95, [0, 4, 1, 5, 2, 6, 3, 7])}
+
+
+def unv(mesh, unit=1e-3, faces="shells"):
+    """Universal file as SALOME writes it: nodes round the sides, corner, middle, corner; groups of everything."""
+    n = numbers(mesh)
+    lines = ["    -1", "  2411"]
+    for i, place in zip(n, mesh.points / unit, strict=True):
+        lines += [f"{i:10d}{1:10d}{1:10d}{11:10d}", "".join(f"{x:25.16E}".replace("E", "D") for x in place)]
+    lines += ["    -1", "    -1", "  2412", f"{9999:10d}{11:10d}{1:10d}{1:10d}{7:10d}{2:10d}", f"{0:10d}{1:10d}{1:10d}"]
+    lines.append(f"{n[0]:10d}{n[1]:10d}")
+    groups = {}
+
+    def element(number, code, nodes):
+        lines.append(f"{number:10d}{code:10d}{1:10d}{1:10d}{7:10d}{len(nodes):10d}")
+        lines.extend("".join(f"{w:10d}" for w in nodes[k : k + 8]) for k in range(0, len(nodes), 8))
+
+    for part, number, kind, nodes in solids(mesh):
+        code, order = UNV[kind]
+        element(number, code, [nodes[i] for i in order])
+        groups.setdefault(part, []).append((8, number))
+    count = 10000
+    for name in mesh.faces:
+        if faces == "nodes":
+            groups[name] = [(7, i) for i in n[mesh.face_nodes(name)]]
+            continue
+        for block in mesh.faces[name]:
+            for f in block:
+                count += 1
+                code, order = UNV_FACE[len(f)]
+                element(count, code, [n[f[i]] for i in order])
+                groups.setdefault(name, []).append((8, count))
+    lines += ["    -1", "    -1", "  2467"]
+    for k, (name, some) in enumerate(groups.items(), 1):
+        lines += ["".join(f"{w:10d}" for w in (k, 0, 0, 0, 0, 0, 0, len(some))), name]
+        words = [f"{kind:10d}{tag:10d}{0:10d}{0:10d}" for kind, tag in some]
+        lines += ["".join(words[k : k + 2]) for k in range(0, len(words), 2)]
+    return "\n".join([*lines, "    -1"]) + "\n"
+
+
 DOUBLED = {
     "wedge6": [0, 1, 2, 2, 3, 4, 5, 5],
     "wedge15": [0, 1, 2, 2, 3, 4, 5, 5, 6, 7, 2, 8, 9, 10, 5, 11, 12, 13, 14, 14],

@@ -221,3 +221,17 @@ def test_seats_without_a_common_axis_need_a_point_on_it():
     fitted = bolt(at=(0.07, 0.02, 0.0), seat=(0.0, 12e-3)).fitted(shifted)
     assert fitted.axis == pytest.approx([0, 0, -1])
     assert fitted.length == pytest.approx(0.02)
+
+
+def test_the_head_goes_with_one_part_and_the_nut_with_the_other():
+    """Moving one part alone moves half of the shank and what is on its side: a head of 0.64 d, a nut of 0.85 d."""
+    d, rho = 8e-3, STEEL.density
+    made = plates(stacked(), bolts=(bolt(),))
+    fitted, mesh = bolt().fitted(made.mesh), made.mesh
+    hexagon = 3**0.5 / 2 * (1.5 * d) ** 2
+    shank = rho * pi / 4 * d**2 * fitted.length
+    for part, height in (("high", 0.64), ("low", 0.85)):
+        move = np.zeros((len(mesh.points), 3))
+        move[mesh.part_nodes(part), 1] = 1.0
+        expected = shank / 2 + rho * hexagon * height * d
+        assert move.ravel() @ (fitted.mass @ move.ravel()) == pytest.approx(expected, rel=1e-9)

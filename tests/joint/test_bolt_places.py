@@ -115,3 +115,14 @@ def test_two_bolts_in_one_place_and_one_thing_twice_are_refused():
     again = replace(made.joints[0], name="k", faces=made.joints[0].faces[::-1])
     with pytest.raises(faying.InputError, match="joints 'j' and 'k' join the same faces .* would double the stiffness"):
         replace(made, joints=(*made.joints, again))
+
+
+@pytest.mark.parametrize(("share", "refused"), [(0.15, False), (0.25, True)])
+def test_an_axis_may_lie_a_fifth_of_its_radius_beside_the_hole(share, refused):
+    at = CENTRE + np.array([share * INNER, 0.0, 0.0])
+    made = Bolt(name="b", faces=FACES, at=tuple(at), diameter=8e-3, material=STEEL)
+    if refused:
+        with pytest.raises(faying.InputError, match="its axis lies .* beside the centre of the hole"):
+            made.fitted(rings())
+    else:
+        assert made.fitted(rings()).length == pytest.approx(10e-3)

@@ -57,12 +57,20 @@ def test_mindlin_in_place_of_the_laws_own():
     assert k_t / k_n == pytest.approx(2 * 0.7 / 1.7)
 
 
-def test_a_law_without_tangential_stiffness_is_refused_with_advice():
-    law = JointLaw(model=Given("bare", k_n=lambda p: 1e9 * p**0.5))
-    with pytest.raises(faying.InputError, match='bare defines no tangential stiffness; set tangential = "mindlin"'):
-        law.stiffness(np.array([1e6]))
-    loss = law.loss(np.array([1e6]))
-    assert loss[0] == loss[1] == 0
+def test_a_law_without_tangential_stiffness_takes_mindlin_s_and_says_so():
+    bare = Given("bare", k_n=lambda p: 1e9 * p**0.5)
+    law = JointLaw(model=bare, nu=0.3)
+    k_n, k_t = law.stiffness(np.array([1e6]))
+    assert k_t / k_n == pytest.approx(2 * 0.7 / 1.7, rel=1e-12)
+    assert law.assumes_mindlin
+    assert not law.predicts_loss
+    assert [float(part[0]) for part in law.loss(np.array([1e6]))] == [0, 0]
+    with pytest.raises(faying.InputError, match="bare defines no tangential stiffness"):
+        JointLaw(model=bare, tangential="law").stiffness(np.array([1e6]))
+    own = JointLaw(model=Given(k_n=lambda p: 1e9 * p**0.5, k_t=lambda p: 3e8 * p**0.5, loss_t=lambda p: 0.1 + 0 * p))
+    assert not own.assumes_mindlin
+    assert own.predicts_loss
+    assert own.stiffness(np.array([1e6]))[1] == pytest.approx([3e11], rel=1e-12)
 
 
 def test_a_law_without_normal_stiffness_is_refused():
@@ -77,9 +85,17 @@ def test_a_power_law_closes_as_a_power():
     assert law.pressure(w)[0] == pytest.approx((w * 1e9 * 0.5) ** 2, rel=1e-8)
 
 
-def test_a_law_whose_stiffness_outgrows_its_pressure_is_refused():
-    with pytest.raises(faying.InputError, match="never meet"):
-        JointLaw(model=Given("bare", k_n=lambda p: 1e3 * p**1.1), tangential="mindlin").pressure(np.array([1e-9]))
+def test_faces_meet_under_a_law_that_grows_in_proportion_to_pressure():
+    """k = p/s means p = p0 exp((w - w0)/s): the first touch lies a few s away, where that law had it infinitely far."""
+    s = 0.4e-6
+    law = JointLaw(model=Given("bare", k_n=lambda p: p / s), tangential="mindlin")
+    first = law.approach(law.least_pressure)
+    assert 0 < first <= 3 * s * (1 + 1e-9)
+    for pressure in (1e3, 1e6, 1e8):
+        expected = first + s * np.log(pressure / law.least_pressure)
+        assert law.approach(pressure) == pytest.approx(expected, rel=1e-6)
+        assert law.pressure(np.array([expected]))[0] == pytest.approx(pressure, rel=1e-5)
+    assert law.pressure(np.array([0.0, -1e-9]))[0].tolist() == [0, 0]
 
 
 @pytest.mark.parametrize("scan_area", [None, 16e-6])
@@ -117,3 +133,63 @@ def test_structures_that_differ_in_their_laws_share_what_is_assembled():
     fixed = replace(first, supports=(Support(face="p0.left"),))
     assert len(fixed.fixed)
     assert not len(first.fixed)
+
+
+def given(k_n, **changes):
+    return JointLaw(model=Given(**({"k_n": k_n, "k_t": lambda p: 0.5 * k_n(p)} | changes)))
+
+
+def test_scale_multiplies_every_stiffness():
+    """Twice as stiff: both springs double and the faces close by half, whichever slope the law closes by."""
+    k = lambda p: 1e9 * np.sqrt(p)  # noqa: E731
+    for more in ({}, {"k_load": lambda p: 0.7 * k(p)}):
+        one = given(k, **more)
+        two = JointLaw(model=one.model, scale=2.0)
+        p = np.geomspace(10.0, 1e8, 7)
+        assert np.array(two.stiffness(p)) == pytest.approx(2 * np.array(one.stiffness(p)), rel=1e-12)
+        assert two.approach(1e6) == pytest.approx(one.approach(1e6) / 2, rel=1e-9)
+
+
+@pytest.mark.parametrize("least", [0.0, 1e4])
+def test_below_its_least_pressure_a_law_goes_on_as_the_power_it_was(least):
+    """k = c p^0.6: w = p^0.4/(0.4 c) everywhere, and the law itself is asked from its least pressure on."""
+    law = given(lambda p: 1e9 * p**0.6)
+    law.model.least_pressure = least
+    low = max(least, 1.0)
+    p = low * np.array([0.01, 0.3, 1.0005, 1.2, 50.0])
+    assert law.stiffness(p)[0] == pytest.approx(1e9 * p**0.6, rel=1e-6)
+    found, slope = law.pressure(p**0.4 / 0.4e9)
+    assert found == pytest.approx(p, rel=1e-5)
+    assert slope == pytest.approx(1e9 * p**0.6, rel=1e-4)
+    assert law.least_pressure == pytest.approx(low, rel=2e-3)
+    assert low <= law.least_pressure
+
+
+def test_beyond_its_end_a_law_goes_on_without_a_kink():
+    """The exponent at the end is another than at the beginning: 0.9 against 0.2."""
+    law = given(lambda p: 1e9 * p**0.2 * (1 + p / 1e4) ** 0.7, greatest_pressure=1e7)
+    end = law.approach(1e7)
+    (low, high), slopes = law.pressure(end * np.array([1 - 1e-6, 1 + 1e-6]))
+    assert slopes[1] == pytest.approx(slopes[0], rel=1e-4)
+    assert high - low == pytest.approx(2e-6 * end * slopes[0], rel=1e-3)
+    far, _ = law.pressure(np.array([1.5 * end]))
+    power = end * slopes[0] / 1e7
+    assert far[0] == pytest.approx(1e7 * 1.5**power, rel=1e-3)
+
+
+def test_stiffness_in_proportion_to_pressure_closes_as_a_logarithm():
+    """From 1 kPa on k = p/s, as of an exponential law: w(p2) - w(p1) = s ln(p2/p1)."""
+    s = 1e-7
+    law = given(lambda p: np.where(p < 1e3, np.sqrt(p * 1e3), p) / s)
+    assert law.approach(1e6) - law.approach(1e4) == pytest.approx(s * np.log(100.0), rel=1e-8)
+
+
+def test_open_points_lose_nothing_however_many_there_are():
+    law = given(lambda p: 1e9 * p**0.5, loss_n=lambda p: 0.2 + 0 * p, loss_t=lambda p: 0.1 + 0 * p)
+    for count in (5, 500):
+        p = np.where(np.arange(count) % 2, 1e6, 0.0)
+        n, t = law.loss(p)
+        assert n[p > 0] == pytest.approx(0.2)
+        assert t[p > 0] == pytest.approx(0.1)
+        springs = law.stiffness(p)[0]
+        assert np.all(springs[p == 0] * n[p == 0] == 0)

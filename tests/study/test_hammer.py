@@ -128,7 +128,8 @@ def test_modes_and_frfs_come_back_from_universal_files(result, files):
     np.testing.assert_allclose(np.diag(found.mac), 1, atol=1e-6)
     assert found.pairs.tolist() == [[k, k] for k in range(10)]
     assert found.full.all()
-    np.testing.assert_allclose(found.frac, 1, atol=1e-9)
+    # the file rounds frequencies, which the response of lightly damped modes feels
+    np.testing.assert_allclose(found.frac, 1, atol=1e-5)
 
 
 def test_points_are_spread_over_the_outline_and_begin_with_those_of_the_response(result, files):

@@ -1,5 +1,6 @@
 """Sweeps against full runs, and what they leave on disk when they are interrupted."""
 
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -85,7 +86,51 @@ def test_an_interrupted_sweep_goes_on_where_it_stopped(plan, done, tmp_path, mon
     monkeypatch.setattr(module.Reduction, "of", None)  # the bases are not made again
     again = sweep(plan, axes(), out)
     assert again.frequencies == pytest.approx(done.frequencies, rel=1e-6)
+    assert again.found == 5
     assert sorted(i for call in calls[2:] for i in call) == sorted(set(range(12)) - set(calls[0]))
+
+
+def test_what_an_interruption_changes(plan, tmp_path, monkeypatch):
+    """Nothing, to the last bit: the chunks, and so the starts within them, are those of a sweep in one go."""
+    monkeypatch.setattr(module, "CHUNK", 3)
+    real, calls = module.evaluate, []
+    whole = sweep(plan, axes(), tmp_path / "whole.nc")
+
+    def stops(model, recipe, indices):
+        calls.append(list(indices))
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return real(model, recipe, indices)
+
+    monkeypatch.setattr(module, "evaluate", stops)
+    with pytest.raises(KeyboardInterrupt):
+        sweep(plan, axes(), tmp_path / "parts.nc")
+    monkeypatch.setattr(module, "evaluate", real)
+    # the first chunk is damaged: its points are evaluated again
+    damaged = tmp_path / "parts.nc.part" / "chunk-000000.npz"
+    damaged.write_bytes(damaged.read_bytes()[:-400])
+    parts = sweep(plan, axes(), tmp_path / "parts.nc")
+    assert parts.found == 3
+    for name in ("frequencies", "loss_factors", "estimate", "greatest_pressure"):
+        assert np.array_equal(getattr(parts, name), getattr(whole, name)), name
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="locks of POSIX")
+def test_two_sweeps_into_one_file(plan, tmp_path, monkeypatch):
+    def second(*given):
+        raise faying.InputError("the other was not kept out")
+
+    real = module.evaluate
+
+    def meanwhile(model, recipe, indices):
+        monkeypatch.setattr(module, "evaluate", second)
+        with pytest.raises(faying.InputError, match="another sweep is writing to .*out.nc.part; wait for it"):
+            sweep(plan, axes(), tmp_path / "out.nc")
+        monkeypatch.setattr(module, "evaluate", meanwhile)
+        return real(model, recipe, indices)
+
+    monkeypatch.setattr(module, "evaluate", meanwhile)
+    assert sweep(plan, axes(), tmp_path / "out.nc").path.is_file()
 
 
 def test_leftovers_of_another_sweep_are_refused(plan, tmp_path):

@@ -64,7 +64,7 @@ def command(
     The mode shapes of TEST are taken where it holds some; otherwise they are identified from its FRFs.
     """
     from faying import units
-    from faying.files import make_folder
+    from faying.files import together
     from faying.measured.compare import compare_modes
     from faying.measured.tested import read_test
     from faying.output import report_measured, table
@@ -88,7 +88,8 @@ def command(
     files: list[Path] = []
     if out:
         click.echo("figures and report", err=True)
-        files = report_measured.write(comparison, make_folder(out, "give another with --out"))
+        with together(out, "give another with --out") as hidden:
+            files = [out / file.name for file in report_measured.write(comparison, hidden)]
     for line in tested.notes:
         click.echo(f"note: {line}", err=True)
     if as_json:

@@ -14,6 +14,8 @@ SHOWN = {
     "area": ("Ar/A0", 1.0),
     "k_n": ("k_n [MPa/um]", 1e-12),
     "k_t": ("k_t [MPa/um]", 1e-12),
+    "k_n_low": ("k_n low", 1e-12),
+    "k_n_high": ("k_n high", 1e-12),
     "loss_n": ("loss n", 1.0),
     "loss_t": ("loss t", 1.0),
 }
@@ -21,7 +23,7 @@ WIDTH = 78
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
-@click.option("--model", default="JK", show_default=True, help="The law; `faying models` lists them.")
+@click.option("--model", help="The law; `faying models` lists them. Default: auto on a scan, JK on D and G.")
 @click.option("--D", "D", help="Fractal dimension of the surface, 2 to 3.")
 @click.option("--G", "G", metavar="LENGTH", help='Fractal roughness, for example "1.53e-10 m".')
 @click.option("--scan-area", metavar="AREA", help='Area that the scan covers, for example "16 mm^2".')
@@ -51,9 +53,15 @@ WIDTH = 78
 @click.option("--z-unit", help='Unit of the heights where the scan states none, for example "um".')
 @click.option("--size", metavar="LENGTHS", help='Of a scan whose file states none, for example "4 mm x 3 mm".')
 @click.option("--spacing", metavar="LENGTHS", help='Of its points, in place of --size, for example "5 um".')
+@click.option(
+    "--counter",
+    metavar="FILE|same|smooth",
+    help="The other face: its scan; statistically alike, the default; or smooth. With --scan.",
+)
 @click.option("--method", default="psd", show_default=True, help="Estimator of D and G; `faying surface` lists them.")
 @click.option("--models", metavar="LIST", help='Several laws of the scan, for example "jk,gw,gw-ke,persson".')
-@click.option("--all-models", is_flag=True, help="All laws that take their inputs from a scan.")
+@click.option("--all-models", is_flag=True, help="All laws of a scan, with their ratio to the half-space.")
+@click.option("--stability", is_flag=True, help="k_n on parts of the scan and on fewer points, at the middle pressure.")
 @click.option(
     "--contact-map",
     type=click.Path(dir_okay=False),
@@ -63,7 +71,7 @@ WIDTH = 78
 @click.option("--csv", "csv_file", type=click.Path(dir_okay=False), help="Write all columns to a CSV file.")
 @click.option("--plot", type=click.Path(dir_okay=False), help="Write a figure (png, pdf, svg).")
 def command(
-    model: str,
+    model: str | None,
     settings: tuple[str, ...],
     pressure: str,
     as_json: bool,
@@ -72,31 +80,44 @@ def command(
     models: str | None,
     all_models: bool,
     contact_map: str | None,
+    stability: bool,
     **options: Any,
 ) -> None:
     """Real area, stiffness and loss of a contact law against nominal pressure.
 
     Example: faying law --D 2.39 --G "1.53e-10 m" --scan-area "16 mm^2" --material "45 steel"
     """
-    from faying.contact.build import build, find
+    from faying.cli import law_table
+    from faying.contact.auto import pick
+    from faying.contact.build import find
     from faying.errors import InputError
     from faying.files import write_atomically
 
-    kind = find(model)
+    on_scan = options["scan"] is not None
+    if not on_scan and (stability or options["counter"] is not None):
+        raise InputError("--stability and --counter go with --scan FILE")
+    kind = find(model or ("auto" if on_scan else "JK"))
     pair = pair_of(options)
+    surface = surface_of(options) if on_scan else None
+    pressures = pressures_of(pressure)
+    several = None if all_models else [name for name in (models or "").split(",") if name.strip()]
+    if stability:
+        assert surface is not None
+        labels = [kind.label] if several == [] else law_table.labels(surface.rough, pair, several)
+        given = given_of(kind, options, settings)
+        click.echo(law_table.stability(surface, pair, labels, given, float(pressures[len(pressures) // 2]), as_json))
+        return
     if models or all_models:
-        from faying.cli.law_table import show
-
-        if options["scan"] is None or settings:
+        if surface is None or settings:
             raise InputError("--models and --all-models take every input from a scan: give --scan FILE and no --set")
-        names = None if all_models else [name for name in (models or "").split(",") if name.strip()]
-        show(surface_of(options), pair, names, pressures_of(pressure), as_json, csv_file, plot, contact_map)
+        law_table.show(surface.rough, pair, several, pressures, as_json, csv_file, plot, contact_map)
         return
     if contact_map:
         raise InputError("--contact-map goes with --scan and halfspace among --models")
-    surface = surface_of(options) if options["scan"] is not None else None
-    law = build(kind, given_of(kind, options, settings), surface, pair)
-    response = law.at_pressure(pressures_of(pressure))
+    with law_table.watched(None if surface is None else surface.rough) as rough:
+        choice = pick(kind, given_of(kind, options, settings), rough, pair)
+        law = choice.law
+        response = law.at_pressure(pressures)
     if csv_file:
         write_atomically(Path(csv_file), lambda temporary: temporary.write_text(csv_text(law, response)))
     if plot:
@@ -104,11 +125,36 @@ def command(
         from faying.output.figures.save import save
 
         save(curves({law.name: response}), plot)
-    click.echo(json.dumps(document(law, response), indent=2, allow_nan=False) if as_json else table(law, response))
+    if as_json:
+        told = {"reason": choice.reason} | ({} if surface is None else {"surface": surface.facts()})
+        click.echo(json.dumps(document(law, response) | told, indent=2, allow_nan=False))
+        return
+    click.echo("\n".join([*heading(choice, surface), table(law, response)]))
+
+
+def heading(choice: Any, surface: Any) -> list[str]:
+    """What the scan says of D and G, what the other face is, and why the law was taken."""
+    from textwrap import wrap
+
+    from faying.units import show
+
+    lines = []
+    if surface is not None:
+        fit = surface.fit
+        lines.append(f"{surface.origin}: {surface.counter}")
+        if fit is not None:
+            (low, high), (least, most) = fit.D_interval, fit.G_interval
+            interval = f"[{show(least, 'm')}, {show(most, 'm')}]"
+            lines.append(f"  D {fit.D:.4g} [{low:.4g}, {high:.4g}], G {show(fit.G, 'm')} {interval}")
+        lines += [line for text in surface.warnings for line in wrap(f"note: {text}", WIDTH)]
+    if choice.reason:
+        lines += wrap(f"law: {choice.reason}", WIDTH)
+    return [*lines, ""] if lines else []
 
 
 def surface_of(options: dict[str, Any]) -> Any:
     """Read, level and fit the scan of --scan, as a study does."""
+    from faying.contact.two_faces import COUNTERS
     from faying.errors import InputError
     from faying.study.keys.surface import SurfaceChoice
     from faying.units import lengths
@@ -117,10 +163,13 @@ def surface_of(options: dict[str, Any]) -> Any:
     sizes: dict[str, Any] = {
         name: lengths(options[name], name=f"--{name}") for name in ("size", "spacing") if options[name]
     }
-    surface = SurfaceChoice(**{name: options[name] for name in names}, **sizes).read()
+    counter = options["counter"] or "same"
+    if counter not in COUNTERS and not Path(counter).is_file():
+        raise InputError(f'--counter {counter}: no such file; give the scan of the other face, "same" or "smooth"')
+    surface = SurfaceChoice(**{name: options[name] for name in names}, counter=counter, **sizes).read()
     if surface.rough is None or surface.rough.scan is None:
         raise InputError(f"{options['scan']} holds a profile; contact laws need an areal scan")
-    return surface.rough
+    return surface
 
 
 def pair_of(options: dict[str, Any]) -> Any:
@@ -259,6 +308,9 @@ def table(law: Any, response: Any) -> str:
             if mask.any():
                 low, high = response.pressure[mask].min(), response.pressure[mask].max()
                 lines.append(f"    {reason}, at {show(float(low), 'Pa')} to {show(float(high), 'Pa')}")
+    lines += [f"note: {text}" for text in law.assumptions]
+    if response.loss_n is None and response.loss_t is None:
+        lines.append("loss: not predicted")
     return "\n".join(lines)
 
 

@@ -4,6 +4,7 @@ import json
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -29,10 +30,10 @@ def show(
     from faying.files import write_atomically
 
     inputs = surface.inputs
-    made, left_out = laws_of_surface(surface, pair, names=names)
-    if contact_map:
-        draw_contact(made, float(pressures[-1]), contact_map)
-    with progress_bar(made) as made:
+    with watched(surface) as rough:
+        made, left_out = laws_of_surface(rough, pair, names=names)
+        if contact_map:
+            draw_contact(made, float(pressures[-1]), contact_map)
         comparison = compare(made, pressures, left_out)
     if csv_file:
         write_atomically(Path(csv_file), lambda path: path.write_text(csv(comparison)))
@@ -60,38 +61,87 @@ def draw_contact(laws: dict[str, Any], pressure: float, path: str) -> None:
 
 
 @contextmanager
-def progress_bar(laws: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """The laws, those that are solved on the scan with a bar on the terminal that follows their loads."""
-    from faying.contact.half_space import HalfSpace
-
-    slow = [name for name, law in laws.items() if isinstance(law, HalfSpace)]
-    if not slow:
-        yield laws
+def watched(surface: Any) -> Iterator[Any]:
+    """The surface, with a bar on the terminal that follows the contacts that are solved on its scan, if there are."""
+    if surface is None:
+        yield surface
         return
-    loads = sum(laws[name].points for name in slow)
-    with click.progressbar(length=loads, label="contact of the scan", file=sys.stderr) as bar:
-        yield {n: law.with_(progress=lambda *_: bar.update(1)) if n in slow else law for n, law in laws.items()}
+    bars: list[Any] = []
+
+    def step(done: int, total: int) -> None:
+        if not bars:
+            bars.append(click.progressbar(length=total, label="contact of the scan", file=sys.stderr))
+            bars[0].__enter__()
+        bars[0].update(done - bars[0].pos)
+        if done == total:
+            bars.pop().__exit__(None, None, None)
+
+    yield replace(surface, progress=step)
 
 
-def clean(values: Any) -> list[float | None]:
-    """Return a row for JSON, None in place of NaN."""
-    return [float(v) if v == v else None for v in values]
+def labels(surface: Any, pair: Any, names: list[str] | None) -> list[str]:
+    """The laws that --models or --all-models name and that answer on this scan, and have a stiffness."""
+    from faying.contact.compare import laws_of_surface
+
+    made, _ = laws_of_surface(surface, pair, names=names)
+    return list(made)
+
+
+def stability(surface: Any, pair: Any, names: list[str], given: Any, pressure: float, as_json: bool) -> str:
+    """One row per law: k_n on the whole scan, and the factors by which parts and fewer points move it."""
+    from faying.contact.stability import CASES, UNSTABLE
+    from faying.contact.stability import stability as stability_of
+    from faying.errors import FayingError
+
+    scan, counter = surface.scans
+    found, without = [], []
+    for name in names:
+        try:
+            found.append(
+                stability_of(
+                    scan, pair, model=name, given=given, counter=counter, method=surface.method, pressure=pressure
+                )
+            )
+        except FayingError as fault:
+            without.append(f"left out: {name}: {fault}")
+    if as_json:
+        rows = {
+            one.label: {"k_n": {name: quantity(v if v == v else None, "Pa/m") for name, v in one.k_n.items()}}
+            | {"stable": one.stable}
+            for one in found
+        }
+        return json.dumps({"pressure": quantity(pressure, "Pa"), "laws": rows, "left out": without}, indent=2)
+    lines = [f"k_n at {pressure * 1e-6:.4g} MPa, and what multiplies it on parts of the scan", ""]
+    lines.append(f"{'law':<12}{'k_n [MPa/um]':>13}" + "".join(f"{name:>17}" for name in CASES[1:]))
+    for one in found:
+        cells = "".join(f"{'-' if f != f else f'{f:.3g}':>17}" for f in (one.factors[name] for name in CASES[1:]))
+        lines.append(f"{one.label:<12}{one.k_n[CASES[0]] * 1e-12:>13.4g}{cells}{'' if one.stable else ' *'}")
+    if not all(one.stable for one in found):
+        lines += [
+            "",
+            f"* moves by more than {UNSTABLE:.0%}: this stiffness belongs to the window or the resolution too",
+        ]
+    return "\n".join([*lines, *without])
 
 
 def document(inputs: Any, comparison: Any) -> dict[str, Any]:
     """Everything that the command knows, as a tree for JSON; SI."""
     from faying.contact.response import UNITS
+    from faying.result.fields import listed
 
     quantities = ("area", "k_n", "k_t")
     return {
         "surface": {name: quantity(value, SURFACE_UNITS.get(name, "")) for name, value in vars(inputs).items()},
         "pressure": quantity(comparison.pressure.tolist(), "Pa"),
         "laws": {
-            name: {n: quantity(clean(v), UNITS[n]) for n, v in r.quantities().items()}
+            name: {n: quantity(listed(v), UNITS[n]) for n, v in r.quantities().items()}
             | {"valid": r.valid.tolist(), "reasons": {k: m.tolist() for k, m in r.reasons.items() if m.any()}}
             for name, r in comparison.responses.items()
         },
-        "largest over smallest": {q: clean(comparison.spread(q)) for q in quantities},
+        "over half-space": {
+            q: {name: listed(row) for name, row in comparison.ratios(q).items()} for q in ("area", "k_n")
+        },
+        "largest over smallest": {q: listed(comparison.spread(q)) for q in quantities},
         "left out": dict(comparison.left_out),
     }
 
@@ -118,6 +168,12 @@ def table(inputs: Any, comparison: Any) -> str:
                 text = "-" if np.isnan(value) else f"{value:.4g}"
                 cells.append(f"{text + ('' if response.valid[i] else '*'):>11}")
             lines.append(f"  {name:<12}" + "".join(cells))
+        if "half-space" in laws:
+            lines.append("  times that of the half-space")
+            for name in laws:
+                ratio = comparison.ratio(what, name)
+                cells = [f"{'-' if np.isnan(ratio[i]) else f'{ratio[i]:.3g}':>11}" for i in shown]
+                lines.append(f"  {name:<12}" + "".join(cells))
         spread = comparison.spread(what)
         lines.append(f"  {'max / min':<12}" + "".join(f"{spread[i]:>11.4g}" for i in shown))
     lines += ["", "* outside the validity range of the model (`faying models`); - outside what it covers"]

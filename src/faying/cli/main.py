@@ -1,6 +1,8 @@
 """The group of commands. A command's module is imported only when the command is called for."""
 
+import signal
 import sys
+import threading
 from importlib import import_module
 from typing import Any
 
@@ -46,10 +48,17 @@ def cli() -> None:
     """From a measured rough surface and a bolt preload to the vibration modes of the bolted structure."""
 
 
+def _stop(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
 def main(argv: list[str] | None = None) -> None:
-    """Entry point of the command `faying`. Exit codes: 0 done, 1 input or mathematics failed, 2 wrong usage."""
+    """Entry point of the command `faying`. Exit codes: 0 done, 1 failed or stopped, 2 wrong usage."""
     from faying.errors import FayingError
 
+    # kill, and a batch system's time limit, clear up as Ctrl-C does
+    if threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
+        signal.signal(signal.SIGTERM, _stop)
     try:
         code: Any = cli.main(args=argv, prog_name="faying", standalone_mode=False)
     except FayingError as fault:

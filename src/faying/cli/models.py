@@ -44,9 +44,13 @@ def describe(cls: Any) -> dict[str, Any]:
     """Return what a law declares."""
     from dataclasses import MISSING, fields
 
+    from faying.contact.inputs import OF_SCAN
+
     defaults = {f.name: f.default for f in fields(cls)}
     parameters = {}
     for name, p in cls.entries().items():
+        if p.surface in OF_SCAN[1:]:
+            continue  # nothing that a user gives
         default = defaults.get(name, MISSING)
         parameters[name] = {
             "unit": p.unit,

@@ -20,7 +20,7 @@ import click
 def command(study: Path, out: Path | None, as_json: bool, no_files: bool, uff: bool) -> None:
     """Run STUDY: surface, contact law, preload, modes; write NetCDF, CSV, figures and a report."""
     from faying.errors import InputError
-    from faying.files import new_folder
+    from faying.files import together
     from faying.output import report
     from faying.study import Study, run, universal
     from faying.study.run import stage_count
@@ -34,13 +34,14 @@ def command(study: Path, out: Path | None, as_json: bool, no_files: bool, uff: b
     bar = click.progressbar(
         length=stage_count(plan) + 1, file=sys.stderr, label="study", item_show_func=lambda stage: stage or ""
     )
-    with nullcontext() if no_files else new_folder(folder, "give another with --out"), bar:
+    with nullcontext() if no_files else together(folder, "give another with --out") as hidden, bar:
         result = run(plan, report=lambda stage, done, total: bar.update(min(done, 1), stage))
         files = []
-        if not no_files:
+        if hidden is not None:
             bar.update(1, "report")
-            files = report.write(result, folder)
-            files += universal.write(result, folder) if uff else []
+            files = report.write(result, hidden)
+            files += universal.write(result, hidden) if uff else []
+            files = [folder / file.name for file in files]
         bar.update(1, "done")
     if as_json:
         click.echo(json.dumps(result.to_dict() | {"files": [str(f) for f in files]}, indent=2))

@@ -40,7 +40,7 @@ def command(
 
     What is done is kept beside the output; the same command goes on after an interruption.
     """
-    from faying.files import make_folder
+    from faying.files import new_folder
     from faying.output.figures import sweep as drawing
     from faying.output.figures.save import save
     from faying.study import Study
@@ -51,12 +51,12 @@ def command(
     if plot:
         drawing.check(plot, len(axes))
     plan = Study.read(study)
-    if out is None:
-        out = make_folder(plan.folder / "results", "give a file with --out") / "sweep.nc"
+    out = out or plan.folder / "results" / "sweep.nc"
     size = 1
     for axis in axes:
         size *= len(axis.values)
-    with click.progressbar(length=size, file=sys.stderr, label="sweep", item_show_func=lambda s: s or "") as bar:
+    bar = click.progressbar(length=size, file=sys.stderr, label="sweep", item_show_func=lambda s: s or "")
+    with new_folder(out.parent, "give another file with --out"), bar:
         done = sweep(
             plan, axes, out, tolerance=tolerance, jobs=jobs, dask=dask, report=lambda text, n: bar.update(n, text)
         )
@@ -66,6 +66,8 @@ def command(
     if as_json:
         click.echo(json.dumps(summary, indent=2))
         return
+    if done.found:
+        click.echo(f"{done.found} of {summary['points']} points were done before, by a sweep that was interrupted")
     click.echo(
         f"{done.title}: {summary['points']} points, {summary['answered']} with an answer; {done.unknowns:,} unknowns, "
         f"bases of {done.basis[0]} and {done.basis[1]} vectors"

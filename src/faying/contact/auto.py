@@ -68,11 +68,11 @@ def _choose(surface: RoughSurface, pair: ContactPair) -> Choice:
     pressure = np.clip(SHARES * full, law.least_pressure, law.greatest_pressure)
     exact = law.at_pressure(pressure)
     assert exact.k_n is not None
-    ratios = closed_ratios(surface, pair, pressure, exact.k_n, plastic=bool(plastic))
+    ratios = closed_ratios(surface, pair, pressure, exact.k_n) if plastic else {}
     middle = {name: float(row[1]) for name, row in ratios.items()}
     nearest = min(ratios, key=lambda name: float(np.abs(np.log(ratios[name])).max()), default=None)
     said = (
-        "" if nearest is None else f"; the closed law nearest to it, {nearest}, has {middle[nearest]:.2g} times its k_n"
+        "" if nearest is None else f"; the closed law nearest to it, {nearest}, has {middle[nearest]:.2f} times its k_n"
     )
     at = f"at {pressure[1] / 1e6:.3g} MPa"
     faults = [reason for reason, mask in exact.reasons.items() if mask[1]]
@@ -84,23 +84,21 @@ def _choose(surface: RoughSurface, pair: ContactPair) -> Choice:
         return Choice(law=law, reason=reason, ratios=middle)
     if nearest is not None and np.abs(np.log(ratios[nearest])).max() <= log(CLOSE):
         reason = (
-            f"{nearest}, with {middle[nearest]:.2g} times the k_n of the half-space, which does not resolve the contact"
+            f"{nearest}, with {middle[nearest]:.2f} times the k_n of the half-space, which does not resolve the contact"
         )
         return Choice(law=build(nearest, {}, surface, pair), reason=f"{reason} {at}: {faults[0]}", ratios=middle)
     reason = f"half-space, though {faults[0]} {at}: no closed law lies within {CLOSE - 1:.0%} of it{said}"
     return Choice(law=law, reason=reason, ratios=middle)
 
 
-def closed_ratios(
-    surface: RoughSurface, pair: ContactPair, pressure: Array, k_n: Array, *, plastic: bool
-) -> dict[str, Array]:
-    """k_n of the laws of summits over a given k_n [Pa/m] at pressures [Pa] (n,), by label; those that answer alone.
+def closed_ratios(surface: RoughSurface, pair: ContactPair, pressure: Array, k_n: Array) -> dict[str, Array]:
+    """k_n of the laws of summits that yield over a given k_n [Pa/m] at pressures [Pa] (n,), by label.
 
-    Metals that yield meet with the plastic asperities among them, others with Hertz's.
+    Laws without an answer there are left out.
     """
     out = {}
     for kind in kinds().values():
-        if kind.law.name != "GW" or bool(kind.fixed) is not plastic:
+        if kind.law.name != "GW" or not kind.fixed:
             continue
         try:
             found = build(kind, {}, surface, pair).at_pressure(pressure).k_n

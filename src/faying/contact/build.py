@@ -108,6 +108,14 @@ def find(name: str) -> LawKind:
     return kind
 
 
+def label_of(law: ContactLaw) -> LawKind:
+    """The kind that a law is of, its variant by what that fixes."""
+    for label, fixed in law.variants.items():
+        if all(getattr(law, name) == value for name, value in fixed.items()):
+            return find(label)
+    return find(law.name)
+
+
 def find_law(name: str) -> type[ContactLaw]:
     """Return the class of the law called `name`; see `find`."""
     return find(name).law
@@ -134,7 +142,8 @@ def build(
     check_entries(kind, given)
     missing = kind.missing(given, surface)
     if missing:
-        raise InputError(kind.describe_missing(missing, with_scan=surface is not None and surface.scan is not None))
+        text = kind.describe_missing(missing, with_scan=surface is not None and surface.scan is not None)
+        raise InputError(f"{text}; {surface.unfitted}" if surface is not None and surface.unfitted else text)
     supplied = surface.supplies(kind.law.parameters) if surface is not None else {}
     return kind.law.from_entries({**supplied, **kind.fixed, **given}, pair)
 

@@ -7,7 +7,9 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.build import build, find, kinds
+from faying.contact.auto import pick
+from faying.contact.build import AUTO, find, kinds, label_of
+from faying.contact.half_space import HalfSpace
 from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.law import ContactLaw, Response, checked
 from faying.errors import FayingError
@@ -42,6 +44,16 @@ class Comparison:
             out[several] = np.nanmax(kept, axis=0) / np.nanmin(kept, axis=0)
         return out
 
+    def ratio(self, quantity: str, name: str) -> Array:
+        """A quantity of one law over that of the half-space, per pressure [-]; NaN where one of them is silent."""
+        return self.ratios(quantity).get(name, np.full(self.pressure.shape, np.nan))
+
+    def ratios(self, quantity: str) -> dict[str, Array]:
+        """A quantity of every law that defines it over that of the half-space, per pressure [-]; empty without it."""
+        values = {name: r.quantities()[quantity] for name, r in self.responses.items() if quantity in r.quantities()}
+        exact = values.get(HalfSpace.name)
+        return {} if exact is None else {name: value / exact for name, value in values.items()}
+
 
 def laws_of_surface(
     surface: RoughSurface | FractalSurface, pair: ContactPair, *, names: Sequence[str] | None = None
@@ -51,19 +63,21 @@ def laws_of_surface(
     Args:
         surface: the rough surface, or its numbers alone.
         pair: the materials that meet.
-        names: the laws to take, in any spelling; None takes all that live on numbers of a surface. The half-space,
-            which is solved on the scan, is taken only when it is named.
+        names: the laws to take, in any spelling; None takes all that the surface feeds, the half-space among them
+            where there is a scan.
 
     Raises:
         InputError: unknown names.
     """
     rough = RoughSurface(inputs=surface) if isinstance(surface, FractalSurface) else surface
-    numbers = [kind for kind in kinds().values() if kind.law.takes() in ("fractal", "moments")]
+    fed = ("fractal", "moments", "scan") if rough.scan is not None else ("fractal", "moments")
+    numbers = [kind for kind in kinds().values() if kind.label != AUTO and kind.law.takes() in fed]
     made: dict[str, ContactLaw] = {}
     left_out: dict[str, str] = {}
     for kind in numbers if names is None else [find(name) for name in names]:
         try:
-            made[kind.label] = build(kind, {}, rough, pair)
+            law = pick(kind, {}, rough, pair).law
+            made[label_of(law).label if kind.label == AUTO else kind.label] = law
         except FayingError as fault:
             left_out[kind.label] = str(fault)
     return made, left_out

@@ -75,6 +75,7 @@ class HalfSpace(ContactLaw):
         "highest": Parameter("Pa", "greatest pressure covered, above the least and below the hardness", 0),
         "tol": Parameter("", "error bound asked of every contact", 0, 1),
         "cache": Parameter(TABLE, "folder that keeps solved contacts", surface="cache"),
+        "progress": Parameter(TABLE, "told how many contacts are solved", surface="progress"),
     }
     validity: ClassVar[str] = (
         "the scan resolves the roughness that touches: at least 30 points in contact, some open, and "

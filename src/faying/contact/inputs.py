@@ -1,8 +1,8 @@
 """What contact models take from a measured surface: plain numbers, and the levelled heights."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from math import inf, log, pi, sqrt
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from math import inf, isnan, log, pi, sqrt
 from pathlib import Path
 from typing import ClassVar, Protocol, Self, final
 
@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.typing import Array
+
+OF_SCAN = ("scan", "cache", "progress")  # what a law takes from a scan beside numbers
 
 
 class HeightMap(Protocol):
@@ -30,7 +32,7 @@ class HeightMap(Protocol):
 class FractalSurface:
     """D [-] and G [m] in the convention of Yan and Komvopoulos (that of JK), scan_area [m2], gamma, frequency index.
 
-    Raises InputError unless all are positive and finite.
+    D and G are NaN where the scan could not be fitted. Raises InputError unless all others are positive and finite.
     """
 
     D: float
@@ -40,7 +42,7 @@ class FractalSurface:
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
-            if not 0 < value < inf:
+            if not 0 < value < inf and not (isnan(value) and name in ("D", "G")):
                 raise InputError(f"surface: {name} = {value}; it must be positive and finite")
 
     @property
@@ -177,11 +179,15 @@ class RoughSurface:
         inputs: `SurfaceInputs` of a scan, or a `FractalSurface` where only D, G and scan_area are known.
         scan: levelled heights with missing points filled in; None where there is no areal scan.
         cache: folder that keeps solved contacts of the scan; None keeps nothing.
+        unfitted: why the scan has no D and G; empty where it has.
+        progress: called with (solutions done, solutions in all) while contacts of the scan are solved.
     """
 
     inputs: FractalSurface
     scan: HeightMap | None = None
     cache: Path | None = None
+    unfitted: str = ""
+    progress: Callable[[int, int], object] | None = field(default=None, repr=False, compare=False)
 
     FRACTAL: ClassVar = ("D", "G", "scan_area", "gamma", "side", "G_majumdar_bhushan")
 
@@ -197,10 +203,12 @@ class RoughSurface:
         """Values of those parameters that this surface gives."""
         out: dict[str, object] = {}
         for name, parameter in parameters.items():
-            if parameter.surface in ("scan", "cache"):
+            if parameter.surface in OF_SCAN:
                 value = getattr(self, parameter.surface)
                 if value is not None:
                     out[name] = value
             elif parameter.surface in self.FRACTAL or (parameter.surface and isinstance(self.inputs, SurfaceInputs)):
-                out[name] = getattr(self.inputs, parameter.surface)
+                number = getattr(self.inputs, parameter.surface)
+                if not isnan(number):
+                    out[name] = number
         return out

@@ -9,6 +9,7 @@ import hashlib
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from math import log
 from pathlib import Path
 from typing import Any, Protocol, final
 
@@ -23,6 +24,7 @@ from faying.typing import Array
 LARGE = 256  # points on the shorter side above which a map is not solved at every pressure
 STRIDES = 4, 2, 1
 GROWTH = 2.5  # four times the points each way are two doublings; a quarter on top of what the last ones changed
+MOST = log(1e3)  # a range wider than this says no more: next to full contact the stiffness of a map has no limit
 FEWEST_CELLS = 16  # on the side of a quarter of the window
 STORED = 1  # version of what the cache holds
 
@@ -61,12 +63,12 @@ class Ladder:
     @property
     def least_factor(self) -> Array:
         """Lower end of the range of k_n over k_n [-] (n,)."""
-        return np.asarray(np.exp(-(np.abs(self.change).max(axis=0) + self.window)))
+        return np.asarray(np.exp(-np.minimum(np.abs(self.change).max(axis=0) + self.window, MOST)))
 
     @property
     def greatest_factor(self) -> Array:
         """Upper end of the range of k_n over k_n [-] (n,): four times the points each way, at the larger rate seen."""
-        return np.asarray(np.exp(GROWTH * np.abs(self.change).max(axis=0) + self.window))
+        return np.asarray(np.exp(np.minimum(GROWTH * np.abs(self.change).max(axis=0) + self.window, MOST)))
 
 
 def climb(
@@ -244,7 +246,7 @@ def cached(make: Callable[[], Ladder], folder: Path | None, key: Mapping[str, ob
 def _read(file: Path) -> Ladder | None:
     """A ladder as it was kept; None where there is none or its file is damaged."""
     try:
-        with np.load(file, allow_pickle=False) as data:
+        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as data:
             values = {name.removeprefix("value_"): data[name] for name in data.files if name.startswith("value_")}
             own = {name: data[name] for name in ("pressure", "points", "change", "window")}
             return Ladder(values=values, **own)

@@ -8,7 +8,7 @@ from typing import final
 import numpy as np
 
 from faying.contact.auto import pick
-from faying.contact.build import LawKind, find
+from faying.contact.build import LawKind, find, label_of
 from faying.contact.half_space import HalfSpace
 from faying.contact.law import ContactLaw
 from faying.contact.two_faces import Counter, faces_of
@@ -101,14 +101,6 @@ def stability(
         except FayingError:
             values[name] = np.nan
     return Stability(label=kind.label, pressure=pressure, k_n=values)
-
-
-def label_of(law: ContactLaw) -> LawKind:
-    """The kind that a law is of, its variant by what that fixes."""
-    for label, fixed in law.variants.items():
-        if all(getattr(law, name) == value for name, value in fixed.items()):
-            return find(label)
-    return find(law.name)
 
 
 def stiffness_at(law: ContactLaw, pressure: float) -> float:

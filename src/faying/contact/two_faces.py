@@ -1,20 +1,22 @@
 """What the two faces of a joint make together: the rough surface whose gap to a plane is the gap between the two."""
 
 from dataclasses import dataclass, replace
-from math import sqrt
+from math import nan, sqrt
 from pathlib import Path
 from typing import final
 
 import numpy as np
 
 from faying.contact.inputs import FractalSurface, RoughSurface, SurfaceInputs
-from faying.errors import InputError
+from faying.errors import FayingError, InputError
 from faying.surface.combine import combine
+from faying.surface.estimators.table import METHODS
 from faying.surface.form import Prepared, levelled, prepared
 from faying.surface.fractal import FractalFit, fit_fractal
-from faying.surface.scan import Profile, Scan
+from faying.surface.scan import Profile, Scan, usable
 from faying.typing import Array
 
+LEAST_G = 1e-300  # m
 Counter = Scan | str  # the other face: its scan, "same" or "smooth"
 COUNTERS = ("same", "smooth")
 MEANING = {
@@ -30,12 +32,12 @@ class Faces:
 
     Args:
         rough: what laws are made from.
-        fit: D and G of the scan, or of the summed spectra where both faces were measured.
+        fit: D and G of the scan, or of the summed spectra where both faces were measured; None where there is no fit.
         counter: what the other face is, in words.
     """
 
     rough: RoughSurface
-    fit: FractalFit
+    fit: FractalFit | None
     counter: str
 
 
@@ -64,22 +66,22 @@ def faces_of(
         image, shifted by half a side.
 
     Raises:
-        InputError: for another counter, a line scan without scan_area, and scans that cannot be fitted.
+        InputError: for another counter, a line scan without scan_area or a fit, and scans without usable heights.
     """
     if isinstance(counter, str) and counter not in COUNTERS:
         raise InputError(f'counter = "{counter}"; give the file of a scan, "same" or "smooth"')
     if not isinstance(scan, Scan) and scan_area is None:
         raise InputError(f"{scan.source} is a line scan, which covers no area; give surface.scan_area as well")
-    if isinstance(counter, Scan):
-        if not isinstance(scan, Scan):
-            raise InputError(f"{scan.source} is a line scan; two faces need two areal scans")
-        fit, factor, words = combine(scan, counter).fit, 1.0, f"the other face is {Path(counter.source).name}"
-    else:
-        fit, factor, words = fit_fractal(scan, method=method), 2.0 if counter == "same" else 1.0, MEANING[counter]
+    if isinstance(counter, Scan) and not isinstance(scan, Scan):
+        raise InputError(f"{scan.source} is a line scan; two faces need two areal scans")
+    words = f"the other face is {Path(counter.source).name}" if isinstance(counter, Scan) else MEANING[counter]
+    fit, unfitted = _fit(scan, counter, method)
+    factor = 2.0 if counter == "same" else 1.0
     area = scan_area or (scan.size[0] * scan.size[1] if isinstance(scan, Scan) else 0.0)
-    dimension = D or fit.D
-    # twice the spectral density at every wavelength: G^(2 D - 4) doubles
-    fractal = {"D": dimension, "G": G or fit.G * factor ** (1 / (2 * dimension - 4)), "scan_area": area}
+    dimension, roughness = D or (fit.D if fit else nan), G or nan
+    if not G and fit:  # twice the spectral density: G^(2 D - 4) doubles; near D = 2 the fitted G underflows
+        roughness = max(fit.G * factor ** (1 / (2 * dimension - 4)), LEAST_G)
+    fractal = {"D": dimension, "G": roughness, "scan_area": area}
     rough = RoughSurface(inputs=FractalSurface(**fractal))
     if isinstance(scan, Scan):
         ready = prepared(scan)
@@ -93,8 +95,23 @@ def faces_of(
             heights = _on_its_like(ready.scan)
         else:
             heights = ready.scan
-        rough = RoughSurface(inputs=inputs, scan=heights, cache=cache)
+        rough = RoughSurface(inputs=inputs, scan=heights, cache=cache, unfitted=unfitted)
     return Faces(rough=rough, fit=fit, counter=words)
+
+
+def _fit(scan: Scan | Profile, counter: Counter, method: str) -> tuple[FractalFit | None, str]:
+    """D and G, or why an areal scan has none: laws that do not ask for them can go on."""
+    if method not in METHODS:
+        raise InputError(f"method = {method!r}; allowed: {', '.join(METHODS)}")
+    try:
+        if isinstance(counter, Scan) and isinstance(scan, Scan):
+            return combine(scan, counter).fit, ""
+        return fit_fractal(scan, method=method), ""
+    except FayingError as fault:
+        if not isinstance(scan, Scan):
+            raise
+        usable(scan)
+        return None, f"no D and G: {fault}"
 
 
 def _numbers(ready: Prepared, fractal: dict[str, float]) -> SurfaceInputs:

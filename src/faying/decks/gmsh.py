@@ -1,14 +1,16 @@
-"""Gmsh's mesh files (.msh), format 2.2 and 4.1 as text: physical volumes are parts, physical surfaces are faces.
+"""Gmsh's mesh files (.msh), 2.2 and 4.1, text and binary: physical volumes are parts, physical surfaces are faces.
 
 Formats after the Gmsh reference manual, section "Gmsh mesh file formats".
 """
 
+import re
 from pathlib import Path
 
 import numpy as np
 
 from faying.decks.raw import RawMesh, face_blocks, from_edges, gathered, index
 from faying.errors import ReadError
+from faying.typing import Array, Index
 
 _KINDS = {4: ("tet4", 4), 5: ("hex8", 8), 6: ("wedge6", 6), 11: ("tet10", 10), 17: ("hex20", 20), 18: ("wedge15", 15)}
 _FACES = {2: 3, 3: 4, 9: 6, 16: 8}
@@ -31,64 +33,117 @@ _ORDER = {
 
 
 class _Words:
-    """The words of one section, read in turn."""
+    """The numbers of one section as text, read in turn; the same calls as of `_Bytes`."""
 
-    def __init__(self, words: list[str], name: str) -> None:
-        self.words, self.at, self.name = words, 0, name
+    def __init__(self, data: bytes, name: str) -> None:
+        self.data, self.words, self.at, self.name = data, data.split(), 0, name
 
-    def take(self, count: int) -> list[str]:
+    def _take(self, count: int) -> list[bytes]:
         if count < 0 or self.at + count > len(self.words):
             raise ReadError(f"${self.name} ends in the middle of a record; is the file whole?")
         self.at += count
         return self.words[self.at - count : self.at]
 
-    def whole(self, count: int) -> list[int]:
-        return [int(word) for word in self.take(count)]
+    def ints(self, count: int) -> list[int]:
+        return [int(i) for i in index(self._take(count))]
+
+    def count(self) -> int:
+        """A number that stands in a line of its own in front of the records."""
+        return self.ints(1)[0]
+
+    sizes = ints
+
+    def doubles(self, count: int) -> Array:
+        return np.array(self._take(count), dtype=float)
 
 
-def _sections(path: Path) -> dict[str, list[str]]:
-    data = path.read_bytes()
+class _Bytes:
+    """The numbers of one section as Gmsh holds them in memory: int of 4 bytes, size_t and double of 8."""
+
+    def __init__(self, data: bytes, name: str, order: str) -> None:
+        self.data, self.at, self.name, self.order = data, 0, name, order
+
+    def _take(self, kind: str, count: int) -> Array:
+        end = self.at + int(kind[1]) * count
+        if count < 0 or end > len(self.data):
+            raise ReadError(f"${self.name} ends in the middle of a record; is the file whole?")
+        self.at, start = end, self.at
+        return np.frombuffer(self.data[start:end], dtype=self.order + kind)
+
+    def count(self) -> int:
+        line, _, _ = self.data[self.at :].partition(b"\n")
+        self.at += len(line) + 1
+        return int(line)
+
+    def ints(self, count: int) -> list[int]:
+        return [int(i) for i in self._take("i4", count)]
+
+    def sizes(self, count: int) -> list[int]:
+        return [int(i) for i in self._take("u8", count)]
+
+    def doubles(self, count: int) -> Array:
+        return np.asarray(self._take("f8", count), dtype=float)
+
+
+def _sections(path: Path) -> tuple[str, dict[str, _Words | _Bytes]]:
+    """Version, and the sections that are read; text and binary files have the same ones."""
+    data = path.read_bytes().replace(b"\r\n", b"\n") if _is_text(path) else path.read_bytes()
     if b"$MeshFormat" not in data[:200]:
         raise ReadError(f"{path} is not a Gmsh mesh file (no $MeshFormat)")
-    head = data.split(b"$MeshFormat", 1)[1].split()[:2]
-    if head[1] != b"0":
-        raise ReadError(f"{path} is a binary mesh file; save it as text (Mesh.Binary = 0)")
-    if head[0] not in (b"2.2", b"4.1"):
-        raise ReadError(f"{path} has format {head[0].decode()}; save it in 4.1 or 2.2 (Mesh.MshFileVersion)")
-    lines = data.decode("utf-8", errors="replace").splitlines()
-    out: dict[str, list[str]] = {"version": [head[0].decode()]}
-    name = ""
-    for line in lines:
-        if line.startswith("$End"):
-            name = ""
-        elif line.startswith("$"):
-            name = line[1:].strip()
-            out[name] = []
-        elif name:
-            out[name].append(line)
-    if name:
-        raise ReadError(f"{path}: ${name} has no $End{name}; the file is cut short")
-    for needed in ("Nodes", "Elements"):
-        if needed not in out:
-            raise ReadError(f"{path} has no ${needed}; the file is cut short or holds no mesh")
+    head, _, rest = data.split(b"$MeshFormat", 1)[1].lstrip().partition(b"\n")
+    words = head.split()
+    if len(words) != 3 or words[0] not in (b"2.2", b"4.1") or words[1] not in (b"0", b"1"):
+        kind = head.decode("utf-8", errors="replace")[:40]
+        raise ReadError(f"{path} has format {kind!r}; save it in 4.1 or 2.2 (Mesh.MshFileVersion)")
+    order = "<"
+    if words[1] == b"1":
+        if words[2] != b"8" or rest[:4] not in (b"\1\0\0\0", b"\0\0\0\1"):
+            raise ReadError(f"{path} is a binary file whose order of bytes is not known; is the file whole?")
+        order = "<" if rest[:1] == b"\1" else ">"
+    out: dict[str, _Words | _Bytes] = {}
+    for name in ("PhysicalNames", "Entities", "Nodes", "Elements"):
+        begin, end = b"$" + name.encode() + b"\n", b"$End" + name.encode()
+        start = data.find(begin)
+        if start < 0 and name in ("Nodes", "Elements"):
+            raise ReadError(f"{path} has no ${name}; the file is cut short or holds no mesh")
+        if start < 0:
+            continue
+        stop = data.find(end, start)
+        if stop < 0:
+            raise ReadError(f"{path}: ${name} has no $End{name}; the file is cut short")
+        piece = data[start + len(begin) : stop]
+        binary = words[1] == b"1" and name != "PhysicalNames"
+        out[name] = _Bytes(piece, name, order) if binary else _Words(piece, name)
+    return words[0].decode(), out
+
+
+def _is_text(path: Path) -> bool:
+    with path.open("rb") as file:
+        return file.read(200).split(b"$MeshFormat")[-1].split()[1:2] != [b"1"]
+
+
+def _names(words: _Words | _Bytes | None) -> dict[tuple[int, int], str]:
+    """Names of physical groups: (dimension, tag) -> name."""
+    out = {}
+    for line in [] if words is None else words.data.splitlines()[1:]:
+        found = re.fullmatch(rb'\s*([0-3])\s+(\d+)\s+"?([^"]*)"?\s*', line)
+        if found is None:
+            raise ReadError(f"$PhysicalNames: {line.decode(errors='replace')[:60]!r} is no dimension, number and name")
+        out[int(found[1]), int(found[2])] = found[3].decode("utf-8", errors="replace").strip()
     return out
 
 
 def read(path: Path) -> RawMesh:
-    """Read a .msh file. Raises ReadError for binary files, other versions, and elements it does not know."""
-    sections = _sections(path)
-    names = {}
-    for line in sections.get("PhysicalNames", [])[1:]:
-        dimension, group, label = line.split(maxsplit=2)
-        names[int(dimension), int(group)] = label.strip().strip('"')
-    nodes = _Words(" ".join(sections["Nodes"]).split(), "Nodes")
-    elements = _Words(" ".join(sections["Elements"]).split(), "Elements")
+    """Read a .msh file, text or binary. Raises ReadError for other versions, and elements it does not know."""
+    version, sections = _sections(path)
+    names = _names(sections.get("PhysicalNames"))
+    nodes, elements = sections["Nodes"], sections["Elements"]
     try:
-        if sections["version"] == ["2.2"]:
+        if version == "2.2":
             numbers, points = _nodes_22(nodes)
             rows = _elements_22(elements)
         else:
-            groups = _entities(_Words(" ".join(sections.get("Entities", [])).split(), "Entities"))
+            groups = _entities(sections.get("Entities"))
             numbers, points = _nodes_41(nodes)
             rows = _elements_41(elements, groups)
     except ReadError:
@@ -121,39 +176,47 @@ def read(path: Path) -> RawMesh:
     )
 
 
-def _nodes_22(words: _Words) -> tuple[np.ndarray, np.ndarray]:
-    (count,) = words.whole(1)
-    taken = words.take(4 * count)
-    return index(taken[::4]), np.array(taken, dtype=float).reshape(-1, 4)[:, 1:]
+def _nodes_22(words: _Words | _Bytes) -> tuple[Index, Array]:
+    count = words.count()
+    if isinstance(words, _Bytes):
+        record = np.dtype([("number", words.order + "i4"), ("place", words.order + "f8", 3)])
+        piece = words.data[words.at : words.at + record.itemsize * max(count, 0)]
+        if count < 0 or len(piece) != record.itemsize * count:
+            raise ReadError("$Nodes ends in the middle of a record; is the file whole?")
+        table = np.frombuffer(piece, dtype=record)
+        return table["number"].astype(np.int64), np.asarray(table["place"], dtype=float)
+    flat = words.doubles(4 * count).reshape(-1, 4)
+    return index(words.words[1 : 1 + 4 * count : 4]), flat[:, 1:]
 
 
-def _nodes_41(words: _Words) -> tuple[np.ndarray, np.ndarray]:
-    blocks, _, _, _ = words.whole(4)
+def _nodes_41(words: _Words | _Bytes) -> tuple[Index, Array]:
+    blocks, _, _, _ = words.sizes(4)
     numbers: list[int] = []
-    points: list[np.ndarray] = []
+    points: list[Array] = []
     for _ in range(blocks):
-        _, _, parametric, count = words.whole(4)
+        _, _, parametric = words.ints(3)
+        (count,) = words.sizes(1)
         if parametric:
             raise ReadError("the nodes carry parametric coordinates; save without (Mesh.SaveParametric = 0)")
-        numbers += words.whole(count)
-        points.append(np.array(words.take(3 * count), dtype=float).reshape(-1, 3))
-    return index(numbers), np.concatenate(points)
+        numbers += words.sizes(count)
+        points.append(words.doubles(3 * count).reshape(-1, 3))
+    return index(numbers), np.concatenate([np.zeros((0, 3)), *points])
 
 
-def _entities(words: _Words) -> dict[tuple[int, int], list[int]]:
+def _entities(words: _Words | _Bytes | None) -> dict[tuple[int, int], list[int]]:
     """Physical groups of every entity: (dimension, tag) -> tags."""
-    if not words.words:
-        return {}
-    out = {}
-    for dimension, count in enumerate(words.whole(4)):
+    out: dict[tuple[int, int], list[int]] = {}
+    if words is None:
+        return out
+    for dimension, count in enumerate(words.sizes(4)):
         for _ in range(count):
-            (tag,) = words.whole(1)
-            words.take(3 if dimension == 0 else 6)
-            (groups,) = words.whole(1)
-            out[dimension, tag] = [abs(g) for g in words.whole(groups)]
+            (tag,) = words.ints(1)
+            words.doubles(3 if dimension == 0 else 6)
+            (groups,) = words.sizes(1)
+            out[dimension, tag] = [abs(g) for g in words.ints(groups)]
             if dimension:
-                (bounds,) = words.whole(1)
-                words.take(bounds)
+                (bounds,) = words.sizes(1)
+                words.ints(bounds)
     return out
 
 
@@ -169,24 +232,33 @@ def _count(code: int) -> int:
     )
 
 
-def _elements_22(words: _Words) -> list[tuple[int, int, list[int], list[int]]]:
-    (count,) = words.whole(1)
-    out = []
-    for _ in range(count):
-        number, code, tags = words.whole(3)
-        groups = words.whole(tags)[:1]
-        out.append((number, code, [g for g in groups if g], words.whole(_count(code))))
+def _elements_22(words: _Words | _Bytes) -> list[tuple[int, int, list[int], list[int]]]:
+    count = words.count()
+    out: list[tuple[int, int, list[int], list[int]]] = []
+    while len(out) < count:
+        number, code, tags = words.ints(3)
+        if isinstance(words, _Bytes):  # a head for several: kind, how many, tags
+            several, code = code, number
+            width = 1 + tags + _count(code)
+            table = np.array(words.ints(width * several)).reshape(-1, width).tolist()
+            if not table or tags < 0:
+                raise ReadError("$Elements has a head without elements; is the file whole?")
+            out += [(row[0], code, [g for g in row[1 : 1 + tags][:1] if g], row[1 + tags :]) for row in table]
+            continue
+        groups = words.ints(tags)[:1]
+        out.append((number, code, [g for g in groups if g], words.ints(_count(code))))
     return out
 
 
 def _elements_41(
-    words: _Words, groups: dict[tuple[int, int], list[int]]
+    words: _Words | _Bytes, groups: dict[tuple[int, int], list[int]]
 ) -> list[tuple[int, int, list[int], list[int]]]:
-    blocks, _, _, _ = words.whole(4)
+    blocks, _, _, _ = words.sizes(4)
     out = []
     for _ in range(blocks):
-        dimension, entity, code, count = words.whole(4)
+        dimension, entity, code = words.ints(3)
+        (count,) = words.sizes(1)
         width = 1 + _count(code)
-        table = index(words.take(width * count)).reshape(-1, width).tolist()
+        table = index(words.sizes(width * count)).reshape(-1, width).tolist()
         out += [(row[0], code, groups.get((dimension, entity), []), row[1:]) for row in table]
     return out

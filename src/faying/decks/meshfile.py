@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -48,14 +49,29 @@ def read_mesh(
     if unit is None:
         raise InputError(f'{file.name} does not say in which unit its coordinates are; say it, for example unit = "mm"')
     scale = units.scale(unit, "m", name="unit of the mesh")
-    raw: RawMesh = module.read(file)
+    raw = _read(module, file)
     return _Builder(raw, file.name, unit, scale).mesh(parts)
+
+
+def _read(module: Any, file: Path) -> RawMesh:
+    """What a format's reader finds; a word where it expects a number is the file's fault, not a crash."""
+    try:
+        raw: RawMesh = module.read(file)
+    except (ValueError, IndexError, KeyError, OverflowError) as fault:
+        if isinstance(fault, InputError):
+            raise
+        raise ReadError(f"{file} holds something that is not understood ({fault}); is the file whole?") from None
+    if not len(raw.numbers):
+        raise ReadError(f"{file} holds no nodes; is the file whole?")
+    if not any(len(numbers) for numbers, _ in raw.elements.values()):
+        raise ReadError(f"{file} holds no solid elements; is the file whole?")
+    return raw
 
 
 def last_element(path: str | Path) -> int:
     """Greatest number of a solid element in a mesh file, for whoever adds elements to it."""
     file = Path(path)
-    raw: RawMesh = reader_of(file, MESHES).read(file)
+    raw = _read(reader_of(file, MESHES), file)
     return max((int(numbers.max()) for numbers, _ in raw.elements.values() if len(numbers)), default=0)
 
 

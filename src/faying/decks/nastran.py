@@ -297,6 +297,8 @@ def _loaded(loads: list[tuple[list[str], str]], where_of: dict[int, tuple[str, l
     """Element faces that PLOAD4 cards name, by load set."""
     out: dict[str, list[tuple[int, int]]] = {}
     for fields, where in loads:
+        if not all(word.isdigit() for word in (fields[1], *filter(None, fields[6:8]))):
+            raise ReadError(f"{where}: PLOAD4 names {', '.join(fields[1:8:3])}, which are no elements and nodes")
         element = int(fields[1])
         if element not in where_of:
             continue  # a load on a shell

@@ -27,7 +27,8 @@ PROGRAMS: dict[str, Program] = {
     "calculix": Program(matrices=(".sti",), joints=True),
     "aster": Program(joints=True),
     "gmsh": Program(meshes=(".msh",)),
-    "vtk": Program(meshes=(".vtk", ".vtu")),
+    "unv": Program(meshes=(".unv",)),
+    "vtk": Program(meshes=(".vtk", ".vtu", ".med")),
 }
 SOLVERS = tuple(name for name, program in PROGRAMS.items() if program.joints)
 MESHES = {suffix: name for name, program in PROGRAMS.items() for suffix in program.meshes}

@@ -1,11 +1,20 @@
-"""VTK files (.vtk, .vtu), read by meshio: parts and faces from a whole-number cell array."""
+"""VTK files (.vtk, .vtu) and MED files (.med), read by meshio.
 
+Parts and faces come from a whole-number cell array, under the names that MED gives its groups. A cell array of zeros
+and ones beside it is a set of its own, under the array's name. Which middle node belongs to which edge, and which way
+round a cell runs, is seen from where the nodes lie: MED turns its cells the other way, VTK's wedges come both ways.
+"""
+
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from faying.decks.raw import RawMesh, index
 from faying.errors import InputError, ReadError
+from faying.fe.elements import KINDS
+from faying.typing import Array, Index, Mask
 
 _KINDS = {
     "tetra": "tet4",
@@ -21,78 +30,114 @@ _ARRAYS = ("part", "body", "region", "domain", "material", "gmsh:physical", "Cel
 
 
 def read(path: Path) -> RawMesh:
-    """Read a VTK file. Raises InputError where meshio is not installed, ReadError for what it cannot read."""
+    """Read a VTK or MED file. Raises InputError where meshio is not installed, ReadError for what it cannot read."""
     try:
         import meshio
     except ImportError:
+        kind = path.suffix[1:].upper()
         raise InputError(
-            f"{path.name}: VTK files are read by meshio; add --extra vtk to uv run, or pip install meshio"
+            f"{path.name}: {kind} files are read by meshio; add --extra vtk to uv run, or pip install meshio"
         ) from None
     # meshio 5.3.5 knows the name of this kind in every format, but not its dimension
     meshio._mesh.topological_dimension.setdefault("wedge15", 3)
     try:
         found = meshio.read(path)
     except (Exception, SystemExit) as fault:  # meshio raises many kinds
-        raise ReadError(f"{path} cannot be read as VTK ({type(fault).__name__}: {fault}); save it again") from None
-    array = _array(found.cell_data)
-    elements: dict[str, tuple[np.ndarray, np.ndarray]] = {}
-    bodies: dict[str, list[np.ndarray]] = {}
-    faces: dict[str, list[np.ndarray]] = {}
-    extra: list[np.ndarray] = []
+        kind = "MED" if path.suffix.lower() == ".med" else "VTK"
+        raise ReadError(f"{path} cannot be read as {kind} ({type(fault).__name__}: {fault}); save it again") from None
+    points = np.asarray(found.points, dtype=float)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise ReadError(f"{path} has points in {points.shape[-1]} dimensions; three are needed")
+    sets = _Sets(found.cell_data, getattr(found, "cell_tags", {}))
+    elements: dict[str, tuple[Index, Index]] = {}
+    bodies: dict[str, list[Index]] = {}
+    faces: dict[str, list[Index]] = {}
+    extra: list[Index] = []
     first = 1
     for number, block in enumerate(found.cells):
         cells = np.asarray(block.data, dtype=np.int64) + 1
-        labels = np.asarray(array[number]).astype(np.int64).ravel() if array is not None else np.zeros(len(cells), int)
         if block.type in _KINDS:
             kind = _KINDS[block.type]
             count = first + np.arange(len(cells))
             first += len(cells)
             have = elements.get(kind, (count[:0], cells[:0]))
             elements[kind] = (np.concatenate([have[0], count]), np.concatenate([have[1], cells]))
-            for label in np.unique(labels) if array is not None else ():
-                bodies.setdefault(f"part{label}", []).append(count[labels == label])
+            for name, some in sets.of(number, "part", len(cells)):
+                bodies.setdefault(name, []).append(count[some])
         elif block.type in _FACES:
             extra.append(cells.ravel())
-            for label in np.unique(labels):
-                faces.setdefault(f"face{label}", []).append(cells[labels == label])
+            for name, some in sets.of(number, "face", len(cells)):
+                faces.setdefault(name, []).append(cells[some])
         elif block.type in _PASSED:
             extra.append(cells.ravel())
         else:
             raise ReadError(f"{path}: cells of type {block.type} are not known; known are {', '.join(_KINDS)}")
     if not elements:
         raise ReadError(f"{path} holds no solid cells")
-    points = np.asarray(found.points, dtype=float)
-    for kind in ("wedge6", "wedge15"):
-        if kind in elements:
-            elements[kind] = (elements[kind][0], _upright(points, elements[kind][1]))
     return RawMesh(
         numbers=np.arange(1, len(points) + 1),
         points=points,
-        elements=elements,
+        elements={kind: (n, _in_order(points, cells, kind)) for kind, (n, cells) in elements.items()},
         bodies={name: np.concatenate(some) for name, some in bodies.items()},
         face_elements={name: tuple(some) for name, some in faces.items()},
         extra=np.concatenate(extra) if extra else index([]),
     )
 
 
-def _array(cell_data: dict[str, list[np.ndarray]]) -> list[np.ndarray] | None:
-    """The cell array that tells parts and faces: one with a usual name, else the only one of whole numbers."""
-    whole = {
-        name: data
-        for name, data in cell_data.items()
-        if all(np.issubdtype(np.asarray(d).dtype, np.integer) for d in data)
-    }
-    for name in _ARRAYS:
-        if name in whole:
-            return whole[name]
-    return next(iter(whole.values())) if len(whole) == 1 else None
+class _Sets:
+    """Which cells of a block belong to which part or face."""
+
+    def __init__(self, cell_data: dict[str, list[Any]], tags: dict[int, list[str]]) -> None:
+        whole = {
+            name: [np.asarray(d).astype(np.int64).ravel() for d in data]
+            for name, data in cell_data.items()
+            if all(np.issubdtype(np.asarray(d).dtype, np.integer) for d in data)
+        }
+        self.tags = tags
+        self.main = whole.get("cell_tags") if tags else next((whole[name] for name in _ARRAYS if name in whole), None)
+        flags = {name: data for name, data in whole.items() if name not in _ARRAYS and _is_flag(data)}
+        if self.main is None and len(whole) == 1 and not flags:
+            self.main = next(iter(whole.values()))
+        self.flags = {} if tags else flags
+
+    def of(self, block: int, what: str, count: int) -> Iterator[tuple[str, Mask]]:
+        """Name and cells of each set in a block; faces without any array are one face."""
+        for name, data in self.flags.items():
+            if data[block].any():
+                yield name, data[block] == 1
+        if self.main is None:
+            if what == "face" and not self.flags:
+                yield "face0", np.ones(count, dtype=bool)
+            return
+        labels = self.main[block]
+        for label in np.unique(labels):
+            names = self.tags.get(int(label), []) if self.tags else [f"{what}{label}"]
+            for name in names:
+                yield name, labels == label
 
 
-def _upright(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """VTK's picture and its coordinates disagree on which way round a wedge runs; files come with both."""
-    corner = points[cells[:, :4] - 1]
-    volume = np.linalg.det(np.stack([corner[:, i] - corner[:, 0] for i in (1, 2, 3)], axis=1))
-    if np.median(volume) > 0:
-        return cells
-    order = [0, 2, 1, 3, 5, 4] + ([8, 7, 6, 11, 10, 9, 12, 14, 13] if cells.shape[1] == 15 else [])
-    return np.asarray(cells[:, order])
+def _is_flag(data: list[Index]) -> bool:
+    every = np.concatenate(data)
+    return bool(np.isin(every, (0, 1)).all() and every.any() and not every.all())
+
+
+def _in_order(points: Array, cells: Index, kind: str) -> Index:
+    """Cells with their corners running as ours do, and each middle node at the edge on which it lies."""
+    element = KINDS[kind]
+    corners = cells[:, : element.corners]
+    where = points[corners - 1]
+    mirrored = {"tet": [0, 2, 1, 3], "wedge": [0, 2, 1, 3, 5, 4], "hex": [0, 3, 2, 1, 4, 7, 6, 5]}[element.shape.name]
+    three = {"tet": (1, 2, 3), "wedge": (1, 2, 3), "hex": (1, 3, 4)}[element.shape.name]
+    volume = np.linalg.det(np.stack([where[:, i] - where[:, 0] for i in three], axis=1))
+    if np.median(volume) < 0:
+        corners, where = corners[:, mirrored], where[:, mirrored]
+    if element.order == 1:
+        return corners
+    middles = points[cells[:, element.corners :] - 1]
+    ends = np.array(element.edges)
+    expected = (where[:, ends[:, 0]] + where[:, ends[:, 1]]) / 2
+    apart = np.linalg.norm(middles[:, None] - expected[:, :, None], axis=3)  # element, edge, middle node
+    order = np.median(apart / apart.mean(axis=(1, 2), keepdims=True), axis=0).argmin(axis=1)
+    if len(set(order.tolist())) < len(order):
+        raise ReadError(f"the middle nodes of {kind} do not lie on its edges; save the mesh again")
+    return np.concatenate([corners, cells[:, element.corners :][:, order]], axis=1)

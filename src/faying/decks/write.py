@@ -8,7 +8,7 @@ from faying.decks.deck import JointDeck
 from faying.decks.programs import SOLVERS as SOLVERS
 from faying.decks.programs import module_of
 from faying.errors import InputError
-from faying.files import make_folder, write_atomically
+from faying.files import together, write_atomically
 
 
 def write(deck: JointDeck, solver: str, folder: Path) -> list[Path]:
@@ -25,11 +25,10 @@ def write(deck: JointDeck, solver: str, folder: Path) -> list[Path]:
         )
     texts: dict[str, str] = module_of(solver).decks(deck)
     texts["joint_pairs.csv"] = pairs_csv(deck)
-    make_folder(folder, "give another with --out")
-    return [
-        write_atomically(folder / name, lambda temporary, text=text: temporary.write_text(text, encoding="utf-8"))  # type: ignore[misc]
-        for name, text in texts.items()
-    ]
+    with together(folder, "give another with --out") as hidden:
+        for name, text in texts.items():
+            write_atomically(hidden / name, lambda temporary, text=text: temporary.write_text(text, encoding="utf-8"))  # type: ignore[misc]
+    return [folder / name for name in texts]
 
 
 def pairs_csv(deck: JointDeck) -> str:

@@ -9,17 +9,19 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from faying.errors import InputError, ReadError
+from faying.fe.cad import check_head, kernel, products, read_step
 from faying.fe.elements import KINDS
 from faying.fe.memory import guessed
 from faying.fe.mesh import Mesh, split_at_joints
 from faying.memory import available
+from faying.notes import Note
 from faying.typing import Array, Index
 
 # netgen numbers the middle nodes by these edges; VTK, and so we, by those of its element
@@ -34,29 +36,6 @@ _NETGEN_EDGES = {"tet10": ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)), "tri
 def _to_vtk(kind: str) -> list[int]:
     edges = [_NETGEN_EDGES[kind].index((min(edge), max(edge))) for edge in KINDS[kind].edges]
     return [*range(KINDS[kind].corners), *(KINDS[kind].corners + i for i in edges)]
-
-
-def _check_head(path: Path) -> None:
-    if not path.is_file():
-        raise ReadError(f"no file {path}; geometry.step names a STEP file relative to the study")
-    with path.open("rb") as file:
-        head = file.read(64)
-    if b"ISO-10303-21" not in head:
-        raise ReadError(f"{path} is not a STEP file (it does not begin with ISO-10303-21); export STEP AP214 or AP242")
-
-
-def read_step(path: Path) -> Any:
-    """Return the OpenCASCADE shape of a STEP file, in the file's millimetres."""
-    _check_head(path)
-    from netgen.occ import OCCGeometry
-
-    try:
-        shape = OCCGeometry(str(path)).shape
-    except Exception as fault:
-        raise ReadError(f"{path} cannot be read as STEP ({fault}); export it again from the CAD program") from None
-    if not list(shape.solids):
-        raise ReadError(f"{path} holds no solid; export solids, not surfaces")
-    return shape
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,7 +63,7 @@ def mesh_step(
     CAD kernel dies, and InputError for names that do not exist, points on no face or several, and meshes beyond the
     memory.
     """
-    _check_head(path)
+    check_head(path)
     request = _Request(path=str(path.resolve()), size=size, local_size=local_size or {}, face_points=face_points or {})
     with tempfile.TemporaryDirectory() as folder:
         order, answer = Path(folder) / "request.json", Path(folder) / "mesh.npz"
@@ -112,6 +91,7 @@ def mesh_step(
                 faces={name: (data[f"face{k}"],) for k, name in enumerate(faces)},
                 face_part=faces,
                 source=path.name,
+                notes=tuple(Note(**note) for note in json.loads(str(data["notes"]))),
             )
 
 
@@ -128,6 +108,7 @@ def serve(folder: str) -> None:
     arrays: dict[str, Any] = {f"part{k}": blocks[0] for k, blocks in enumerate(mesh.parts.values())}
     arrays |= {f"face{k}": blocks[0] for k, blocks in enumerate(mesh.faces.values())}
     arrays["parts"] = np.array(json.dumps(list(mesh.parts)))
+    arrays["notes"] = np.array(json.dumps([asdict(note) for note in mesh.notes]))
     arrays["faces"] = np.array(json.dumps({name: mesh.face_part[name] for name in mesh.faces}))
     np.savez(place / "mesh.npz", points=mesh.points, **arrays)
 
@@ -135,20 +116,14 @@ def serve(folder: str) -> None:
 def _mesh_here(request: _Request) -> Mesh:
     path, size = Path(request.path), request.size
     local_size, face_points = request.local_size, request.face_points
-    from netgen.occ import Glue, OCCGeometry
-
+    occ = kernel()
+    Glue, OCCGeometry = occ.Glue, occ.OCCGeometry
     shape = read_step(path)
     solids = list(shape.solids)
-    for number, solid in enumerate(solids):
-        if not solid.name:
-            solid.name = f"part{number + 1}"
-    given = [solid.name for solid in solids]
-    for number, solid in enumerate(solids):
-        if given.count(solid.name) > 1:  # told apart by their order in the file
-            solid.name = f"{given[number]}_{given[: number + 1].count(given[number])}"
-    names = [solid.name for solid in solids]
-    if len(set(names)) != len(names):
-        raise InputError(f"{path}: two solids have the same name ({', '.join(names)}); name each of them once")
+    names, notes = _names([solid.name or "" for solid in solids], path.name)
+    notes += _nameless(path, solids)
+    for solid, name in zip(solids, names, strict=True):
+        solid.name = name
     for label, (part, point) in face_points.items():
         if part not in names:
             raise InputError(f"face {label!r}: no part is called {part!r}; the parts are {', '.join(names)}")
@@ -189,7 +164,44 @@ def _mesh_here(request: _Request) -> Mesh:
             f"{path.name} cannot be meshed with size {size * 1e3:g} mm ({fault}); choose another size, or repair the "
             f"geometry"
         ) from None
-    return _collect(mesh, [solid.name for solid in parts], labels, source=path.name)
+    collected = _collect(mesh, [solid.name for solid in parts], labels, source=path.name)
+    return replace(collected, notes=notes)
+
+
+def _names(given: Sequence[str], file: str) -> tuple[list[str], tuple[Note, ...]]:
+    """A name of its own for every solid, and a note where the file gives one several times."""
+    names = [name or f"part{number + 1}" for number, name in enumerate(given)]
+    out: list[str] = []
+    for number, name in enumerate(names):
+        own = name if names.count(name) == 1 else f"{name}_{names[: number + 1].count(name)}"
+        while own in out or (own != name and own in names):
+            own += "_"
+        out.append(own)
+    numbered = [
+        f"{name!r} is {', '.join(o for n, o in zip(names, out, strict=True) if n == name)}"
+        for name in dict.fromkeys(names)
+        if names.count(name) > 1
+    ]
+    if not numbered:
+        return out, ()
+    text = f"{file} names several solids alike; they are numbered in the order of the file: {'; '.join(numbered)}"
+    return out, (Note(code="numbered-parts", text=text),)
+
+
+def _nameless(path: Path, solids: Sequence[Any]) -> tuple[Note, ...]:
+    """Where solids without a name lie: the kernel hands on no names of an assembly's parts, nor of their faces."""
+    where = [
+        f"part{number} about ({', '.join(f'{getattr(solid.center, axis):.4g}' for axis in 'xyz')}) mm"
+        for number, solid in enumerate(solids, 1)
+        if not solid.name
+    ]
+    if not where:
+        return ()
+    text = (
+        f"{path.name}: the CAD kernel gives no names for {', '.join(where)} (products: {', '.join(products(path))}); "
+        "in an assembly those of faces are lost, too: give them as face_at, or export the parts as bodies of one part"
+    )
+    return (Note(code="nameless-parts", text=text),)
 
 
 def _face_at(label: str, part: str, point: Sequence[float], faces: Sequence[Any]) -> Any:

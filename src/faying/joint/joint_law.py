@@ -66,6 +66,10 @@ class JointLaw:
         """Whether the law states a range of its stiffness."""
         return {"k_n_low", "k_n_high"} <= self._defined
 
+    def check(self) -> None:
+        """Raise InputError where a joint cannot use the law: it has no stiffness."""
+        self._samples, self._table  # noqa: B018  # names their own faults
+
     @property
     def least_pressure(self) -> float:
         """Below it the joint carries nothing that matters [Pa]: p(approach) and the stiffness go on as powers."""
@@ -101,14 +105,14 @@ class JointLaw:
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
         """ln approach, ln pressure, and d ln p/d ln w, from the least pressure to where the law ends."""
+        from scipy.special import exprel
+
         p, k = self._grid, self._loading
         if np.any(k <= 0):
             raise InputError(f"{self.model.name}: no stiffness on loading at {p[np.argmax(k <= 0)]:.4g} Pa")
         # between two points k_n is a power of p, so that the integral of dp/k_n is exact there
-        power = 1 - np.diff(np.log(k)) / np.diff(np.log(p))
-        pieces = np.where(
-            np.abs(power) > 1e-9, (p[1:] / k[1:] - p[:-1] / k[:-1]) / power, p[:-1] / k[:-1] * np.diff(np.log(p))
-        )
+        steps = np.diff(np.log(p))
+        pieces = p[:-1] / k[:-1] * steps * exprel(steps - np.diff(np.log(k)))
         first = p[0] / k[0] / (1 - self._fade)
         w = first + np.concatenate([[0.0], np.cumsum(pieces)])
         return np.log(w), np.log(p), k * w / p

@@ -330,13 +330,19 @@ class Result:
         """Return the rows of to_csv as text."""
         out = io.StringIO()
         rows = csv.writer(out, lineterminator="\n")
-        low, high = (self.frequencies if end is None else end for end in (self.low, self.high))
-        heads = ["frequency [Hz]", "loss factor [-]", "free [Hz]", "bonded [Hz]", "low [Hz]", "high [Hz]"]
+        columns = [
+            ("frequency", self.frequencies),
+            ("loss factor", self.loss_factors),
+            ("free", np.broadcast_to(self.free, self.frequencies.shape)),
+            ("bonded", np.broadcast_to(self.bonded, self.frequencies.shape)),
+            *(("low", self.low), ("high", self.high)),
+        ]
+        kept = [(name, values) for name, values in columns if values is not None]
+        heads = [f"{name} [{'-' if name == 'loss factor' else 'Hz'}]" for name, _ in kept]
         rows.writerow(["preload [N]", "mode", *heads])
         for i, load in enumerate(self.loads):
             for j in range(len(self.bonded)):
-                values = (self.frequencies[i, j], self.loss_factors[i, j], self.free[j], self.bonded[j])
-                row = [*values, low[i, j], high[i, j]]
+                row = [float(values[i, j]) for _, values in kept]
                 rows.writerow([f"{load:.6g}", j + 1, *("" if np.isnan(v) else f"{v:.8g}" for v in row)])
         return out.getvalue()
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from faying.decks.matrices import read_pair
-from faying.files import make_folder, write_atomically
+from faying.files import together, write_atomically
 from faying.joint.support_check import checked_preload
 from faying.study.case import build
 from faying.study.study import Study
@@ -53,23 +53,23 @@ class Assembled:
         return cls(stiffness=K, mass=M, dofs=dofs, shift_frequency=typical_frequency(K, M), source=stiffness.name)
 
     def write(self, folder: Path) -> list[Path]:
-        """Write stiffness.npz, mass.npz (SciPy) and dofs.txt, each whole or not at all."""
+        """Write stiffness.npz, mass.npz (SciPy) and dofs.txt, all or none of them."""
         from scipy.sparse import csr_matrix, save_npz
 
-        make_folder(folder, "give another with --export")
         out = []
-        for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
+        with together(folder, "give another with --export") as hidden:
+            for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
 
-            def fill(temporary: Path, matrix: Any = matrix) -> None:
-                with temporary.open("wb") as file:  # a file, since save_npz adds .npz to names
-                    save_npz(file, csr_matrix(matrix), compressed=False)
+                def fill(temporary: Path, matrix: Any = matrix) -> None:
+                    with temporary.open("wb") as file:  # a file, since save_npz adds .npz to names
+                        save_npz(file, csr_matrix(matrix), compressed=False)
 
-            out.append(write_atomically(folder / f"{name}.npz", fill))
-        text = "\n".join(f"{node}.{axis}" for node, axis in self.dofs) + "\n"
-        out.append(
-            write_atomically(folder / "dofs.txt", lambda temporary: temporary.write_text(text, encoding="ascii"))
-        )
-        return out
+                out.append(write_atomically(hidden / f"{name}.npz", fill))
+            text = "\n".join(f"{node}.{axis}" for node, axis in self.dofs) + "\n"
+            out.append(
+                write_atomically(hidden / "dofs.txt", lambda temporary: temporary.write_text(text, encoding="ascii"))
+            )
+        return [folder / file.name for file in out]
 
 
 def typical_frequency(stiffness: Any, mass: Any) -> float:

@@ -1,12 +1,12 @@
 """From a study to its case: mesh, joints with their laws, bolts, supports, all ready to be solved."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.interface import join
+from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Joint, Structure
@@ -20,9 +20,11 @@ from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import NO_SURFACE, Surface, SurfaceChoice
 from faying.study.study import Study
 from faying.typing import Array
+from faying.units import show
 
 Report = Callable[[str, int, int], None]
 SIZES = 3e-3, 30.0  # m: a structure smaller or larger than these is noted, for its unit may be wrong
+SEEN = 1e-6  # of snap: less is rounding
 SPARE_MODES = 6  # beyond those asked for, so that the basis of the complex modes does not end at the last of them
 
 
@@ -69,8 +71,9 @@ class Case:
             hammer = Hammer.read(study.hammer)
         progress.begin("surface")
         surfaces = surfaces_of(study)
+        laws = checked_laws(study, surfaces)
         progress.begin("mesh")
-        structure = structure_of(study, checked_mesh(study), surfaces)
+        structure = structure_of(study, checked_mesh(study), surfaces, laws)
         notes = [Note(code="surface", text=text) for surface in surfaces for text in surface.warnings]
         size = structure.mesh.size
         if not SIZES[0] <= size <= SIZES[1]:
@@ -154,6 +157,28 @@ def joint_law(joint: JointChoice, law: LawChoice, surface: Surface, rough: Mater
     return JointLaw(model=choice.law, tangential=joint.tangential, nu=rough.nu, reason=choice.reason)
 
 
+def part_of(study: Study, face: str) -> str | None:
+    """The part that a face belongs to by its name (part.face) or by [geometry.face_at]; None where neither says it."""
+    part = study.geometry.face_at[face][0] if face in study.geometry.face_at else face.partition(".")[0]
+    return part if part in study.parts else None
+
+
+def checked_laws(study: Study, surfaces: Sequence[Surface]) -> dict[tuple[str, str, str], JointLaw]:
+    """Lay the laws on those joints whose materials are known before there is a mesh; by joint and both parts.
+
+    Raises InputError for laws that a joint cannot use: in seconds, where meshing may take minutes.
+    """
+    out: dict[tuple[str, str, str], JointLaw] = {}
+    for joint, surface in zip(study.joints, surfaces, strict=True):
+        parts = [part_of(study, face) for face in joint.faces]
+        if None not in parts:
+            rough, other = (study.materials[study.parts[str(part)]] for part in parts)
+            law = joint_law(joint, study.law_of(joint), surface, rough, other)
+            law.check()
+            out[joint.name, str(parts[0]), str(parts[1])] = law
+    return out
+
+
 def materials_of(study: Study, mesh: Mesh) -> dict[str, Material]:
     """Material of every part of the mesh."""
     return {name: study.materials[study.parts[name]] for name in mesh.parts}
@@ -182,14 +207,19 @@ def checked_mesh(study: Study) -> Mesh:
     return mesh
 
 
-def structure_of(study: Study, mesh: Mesh, surfaces: tuple[Surface, ...]) -> Structure:
-    """Return the structure of a study on a mesh, with the surface of each joint."""
+def structure_of(
+    study: Study, mesh: Mesh, surfaces: tuple[Surface, ...], laws: Mapping[tuple[str, str, str], JointLaw] | None = None
+) -> Structure:
+    """Return the structure of a study on a mesh, with the surface of each joint; laws: those of `checked_laws`."""
     materials = materials_of(study, mesh)
-    joints = []
+    joints: list[Joint] = []
+    notes: list[Note] = []
     for joint, surface in zip(study.joints, surfaces, strict=True):
         rough, other = (materials[mesh.face_part[face]] for face in joint.faces)
-        law = joint_law(joint, study.law_of(joint), surface, rough, other)
-        interface = join(mesh, *joint.faces, search_distance=joint.search_distance)
+        parts = (mesh.face_part[joint.faces[0]], mesh.face_part[joint.faces[1]])
+        law = (laws or {}).get((joint.name, *parts)) or joint_law(joint, study.law_of(joint), surface, rough, other)
+        interface, closed = snapped(join(mesh, *joint.faces, search_distance=joint.search_distance), study, joint.name)
+        notes += closed
         joints.append(
             Joint(
                 name=joint.name,
@@ -202,7 +232,7 @@ def structure_of(study: Study, mesh: Mesh, surfaces: tuple[Surface, ...]) -> Str
             )
         )
     return Structure(
-        mesh=mesh,
+        mesh=replace(mesh, notes=(*mesh.notes, *notes)) if notes else mesh,
         materials=materials,
         joints=tuple(joints),
         bolts=study.bolts,
@@ -211,6 +241,19 @@ def structure_of(study: Study, mesh: Mesh, surfaces: tuple[Surface, ...]) -> Str
     )
 
 
+def snapped(interface: Interface, study: Study, name: str) -> tuple[Interface, list[Note]]:
+    """Close a gap of the CAD model that is nowhere wider than [geometry] snap; a note says how wide it was."""
+    widest, snap = float(np.abs(interface.gap).max()), study.geometry.snap
+    if not SEEN * snap < widest <= snap:
+        return interface, []
+    text = (
+        f"{name}: the faces lie up to {show(widest, 'm')} apart in the geometry; snap = {show(snap, 'm')} closes that"
+    )
+    return replace(interface, gap=np.zeros_like(interface.gap)), [Note(code="snapped", joint=name, text=text)]
+
+
 def build(study: Study) -> Structure:
     """Return the structure of a study, meshed and with its law on the joints, for work that goes on by hand."""
-    return structure_of(study, checked_mesh(study), surfaces_of(study))
+    surfaces = surfaces_of(study)
+    laws = checked_laws(study, surfaces)
+    return structure_of(study, checked_mesh(study), surfaces, laws)

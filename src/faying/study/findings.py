@@ -5,9 +5,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from faying.contact.build import build
+from faying.contact.build import build, label_of
 from faying.contact.half_space import HalfSpace
-from faying.contact.stability import label_of, stability, stiffness_at
+from faying.contact.stability import stability, stiffness_at
 from faying.errors import FayingError
 from faying.materials import RIGID, ContactPair
 from faying.notes import Note

@@ -48,6 +48,9 @@ class State:
     notes: tuple[Note, ...]
 
 
+RANGE_ERROR = 1e-5  # of the squared frequencies at the ends of a range
+
+
 def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress) -> State:
     """Solve a case at one of its loads, counted from 0; the preload problem starts from the load before.
 
@@ -113,7 +116,9 @@ def _at_end(end: Literal["low", "high"], case: Case, preload: PreloadState, mode
     changed = replace(structure, joints=tuple(joints))
     stiffness, _ = changed.joined(changed.springs(preload.pressures))
     mass = structure.vibrating[1]
-    return nearby_modes(modes, stiffness, mass, rigid=case.rigid_count, count=case.study.modes.count)[0]
+    return nearby_modes(
+        modes, stiffness, mass, rigid=case.rigid_count, count=case.study.modes.count, tolerance=RANGE_ERROR
+    )[0]
 
 
 def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[Note]:

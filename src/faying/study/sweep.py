@@ -3,6 +3,7 @@
 import hashlib
 import json
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from pathlib import Path
@@ -20,7 +21,7 @@ from faying.joint.reduced import ReducedModel
 from faying.joint.structure import Structure
 from faying.materials import Material
 from faying.study.axes import Axis, Grid
-from faying.study.case import checked_mesh, joint_law, materials_of, structure_of, surfaces_of
+from faying.study.case import checked_laws, checked_mesh, joint_law, materials_of, structure_of, surfaces_of
 from faying.study.study import Study
 from faying.study.sweep_files import Store, Sweep
 from faying.typing import Array
@@ -31,6 +32,7 @@ CHUNK = 25  # evaluations between two writings to disk
 # the estimate is that of a basis a hundred times coarser; beyond this multiple of the tolerance a point is trained on
 FAR = 60.0
 SEED = 20241121
+MOST_LAWS = 100  # looked at before there is a mesh
 LATELY = 32  # laws kept with their tables
 
 
@@ -127,7 +129,8 @@ def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dic
                 "beyond_share": beyond,
                 "open_share": 1 - touching / weights.sum(),
             }
-            row |= {"frequencies": found.frequencies, "loss_factors": found.loss_factors}
+            lost = found.loss_factors if any(law.predicts_loss for law in laws) else nothing
+            row |= {"frequencies": found.frequencies, "loss_factors": lost}
         except FayingError as fault:
             reason = str(fault)
             start = None
@@ -171,30 +174,61 @@ def sweep(
     _check(study, tolerance)
     report("surface", 0)
     grid = Grid(study=study, surfaces=surfaces_of(study), axes=tuple(axes))
-    store = Store(Path(out), fingerprint(study, axes, tolerance), grid.size, study.modes.count)
-    report("mesh", 0)
-    try:
-        mesh = checked_mesh(study)
-        materials = materials_of(study, mesh)
-        pairs = [tuple(materials[mesh.face_part[face]] for face in joint.faces) for joint in study.joints]
-        structure = structure_of(study, mesh, grid.surfaces)
-        recipe = Recipe(grid=grid, pairs=tuple(pairs), places=Place.all(structure, grid))  # type: ignore[arg-type]
-        trainer = _Trainer(study, structure, recipe, tolerance, report)
-        model = store.model()
-        if model is None:
-            model = trainer.model()
-            store.keep_model(model)
-    except FayingError:
-        store.forget()
-        raise
-    report("evaluations", int(store.done.sum()))
-    todo = [i for i in grid.winding() if not store.done[i]]
-    chunks = [todo[i : i + CHUNK] for i in range(0, len(todo), CHUNK)]
-    for indices, rows in _each(model, recipe, chunks, jobs, dask):
-        store.keep(indices, rows)
-        report("evaluations", len(indices))
-    model = _enriched(model, trainer, store, recipe)
-    return store.finish(grid, title=study.title, tolerance=tolerance, unknowns=mesh.unknowns, model=model)
+    _check_laws(grid)
+    with closing(Store(Path(out), fingerprint(study, axes, tolerance), grid.size, study.modes.count)) as store:
+        report("mesh", 0)
+        try:
+            trainer, model = _begun(study, grid, store, tolerance, report)
+        except FayingError:
+            store.forget()
+            raise
+        report("evaluations", store.found)
+        # within a chunk each point starts from the last; chunks are the same after an interruption, so the answers are
+        path = grid.winding()
+        chunks = [c for c in (path[i : i + CHUNK] for i in range(0, len(path), CHUNK)) if not store.done[c].all()]
+        for indices, rows in _each(model, trainer.recipe, chunks, jobs, dask):
+            report("evaluations", int((~store.done[indices]).sum()))
+            store.keep(indices, rows)
+        model = _enriched(model, trainer, store, trainer.recipe)
+        unknowns = trainer.structure.mesh.unknowns
+        return store.finish(grid, title=study.title, tolerance=tolerance, unknowns=unknowns, model=model)
+
+
+def _begun(
+    study: Study, grid: Grid, store: Store, tolerance: float, report: Callable[[str, int], None]
+) -> tuple["_Trainer", ReducedModel]:
+    """What makes the bases, and the model in them: made now, or left by an interrupted sweep."""
+    mesh = checked_mesh(study)
+    materials = materials_of(study, mesh)
+    pairs = [tuple(materials[mesh.face_part[face]] for face in joint.faces) for joint in study.joints]
+    structure = structure_of(study, mesh, grid.surfaces)
+    recipe = Recipe(grid=grid, pairs=tuple(pairs), places=Place.all(structure, grid))  # type: ignore[arg-type]
+    trainer = _Trainer(study, structure, recipe, tolerance, report)
+    model = store.model()
+    if model is None:
+        model = trainer.model()
+        store.keep_model(model)
+    return trainer, model
+
+
+def _check_laws(grid: Grid) -> None:
+    """Raise the fault of the first law where no point of the grid has laws that its joints can use.
+
+    Before the mesh, for the joints whose materials are known by then; without preloads, which change no law.
+    """
+    places = np.indices(grid.shape).reshape(len(grid.shape), -1)
+    first = [k for k, axis in enumerate(grid.axes) if axis.key.startswith("bolt.")]
+    fault: FayingError | None = None
+    for index in np.flatnonzero((places[first] == 0).all(axis=0))[:MOST_LAWS]:
+        point = grid.point(int(index))
+        try:
+            checked_laws(point.study, point.surfaces)
+        except FayingError as met:
+            fault = fault or met
+        else:
+            return
+    if fault is not None:
+        raise fault
 
 
 def _check(study: Study, tolerance: float) -> None:

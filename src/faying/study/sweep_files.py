@@ -2,10 +2,12 @@
 
 import json
 import shutil
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import IO, Any, ClassVar
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -27,7 +29,8 @@ class Sweep:
     axes; frequencies [Hz], loss_factors [-] (*g, modes); estimate [-], greatest_pressure [Pa], open_share and
     beyond_share [-] (*g): NaN where a point has no answer, for the reason in `reasons` (text -> number of points).
     estimate: relative change of the frequencies when the last part of the basis is left out, far above their error;
-    basis: sizes of the bases for equilibrium and vibration; path: the NetCDF file.
+    basis: sizes of the bases for equilibrium and vibration; found: points that an interrupted sweep had left; path: the
+    NetCDF file.
     """
 
     title: str
@@ -43,6 +46,7 @@ class Sweep:
     unknowns: int
     basis: tuple[int, int]
     path: Path
+    found: int = 0
 
     def to_dict(self) -> dict[str, Any]:
         """Return a summary ready for JSON; the values themselves are in the file."""
@@ -60,6 +64,7 @@ class Sweep:
             "tolerance": self.tolerance,
             "basis": {"equilibrium": self.basis[0], "vibration": self.basis[1]},
             "without_answer": self.reasons,
+            "found": self.found,
             "beyond_law": int(np.count_nonzero(self.beyond_share > BEYOND)),
             "file": str(self.path),
         }
@@ -89,31 +94,50 @@ class Store:
         }
         self.reasons = np.full(size, "", dtype=object)
         self.done = np.zeros(size, dtype=bool)
+        self.found = 0
+        self._open(fingerprint, size)
+
+    def _open(self, fingerprint: str, size: int) -> None:
+        """Make the folder, or take up what an interrupted sweep has left in it."""
         label = self.folder / "sweep.json"
-        if self.folder.exists():
-            try:
-                known = json.loads(label.read_text(encoding="utf-8"))["fingerprint"]
-            except (OSError, ValueError, KeyError):
-                known = None
-            if known != fingerprint:
-                raise InputError(
-                    f"{self.folder} is what another sweep has left, or another version of this study; remove it, "
-                    "or choose another output with --out"
-                )
-            for file in sorted(self.folder.glob("chunk-*.npz")):
-                with np.load(file) as chunk:
-                    self._take(chunk["indices"], {name: chunk[name] for name in (*self.COLUMNS, "reasons")})
-        else:
+        if not self.folder.exists():
             try:
                 self.folder.mkdir()
             except OSError as fault:
                 raise InputError(f"cannot make {self.folder}: {fault.strerror}; choose another output") from None
+            self._lock = locked(self.folder)
             text = json.dumps({"fingerprint": fingerprint, "points": size})
             write_atomically(label, lambda temporary: temporary.write_text(text, encoding="utf-8"))
-        self.number = len(list(self.folder.glob("chunk-*.npz")))
+            self.number = 0
+            return
+        self._lock = locked(self.folder)
+        try:
+            known = json.loads(label.read_text(encoding="utf-8"))["fingerprint"]
+        except (OSError, ValueError, KeyError):
+            known = None
+        if known != fingerprint:
+            self.close()
+            raise InputError(
+                f"{self.folder} is what another sweep has left, or another version of this study; remove it, "
+                "or choose another output with --out"
+            )
+        chunks = sorted(self.folder.glob("chunk-*.npz"))
+        for file in chunks:
+            rows = _loaded(file)
+            if rows is None or not {"indices", "reasons", *self.COLUMNS} <= rows.keys():
+                file.unlink()  # damaged: its points are evaluated again
+                continue
+            self._take(rows.pop("indices"), rows)
+        self.found = int(self.done.sum())
+        self.number = 1 + max((int(file.stem.rpartition("-")[2]) for file in chunks), default=-1)
+
+    def close(self) -> None:
+        """Let other processes have the folder."""
+        self._lock.close()
 
     def forget(self) -> None:
         """Remove the folder where nothing has been kept in it, so that it bars no other sweep."""
+        self.close()
         if not any(self.folder.glob("chunk-*.npz")) and self.model() is None:
             shutil.rmtree(self.folder, ignore_errors=True)
 
@@ -143,10 +167,11 @@ class Store:
     def model(self) -> ReducedModel | None:
         """Return the reduced model that an interrupted sweep left, if it came that far."""
         file = self.folder / "model.npz"
-        if not file.is_file():
+        data = _loaded(file)
+        if data is None:
             return None
-        with np.load(file) as data:
-            joints = sum(name.startswith("weights_") for name in data.files)
+        joints = sum(name.startswith("weights_") for name in data)
+        try:
             lists = {
                 name: [data[f"{name}_{i}"] for i in range(joints)]
                 for name in ("weights", "gaps", "static_relative", "dynamic_relative")
@@ -154,6 +179,8 @@ class Store:
             single = ("static_stiffness", "static_loads", "dynamic_stiffness", "dynamic_mass")
             arrays: dict[str, Any] = lists | {name: data[name] for name in single}
             return ReducedModel(count=int(data["count"]), coarse=int(data["coarse"]), **arrays)
+        except KeyError:
+            return None
 
     def finish(self, grid: Grid, *, title: str, tolerance: float, unknowns: int, model: ReducedModel) -> Sweep:
         """Write the NetCDF file and remove what was kept on the way."""
@@ -167,11 +194,42 @@ class Store:
             unknowns=unknowns,
             basis=(len(model.static_stiffness), len(model.dynamic_mass)),
             path=self.out,
+            found=self.found,
             **shaped,
         )
         _netcdf(done)
+        self.close()
         shutil.rmtree(self.folder)
         return done
+
+
+def locked(folder: Path) -> IO[str]:
+    """Hold a lock on a folder until the file returned is closed or the process ends.
+
+    Raises InputError where another process holds it. Windows has no such lock: there it holds nothing.
+    """
+    file = (folder / "lock").open("w", encoding="utf-8")
+    try:
+        import fcntl
+    except ImportError:
+        return file
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        file.close()
+        raise InputError(
+            f"another sweep is writing to {folder}; wait for it, or choose another output with --out"
+        ) from None
+    return file
+
+
+def _loaded(file: Path) -> dict[str, Any] | None:
+    """The arrays of a file, None where it is missing or damaged."""
+    try:
+        with file.open("rb") as opened, np.load(opened) as data:
+            return {name: data[name] for name in data.files}
+    except (OSError, ValueError, EOFError, KeyError, BadZipFile, zlib.error):
+        return None
 
 
 def _save(path: Path, arrays: dict[str, Any]) -> None:

@@ -103,6 +103,9 @@ count = 6                      # elastic modes
 
 def blocks(path: Path) -> None:
     """Write a STEP file of two blocks, 80 x 30 x 15 mm each, with a clearance hole and two bolt seats."""
+    from faying.fe.cad import kernel
+
+    kernel()  # names the system's packages where a library is missing
     from netgen.occ import Axes, Axis, Box, Compound, Cylinder, Glue, WorkPlane, X, Z
 
     def block(name: str) -> object:

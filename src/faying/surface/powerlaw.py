@@ -114,7 +114,7 @@ class _Bins:
 
 
 def _scored(bins: _Bins, free: Mask) -> Array:
-    """Maximise the quasi-likelihood by Fisher scoring with step halving."""
+    """Maximise the quasi-likelihood by Fisher scoring with step halving; NotConverged where no step can begin."""
     theta = bins.start()
 
     def objective(t: Array) -> float:
@@ -126,6 +126,10 @@ def _scored(bins: _Bins, free: Mask) -> Array:
         return float(np.sum(bins.weight * (np.log(mu) + bins.y / mu)))
 
     best = objective(theta)
+    if not np.isfinite(best):
+        raise NotConverged(
+            f"the spectrum falls as the power {theta[1]:.3g} of the wavelength over this band: no power law"
+        )
     for _ in range(200):
         mu, scaled, fisher = bins.scoring(theta, free)
         step = np.zeros(3)

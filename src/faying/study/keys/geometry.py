@@ -10,8 +10,10 @@ from faying.study.keys.reader import Faults, Table, point
 
 @dataclass(frozen=True, kw_only=True)
 class GeometryChoice:
-    """A STEP file and how finely to mesh it, lengths [m]; or a mesh file, its unit, and the element sets of the
-    parts."""
+    """A STEP file and how finely to mesh it, lengths [m]; or a mesh file, its unit, and the element sets of the parts.
+
+    snap: faces of a joint nowhere farther apart than this [m] count as touching.
+    """
 
     step: Path | None = None
     size: float = 0.0
@@ -20,6 +22,7 @@ class GeometryChoice:
     mesh: Path | None = None
     unit: str | None = None
     sets: dict[str, str] = field(default_factory=dict)
+    snap: float = 0.0
 
     @property
     def file(self) -> Path:
@@ -46,8 +49,9 @@ def read_geometry(top: Table) -> GeometryChoice:
     for name, one in places.each().items() if places else ():
         at[name] = (one.text("part"), one.take("point", point))
         one.close()
+    snap = table.quantity("snap", "m", 0.0)
     table.close()
-    return GeometryChoice(step=step, size=size, face_size=sizes, face_at=at)
+    return GeometryChoice(step=step, size=size, face_size=sizes, face_at=at, snap=snap)
 
 
 def _meshed(table: Table) -> GeometryChoice:
@@ -61,8 +65,9 @@ def _meshed(table: Table) -> GeometryChoice:
             table.data.pop(key)
     inner = table.table("sets")
     sets = {name: inner.text(name) for name in list(inner.data)} if inner else {}
+    snap = table.quantity("snap", "m", 0.0)
     table.close()
-    return GeometryChoice(mesh=mesh, unit=unit, sets=sets)
+    return GeometryChoice(mesh=mesh, unit=unit, sets=sets, snap=snap)
 
 
 def mesh_of(spec: GeometryChoice) -> Mesh:

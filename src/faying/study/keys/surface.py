@@ -1,6 +1,7 @@
 """[surface]: the scan of a rough face, or its D, G and area; read and fitted in one place."""
 
 from dataclasses import dataclass
+from math import isnan
 from pathlib import Path
 from typing import Any
 
@@ -141,7 +142,9 @@ class Surface:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the fit of the scan warns of, and what its file says."""
-        return () if self.fit is None else tuple(self.fit.warnings)
+        if self.fit is not None:
+            return tuple(self.fit.warnings)
+        return (self.rough.unfitted,) if self.rough is not None and self.rough.unfitted else ()
 
     def facts(self) -> dict[str, Any]:
         """Numbers of the surface by name with unit, for the result."""
@@ -149,8 +152,9 @@ class Surface:
             return {"origin": self.origin}
         inputs = self.rough.inputs
         given = {"D": inputs.D, "G [m]": inputs.G, "scan_area [m2]": inputs.scan_area}
+        given = {name: value for name, value in given.items() if not isnan(value)}
         if self.fit is None:
-            return given | {"origin": self.origin}
+            return given | {"origin": self.origin} | ({"counter": self.counter} if self.counter else {})
         fitted = {
             "D_interval": list(self.fit.D_interval),
             "G_interval [m]": list(self.fit.G_interval),

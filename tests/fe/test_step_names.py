@@ -1,0 +1,156 @@
+"""Names of parts in STEP files: of solids, of products, given twice; and what a bare machine is told."""
+
+import builtins
+import re
+
+import pytest
+
+import faying
+from faying.fe.cad import kernel
+from faying.fe.geometry import mesh_step
+
+
+def assembly(tmp_path, *parts, loose=False):
+    """A STEP file of several products in one assembly, one block each, on top of each other.
+
+    parts: (name of the product, name of its solid); loose: without the assembly.
+    """
+    from netgen.occ import Box, Pnt
+
+    bodies, head = [], ""
+    for number, (product, solid) in enumerate(parts):
+        low = 10 * number
+        box = next(iter(Box(Pnt(0, 0, low), Pnt(20, 20, low + 10)).solids))
+        box.name = "the-solid"
+        for face in box.faces:
+            flat = abs(face.center.z - low - 5) > 1
+            face.name = f"{number}.{'top' if face.center.z > low + 9 else 'bottom'}" if flat else ""
+        path = tmp_path / f"one-{number}.step"
+        box.WriteStep(str(path))
+        head, _, rest = path.read_text().partition("DATA;")
+        body = rest.partition("ENDSEC;")[0]
+        assert "MANIFOLD_SOLID_BREP('the-solid'" in body
+        body = body.replace("MANIFOLD_SOLID_BREP('the-solid'", f"MANIFOLD_SOLID_BREP('{solid}'")
+        body = re.sub(r"PRODUCT\('[^']*',\s*'[^']*'", f"PRODUCT('{product}','{product}'", body)
+        bodies.append(re.sub(r"#(\d+)", lambda found, by=100_000 * number: f"#{int(found[1]) + by}", body))
+    path = tmp_path / "assembly.step"
+    whole = "" if loose else joined(bodies)
+    path.write_text(f"{head}DATA;{''.join(bodies)}{whole}ENDSEC;\nEND-ISO-10303-21;\n")
+    return path
+
+
+def joined(bodies):
+    """The entities of an assembly of the products of several files, each where it is."""
+
+    def of(body, pattern):
+        return re.search(pattern, body, re.DOTALL).groups()
+
+    lines, axes = [], []
+    for k, body in enumerate(bodies):
+        (definition,) = of(body, r"#(\d+)\s*=\s*PRODUCT_DEFINITION\(")
+        (rep,) = of(body, r"SHAPE_DEFINITION_REPRESENTATION\(#\d+,\s*#(\d+)\)")
+        axis, context = of(body, rf"#{rep}\s*=\s*ADVANCED_BREP_SHAPE_REPRESENTATION\('',\s*\(#(\d+).*?\),\s*#(\d+)\)")
+        n = 900_000 + 10 * k
+        lines += [
+            f"#{n}=NEXT_ASSEMBLY_USAGE_OCCURRENCE('{k}','','',#990004,#{definition},$);",
+            f"#{n + 1}=PRODUCT_DEFINITION_SHAPE('','',#{n});",
+            f"#{n + 2}=ITEM_DEFINED_TRANSFORMATION('','',#{axis},#{axis});",
+            f"#{n + 3}=(REPRESENTATION_RELATIONSHIP('','',#{rep},#990007)"
+            f"REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#{n + 2})SHAPE_REPRESENTATION_RELATIONSHIP());",
+            f"#{n + 4}=CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#{n + 3},#{n + 1});",
+        ]
+        axes.append(f"#{axis}")
+    kind, of_definition = of(bodies[0], r"#(\d+)\s*=\s*PRODUCT_CONTEXT\(.*?#(\d+)\s*=\s*PRODUCT_DEFINITION_CONTEXT\(")
+    return "\n".join(
+        [
+            *lines,
+            f"#990002=PRODUCT('whole','whole','',(#{kind}));",
+            "#990003=PRODUCT_DEFINITION_FORMATION('','',#990002);",
+            f"#990004=PRODUCT_DEFINITION('design','',#990003,#{of_definition});",
+            "#990005=PRODUCT_DEFINITION_SHAPE('','',#990004);",
+            f"#990007=SHAPE_REPRESENTATION('',({','.join(axes)}),#{context});",
+            "#990006=SHAPE_DEFINITION_REPRESENTATION(#990005,#990007);\n",
+        ]
+    )
+
+
+def test_parts_of_an_assembly_are_told_by_their_places(tmp_path):
+    """The kernel hands on no names of an assembly: the note says which part lies where, and what the products are."""
+    path = assembly(tmp_path, ("upper arm", "Boss"), ("lower arm", "Pad"))
+    given = {"low": ("part1", (10e-3, 10e-3, 0.0)), "high": ("part2", (10e-3, 10e-3, 20e-3))}
+    mesh = mesh_step(path, size=8e-3, face_points=given)
+    (note,) = mesh.notes
+    assert note.code == "nameless-parts"
+    assert "part1 about (10, 10, 5) mm, part2 about (10, 10, 15) mm" in note.text
+    assert "(products: whole, upper arm, lower arm)" in note.text or "upper arm, lower arm" in note.text
+    heights = [mesh.points[mesh.part_nodes(name), 2].mean() for name in ("part1", "part2")]
+    assert heights == pytest.approx([5e-3, 15e-3], abs=1e-3)
+    assert area_of(mesh, "low") == pytest.approx(400e-6, rel=1e-9)
+
+
+def area_of(mesh, name):
+    from faying.fe.faces import face_centre
+
+    return face_centre(mesh.points, mesh.face(name))[2]
+
+
+def test_equal_names_are_numbered_with_a_note(tmp_path):
+    from netgen.occ import Box, Compound, Pnt
+
+    solids = [next(iter(Box(Pnt(0, 0, z), Pnt(20, 20, z + 10)).solids)) for z in (0, 10)]
+    for solid in solids:
+        solid.name = "plate"
+    Compound(solids).WriteStep(str(tmp_path / "two.step"))
+    mesh = mesh_step(tmp_path / "two.step", size=8e-3)
+    assert sorted(mesh.parts) == ["plate_1", "plate_2"]
+    (note,) = mesh.notes
+    assert note.code == "numbered-parts"
+    assert "'plate' is plate_1, plate_2" in note.text
+
+
+def test_solids_that_are_in_no_assembly_are_not_lost_without_a_word(tmp_path):
+    with pytest.raises(faying.ReadError, match="2 solids, of which the CAD kernel reads 1: .* export them as one"):
+        mesh_step(assembly(tmp_path, ("a", "a"), ("b", "b"), loose=True), size=8e-3)
+
+
+@pytest.mark.parametrize(
+    ("library", "ways"),
+    [
+        ("libGL.so.1", ["Debian, Ubuntu: apt-get install libgl1", "Fedora: dnf install mesa-libGL", "conda install"]),
+        ("libSM.so.6", ["libsm6", "libSM", "xorg-libsm"]),
+    ],
+)
+def test_a_bare_machine_is_told_which_packages_it_needs(monkeypatch, library, ways):
+    real = builtins.__import__
+
+    def bare(name, *rest):
+        if name.startswith("netgen"):
+            raise ImportError(f"{library}: cannot open shared object file: No such file or directory")
+        return real(name, *rest)
+
+    monkeypatch.setattr(builtins, "__import__", bare)
+    with pytest.raises(faying.InputError) as fault:
+        kernel()
+    assert f"({library}: cannot open" in str(fault.value)
+    for way in ways:
+        assert way in str(fault.value)
+
+
+def test_init_tells_it_too(monkeypatch, tmp_path):
+    """The first command on a bare machine, in a process of its own where netgen cannot be loaded."""
+    import subprocess
+    import sys
+
+    (tmp_path / "netgen").mkdir()
+    (tmp_path / "netgen" / "__init__.py").write_text("")
+    (tmp_path / "netgen" / "occ.py").write_text(
+        "raise ImportError('libGL.so.1: cannot open shared object file: No such file or directory')"
+    )
+    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from faying.cli import main; main(sys.argv[1:])"
+    done = subprocess.run(
+        [sys.executable, "-c", code, "init", str(tmp_path / "study.toml")], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert done.stderr.startswith("faying: the CAD kernel lacks a library of the system (libGL.so.1")
+    assert "apt-get install libgl1" in done.stderr
+    assert not (tmp_path / "study.toml").exists()

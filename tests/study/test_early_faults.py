@@ -1,0 +1,74 @@
+"""What a law lacks is told before anything is meshed."""
+
+import tomllib
+from dataclasses import replace
+
+import pytest
+
+import faying
+from faying.study import Study, build, case, run
+from faying.study.axes import axis_of
+from faying.study.sweep import sweep
+from faying.study.template import write
+
+IN_FULL = {"density": "3e9 1/m^2", "radius": "60 um", "sigma": "0.5 um"}
+
+
+@pytest.fixture
+def study(tmp_path):
+    write(tmp_path / "study.toml")
+    data = tomllib.loads((tmp_path / "study.toml").read_text())
+
+    def made(**tables):
+        return Study.from_dict({key: value for key, value in (data | tables).items() if value}, folder=tmp_path)
+
+    return made
+
+
+@pytest.fixture
+def no_mesh(monkeypatch):
+    def meshing(geometry):
+        raise AssertionError("it was meshed")
+
+    monkeypatch.setattr(case, "mesh_of", meshing)
+
+
+@pytest.mark.parametrize(
+    ("law", "message"),
+    [
+        ({"model": "gw", **IN_FULL}, "GW defines no tangential stiffness"),
+        ({"model": "gw-ke"}, "needs|smoothed"),
+        ({"alpha": 1.5}, "alpha = 1.5"),
+        ({"substrate": "computed", "modulus_ratio": 30.0}, "modulus_ratio = 30.0"),
+    ],
+)
+def test_faults_of_a_law_come_before_the_mesh(study, no_mesh, law, message):
+    for call in (run, build):
+        with pytest.raises(faying.InputError, match=message):
+            call(study(law=law))
+
+
+def test_a_material_that_a_law_cannot_use(study, no_mesh):
+    soft = {"E": "200 GPa", "nu": 0.3, "density": "7800 kg/m^3"}
+    plan = study(material={"elastic": soft}, part={"upper": {"material": "elastic"}, "lower": {"material": "elastic"}})
+    with pytest.raises(faying.InputError, match="neither body yields|neither hardness nor yield_strength"):
+        run(plan)
+
+
+def test_a_face_given_by_a_point_has_the_material_of_its_part(study, no_mesh):
+    plan = study(law={"model": "gw", **IN_FULL})
+    geometry = replace(plan.geometry, face_at={"below": ("lower", (0.0, 0.0, 0.0))})
+    moved = replace(plan, geometry=geometry, joints=(replace(plan.joints[0], faces=("upper.joint", "below")),))
+    with pytest.raises(faying.InputError, match="no tangential stiffness"):
+        run(moved)
+
+
+def test_a_sweep_without_any_law_to_use_is_refused_before_the_mesh(study, no_mesh, tmp_path):
+    plan = study(law={"model": "gw", **IN_FULL})
+    axes = (axis_of("law.sigma=0.3 um:0.8 um:3"), axis_of("bolt.preload=1 kN:3 kN:3"))
+    with pytest.raises(faying.InputError, match="no tangential stiffness"):
+        sweep(plan, axes, tmp_path / "out.nc")
+    assert not list(tmp_path.glob("out*"))
+    # one value that can be used is enough: the other points have no answer, and say why
+    with pytest.raises(AssertionError, match="it was meshed"):
+        sweep(study(), (axis_of("law.alpha=0.2,0.3"),), tmp_path / "out.nc")
