@@ -63,6 +63,7 @@ def text(result: Any) -> str:
     tables = {
         "modes": table.modes(result),
         "range of the frequencies, from that of the stiffness": table.ranges(result),
+        "d f/d preload, if the faces are hollow or crowned by 3 um (flat faces are an assumption)": table.form(result),
         "beyond the end of a law: stiffness held, and bonded": table.beyond(result),
         "joints": table.joints(result),
         f"bolts, tightened in the order {', '.join(result.tightening)}": table.bolts(result),

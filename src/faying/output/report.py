@@ -31,6 +31,9 @@ def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
     ]
     if result.low is not None:
         parts += ["<h2>Range of the frequencies, from that of the stiffness</h2>", page.table(table.ranges(result))]
+    if result.form_slopes is not None:
+        head = "Change with preload, if the faces are hollow or crowned"
+        parts += [f"<h2>{head}</h2>", page.table(table.form(result)), "<p>Flat faces are an assumption.</p>"]
     if result.beyond_frequencies is not None:
         parts += ["<h2>Beyond the end of a law: stiffness held, and bonded</h2>", page.table(table.beyond(result))]
     if result.comparison is not None:

@@ -47,6 +47,17 @@ def beyond(result: Result) -> Rows:
     return rows
 
 
+def form(result: Result) -> Rows:
+    """One row per mode: d f/d preload with hollow, flat and crowned faces; empty where a form is given, or one load."""
+    if result.form_slopes is None or result.form_crowns is None:
+        return []
+    heads = [f"{'flat' if c == 0 else f'{1e6 * c:+.3g} um'} [Hz/kN]" for c in result.form_crowns]
+    rows: Rows = [["mode", *heads]]
+    for j, slopes in enumerate(result.form_slopes.T):
+        rows.append([str(j + 1), *(f"{1e3 * slope:+.3f}" for slope in slopes)])
+    return rows
+
+
 def _or_dash(value: float, form: str) -> str:
     """A number, or a dash where there is none: a mode of the test without partner."""
     return "-" if np.isnan(value) else format(value, form)

@@ -148,6 +148,12 @@ class Result:
         gaps=True,
         default=None,
     )
+    form_crowns: Array | None = variable(
+        "crown", unit="m", long_name="crown of the faces for form_slopes, negative is hollow", default=None
+    )
+    form_slopes: Array | None = variable(
+        "crown", "mode", unit="Hz/N", long_name="change of frequency with preload under a crown", default=None
+    )
     beside_frequencies: Array | None = variable(
         "beside", "load", "mode", unit="Hz", long_name="frequency under another law", gaps=True, default=None
     )

@@ -24,6 +24,7 @@ from faying.study.beside import Beside, solve_beside, stacked
 from faying.study.beyond import stiff_as_bonded
 from faying.study.case import Case, Progress, Report
 from faying.study.findings import against_exact_contact, falling
+from faying.study.form_band import form_band
 from faying.study.solve import State, solve
 from faying.study.study import Study
 from faying.typing import Array, Index
@@ -54,7 +55,9 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     besides = [solve_beside(case, choice, progress) for choice in study.beside]
     progress.begin("modes free and bonded")
     free, bonded, notes = bounds(case)
-    return collect(case, states, (free, bonded), [*notes, *findings(case, states)], besides)
+    band, more = form_band(case, states)
+    result = collect(case, states, (free, bonded), [*notes, *findings(case, states), *more], besides)
+    return result if band is None else replace(result, form_crowns=band.crowns, form_slopes=band.slopes)
 
 
 def findings(case: Case, states: Sequence[State]) -> list[Note]:
