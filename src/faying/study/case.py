@@ -225,9 +225,7 @@ def snapped(interface: Interface, study: Study, name: str) -> tuple[Interface, l
     widest, snap = float(np.abs(interface.gap).max()), study.geometry.snap
     if not SEEN * snap < widest <= snap:
         return interface, []
-    text = (
-        f"{name}: the faces lie up to {show(widest, 'm')} apart in the geometry; snap = {show(snap, 'm')} closes that"
-    )
+    text = f"{name}: the faces lie up to {show(widest, 'm')} apart; geometry.snap = {show(snap, 'm')} closes that"
     return replace(interface, gap=np.zeros_like(interface.gap)), [Note(code="snapped", joint=name, text=text)]
 
 
