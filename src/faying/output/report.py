@@ -31,7 +31,7 @@ def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
     ]
     if result.comparison is not None:
         parts += [
-            "<h2>Comparison with the test</h2>",
+            f"<h2>Comparison with the {result.comparison.reference}</h2>",
             page.table(table.comparison(result)),
             f"<p>{escape(result.comparison.source)}</p>",
         ]

@@ -20,7 +20,7 @@ def modes(result: Result) -> Rows:
 
 
 def comparison(result: Result) -> Rows:
-    """One row per preload and source, errors relative to the test; then the change with preload for each."""
+    """One row per preload and source, errors relative to the reference; then the change with preload for each."""
     c = result.comparison
     if c is None:
         return []
@@ -28,13 +28,13 @@ def comparison(result: Result) -> Rows:
     rows: Rows = [["preload", "source", *(f"mode {j + 1}" for j in range(count))]]
     theirs = [] if c.published is None else [(c.published_name, c.published)]
     for i, load in enumerate(result.loads):
-        rows.append([f"{load / 1e3:g} kN", "test [Hz]", *(f"{f:.1f}" for f in c.frequencies[i])])
+        rows.append([f"{load / 1e3:g} kN", f"{c.reference} [Hz]", *(f"{f:.1f}" for f in c.frequencies[i])])
         for name, values in (*theirs, ("Faying", c.predicted)):
             rows.append(["", f"{name} [Hz]", *(f"{f:.1f}" for f in values[i])])
             errors = 100 * (values[i] / c.frequencies[i] - 1)
             rows.append(["", f"{name} error [%]", *(f"{e:+.2f}" for e in errors)])
     if len(result.loads) > 1:
-        for name, values in (("test", c.frequencies), *theirs, ("Faying", c.predicted)):
+        for name, values in ((c.reference, c.frequencies), *theirs, ("Faying", c.predicted)):
             slope = c.sensitivity(values, result.loads) * 1e3
             rows.append(["d f/d preload", f"{name} [Hz/kN]", *(f"{s:+.3f}" for s in slope)])
     return rows

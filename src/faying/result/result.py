@@ -35,6 +35,12 @@ class Comparison:
         "load", "test_mode", unit="Hz", long_name="frequencies of a published model", default=None
     )
     published_name: str = "published"
+    kind: str = "test"  # or "model", where the frequencies are those of somebody's model
+
+    @property
+    def reference(self) -> str:
+        """What tables and figures call the frequencies that ours are set beside."""
+        return "test" if self.kind == "test" else "reference model"
 
     def sensitivity(self, values: Array, loads: Array) -> Array:
         """Change of frequency with preload, d f/d preload [Hz/N] (mode,), by a straight line through all loads."""
@@ -228,7 +234,7 @@ class Result:
         if self.comparison is not None:
             c = self.comparison
             names = [name for name in declared(Comparison) if getattr(c, name) is not None]
-            out["comparison"] = {"source": c.source, "published_name": c.published_name} | {
+            out["comparison"] = {"source": c.source, "published_name": c.published_name, "kind": c.kind} | {
                 name: {"unit": declared(Comparison)[name].unit, "values": getattr(c, name).tolist()} for name in names
             }
         if self.hammer is not None:

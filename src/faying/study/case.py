@@ -18,6 +18,7 @@ from faying.study.keys.geometry import mesh_of
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import NO_SURFACE, Surface, SurfaceChoice
+from faying.study.strength import bolt_notes
 from faying.study.study import Study
 from faying.typing import Array
 from faying.units import show
@@ -83,7 +84,7 @@ class Case:
                 "is wrong"
             )
             notes.append(Note(code="size", text=text))
-        notes += structure.notes
+        notes += (*structure.notes, *bolt_notes(structure))
         return cls(
             study=study,
             structure=structure,

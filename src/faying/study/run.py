@@ -208,6 +208,7 @@ def _compare(case: Case, states: Sequence[State], shapes: Sequence[Array]) -> tu
         modes=paired,
         published=None if test.published is None else np.array(test.published),
         published_name=test.published_name,
+        kind=test.kind,
     )
     return comparison, []
 
@@ -220,7 +221,7 @@ def _sources(case: Case) -> tuple[str, ...]:
     lines += [f"geometry: {study.geometry.file.name}"]
     lines += [surface.source for surface in case.surfaces if surface.source]
     if study.test is not None:
-        lines.append(f"test: {study.test.source}")
+        lines.append(f"{study.test.kind}: {study.test.source}")
     if study.hammer is not None:
         lines.append(f"test: {study.hammer.source or study.hammer.file.name}")
     return tuple(dict.fromkeys(lines))

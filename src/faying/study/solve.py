@@ -16,6 +16,7 @@ from faying.measured.model import FullResponse
 from faying.notes import Note
 from faying.study.case import Case, Progress
 from faying.study.response import LoadedStructure, ResponseAtLoad
+from faying.study.strength import pressure_notes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,7 +90,11 @@ def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress) 
         damped=damped,
         response=response,
         test_response=test_response,
-        notes=(*notes, *law_notes(structure, preload, load)),
+        notes=(
+            *notes,
+            *law_notes(structure, preload, load),
+            *pressure_notes(structure, preload.pressures, load),
+        ),
     )
 
 
