@@ -3,6 +3,7 @@
 import tomllib
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import faying
@@ -72,3 +73,26 @@ def test_a_sweep_without_any_law_to_use_is_refused_before_the_mesh(study, no_mes
     # one value that can be used is enough: the other points have no answer, and say why
     with pytest.raises(AssertionError, match="it was meshed"):
         sweep(study(), (axis_of("law.alpha=0.2,0.3"),), tmp_path / "out.nc")
+
+
+def test_frequencies_of_a_model_are_not_headed_test():
+    """Tables, figures and JSON call them what they are."""
+    from dataclasses import replace as changed
+
+    from faying.output import table
+    from faying.output.figures import structure
+    from faying.output.figures.save import new_figure
+    from faying.result import Comparison
+    from tests.helpers.results import small_result
+
+    found = small_result()
+    listed = np.array([[100.0, 200.0]] * len(found.loads))
+    given = Comparison(source="s", frequencies=listed, predicted=1.01 * listed, modes=np.zeros((2, 2), int))
+    for kind, heading in (("test", "test"), ("model", "reference model")):
+        one = changed(found, comparison=changed(given, kind=kind))
+        column = [row[1] for row in table.comparison(one)]
+        assert f"{heading} [Hz]" in column
+        assert ("test [Hz]" in column) is (kind == "test")
+        ax = structure.comparison(new_figure(3, 3).add_subplot(), one)
+        assert ax.get_ylabel() == f"error [% of the {heading}]"
+        assert one.to_dict()["comparison"]["kind"] == kind

@@ -67,7 +67,7 @@ def text(result: Any) -> str:
         "beyond the end of a law: stiffness held, and bonded": table.beyond(result),
         "joints": table.joints(result),
         f"bolts, tightened in the order {', '.join(result.tightening)}": table.bolts(result),
-        "comparison with the test": table.comparison(result),
+        f"comparison with the {result.comparison.reference if result.comparison else 'test'}": table.comparison(result),
         f"hammer test{at}": table.hammer(result),
     }
     parts = [head, *(f"{name}\n{table.text(rows)}\n" for name, rows in tables.items() if rows)]

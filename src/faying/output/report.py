@@ -38,7 +38,7 @@ def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
         parts += ["<h2>Beyond the end of a law: stiffness held, and bonded</h2>", page.table(table.beyond(result))]
     if result.comparison is not None:
         parts += [
-            "<h2>Comparison with the test</h2>",
+            f"<h2>Comparison with the {result.comparison.reference}</h2>",
             page.table(table.comparison(result)),
             f"<p>{escape(result.comparison.source)}</p>",
         ]

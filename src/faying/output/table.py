@@ -64,7 +64,7 @@ def _or_dash(value: float, form: str) -> str:
 
 
 def comparison(result: Result) -> Rows:
-    """One row per preload and source, errors relative to the test; then the change with preload for each."""
+    """One row per preload and source, errors relative to the reference; then the change with preload for each."""
     c = result.comparison
     if c is None:
         return []
@@ -74,13 +74,13 @@ def comparison(result: Result) -> Rows:
     beside = [] if c.beside is None else list(zip(result.beside, c.beside, strict=True))
     ours = [*beside, ("Faying", c.predicted)]
     for i, load in enumerate(result.loads):
-        rows.append([f"{load / 1e3:g} kN", "test [Hz]", *(f"{f:.1f}" for f in c.frequencies[i])])
+        rows.append([f"{load / 1e3:g} kN", f"{c.reference} [Hz]", *(f"{f:.1f}" for f in c.frequencies[i])])
         for name, values in (*theirs, *ours):
             rows.append(["", f"{name} [Hz]", *(_or_dash(f, ".1f") for f in values[i])])
             errors = 100 * (values[i] / c.frequencies[i] - 1)
             rows.append(["", f"{name} error [%]", *(_or_dash(e, "+.2f") for e in errors)])
     if len(result.loads) > 1:
-        for name, values in (("test", c.frequencies), *theirs, *ours):
+        for name, values in ((c.reference, c.frequencies), *theirs, *ours):
             slope = c.sensitivity(values, result.loads) * 1e3
             rows.append(["d f/d preload", f"{name} [Hz/kN]", *(_or_dash(s, "+.3f") for s in slope)])
     return rows

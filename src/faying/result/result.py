@@ -38,6 +38,12 @@ class Comparison:
     beside: Array | None = variable(
         "beside", "load", "test_mode", unit="Hz", long_name="frequencies under another law", gaps=True, default=None
     )
+    kind: str = "test"  # or "model", where the frequencies are those of somebody's model
+
+    @property
+    def reference(self) -> str:
+        """What tables and figures call the frequencies that ours are set beside."""
+        return "test" if self.kind == "test" else "reference model"
 
     def sensitivity(self, values: Array, loads: Array) -> Array:
         """Change of frequency with preload, d f/d preload [Hz/N] (mode,), by a straight line through all loads."""
@@ -272,7 +278,7 @@ class Result:
         if self.comparison is not None:
             c = self.comparison
             names = [name for name in declared(Comparison) if getattr(c, name) is not None]
-            out["comparison"] = {"source": c.source, "published_name": c.published_name} | {
+            out["comparison"] = {"source": c.source, "published_name": c.published_name, "kind": c.kind} | {
                 name: {"unit": declared(Comparison)[name].unit, "values": listed(getattr(c, name))} for name in names
             }
         if self.hammer is not None:

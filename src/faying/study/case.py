@@ -18,6 +18,7 @@ from faying.study.keys.geometry import mesh_of
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import NO_SURFACE, Surface, SurfaceChoice
+from faying.study.strength import bolt_notes
 from faying.study.study import Study
 from faying.typing import Array
 from faying.units import show
@@ -83,7 +84,7 @@ class Case:
                 "is wrong"
             )
             notes.append(Note(code="size", text=text))
-        notes += law_reasons(structure, surfaces) + list(structure.notes)
+        notes += (*law_reasons(structure, surfaces), *structure.notes, *bolt_notes(structure))
         return cls(
             study=study,
             structure=structure,
@@ -246,9 +247,7 @@ def snapped(interface: Interface, study: Study, name: str) -> tuple[Interface, l
     widest, snap = float(np.abs(interface.gap).max()), study.geometry.snap
     if not SEEN * snap < widest <= snap:
         return interface, []
-    text = (
-        f"{name}: the faces lie up to {show(widest, 'm')} apart in the geometry; snap = {show(snap, 'm')} closes that"
-    )
+    text = f"{name}: the faces lie up to {show(widest, 'm')} apart; geometry.snap = {show(snap, 'm')} closes that"
     return replace(interface, gap=np.zeros_like(interface.gap)), [Note(code="snapped", joint=name, text=text)]
 
 

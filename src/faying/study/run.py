@@ -277,6 +277,7 @@ def _compare(case: Case, states: Sequence[State], shapes: Sequence[Array]) -> tu
         modes=np.where(none, -1, tracks[:, found]),
         published=None if test.published is None else np.array(test.published),
         published_name=test.published_name,
+        kind=test.kind,
     )
     return comparison, _unmatched(found, measured, frequencies, visibility, test.threshold)
 
@@ -329,7 +330,7 @@ def _sources(case: Case) -> tuple[str, ...]:
     lines += [f"geometry: {study.geometry.file.name}"]
     lines += [surface.source for surface in case.surfaces if surface.source]
     if study.test is not None:
-        lines.append(f"test: {study.test.source}")
+        lines.append(f"{study.test.kind}: {study.test.source}")
     if study.hammer is not None:
         lines.append(f"test: {study.hammer.source or study.hammer.file.name}")
     return tuple(dict.fromkeys(lines))

@@ -17,6 +17,7 @@ from faying.notes import Note
 from faying.study.beyond import Beyond, bonded_beyond
 from faying.study.case import Case, Progress
 from faying.study.response import LoadedStructure, ResponseAtLoad
+from faying.study.strength import pressure_notes
 from faying.typing import Array
 
 
@@ -103,7 +104,12 @@ def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress) 
         response=response,
         test_response=test_response,
         beyond=beyond,
-        notes=(*notes, *(() if beyond is None else beyond.notes), *law_notes(structure, preload, load)),
+        notes=(
+            *notes,
+            *(() if beyond is None else beyond.notes),
+            *law_notes(structure, preload, load),
+            *pressure_notes(structure, preload.pressures, load),
+        ),
     )
 
 

@@ -66,7 +66,7 @@ def comparison(ax: Any, result: Result) -> Any:
     """Draw the error of prediction and of the published model against the test, mode by mode."""
     c = result.comparison
     if c is None:
-        ax.text(0.5, 0.5, "no test in this study", ha="center", va="center")
+        ax.text(0.5, 0.5, "no reference in this study", ha="center", va="center")
         return ax
     modes = np.arange(1, c.frequencies.shape[1] + 1)
     for row, load in enumerate(result.loads):
@@ -76,7 +76,7 @@ def comparison(ax: Any, result: Result) -> Any:
             theirs = 100 * (c.published[row] / c.frequencies[row] - 1)
             ax.plot(modes, theirs, "x:", color=f"C{row}", label=f"{plain(c.published_name)}, {load / 1e3:g} kN")
     ax.axhline(0, color="k", lw=0.8)
-    ax.set(xlabel="mode of the test", ylabel="error [% of the test]", xticks=modes)
+    ax.set(xlabel=f"mode of the {c.reference}", ylabel=f"error [% of the {c.reference}]", xticks=modes)
     ax.legend(fontsize=7)
     ax.grid(alpha=0.3)
     return ax

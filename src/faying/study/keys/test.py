@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from faying.errors import InputError
 from faying.study.keys.reader import Table, direction, point, quantity
@@ -12,7 +12,9 @@ QUANTITIES = ("receptance", "mobility", "accelerance")
 
 @dataclass(frozen=True, kw_only=True)
 class TestChoice:
-    """Measured frequencies [Hz] per load, the published model's where there is one, and what the test can see.
+    """Frequencies [Hz] per load, the published model's where there is one, and what the test can see.
+
+    kind: "test" where they were measured, "model" where they are those of somebody's model.
 
     A mode is seen where its motion along `direction` at one of `points` [m] is at least `threshold` of the largest
     among the modes.
@@ -22,6 +24,7 @@ class TestChoice:
     frequencies: tuple[tuple[float, ...], ...]
     published: tuple[tuple[float, ...], ...] | None
     published_name: str
+    kind: Literal["test", "model"]
     direction: tuple[float, float, float]
     points: tuple[tuple[float, float, float], ...]
     threshold: float = 0.1
@@ -85,6 +88,7 @@ def _listed(table: Table, loads: int) -> TestChoice:
         frequencies=table.take("frequencies", rows) or (),
         published=table.take("published", rows, None),
         published_name=table.text("published_name", "published"),
+        kind=table.text("kind", "test", ("test", "model")),
         direction=table.take("direction", direction) or (1.0, 0.0, 0.0),
         points=table.take("points", points) or (),
         threshold=table.number("threshold", 0.1),

@@ -1,0 +1,89 @@
+"""Forces and pressures beyond what the parts bear are noted; so are preloads whose unit looks wrong."""
+
+import tomllib
+from math import pi
+
+import numpy as np
+import pytest
+
+from faying.joint.joint_law import JointLaw
+from faying.study import Study, build
+from faying.study.strength import bolt_notes, pressure_notes
+from faying.study.template import write
+from tests.helpers.laws import Given
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("study")
+    write(folder / "study.toml")
+
+    def structure(preload, **bolt):
+        data = tomllib.loads((folder / "study.toml").read_text())
+        data["geometry"]["size"] = "12 mm"
+        data["geometry"].pop("face_size", None)
+        data["bolt"][0] |= {"preload": preload, **bolt}
+        return build(Study.from_dict(data, folder=folder))
+
+    return structure
+
+
+def codes(structure):
+    return [note.code for note in bolt_notes(structure)]
+
+
+def test_a_shank_beyond_the_yield_of_its_material(made):
+    """355 MPa on a shank of 8 mm: 17.84 kN. The notes begin there."""
+    limit = 355e6 * pi / 4 * 8e-3**2 / 1e3
+    shank = {"diameter": "8 mm", "material": "45 steel", "seat": ["9 mm", "30 mm"]}
+    assert codes(made(f"{limit * 0.999:.6g} kN", **shank)) == []
+    (note,) = bolt_notes(made(["1 kN", f"{limit * 1.001:.6g} kN"], **shank))
+    assert note.code == "bolt-yield"
+    assert "beyond the yield strength of its material, 355 MPa" in note.text
+    assert note.load == pytest.approx(limit * 1.001e3, rel=1e-5)
+
+
+def test_a_seat_beyond_the_yield_of_its_part(made):
+    """A ring of 9 to 13 mm: 355 MPa are 24.5 kN."""
+    limit = 355e6 * pi / 4 * (13e-3**2 - 9e-3**2) / 1e3
+    ring = {"seat": ["9 mm", "13 mm"], "at": ["0 mm", "0 mm", "0 mm"]}
+    assert codes(made(f"{limit * 0.999:.6g} kN", **ring)) == []
+    assert codes(made(f"{limit * 1.001:.6g} kN", **ring)) == ["seat-yield", "seat-yield"]
+
+
+def test_preloads_whose_unit_looks_wrong(made):
+    """Less than the blocks weigh, 5.4 N, or more than their seats bear."""
+    assert codes(made("1 uN")) == ["slight-preload"]
+    assert "is less than the 5.3" in bolt_notes(made("1 uN"))[0].text or "5.4" in bolt_notes(made("1 uN"))[0].text
+    assert codes(made("1 MN")) == ["seat-yield", "seat-yield"]
+    assert codes(made("6 kN")) == []
+
+
+def test_pressure_beyond_yield_states_its_share_of_the_area(made):
+    structure = made("6 kN")
+    (joint,) = structure.joints
+    weights = joint.interface.weights
+    beyond = np.arange(len(weights)) % 7 == 0
+    pressure = np.where(beyond, 356e6, 354e6)
+    (note,) = pressure_notes(structure, [pressure], 6e3)
+    assert note.share == pytest.approx(weights[beyond].sum() / weights.sum())
+    assert note.joint == joint.name
+    assert pressure_notes(structure, [np.full(len(weights), 354e6)], 6e3) == []
+
+
+def test_a_law_given_in_full_needs_no_yield_strength(made):
+    """Materials without yield strength say nothing."""
+    from dataclasses import replace
+
+    import faying
+
+    plain = faying.Material(name="plain", E=200e9, nu=0.3, density=7800.0)
+    structure = made("1 MN")
+    law = JointLaw(model=Given(k_n=lambda p: p**0.5, k_t=lambda p: p**0.5))
+    bare = replace(
+        structure,
+        materials=dict.fromkeys(structure.mesh.parts, plain),
+        joints=tuple(replace(joint, law=law) for joint in structure.joints),
+    )
+    assert codes(bare) == []
+    assert pressure_notes(bare, [np.full(len(structure.joints[0].interface.weights), 1e12)], 1e6) == []
