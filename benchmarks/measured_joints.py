@@ -26,7 +26,7 @@ MEASURED = [
 RMAX = 1e-6  # m, largest height over one sampling length
 PRESSURES = 1e6, 5e6  # Pa
 LAWS = "auto", "half-space", "jk", "gw-ke", "gw-jg", "gw", "persson", "me"
-SIDE, POINTS = 0.8e-3, 256
+SIDE, POINTS = 0.8e-3, 192
 
 
 def measured(p: float) -> np.ndarray:
