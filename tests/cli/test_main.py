@@ -1,5 +1,6 @@
 import json
 import re
+import signal
 import subprocess
 import sys
 
@@ -126,6 +127,8 @@ def test_a_run_that_fails_leaves_no_folder(tmp_path, capsys):
 
 
 def test_version(capsys):
+    before = signal.getsignal(signal.SIGTERM)
     with pytest.raises(SystemExit):
         main(["--version"])
     assert faying.__version__ in capsys.readouterr().out
+    assert signal.getsignal(signal.SIGTERM) is before  # whoever calls a command from Python keeps their own

@@ -57,7 +57,8 @@ def main(argv: list[str] | None = None) -> None:
     from faying.errors import FayingError
 
     # kill, and a batch system's time limit, clear up as Ctrl-C does
-    if threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
+    alone = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+    if alone:
         signal.signal(signal.SIGTERM, _stop)
     try:
         code: Any = cli.main(args=argv, prog_name="faying", standalone_mode=False)
@@ -70,4 +71,7 @@ def main(argv: list[str] | None = None) -> None:
     except click.ClickException as fault:
         fault.show()
         sys.exit(fault.exit_code)
+    finally:
+        if alone:
+            signal.signal(signal.SIGTERM, signal.SIG_DFL)
     sys.exit(code if isinstance(code, int) else 0)
