@@ -48,11 +48,11 @@ class Variant:
     preload: PreloadState
 
 
-def _complex_modes(real: Array, loss: Array, count: int) -> tuple[Complex, Complex]:
+def _complex_modes(real: Array, loss: Array, count: int, slight: float = SLIGHT) -> tuple[Complex, Complex]:
     """Lowest complex eigenvalues (m,) and vectors (d, m) of diag(real) + i loss, in rising order.
 
     The lowest real modes, some more than are wanted, meet each other exactly; those above them join by what the loss
-    makes of them to first order. What that leaves is estimated, and where it is not small the whole problem is solved.
+    makes of them to first order. What that leaves is estimated, and where it is not slight the whole problem is solved.
     """
     from scipy.linalg import eig
 
@@ -62,7 +62,7 @@ def _complex_modes(real: Array, loss: Array, count: int) -> tuple[Complex, Compl
         mix = 1j * loss[:low, low:] / apart
         # second-order shift of an eigenvalue, times the square of the greatest loss factor: what first order leaves
         left = np.sum(np.abs(mix * mix * apart), axis=1) / real[:low] * np.max(np.abs(np.diag(loss)) / real) ** 2
-    if low == len(real) or not left[:count].max() < SLIGHT:
+    if low == len(real) or not left[:count].max() < slight:
         values, vectors = eig(np.diag(real) + 1j * loss)
     else:
         span = np.concatenate([np.eye(low), mix], axis=1).T
@@ -176,8 +176,13 @@ class ReducedModel:
         motions = self._motions(self.dynamic_relative)
         return [law.springs(motion, p) for motion, law, p in zip(motions, laws, pressures, strict=True)]
 
-    def modes(self, springs: Sequence[Springs[ReducedMotion]]) -> tuple[Complex, Complex, Array]:
-        """Complex eigenvalues w^2 (1 + i eta) [1/s2] (m,), coefficients (d, m), the estimate (m,)."""
+    def modes(
+        self, springs: Sequence[Springs[ReducedMotion]], slight: float = SLIGHT
+    ) -> tuple[Complex, Complex, Array]:
+        """Complex eigenvalues w^2 (1 + i eta) [1/s2] (m,), coefficients (d, m), the estimate (m,).
+
+        slight: relative error of an eigenvalue up to which first order is enough for the higher modes.
+        """
         from scipy.linalg import eigh
 
         K, M = self.dynamic_stiffness + sum(s.stiffness() for s in springs), self.dynamic_mass
@@ -186,7 +191,7 @@ class ReducedModel:
         cut = slice(0, self.coarse)
         rough = eigh(K[cut, cut], M[cut, cut], eigvals_only=True, subset_by_index=[0, self.count - 1])
         estimate = np.abs(rough / real[: self.count] - 1) / 2
-        values, inner = _complex_modes(real, shapes.T @ loss @ shapes, self.count)
+        values, inner = _complex_modes(real, shapes.T @ loss @ shapes, self.count, slight)
         return values, shapes @ inner, estimate
 
     def evaluate(
