@@ -1,7 +1,7 @@
 """The study file: what a user writes in TOML, checked and in SI units."""
 
 import tomllib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Self
 
@@ -102,6 +102,11 @@ class Study:
         surface = None if shared is None else SurfaceChoice.of(shared)
         beside = tuple(BesideChoice.of(t, i) for i, t in enumerate(top.tables("beside")))
         _note_lacking(faults, joints, law, surface)
+        for number, other in enumerate(beside, start=1):
+            changed = tuple(
+                replace(joint, law=other.law or joint.law, surface=other.surface or joint.surface) for joint in joints
+            )
+            _note_lacking(faults, changed, law, surface, f"beside[{number}]: ")
         read = [read_bolt(t, i, materials) for i, t in enumerate(top.tables("bolt", required=True))]
         bolts = tuple(bolt for bolt in read if bolt is not None)
         supports = [read_support(t) for t in top.tables("support")]
@@ -141,14 +146,16 @@ class Study:
 
 
 def _note_lacking(
-    faults: Faults, joints: tuple[JointChoice, ...], law: LawChoice, surface: SurfaceChoice | None
+    faults: Faults, joints: tuple[JointChoice, ...], law: LawChoice, surface: SurfaceChoice | None, where: str = ""
 ) -> None:
     """Note every joint's law that its surface does not supply, before anything is read or meshed."""
+    told = {line.removeprefix(where) for line in faults.lines}
     for number, joint in enumerate(joints, start=1):
         choice = joint.surface or surface
         there = "no" if choice is None else "fractal" if choice.scan is None else "scan"
         fault = (joint.law or law).fault_without(there)
         if fault and not fault.startswith("[surface]"):
             fault = f"{f'joint[{number}].law' if joint.law else 'law'}: {fault}"
-        if fault and fault not in faults.lines:
-            faults.add(fault)
+        if fault and fault not in told:
+            told.add(fault)
+            faults.add(where + fault)
