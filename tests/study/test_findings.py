@@ -1,4 +1,4 @@
-"""What a result says beside its numbers: the law that was taken, what it assumes, what falls, what hangs on the scan."""
+"""What a result says beside its numbers: the law that was taken, what it assumes, what falls with preload."""
 
 import numpy as np
 import pytest
