@@ -11,7 +11,7 @@ import pytest
 import faying
 from faying.errors import ReadError
 from faying.files import read_numbers, together, uninterrupted, write_atomically
-from faying.study.template import write
+from tests.helpers.studies import write
 
 
 def test_a_full_disk_leaves_the_old_file(tmp_path):
@@ -129,19 +129,24 @@ def test_a_fault_names_the_place_where_the_file_would_have_been(tmp_path):
 
 def test_an_interruption_waits_for_the_files_and_then_counts():
     done = []
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it
 
     def stopped():
         with uninterrupted():
             signal.raise_signal(signal.SIGINT)
             done.append(True)
 
-    with pytest.raises(KeyboardInterrupt):
-        stopped()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            stopped()
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert done == [True]
 
 
 STOPPED = """
 import os, signal, sys, time
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it
 from faying.output.figures import save
 
 def wait(*given):

@@ -64,6 +64,7 @@ def test_the_bolt_moves_with_the_blocks(structure):
     assert modes.frequencies[6] > 5e3
 
 
+@pytest.mark.slow
 def test_a_sweep_over_its_preload(study, tmp_path):
     """Against full solutions of the same study, at an end and between the ends."""
     from faying.study import run

@@ -25,8 +25,8 @@ counterbody = "part"
 )
 
 
-def write(study: Path) -> list[Path]:
+def write(study: Path, *, force: bool = False) -> list[Path]:
     """Write that study, with the geometry that `faying init` gives it."""
-    made = template.write(study)
+    made = template.write(study, force=force)
     study.write_text(TEXT.format(name=study.name, step="two-blocks.step"), encoding="utf-8")
     return made

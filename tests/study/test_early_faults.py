@@ -20,6 +20,8 @@ def study(tmp_path):
     write(tmp_path / "study.toml")
     data = tomllib.loads((tmp_path / "study.toml").read_text())
 
+    data["joint"][0]["tangential"] = "law"
+
     def made(**tables):
         return Study.from_dict({key: value for key, value in (data | tables).items() if value}, folder=tmp_path)
 
@@ -39,8 +41,8 @@ def no_mesh(monkeypatch):
     [
         ({"model": "gw", **IN_FULL}, "GW defines no tangential stiffness"),
         ({"model": "gw-ke"}, "needs|smoothed"),
-        ({"alpha": 1.5}, "alpha = 1.5"),
-        ({"substrate": "computed", "modulus_ratio": 30.0}, "modulus_ratio = 30.0"),
+        ({"model": "jk", "alpha": 1.5}, "alpha = 1.5"),
+        ({"model": "jk", "substrate": "computed", "modulus_ratio": 30.0}, "modulus_ratio = 30.0"),
     ],
 )
 def test_faults_of_a_law_come_before_the_mesh(study, no_mesh, law, message):

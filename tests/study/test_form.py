@@ -61,6 +61,7 @@ def test_the_old_table_says_its_new_name(path):
         Study.read(path.with_name("old.toml"))
 
 
+@pytest.mark.slow
 def test_the_band_of_small_crowns_is_that_of_full_runs(path):
     """d f/d preload with faces crowned by 3 um from the small basis, beside the same as a form given."""
     study = Study.read(path)

@@ -90,7 +90,8 @@ def test_a_sweep_depends_on_every_file_that_a_key_names(folder):
     gap = {"file": "gap.csv", "xy_unit": "mm", "gap_unit": "um"}
     faces = ["upper.joint", "lower.joint"]
     plan = study(
-        folder, joint=[{"name": "j", "faces": faces, "gap": gap, "law": {"model": "table", "file": "law.csv"}}]
+        folder,
+        joint=[{"name": "j", "faces": faces, "form": {"gap": gap}, "law": {"model": "table", "file": "law.csv"}}],
     )
     assert {file.name for file in plan.files} == {"gap.csv", "law.csv", plan.geometry.file.name}
     before = fingerprint(plan, [], 1e-6)

@@ -157,7 +157,9 @@ def test_a_preload_that_the_law_does_not_cover_has_two_answers(study):
     assert "JK cannot answer" in notes["beyond-law-matters"].text
 
 
-@pytest.mark.parametrize("factor", [2.0, 30.0, 3000.0])
+@pytest.mark.parametrize(
+    "factor", [2.0, pytest.param(30.0, marks=pytest.mark.slow), pytest.param(3000.0, marks=pytest.mark.slow)]
+)
 def test_any_continuation_beyond_the_law_lies_in_the_bracket(study, factor):
     """The springs beyond the law made stiffer by any factor: each frequency stays between held and bonded."""
     from faying.fe.modes import lowest_modes
@@ -246,8 +248,7 @@ def test_a_law_that_takes_nothing_from_a_scan_says_so(study):
 
 def test_a_law_in_proportion_to_pressure_carries_a_joint(study):
     """Persson's stiffness is proportional to pressure at every load: its first touch is taken as a finite way off."""
-    done = on_the_milled_scan(study, "persson", None)
-    assert np.all(done.free <= done.frequencies * (1 + 1e-9))
-    assert np.all(done.frequencies <= done.bonded * (1 + 1e-9))
-    assert np.isnan(done.loss_factors).all()
-    assert any(note.code == "no-loss" for note in done.notes)
+    structure = on_the_milled_scan(study, "persson", None)
+    found = structure.assembly().solve(6000 * bolt_load(structure, *study.bolts[0].faces))
+    assert structure.joints[0].interface.weights @ found.pressures[0] == pytest.approx(6000, rel=1e-8)
+    assert not structure.joints[0].law.predicts_loss

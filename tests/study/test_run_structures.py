@@ -121,7 +121,7 @@ def test_a_joint_with_its_own_law_and_gap_differs(folder):
     given = data(folder, "")
     grid = [f"{x},{y},{0.02 * abs(x)}" for x in range(-40, 41, 8) for y in range(-15, 16, 5)]
     (folder / "gap.csv").write_text("\n".join(grid))
-    given["joint"][0]["gap"] = {"file": "gap.csv", "xy_unit": "mm", "gap_unit": "um"}
+    given["joint"][0]["form"] = {"gap": {"file": "gap.csv", "xy_unit": "mm", "gap_unit": "um"}}
     structure = build(Study.from_dict(given, folder=folder))
     interface = structure.joints[0].interface
     assert interface.gap == pytest.approx(0.02e-6 * np.abs(interface.positions[:, 0] * 1e3), abs=8e-9)
