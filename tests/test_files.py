@@ -161,7 +161,7 @@ main(sys.argv[1:])
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize("number", [signal.SIGTERM, pytest.param(signal.SIGINT, marks=pytest.mark.slow)])
 def test_a_run_that_is_stopped_while_it_writes_leaves_what_was_there(tmp_path, number):
     """The data are written when the first figure begins: neither they nor a new folder stay."""
     write(tmp_path / "study.toml")

@@ -204,6 +204,7 @@ def test_faces_can_be_named_by_a_point(study):
         mesh_step(study.geometry.step, size=8e-3, face_points={"x": ("roof", (0, 0, 0))})
 
 
+@pytest.mark.slow
 def test_the_same_study_gives_the_same_numbers(study, result):
     again = run(study)
     assert again.frequencies == pytest.approx(result.frequencies, rel=1e-9)

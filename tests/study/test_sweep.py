@@ -145,6 +145,7 @@ def test_processes_give_the_same(plan, done, tmp_path, monkeypatch):
     assert there.frequencies == pytest.approx(done.frequencies, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_cluster_gives_the_same(plan, done, tmp_path, monkeypatch):
     distributed = pytest.importorskip("distributed", reason="the extra dask is not installed")
     monkeypatch.setattr(module, "CHUNK", 6)
