@@ -3,6 +3,7 @@
 import numpy as np
 
 from faying.result import Result
+from faying.result.result import preload_slope
 
 Rows = list[list[str]]
 
@@ -81,7 +82,7 @@ def comparison(result: Result) -> Rows:
             rows.append(["", f"{name} error [%]", *(_or_dash(e, "+.2f") for e in errors)])
     if len(result.loads) > 1:
         for name, values in ((c.reference, c.frequencies), *theirs, *ours):
-            slope = c.sensitivity(values, result.loads) * 1e3
+            slope = preload_slope(values, result.loads) * 1e3
             rows.append(["d f/d preload", f"{name} [Hz/kN]", *(_or_dash(s, "+.3f") for s in slope)])
     return rows
 

@@ -23,6 +23,14 @@ Point = tuple[float, float, float]
 MAPS = ("point", "node", "triangle", "mode_other")  # dimensions of what only a file holds, not the JSON
 
 
+def preload_slope(values: Array, loads: Array) -> Array:
+    """Change with preload [value/N] (mode,) of values (load, mode), by a straight line; NaN for a single load."""
+    if len(loads) < 2:
+        return np.full(values.shape[1], np.nan)
+    about = loads - loads.mean()
+    return np.asarray(about @ values / (about @ about))
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Comparison:
     """Listed frequencies of a hammer test beside the study's, and the mode (from 0) that each was paired with."""
@@ -44,13 +52,6 @@ class Comparison:
     def reference(self) -> str:
         """What tables and figures call the frequencies that ours are set beside."""
         return "test" if self.kind == "test" else "reference model"
-
-    def sensitivity(self, values: Array, loads: Array) -> Array:
-        """Change of frequency with preload, d f/d preload [Hz/N] (mode,), by a straight line through all loads."""
-        if len(loads) < 2:
-            return np.full(values.shape[1], np.nan)
-        about = loads - loads.mean()
-        return np.asarray(about @ values / (about @ about))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -7,7 +7,7 @@ import numpy as np
 
 from faying.errors import FayingError
 from faying.notes import Note
-from faying.study.case import Case, Progress, joint_law, law_reasons, materials_of, surfaces_of
+from faying.study.case import Case, Progress, joint_law, law_reasons, materials_at, surfaces_of
 from faying.study.keys.beside import BesideChoice
 from faying.study.solve import State, solve
 from faying.typing import Array
@@ -61,11 +61,10 @@ def _changed(case: Case, choice: BesideChoice) -> Case:
     )
     study = replace(study, joints=joints, response=None, hammer=None)
     surfaces = surfaces_of(study)
-    mesh, materials = case.structure.mesh, materials_of(study, case.structure.mesh)
+    mesh = case.structure.mesh
     placed = []
     for joint, old, surface in zip(joints, case.structure.joints, surfaces, strict=True):
-        rough, other = (materials[mesh.face_part[face]] for face in joint.faces)
-        law = joint_law(joint, study.law_of(joint), surface, rough, other)
+        law = joint_law(joint, study.law_of(joint), surface, *materials_at(study, mesh, joint))
         placed.append(replace(old, law=law, scan_area=surface.scan_area))
     structure = replace(case.structure, joints=tuple(placed))
     return replace(case, study=study, structure=structure, surfaces=surfaces, hammer=None, test_points=None, notes=())
