@@ -138,6 +138,10 @@ class Result:
     shapes: Any = variable(
         "load", "mode", "node", "axis", unit="kg^-1/2", long_name="mass-normalised mode shapes", dtype="f4"
     )
+    outside_share: Array = variable(
+        "load", unit="1", long_name="share of the joints where their law is outside its validity range"
+    )
+    beyond_share: Array = variable("load", unit="1", long_name="share of the joints beyond the end of their law")
     low: Array | None = variable(
         "load", "mode", unit="Hz", long_name="frequency at the lower end of the laws' range", default=None
     )
@@ -166,6 +170,34 @@ class Result:
     )
     beside_loss_factors: Array | None = variable(
         "beside", "load", "mode", unit="1", long_name="loss factor under another law", gaps=True, default=None
+    )
+    beside_beyond_frequencies: Array | None = variable(
+        "beside",
+        "load",
+        "mode",
+        unit="Hz",
+        long_name="frequency under another law with what is beyond its end bonded",
+        gaps=True,
+        default=None,
+    )
+    beside_outside_share: Array | None = variable(
+        "beside",
+        "load",
+        unit="1",
+        long_name="share of the joints where another law is outside its validity range",
+        gaps=True,
+        default=None,
+    )
+    beside_beyond_share: Array | None = variable(
+        "beside",
+        "load",
+        unit="1",
+        long_name="share of the joints beyond the end of another law",
+        gaps=True,
+        default=None,
+    )
+    beside_reach: Array | None = variable(
+        "beside", unit="Pa", long_name="pressure at which another law ends", gaps=True, default=None
     )
     beside: tuple[str, ...] = ()
     joints: tuple[str, ...]

@@ -38,7 +38,7 @@ def bonded_beyond(case: Case, load: float, springs: Sequence[Springs[Interface]]
     law's end, `held`, and these; modes count in rising order. None where no point is beyond.
     """
     structure, study = case.structure, case.study
-    past = [_past(joint, s) for joint, s in zip(structure.joints, springs, strict=True)]
+    past = [past_end(joint, s) for joint, s in zip(structure.joints, springs, strict=True)]
     if not any(np.any(mask) for mask in past):
         return None
     parts = stiff_as_bonded(structure)
@@ -60,7 +60,7 @@ def stiff_as_bonded(structure: Structure) -> float:
     return STIFF * max(m.E for m in structure.materials.values()) / structure.mesh.size
 
 
-def _past(joint: Joint, springs: Springs[Interface]) -> Mask:
+def past_end(joint: Joint, springs: Springs[Interface]) -> Mask:
     """Points whose pressure is beyond the end of the law, as the law is asked."""
     pressure = springs.pressure
     if joint.per_node:

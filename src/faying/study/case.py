@@ -225,13 +225,13 @@ def structure_of(
         law = (laws or {}).get((joint.name, *parts)) or joint_law(
             joint, study.law_of(joint), surface, *materials_at(study, mesh, joint)
         )
-        interface, closed = snapped(join(mesh, *joint.faces, search_distance=joint.search_distance), study, joint.name)
+        interface, closed = interface_of(study, mesh, joint)
         notes += closed
         joints.append(
             Joint(
                 name=joint.name,
                 faces=joint.faces,
-                interface=interface if joint.form is None else joint.form.on(interface, mesh, joint.faces),
+                interface=interface,
                 law=law,
                 per_node=joint.springs == "per-node",
                 scan_area=surface.scan_area,
@@ -246,6 +246,12 @@ def structure_of(
         supports=study.supports,
         masses=study.masses,
     )
+
+
+def interface_of(study: Study, mesh: Mesh, joint: JointChoice) -> tuple[Interface, list[Note]]:
+    """How the faces of a joint meet, with their form; and a note where a gap of the CAD model was closed."""
+    met, notes = snapped(join(mesh, *joint.faces, search_distance=joint.search_distance), study, joint.name)
+    return met if joint.form is None else joint.form.on(met, mesh, joint.faces), notes
 
 
 def snapped(interface: Interface, study: Study, name: str) -> tuple[Interface, list[Note]]:
