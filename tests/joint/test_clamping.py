@@ -139,7 +139,7 @@ def test_wide_discs_against_the_cone_of_the_guideline(wide):
     assert np.array(stack.sections) == pytest.approx(np.array([(12e-3, 210e9), (12e-3, 210e9)]))
     assert stack.joints == (0,)
     assert stack.outer == pytest.approx(60e-3, rel=2e-3)
-    cone = stack.cone(structure.fitted_bolts[0])
+    cone = stack.cone
     rigid = under_rigid_seats(structure, stiffness, 6.5e-3)
     assert rigid == pytest.approx(cone, rel=0.07)
     assert rigid < found.members[0] < 1.25 * cone
@@ -221,4 +221,13 @@ def test_two_bolts_share_a_joint_by_the_nearer_axis():
         stack = stack_of(structure, index)
         assert stack.outer == pytest.approx(outer, rel=1e-6)
         assert [length for length, _ in stack.sections] == pytest.approx([0.01, 0.01])
-    assert stack_of(replace(structure, bolts=(Bolt(name="w", faces=("high.top", "low.bottom")),)), 0).cone
+    (whole,) = (Bolt(name="w", faces=("high.top", "low.bottom")),)
+    assert np.isnan(stack_of(replace(structure, bolts=(whole,)), 0).cone)
+
+
+def test_a_face_that_is_a_ring_is_a_seat():
+    structure, *_ = sleeve()
+    stack = stack_of(structure, 0)
+    assert stack.seat == pytest.approx((HOLE, 20e-3))
+    area = pi / 4 * (20e-3**2 - HOLE**2)
+    assert stack.cone == pytest.approx(26e-3 / (210e9 * area), rel=5e-3)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import NotConverged
+from faying.fe.faces import face_centre
 from faying.fe.interface import Interface
 from faying.fe.modes import Modes
 from faying.joint.bolt import FittedBolt
@@ -23,6 +24,7 @@ from faying.typing import Array
 
 ACCURACY = 1e-10  # of the residual of a solution
 MOST_STEPS = 2000
+ROUND = 0.03  # of the area of a ring between its least and greatest radius: a face that differs by more is none
 BESIDE = 1.5  # outer diameters of the seat within which a joint belongs to a bolt
 
 
@@ -122,18 +124,20 @@ class Stack:
         sections: (length [m], Young's modulus [Pa]) of the parts, from the head on.
         joints: indices of the joints that the bolt clamps, from the head on.
         outer: diameter [m] of a ring of the area of the joint that belongs to this bolt, the mean of its joints.
+        seat: inner and outer diameter [m] of the seat; None where head and nut press a face that is no ring.
     """
 
     sections: tuple[tuple[float, float], ...]
     joints: tuple[int, ...]
     outer: float
+    seat: tuple[float, float] | None
 
-    def cone(self, fitted: FittedBolt) -> float:
-        """Compliance of the members [m/N] by the deformation cone of VDI 2230; NaN where the seat is a whole face."""
-        if fitted.ring is None:
+    @property
+    def cone(self) -> float:
+        """Compliance of the members [m/N] by the deformation cone of VDI 2230; NaN where the seat is no ring."""
+        if self.seat is None or self.outer <= self.seat[0]:
             return float("nan")
-        hole, seat = fitted.ring
-        return cone_compliance(self.sections, seat=seat, hole=hole, outer=self.outer)
+        return cone_compliance(self.sections, seat=self.seat[1], hole=self.seat[0], outer=self.outer)
 
 
 def stack_of(structure: Structure, index: int) -> Stack | None:
@@ -147,14 +151,15 @@ def stack_of(structure: Structure, index: int) -> Stack | None:
         return None
     mesh = structure.mesh
     beams = [bolt for bolt in bolts if isinstance(bolt, FittedBolt)]
+    seat = _seat(structure, fitted)
     found: list[tuple[float, int, float]] = []
     for number, joint in enumerate(structure.joints):
         i = joint.interface
         distance = np.stack([_beside(bolt, i.positions) for bolt in beams])
         mine = np.argmin(distance, axis=0) == beams.index(fitted)
-        seat = fitted.ring[1] if fitted.ring is not None else np.inf
+        reach = np.inf if seat is None else BESIDE * seat[1]
         depth = (i.positions - fitted.point) @ fitted.axis
-        near = mine & (distance[beams.index(fitted)] <= BESIDE * seat)
+        near = mine & (distance[beams.index(fitted)] <= reach)
         near &= (depth > 0) & (depth < fitted.length)
         if np.any(near):
             area = float(i.weights[mine].sum())
@@ -172,11 +177,28 @@ def stack_of(structure: Structure, index: int) -> Stack | None:
     if part != mesh.face_part[fitted.bolt.faces[1]]:
         return None
     sections.append((fitted.length - start, structure.materials[part].E))
-    hole = fitted.ring[0] if fitted.ring is not None else 0.0
+    hole = 0.0 if seat is None else seat[0]
     outer = [float(np.sqrt(4 * area / np.pi + hole**2)) for *_, area in found]
     if not outer or min(length for length, _ in sections) <= 0:
         return None
-    return Stack(sections=tuple(sections), joints=tuple(number for _, number, _ in found), outer=float(np.mean(outer)))
+    return Stack(
+        sections=tuple(sections),
+        joints=tuple(number for _, number, _ in found),
+        outer=float(np.mean(outer)),
+        seat=seat,
+    )
+
+
+def _seat(structure: Structure, fitted: FittedBolt) -> tuple[float, float] | None:
+    """Inner and outer diameter [m] of the seat: as given, or those of the face under the head where it is a ring."""
+    if fitted.ring is not None:
+        return fitted.ring
+    mesh, face = structure.mesh, fitted.bolt.faces[0]
+    radius = _beside(fitted, mesh.points[mesh.face_nodes(face)])
+    inner, outer = float(radius.min()), float(radius.max())
+    inner = inner if inner > 0.05 * outer else 0.0
+    area = face_centre(mesh.points, mesh.face(face))[2]
+    return (2 * inner, 2 * outer) if abs(np.pi * (outer**2 - inner**2) / area - 1) < ROUND else None
 
 
 def _beside(fitted: FittedBolt, positions: Array) -> Array:

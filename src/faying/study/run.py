@@ -22,6 +22,7 @@ from faying.notes import Note
 from faying.result import Comparison, Provenance, Receptance, Result
 from faying.study.beside import Beside, solve_beside, stacked
 from faying.study.beyond import stiff_as_bonded
+from faying.study.bolt_numbers import bolt_numbers, conductances
 from faying.study.case import Case, Progress, Report
 from faying.study.findings import against_exact_contact, falling
 from faying.study.form_band import form_band
@@ -162,6 +163,8 @@ def collect(
         notes=tuple(dict.fromkeys(every)),
         response=_response(study, states),
         comparison=comparison,
+        bolt_numbers=bolt_numbers(case, states),
+        **conductances(case, states),
         provenance=provenance(study),
     )
     if case.hammer is None:
@@ -225,6 +228,7 @@ def _response(study: Study, states: Sequence[State]) -> Receptance | None:
         frequencies=found[0].frequencies,
         values=np.stack([one.values for one in found]),
         error=np.array([one.error for one in found]),
+        bolt_forces=np.stack([one.bolt_forces for one in found]) if study.bolts else None,
         **sides,
     )
 
