@@ -90,6 +90,25 @@ def test_forces_at_the_seats_divide_by_the_load_factor():
     assert left == pytest.approx(1 - found.load_factor[0], rel=1e-5)
 
 
+def test_what_embeds_takes_force_from_the_bolt():
+    """A joint that closes by 1 um at some places: the bolt loses the traction-weighted closing over delta_S + delta_P.
+
+    The other way round, the misfit is put on the tangent structure as the force that would open it again.
+    """
+    structure, K, _, springs, found = sleeve()
+    i, bolt = structure.joints[0].interface, structure.fitted_bolts[0]
+    closing = 1e-6 * (1 + np.sin(1e3 * i.positions[:, 0]))
+    from scipy.sparse.linalg import splu
+
+    M = structure.vibrating[1]
+    shifted = (K + 1e-9 * K.diagonal().mean() * M / M.diagonal().mean()).tocsc()
+    pressed = i.forces(-springs[0].k_n * closing, np.zeros((len(closing), 2)))
+    lost = -bolt.tension(splu(shifted).solve(pressed))
+    mean = found.traction[0][0] @ (i.weights * closing)
+    assert lost == pytest.approx(mean / (found.bolt[0] + found.members[0]), rel=1e-5)
+    assert lost > 0
+
+
 def test_a_bolt_without_a_shank_has_members_alone():
     *_, plain = sleeve(diameter=None, material=None)
     *_, found = sleeve()

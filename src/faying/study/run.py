@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from faying.errors import NotConverged
 from faying.fe.constraint import constrain
 from faying.fe.modes import Modes, lowest_modes
 from faying.fe.solve import chosen
@@ -19,7 +20,7 @@ from faying.joint.support_check import RIGID_BELOW
 from faying.measured.mac import mac
 from faying.measured.pairing import by_track, changes, follow, pair_frequencies
 from faying.notes import Note
-from faying.result import Comparison, Provenance, Receptance, Result
+from faying.result import BoltNumbers, Comparison, Provenance, Receptance, Result
 from faying.study.beside import Beside, solve_beside, stacked
 from faying.study.beyond import stiff_as_bonded
 from faying.study.bolt_numbers import bolt_numbers, conductances
@@ -127,6 +128,8 @@ def collect(
     every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more]
     every += _encounters(case, states)
     every += [*(note for b in besides for note in b.notes), *_closing_notes(study, rigid)]
+    bolts, more = _bolts(case, states)
+    every += more
     result = Result(
         title=study.title,
         loads=case.loads,
@@ -163,7 +166,7 @@ def collect(
         notes=tuple(dict.fromkeys(every)),
         response=_response(study, states),
         comparison=comparison,
-        bolt_numbers=bolt_numbers(case, states),
+        bolt_numbers=bolts,
         **conductances(case, states),
         provenance=provenance(study),
     )
@@ -171,6 +174,13 @@ def collect(
         return result
     full = next((s.test_response for s in states if s.test_response is not None), None)
     return replace(result, hammer=case.hammer.beside(result, full))
+
+
+def _bolts(case: Case, states: Sequence[State]) -> tuple[BoltNumbers | None, list[Note]]:
+    try:
+        return bolt_numbers(case, states), []
+    except NotConverged as fault:
+        return None, [Note(code="bolt-numbers", text=f"no compliance and load factor of the bolts: {fault}")]
 
 
 def _stacked(rows: Sequence[Array | None]) -> Array | None:
