@@ -12,7 +12,9 @@ class Material:
     """One isotropic material.
 
     Parameters (SI): name; E Young's modulus [Pa]; nu Poisson's ratio [-]; density [kg/m3]; yield_strength [Pa];
-    hardness [Pa], 2.8 times the yield strength where not given (Tabor 1951); friction, static coefficient [-].
+    hardness [Pa], 2.8 times the yield strength where not given (Tabor 1951); friction, static coefficient [-];
+    conductivity, of heat [W/(m K)]; resistivity, electrical [ohm m]; bearing_limit, the pressure [Pa] that it bears
+    under the head of a bolt (p_G of VDI 2230).
 
     Raises InputError for values that no isotropic material can have.
     """
@@ -24,6 +26,9 @@ class Material:
     yield_strength: float | None = None
     hardness: float | None = None
     friction: float | None = None
+    conductivity: float | None = None
+    resistivity: float | None = None
+    bearing_limit: float | None = None
     source: str = ""
 
     def __post_init__(self) -> None:
@@ -31,7 +36,7 @@ class Material:
             raise InputError(f"material {self.name!r}: E = {self.E} Pa; it must be positive, for example 200e9")
         if not -1 < self.nu <= 0.5:
             raise InputError(f"material {self.name!r}: nu = {self.nu}; it must lie in (-1, 0.5], for example 0.3")
-        for field in ("density", "yield_strength", "hardness"):
+        for field in ("density", "yield_strength", "hardness", "conductivity", "resistivity", "bearing_limit"):
             value = getattr(self, field)
             if value is not None and (isnan(value) or value <= 0):
                 raise InputError(f"material {self.name!r}: {field} = {value}; it must be positive, or left out")
@@ -122,7 +127,10 @@ CATALOGUE = {
             nu=0.3,
             density=7850.0,
             yield_strength=355e6,
-            source="EN 1993-1-1, 3.2.6 and Table 3.1; EN 1991-1-1, Table A.4",
+            conductivity=53.3,
+            bearing_limit=760e6,
+            source="EN 1993-1-1, 3.2.6 and Table 3.1; EN 1991-1-1, Table A.4; conductivity at 20 degrees C: "
+            "EN 1993-1-2, 3.4.1.3; bearing limit: VDI 2230:2003, Table A9",
         ),
         Material(
             name="EN AW-6082 T6",
@@ -130,7 +138,9 @@ CATALOGUE = {
             nu=0.3,
             density=2700.0,
             yield_strength=260e6,
-            source="EN 1999-1-1, 3.2.5 and Table 3.2b (extrusions, 5 < t <= 15 mm)",
+            conductivity=191.4,
+            source="EN 1999-1-1, 3.2.5 and Table 3.2b (extrusions, 5 < t <= 15 mm); conductivity at 20 degrees C: "
+            "EN 1999-1-2, 3.3.3",
         ),
     )
 }

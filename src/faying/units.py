@@ -20,6 +20,8 @@ EXAMPLES = {
     "Hz": "5 kHz",
     "rad": "30 deg",
     "N/m": "1 kN/mm",
+    "W/(m*K)": "50 W/(m K)",
+    "ohm*m": "0.2 uohm m",
 }
 
 _PREFIXES = (

@@ -6,6 +6,7 @@ from math import pi
 import numpy as np
 import pytest
 
+import faying
 from faying.joint.joint_law import JointLaw
 from faying.study import Study, build
 from faying.study.strength import bolt_notes, pressure_notes
@@ -49,6 +50,51 @@ def test_a_seat_beyond_the_yield_of_its_part(made):
     ring = {"seat": ["9 mm", "13 mm"], "at": ["0 mm", "0 mm", "0 mm"]}
     assert codes(made(f"{limit * 0.999:.6g} kN", **ring)) == []
     assert codes(made(f"{limit * 1.001:.6g} kN", **ring)) == ["seat-yield", "seat-yield"]
+
+
+def test_a_bolt_of_known_grade_is_measured_by_its_proof_load(made):
+    """M8 of class 8.8: 36.61 mm2 at 580 MPa are 21.23 kN; its material's yield strength plays no part then."""
+    proof = 580 * pi / 4 * ((8 - 0.64952 * 1.25 + 8 - 1.22687 * 1.25) / 2) ** 2 / 1e3
+    shank = {"diameter": "8 mm", "material": "45 steel", "seat": ["9 mm", "30 mm"], "grade": "8.8"}
+    assert codes(made(f"{0.899 * proof:.6g} kN", **shank)) == []
+    (near,) = bolt_notes(made(f"{0.91 * proof:.6g} kN", **shank))
+    assert near.code == "near-proof"
+    assert "91% of the proof load of M8x1.25 8.8, 21.2" in near.text
+    (beyond,) = bolt_notes(made(f"{1.01 * proof:.6g} kN", **shank))
+    assert beyond.code == "beyond-proof"
+    fine = shank | {"thread": "M8x1", "grade": "10.9"}
+    assert codes(made(f"{1.01 * proof:.6g} kN", **fine)) == []
+
+
+def test_a_seat_is_measured_by_the_bearing_limit_of_its_part(made):
+    """S355 bears 760 MPa under a head, though it yields at 355 MPa: a ring of 9 to 13 mm bears 52.5 kN."""
+    limit = 760e6 * pi / 4 * (13e-3**2 - 9e-3**2) / 1e3
+    ring = {"seat": ["9 mm", "13 mm"], "at": ["0 mm", "0 mm", "0 mm"]}
+    from dataclasses import replace
+
+    def codes_of(preload):
+        structure = made(preload, **ring)
+        parts = dict.fromkeys(structure.materials, faying.CATALOGUE["S355"])
+        return codes(replace(structure, materials=parts))
+
+    assert codes_of(f"{limit * 0.999:.6g} kN") == []
+    assert codes_of(f"{limit * 1.001:.6g} kN") == ["seat-yield", "seat-yield"]
+
+
+@pytest.mark.parametrize(
+    ("bolt", "text"),
+    [
+        ({"grade": "8.8"}, "grade needs the size of the thread; give thread"),
+        ({"thread": "M8"}, "thread is used with grade alone"),
+        ({"grade": "8.9", "thread": "M8"}, "no property class of ISO 898-1"),
+        ({"grade": "8.8", "thread": "8 mm"}, "should be a metric thread"),
+        ({"grade": "8.8", "diameter": "8.5 mm", "material": "45 steel"}, "no coarse thread has a diameter of 8.5 mm"),
+        ({"grade": 8.8, "thread": "M8"}, "grade = 8.8 should be"),
+    ],
+)
+def test_faults_of_grades(made, bolt, text):
+    with pytest.raises(faying.InputError, match=text):
+        made("6 kN", **bolt)
 
 
 def test_preloads_whose_unit_looks_wrong(made):

@@ -69,6 +69,11 @@ def text(result: Any) -> str:
         "end and outside their validity range, modes that differ most": table.laws(result),
         "joints": table.joints(result),
         f"bolts, tightened in the order {', '.join(result.tightening)}": table.bolts(result),
+        "bolts and what they clamp": table.bolting(result),
+        f"force in the bolts per motion where a mode moves most, at {result.loads[-1] / 1e3:g} kN": table.modal_forces(
+            result
+        ),
+        "conductance of the joints (clean metal in vacuum)": table.conductance(result),
         f"comparison with the {result.comparison.reference if result.comparison else 'test'}": table.comparison(result),
         f"hammer test{at}": table.hammer(result),
     }

@@ -13,6 +13,7 @@ from faying.fe.elasticity import Solid
 from faying.fe.faces import face_centre
 from faying.fe.holes import Hole, holes
 from faying.fe.mesh import Mesh
+from faying.joint.threads import Fastener
 from faying.notes import Note
 from faying.typing import Array
 from faying.units import show
@@ -102,6 +103,7 @@ class Bolt:
         head_mass: Mass of the head [kg]; that of a hexagon head where None.
         nut_mass: Mass of the nut [kg]; that of a hexagon nut where None.
         preload: Forces [N] that it is tightened to, one load after another.
+        fastener: Thread and property class, from which its proof load follows; None where they are not known.
 
     Raises:
         InputError: Diameter without material or the other way round, a diameter of 0 or less, a ring without width;
@@ -121,6 +123,7 @@ class Bolt:
     head_mass: float | None = None
     nut_mass: float | None = None
     preload: tuple[float, ...] = ()
+    fastener: Fastener | None = None
     part: ClassVar[None] = None  # it is no part of the mesh
 
     def __post_init__(self) -> None:
@@ -317,10 +320,19 @@ class FittedBolt:
         shank = self.length / (bolt.material.E * pi / 4 * bolt.diameter**2)
         return 1 / (shank + sum(w.compliance for w in bolt.washers))
 
+    @property
+    def rigidity(self) -> float:
+        """What the shank gives the structure along `load` [N/m]; 0 without a shank."""
+        return self.axial_stiffness
+
+    @property
+    def pull(self) -> Array:
+        """What a displacement (unknowns,) adds to the bolt's force [N/m]: pull.u, by the stretch of the shank."""
+        return -self.axial_stiffness * self.load
+
     def tension(self, displacement: Array) -> float:
         """What the shank's stretch adds to the bolt's force [N] under a displacement (unknowns,)."""
-        ends = self.motion @ displacement
-        return float(self.axial_stiffness * (ends[6] - ends[0]))
+        return float(self.pull @ displacement)
 
     def _beam(self) -> Array | None:
         """Stiffness (12, 12) of a round beam with shear along the first axis (Przemieniecki 1968, section 5.6)."""

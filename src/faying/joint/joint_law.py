@@ -66,6 +66,11 @@ class JointLaw:
         """Whether the law states a range of its stiffness."""
         return {"k_n_low", "k_n_high"} <= self._defined
 
+    @property
+    def yields(self) -> bool:
+        """Whether the law tells loading from unloading, so that something of its approach lasts."""
+        return "k_load" in self._defined
+
     def check(self) -> None:
         """Raise InputError where a joint cannot use the law: it has no stiffness."""
         self._samples, self._table  # noqa: B018  # names their own faults
@@ -105,16 +110,10 @@ class JointLaw:
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
         """ln approach, ln pressure, and d ln p/d ln w, from the least pressure to where the law ends."""
-        from scipy.special import exprel
-
         p, k = self._grid, self._loading
         if np.any(k <= 0):
             raise InputError(f"{self.model.name}: no stiffness on loading at {p[np.argmax(k <= 0)]:.4g} Pa")
-        # between two points k_n is a power of p, so that the integral of dp/k_n is exact there
-        steps = np.diff(np.log(p))
-        pieces = p[:-1] / k[:-1] * steps * exprel(steps - np.diff(np.log(k)))
-        first = p[0] / k[0] / (1 - self._fade)
-        w = first + np.concatenate([[0.0], np.cumsum(pieces)])
+        w = _closing(p, k, self._fade)
         return np.log(w), np.log(p), k * w / p
 
     @cached_property
@@ -215,9 +214,37 @@ class JointLaw:
         p = np.where(shut, np.exp(value), 0.0)
         return p, np.where(shut, p * steep / np.where(shut, approach, 1.0), 0.0)
 
+    def lasting_approach(self, pressure: Array) -> tuple[Array, Array] | None:
+        """Bounds of the approach [m] that is left when pressures [Pa] are taken off; None where the law is elastic.
+
+        It is the approach on loading, the integral of dp/k_load, less what springs back. The stiffness on the way back
+        is at most k_n at the greatest pressure, from which it falls, and at least k_n at the same pressure on loading,
+        when fewer asperities had been flattened. So what springs back lies between p/k_n and the integral of dp/k_n.
+        """
+        if not self.yields:
+            return None
+        p, k = self._grid, np.exp(self._samples[1][0])
+        lasting = np.exp(self._table[0])
+        bounds = lasting - _closing(p, k, self._fade), lasting - p / k
+        x = np.log(np.where(pressure > 0, self._within(pressure), p[0]))
+        least, greatest = (np.interp(x, np.log(p), np.maximum(bound, 0.0)) for bound in bounds)
+        return np.where(pressure > 0, least, 0.0), np.where(pressure > 0, greatest, 0.0)
+
     def approach(self, pressure: float) -> float:
         """Closing [m] at one pressure [Pa] between the least and the greatest of the law."""
         from scipy.interpolate import CubicHermiteSpline
 
         log_w, log_p, slope = self._table
         return float(np.exp(CubicHermiteSpline(log_p, log_w, 1 / slope)(np.log(pressure))))
+
+
+def _closing(p: Array, k: Array, fade: float) -> Array:
+    """Integral of dp/k [m] from 0 to pressures [Pa] at which the slope is k [Pa/m]; below the first, k goes as p^fade.
+
+    Between two pressures k is a power of p, so that the integral is exact there.
+    """
+    from scipy.special import exprel
+
+    steps = np.diff(np.log(p))
+    pieces = p[:-1] / k[:-1] * steps * exprel(steps - np.diff(np.log(k)))
+    return np.asarray(p[0] / k[0] / (1 - fade) + np.concatenate([[0.0], np.cumsum(pieces)]))

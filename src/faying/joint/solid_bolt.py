@@ -10,6 +10,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.faces import face_centre
 from faying.fe.mesh import Mesh
+from faying.joint.threads import Fastener
 from faying.typing import Array, Index
 
 MOST = 6000  # unknowns of the layer that is drawn in: its dense block takes .3 GB then
@@ -25,6 +26,7 @@ class SolidBolt:
         faces: Faces of the bolt itself under its head and under its nut, or round its thread.
         at: A point (3,) [m] of the plane in which the shank is drawn in; half-way between the faces where None.
         preload: Forces [N] that it is tightened to, one load after another.
+        fastener: Thread and property class, from which its proof load follows; None where they are not known.
     """
 
     name: str
@@ -32,6 +34,7 @@ class SolidBolt:
     faces: tuple[str, str]
     at: tuple[float, float, float] | None = None
     preload: tuple[float, ...] = ()
+    fastener: Fastener | None = None
     diameter: ClassVar[None] = None  # it has no shank but that of the mesh
 
     def fitted(self, mesh: Mesh, stiffness: Any, joined: Sequence[str] = ()) -> "FittedSolidBolt":

@@ -60,6 +60,7 @@ def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
             page.table(table.bolts(result)),
             f"<p>Tightened in the order {escape(', '.join(result.tightening))}.</p>",
         ]
+    parts += _bolts(result)
     parts.append("<h2>Figures</h2>")
     for name, figure in drawn.items():
         if not name.startswith(TEST):
@@ -69,6 +70,21 @@ def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
     parts += _contact(result)
     parts += ["<h2>Sources</h2>", "<ul>", *(f"<li>{escape(line)}</li>" for line in result.sources), "</ul>"]
     return page.document(result.title, "".join(parts))
+
+
+def _bolts(result: Result) -> list[str]:
+    """Tables of the bolts and of the conductances, where there are any."""
+    parts = []
+    if result.bolt_numbers is not None:
+        parts += ["<h2>Bolts and what they clamp</h2>", page.table(table.bolting(result)), f"<p>{table.EMBEDDING}</p>"]
+    forces = table.modal_forces(result)
+    if forces:
+        head = f"Force in the bolts per motion where a mode moves most, at {result.loads[-1] / 1e3:g} kN"
+        parts += [f"<h2>{head}</h2>", page.table(forces)]
+    flows = table.conductance(result)
+    if flows:
+        parts += ["<h2>Conductance of the joints</h2>", page.table(flows), f"<p>{table.CLEAN}</p>"]
+    return parts
 
 
 def _rigid(result: Result) -> str:

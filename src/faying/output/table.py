@@ -4,6 +4,7 @@ import numpy as np
 
 from faying.result import Result
 from faying.result.result import preload_slope
+from faying.typing import Array
 
 Rows = list[list[str]]
 SHOWN = 2  # modes in the table of laws
@@ -170,6 +171,102 @@ def bolts(result: Result) -> Rows:
     for load, forces in zip(result.loads, result.bolt_forces, strict=True):
         rows.append([f"{load / 1e3:g} kN", *(f"{force / 1e3:.3f}" for force in forces)])
     return rows
+
+
+def _bounded(bounds: Array) -> str:
+    low, high = bounds
+    return "-" if np.isnan(low) else f"{low:.2g} .. {high:.2g}"
+
+
+def bolting(result: Result) -> Rows:
+    """One row per preload and bolt: compliances, load factor, strength and embedding; a dash for what is not known."""
+    b = result.bolt_numbers
+    if b is None:
+        return []
+    rows: Rows = [
+        [
+            "preload",
+            "bolt",
+            "force [kN]",
+            "delta_S [um/kN]",
+            "delta_P [um/kN]",
+            "cone [um/kN]",
+            "Phi",
+            "of proof [%]",
+            "seat [MPa]",
+            "limit [MPa]",
+            "embedding [um]",
+            "loss [kN]",
+            "VDI f_Z [um]",
+            "loss [kN]",
+        ]
+    ]
+    depth = np.nansum(b.embedding, axis=2)
+    for i, load in enumerate(result.loads):
+        for k, name in enumerate(result.bolts):
+            lost = b.embedding_loss[:, i, k]
+            known = np.isfinite(b.embedding[0, i, :, k]).any()
+            rows.append(
+                [
+                    f"{load / 1e3:g} kN" if k == 0 else "",
+                    name,
+                    f"{result.bolt_forces[i, k] / 1e3:.3f}",
+                    *(
+                        _or_dash(1e9 * value, ".3g")
+                        for value in (b.compliance[i, k], b.member_compliance[i, k], b.cone_compliance[k])
+                    ),
+                    _or_dash(b.load_factor[i, k], ".3f"),
+                    _or_dash(100 * b.proof_share[i, k], ".0f"),
+                    _or_dash(1e-6 * b.seat_pressure[i, k], ".3g"),
+                    _or_dash(1e-6 * b.seat_limit[k], ".3g"),
+                    _bounded(1e6 * depth[:, i, k]) if known else "-",
+                    _bounded(1e-3 * lost),
+                    _or_dash(1e6 * b.embedding_guide[k], ".3g"),
+                    _or_dash(1e-3 * b.embedding_guide_loss[i, k], ".2g"),
+                ]
+            )
+    return _without_empty(rows)
+
+
+def _without_empty(rows: Rows) -> Rows:
+    """The columns in which any row has more than a dash."""
+    keep = [k for k in range(len(rows[0])) if k < 2 or any(row[k] != "-" for row in rows[1:])]
+    return [[row[k] for k in keep] for row in rows]
+
+
+def modal_forces(result: Result) -> Rows:
+    """One row per mode at the greatest preload: force in each bolt per um of motion where the mode moves most."""
+    b = result.bolt_numbers
+    if b is None or not np.isfinite(b.modal_force).any():
+        return []
+    rows: Rows = [["mode", *(f"{name} [{unit}]" for name in result.bolts for unit in ("N/um", "N/(m/s2)"))]]
+    for j in range(len(result.bonded)):
+        cells = zip(b.modal_force[-1, j], b.modal_force_by_acceleration[-1, j], strict=True)
+        rows.append([str(j + 1), *(text for f, a in cells for text in (_or_dash(1e-6 * f, ".3g"), _or_dash(a, ".3g")))])
+    return rows
+
+
+def conductance(result: Result) -> Rows:
+    """One row per preload: conductance of heat and current of each joint; empty where no material states its own."""
+    fields = [
+        (values, unit)
+        for values, unit in ((result.thermal_conductance, "W/K"), (result.electrical_conductance, "S"))
+        if values is not None
+    ]
+    if not fields:
+        return []
+    rows: Rows = [["preload", *(f"{name} [{unit}]" for _, unit in fields for name in result.joints)]]
+    for i, load in enumerate(result.loads):
+        rows.append([f"{load / 1e3:g} kN", *(_or_dash(v, ".4g") for values, _ in fields for v in values[i])])
+    return rows
+
+
+EMBEDDING = (
+    "delta_S, delta_P: compliance of the bolt and of what it clamps; Phi: share of a load at the seats that the bolt "
+    "takes. Embedding: approach that lasts by the contact law, and what it costs if all of it came after tightening; "
+    "a law without a loading curve of its own predicts none. VDI f_Z: guide value of thread, seats and joints."
+)
+CLEAN = "Of clean metal in vacuum; films hinder the flow, gas or grease in the gaps helps it."
 
 
 def hammer(result: Result) -> Rows:

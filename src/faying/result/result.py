@@ -16,6 +16,7 @@ from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse, ModelModes
 from faying.netcdf import Group, Variable
 from faying.notes import Note
+from faying.result.bolts import BoltNumbers
 from faying.result.fields import declared, from_group, listed, same, to_group, variable
 from faying.typing import Array, Complex, Index
 
@@ -67,6 +68,16 @@ class Receptance:
     output_points: Array = variable("output", "axis", unit="m", long_name="points of the motion")
     output_directions: Array = variable("output", "axis", unit="1", long_name="directions of the motion")
     error: Array = variable("load", unit="1", long_name="largest residual of the full equations that was checked")
+    bolt_forces: Complex | None = variable(
+        "load",
+        "response_frequency",
+        "bolt",
+        "input",
+        unit="1",
+        long_name="force in each bolt per force, 0 for a bolt without a shank",
+        dtype="c16",
+        default=None,
+    )
 
     @property
     def inputs(self) -> tuple[tuple[Point, Point], ...]:
@@ -199,6 +210,12 @@ class Result:
     beside_reach: Array | None = variable(
         "beside", unit="Pa", long_name="pressure at which another law ends", gaps=True, default=None
     )
+    thermal_conductance: Array | None = variable(
+        "load", "joint", unit="W/K", long_name="conductance of heat, clean metal in vacuum", gaps=True, default=None
+    )
+    electrical_conductance: Array | None = variable(
+        "load", "joint", unit="S", long_name="conductance of current, clean metal", gaps=True, default=None
+    )
     beside: tuple[str, ...] = ()
     joints: tuple[str, ...]
     bolts: tuple[str, ...]
@@ -214,6 +231,7 @@ class Result:
     response: Receptance | None = None
     comparison: Comparison | None = None
     hammer: ModalComparison | None = None
+    bolt_numbers: BoltNumbers | None = None
     provenance: Provenance = field(default_factory=Provenance)
 
     def __post_init__(self) -> None:
@@ -313,6 +331,11 @@ class Result:
             names = [name for name in declared(Comparison) if getattr(c, name) is not None]
             out["comparison"] = {"source": c.source, "published_name": c.published_name, "kind": c.kind} | {
                 name: {"unit": declared(Comparison)[name].unit, "values": listed(getattr(c, name))} for name in names
+            }
+        if self.bolt_numbers is not None:
+            out["bolt_numbers"] = {
+                name: {"unit": meta.unit, "values": listed(getattr(self.bolt_numbers, name))}
+                for name, meta in declared(BoltNumbers).items()
             }
         if self.hammer is not None:
             out["hammer_test"] = self.hammer.to_dict()

@@ -22,11 +22,15 @@ POOR = 0.02  # residual beyond which a note is due
 
 @dataclass(frozen=True, kw_only=True)
 class ResponseAtLoad:
-    """Receptance [m/N] (frequency, output, input) at frequencies [Hz]; error: the largest residual checked [-]."""
+    """Receptance [m/N] (frequency, output, input) at frequencies [Hz]; error: the largest residual checked [-].
+
+    bolt_forces (frequency, bolt, input): force in each bolt per force [-], 0 for a bolt without a shank.
+    """
 
     frequencies: Array
     values: Complex
     error: float
+    bolt_forces: Complex
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,8 +55,17 @@ class LoadedStructure:
             )
             for side in (choice.inputs, choice.outputs)
         )
-        found = self._at(np.linspace(choice.first, choice.last, choice.points), outputs, inputs)
-        answer = ResponseAtLoad(frequencies=found.frequencies, values=found.receptance, error=float(found.error.max()))
+        pulls = np.zeros((mesh.unknowns, 0))
+        if self.structure.fitted_bolts:
+            pulls = np.stack([bolt.pull for bolt in self.structure.fitted_bolts], axis=1)
+        found = self._at(np.linspace(choice.first, choice.last, choice.points), outputs, inputs, pulls)
+        count = len(outputs[0])
+        answer = ResponseAtLoad(
+            frequencies=found.frequencies,
+            values=found.receptance[:, :count],
+            error=float(found.error.max()),
+            bolt_forces=found.receptance[:, count:],
+        )
         return answer, poor(found.checked, found.error, "of the study")
 
     def at_test(
@@ -73,7 +86,14 @@ class LoadedStructure:
         )
         return full, poor(found.checked, found.error, "at the points of the test")
 
-    def _at(self, frequencies: Array, outputs: tuple[Array, Array], inputs: tuple[Array, Array]) -> Response:
+    def _at(
+        self,
+        frequencies: Array,
+        outputs: tuple[Array, Array],
+        inputs: tuple[Array, Array],
+        more: Array | None = None,
+    ) -> Response:
+        """The response at points, and of what the columns of `more` (unknowns, k) read of a displacement."""
         spec = self.study.response
         eta = 0.0 if spec is None else spec.structural_loss
         vibration = Vibration(
@@ -86,6 +106,7 @@ class LoadedStructure:
             parts=constrain(self.structure.matrices[0], self.structure.fixed, 0.0) if eta else None,
         )
         forces, read = self._columns(*inputs), self._columns(*outputs)
+        read = read if more is None else np.concatenate([read, more], axis=1)
         return frequency_response(
             vibration, self.modes, self.damped, forces=forces, outputs=read, frequencies=frequencies
         )

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from faying.errors import NotConverged
 from faying.fe.constraint import constrain
 from faying.fe.modes import Modes, lowest_modes
 from faying.fe.solve import chosen
@@ -19,9 +20,10 @@ from faying.joint.support_check import RIGID_BELOW
 from faying.measured.mac import mac
 from faying.measured.pairing import by_track, changes, follow, pair_frequencies
 from faying.notes import Note
-from faying.result import Comparison, Provenance, Receptance, Result
+from faying.result import BoltNumbers, Comparison, Provenance, Receptance, Result
 from faying.study.beside import Beside, beside_fields, solve_beside
 from faying.study.beyond import stiff_as_bonded
+from faying.study.bolt_numbers import bolt_numbers, conductances
 from faying.study.case import Case, Progress, Report
 from faying.study.findings import against_exact_contact, falling
 from faying.study.form_band import form_band
@@ -126,6 +128,8 @@ def collect(
     every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more]
     every += _encounters(case, states)
     every += [*(note for b in besides for note in b.notes), *_closing_notes(study, rigid)]
+    bolts, more = _bolts(case, states)
+    every += more
     result = Result(
         title=study.title,
         loads=case.loads,
@@ -162,12 +166,21 @@ def collect(
         notes=tuple(dict.fromkeys(every)),
         response=_response(study, states),
         comparison=comparison,
+        bolt_numbers=bolts,
+        **conductances(case, states),
         provenance=provenance(study),
     )
     if case.hammer is None:
         return result
     full = next((s.test_response for s in states if s.test_response is not None), None)
     return replace(result, hammer=case.hammer.beside(result, full))
+
+
+def _bolts(case: Case, states: Sequence[State]) -> tuple[BoltNumbers | None, list[Note]]:
+    try:
+        return bolt_numbers(case, states), []
+    except NotConverged as fault:
+        return None, [Note(code="bolt-numbers", text=f"no compliance and load factor of the bolts: {fault}")]
 
 
 def _stacked(rows: Sequence[Array | None]) -> Array | None:
@@ -225,6 +238,7 @@ def _response(study: Study, states: Sequence[State]) -> Receptance | None:
         frequencies=found[0].frequencies,
         values=np.stack([one.values for one in found]),
         error=np.array([one.error for one in found]),
+        bolt_forces=np.stack([one.bolt_forces for one in found]) if study.bolts else None,
         **sides,
     )
 

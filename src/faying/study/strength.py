@@ -1,4 +1,4 @@
-"""Notes where forces and pressures leave what the parts bear: yield of shanks, seats and joints, and odd units."""
+"""Notes where forces and pressures leave what the parts bear: bolts, seats and joints, and odd units."""
 
 from collections.abc import Sequence
 from math import pi
@@ -7,19 +7,22 @@ import numpy as np
 
 from faying.fe.faces import face_centre
 from faying.joint.bolt import Bolt, FittedBolt
+from faying.joint.solid_bolt import SolidBolt
 from faying.joint.structure import Structure
 from faying.notes import Note
 from faying.typing import Array
 from faying.units import show
 
 GRAVITY = 9.81  # m/s2
+USED = 0.9  # share of its proof load that a bolt is usually tightened to at most
 
 
 def bolt_notes(structure: Structure) -> list[Note]:
-    """Say which preloads are beyond yield of the shank or the seat, or less than the structure weighs.
+    """Say which preloads are beyond what bolt or seat bears, or less than the structure weighs.
 
-    The shank's stress is taken over its full section: that of a thread is smaller, so that yield comes sooner. No key
-    states a bolt's grade; its material's yield strength stands for the proof stress.
+    A bolt whose grade is known is measured by its proof load. Else the stress over the full section of its shank is
+    set beside the yield strength of its material: that of a thread is smaller, so that yield comes sooner. A seat is
+    measured by the bearing limit of its part, or by the part's yield strength where no such limit is known.
     """
     out = []
     weight = GRAVITY * float(structure.matrices[1].sum()) / 3
@@ -34,9 +37,28 @@ def bolt_notes(structure: Structure) -> list[Note]:
                 "structure weighs; is its unit right?"
             )
             out.append(Note(code="slight-preload", load=least, text=text))
-        if isinstance(fitted, FittedBolt) and isinstance(bolt, Bolt):
-            out += _shank(bolt, greatest) + _seats(structure, fitted, greatest)
+        if bolt.fastener is not None:
+            out += _proof(bolt, greatest)
+        elif isinstance(bolt, Bolt):
+            out += _shank(bolt, greatest)
+        if isinstance(fitted, FittedBolt):
+            out += _seats(structure, fitted, greatest)
     return out
+
+
+def _proof(bolt: Bolt | SolidBolt, force: float) -> list[Note]:
+    fastener = bolt.fastener
+    assert fastener is not None
+    proof = fastener.proof_load
+    if force <= USED * proof:
+        return []
+    what = f"bolt {bolt.name!r}: {show(force, 'N')} are {force / proof:.0%} of the proof load of {fastener.thread} "
+    what += f"{fastener.grade}, {show(proof, 'N')} (ISO 898-1)"
+    if force > proof:
+        text = f"{what}: the bolt stretches for good; the shank stays elastic here. Lower the preload, or take another"
+        return [Note(code="beyond-proof", load=force, text=text)]
+    text = f"{what}, more than the {USED:.0%} that a bolt is usually tightened to"
+    return [Note(code="near-proof", load=force, text=text)]
 
 
 def _shank(bolt: Bolt, force: float) -> list[Note]:
@@ -53,16 +75,31 @@ def _shank(bolt: Bolt, force: float) -> list[Note]:
     return [Note(code="bolt-yield", load=force, text=text)]
 
 
+def seat_area(structure: Structure, fitted: FittedBolt, face: str) -> float:
+    """Area [m2] that the head or nut of a bolt presses on a face."""
+    if fitted.ring is None:
+        return float(face_centre(structure.mesh.points, structure.mesh.face(face))[2])
+    inner, outer = fitted.ring
+    return pi / 4 * (outer**2 - inner**2)
+
+
+def seat_limit(structure: Structure, face: str) -> tuple[float, str] | None:
+    """Pressure [Pa] that the part of a face bears under a bolt, and what that is; None where nothing is known."""
+    limit: float | None = getattr(structure.materials[structure.mesh.face_part[face]], "bearing_limit", None)
+    if limit is not None:
+        return limit, "bearing limit"
+    strength = _strength(structure, face)
+    return None if strength is None else (strength, "yield strength")
+
+
 def _seats(structure: Structure, fitted: FittedBolt, force: float) -> list[Note]:
-    mesh, out = structure.mesh, []
+    out = []
     for face in fitted.bolt.faces:
-        strength = _strength(structure, face)
-        inner, outer = fitted.ring or (0.0, 0.0)
-        area = pi / 4 * (outer**2 - inner**2) if fitted.ring else face_centre(mesh.points, mesh.face(face))[2]
-        if strength is not None and force / area > strength:
+        pressure, limit = force / seat_area(structure, fitted, face), seat_limit(structure, face)
+        if limit is not None and pressure > limit[0]:
             text = (
                 f"bolt {fitted.bolt.name!r}: {show(force, 'N')} press its seat on {face!r} with "
-                f"{show(force / area, 'Pa')}, beyond the yield strength of the part, {show(strength, 'Pa')}; "
+                f"{show(pressure, 'Pa')}, beyond the {limit[1]} of the part, {show(limit[0], 'Pa')}; "
                 "the part stays elastic here"
             )
             out.append(Note(code="seat-yield", load=force, text=text))

@@ -62,3 +62,21 @@ def roughness(scan: Scan | Profile | Prepared, *, degree: int = 1) -> Roughness:
         kurtosis=float(np.mean(known**4)) / rq**4,
         Rdq=slope2**0.5,
     )
+
+
+LENGTHS = 5  # sampling lengths in a line
+
+
+def mean_peak_to_valley(scan: Scan | Profile | Prepared) -> float:
+    """Return Rz [m], the mean of highest minus lowest height over five parts of each line, without a filter.
+
+    For an areal scan the larger of that along x and along y: across the lay. Lines are as long as the scan is, be it
+    five times the cut-off or not. Points that were filled in count. Raises InputError as `prepared` does.
+    """
+    ready = scan if isinstance(scan, Prepared) else prepared(scan)
+    z = ready.scan.heights
+    found = []
+    for lines in (z[None],) if z.ndim == 1 else (z, z.T):
+        parts = [part for part in np.array_split(lines, LENGTHS, axis=1) if part.shape[1]]
+        found.append(float(np.mean([np.ptp(part, axis=1).mean() for part in parts])))
+    return max(found)

@@ -8,6 +8,7 @@ from typing import Any
 from faying.errors import InputError
 from faying.joint.bolt import Bolt, Washer, torque_to_preload
 from faying.joint.solid_bolt import SolidBolt
+from faying.joint.threads import Fastener, Thread
 from faying.materials import Material
 from faying.study.keys.reader import Table, point, quantity
 
@@ -22,10 +23,11 @@ def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bo
     part = table.text("part", None)
     diameter = table.quantity("diameter", "m", None)
     preload = _preload(table, diameter)
+    fastener = _fastener(table, diameter)
     bolt: Bolt | SolidBolt | None
     if part is not None:
         _note_solid(table, part)
-        bolt = SolidBolt(name=name, part=part, faces=faces, at=at, preload=preload)
+        bolt = SolidBolt(name=name, part=part, faces=faces, at=at, preload=preload, fastener=fastener)
     else:
         material = _material(table, "material", name, materials, optional=True)
         washers = tuple(_washer(t, name, materials) for t in table.tables("washer"))
@@ -48,11 +50,32 @@ def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bo
                 material=material,
                 washers=tuple(w for w in washers if w is not None),
                 preload=preload,
+                fastener=fastener,
                 **given,
             )
         )
     table.close()
     return bolt
+
+
+def _fastener(table: Table, diameter: float | None) -> Fastener | None:
+    """Thread and property class; the thread is the coarse one of the diameter where it is not given."""
+    grade, thread = table.text("grade", None), table.text("thread", None)
+    if grade is None:
+        if thread is not None:
+            table.faults.add(
+                f'{table.where}.thread is used with grade alone; give grade, such as "8.8", or leave it out'
+            )
+        return None
+    if thread is None and diameter is None:
+        table.faults.add(f'{table.where}.grade needs the size of the thread; give thread, such as "M8"')
+        return None
+
+    def made() -> Fastener:
+        size = Thread.parse(thread) if thread is not None else Thread.coarse(diameter or 0.0)
+        return Fastener(thread=size, grade=grade)
+
+    return table.made(made)
 
 
 def _note_solid(table: Table, part: str) -> None:

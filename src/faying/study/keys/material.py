@@ -20,6 +20,9 @@ def read_materials(top: Table) -> dict[str, Material]:
             "yield_strength": table.quantity("yield_strength", "Pa", None),
             "hardness": table.quantity("hardness", "Pa", None),
             "friction": table.number("friction", None),
+            "conductivity": table.quantity("conductivity", "W/(m*K)", None),
+            "resistivity": table.quantity("resistivity", "ohm*m", None),
+            "bearing_limit": table.quantity("bearing_limit", "Pa", None),
             "source": table.text("source", ""),
         }
         table.close()

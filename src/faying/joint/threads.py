@@ -1,0 +1,132 @@
+"""Metric threads and property classes of steel bolts: stress area and proof load."""
+
+import re
+from dataclasses import dataclass
+from math import isclose, pi
+
+from faying.errors import InputError
+from faying.units import show
+
+# pitch [mm] of the coarse thread of each nominal diameter [mm] (ISO 261)
+COARSE = {
+    3: 0.5,
+    4: 0.7,
+    5: 0.8,
+    6: 1.0,
+    7: 1.0,
+    8: 1.25,
+    10: 1.5,
+    12: 1.75,
+    14: 2.0,
+    16: 2.0,
+    18: 2.5,
+    20: 2.5,
+    22: 2.5,
+    24: 3.0,
+    27: 3.0,
+    30: 3.5,
+    33: 3.5,
+    36: 4.0,
+    39: 4.0,
+}
+# stress under proof load [Pa] of each property class (ISO 898-1:2013, Table 3)
+PROOF = {
+    "4.6": 225e6,
+    "4.8": 310e6,
+    "5.6": 280e6,
+    "5.8": 380e6,
+    "6.8": 440e6,
+    "8.8": 580e6,
+    "9.8": 650e6,
+    "10.9": 830e6,
+    "12.9": 970e6,
+}
+THICK, PROOF_THICK = 16e-3, 600e6  # beyond this diameter [m], class 8.8 has this stress under proof load [Pa]
+LEAST, GREATEST = 1.6e-3, 39e-3  # diameters [m] that ISO 898-1 covers
+FORM = re.compile(r"M([0-9]+(?:\.[0-9]+)?)(?:\s*x\s*([0-9]+(?:\.[0-9]+)?))?")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Thread:
+    """A metric thread.
+
+    Args:
+        diameter: Nominal diameter [m].
+        pitch: Pitch [m], less than a third of the diameter.
+
+    Raises:
+        InputError: No such thread.
+    """
+
+    diameter: float
+    pitch: float
+
+    def __post_init__(self) -> None:
+        if not (LEAST <= self.diameter <= GREATEST and 0 < self.pitch < self.diameter / 3):
+            raise InputError(
+                f"thread {self}: ISO 898-1 covers M1.6 to M39, with a pitch of less than a third of the diameter"
+            )
+
+    def __str__(self) -> str:
+        return f"M{1e3 * self.diameter:g}x{1e3 * self.pitch:g}"
+
+    @classmethod
+    def parse(cls, text: str) -> "Thread":
+        """Read "M8" (coarse) or "M8x1". Raises InputError where it is neither, or no coarse thread is called so."""
+        found = FORM.fullmatch(text.strip())
+        if found is None:
+            raise InputError(f'thread "{text}" should be a metric thread, such as "M8" (coarse) or "M8x1"')
+        diameter = float(found.group(1)) * 1e-3
+        return cls(diameter=diameter, pitch=float(found.group(2)) * 1e-3) if found.group(2) else cls.coarse(diameter)
+
+    @classmethod
+    def coarse(cls, diameter: float) -> "Thread":
+        """Return the coarse thread of a nominal diameter [m]. Raises InputError where there is none."""
+        for size, pitch in COARSE.items():
+            if isclose(1e3 * diameter, size, rel_tol=1e-9):
+                return cls(diameter=diameter, pitch=pitch * 1e-3)
+        raise InputError(
+            f"no coarse thread has a diameter of {show(diameter, 'm')}; there are "
+            f'{", ".join(f"M{size}" for size in COARSE)}; give thread = "M8x1" with its pitch'
+        )
+
+    @property
+    def stress_area(self) -> float:
+        """Nominal stress area [m2]: that of the mean of pitch and minor diameter (ISO 898-1:2013, 9.1.6.1)."""
+        pitch_diameter = self.diameter - 0.64952 * self.pitch  # ISO 724
+        minor_diameter = self.diameter - 1.22687 * self.pitch
+        return pi / 4 * ((pitch_diameter + minor_diameter) / 2) ** 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fastener:
+    """Thread and property class of a steel bolt, such as M8 of class 8.8.
+
+    Args:
+        thread: The thread.
+        grade: The property class, one of `PROOF`.
+
+    Raises:
+        InputError: The class is not known.
+
+    Source:
+        ISO 898-1:2013, Table 3 (stress under proof load).
+    """
+
+    thread: Thread
+    grade: str
+
+    def __post_init__(self) -> None:
+        if self.grade not in PROOF:
+            raise InputError(f'grade "{self.grade}" is no property class of ISO 898-1; there are {", ".join(PROOF)}')
+
+    @property
+    def proof_stress(self) -> float:
+        """Stress under proof load [Pa]."""
+        thick = self.grade == "8.8" and self.thread.diameter > THICK
+        return PROOF_THICK if thick else PROOF[self.grade]
+
+    @property
+    def proof_load(self) -> float:
+        """Force [N] that the bolt bears without lasting elongation."""
+        return self.proof_stress * self.thread.stress_area

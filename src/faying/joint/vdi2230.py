@@ -1,0 +1,110 @@
+"""Numbers of the guideline VDI 2230: compliance of the clamped parts by its deformation cone, and embedding."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import atanh, log, pi
+
+from faying.errors import InputError
+
+# guide values of embedding [m] under axial load, from a roughness height Rz [m]: in the thread, under head or nut each,
+# at each interface between parts (VDI 2230 Part 1:2003 and 2015, Table 5.4/1)
+EMBEDDING = {
+    0.0: (3.0e-6, 2.5e-6, 1.5e-6),
+    10e-6: (3.0e-6, 3.0e-6, 2.0e-6),
+    40e-6: (3.0e-6, 4.0e-6, 3.0e-6),
+}
+ROUGHEST = 160e-6  # m: the table ends there
+
+
+def cone_angle(length: float, seat: float, outer: float, *, tapped: bool = False) -> float:
+    """Return the tangent of the angle of the deformation cone [-].
+
+    Args:
+        length: Clamped length [m].
+        seat: Outer diameter [m] of the bearing area under the head.
+        outer: Outer diameter [m] of the parts, at least that of the seat.
+        tapped: The thread is in the last part (ESV); else there is a nut (DSV).
+
+    Source:
+        VDI 2230 Part 1:2015, eqs. (5.1/26) and (5.1/27).
+    """
+    slender, wide = length / seat, max(outer / seat, 1.0)
+    if tapped:
+        return 0.348 + 0.013 * log(slender) + 0.193 * log(wide)
+    return 0.362 + 0.032 * log(slender / 2) + 0.153 * log(wide)
+
+
+def cone_compliance(
+    sections: Sequence[tuple[float, float]], *, seat: float, hole: float, outer: float, tapped: bool = False
+) -> float:
+    """Return the compliance of the clamped parts [m/N] by the deformation cone.
+
+    Stress is even over a ring that widens by the angle of the cone from the seat (from both seats where there is a
+    nut), and is nowhere wider than the parts: cone, cone and sleeve, or sleeve alone. With one modulus these are eqs.
+    (5.1/24) and (5.1/25) of the guideline, and sleeve 4 l/(pi E (D^2 - d^2)).
+
+    Args:
+        sections: (length [m], Young's modulus [Pa]) of the clamped parts from the head on.
+        seat: Outer diameter [m] of the bearing area.
+        hole: Diameter [m] of the hole, less than that of the seat.
+        outer: Outer diameter [m] of the parts, greater than the hole.
+        tapped: The thread is in the last part (ESV); else there is a nut (DSV).
+
+    Raises:
+        InputError: A hole as wide as the seat or the parts, a length or modulus that is not positive, or parts so thin
+            beside the seat that the guideline's angle is none.
+
+    Source:
+        VDI 2230 Part 1:2015, section 5.1.2.
+    """
+    if not 0 <= hole < min(seat, outer):
+        raise InputError(f"a hole of {hole:g} m must be narrower than the seat, {seat:g} m, and the parts, {outer:g} m")
+    if not sections or any(length <= 0 or E <= 0 for length, E in sections):
+        raise InputError("a deformation cone needs parts with a positive length and modulus")
+    total = sum(length for length, _ in sections)
+    slope = 2 * cone_angle(total, seat, outer, tapped=tapped)
+    if slope <= 0:
+        raise InputError(f"parts {total:g} m thick under a seat of {seat:g} m are beyond the guideline's cone")
+    widest = total if tapped else total / 2  # from the seat to where the cone ends
+    flank = min(max((outer - seat) / slope, 0.0), widest)  # from the seat to where it is as wide as the parts
+    start = min(seat, outer)
+
+    def ring(near: float, far: float) -> float:
+        """Integral of dz/(D^2 - d^2) over depths below one seat, within cone or sleeve."""
+        if (near + far) / 2 >= flank:
+            return (far - near) / (outer**2 - hole**2)
+        narrow, wide = start + slope * near, start + slope * far
+        if hole == 0:
+            return (1 / narrow - 1 / wide) / slope
+        return (atanh(hole / narrow) - atanh(hole / wide)) / (hole * slope)
+
+    ends, position = [0.0], 0.0
+    for length, _ in sections:
+        position += length
+        ends.append(position)
+    cuts = {*ends, flank} if tapped else {*ends, flank, total / 2, total - flank}
+    places = sorted(z for z in cuts if 0 <= z <= total)
+    compliance = 0.0
+    for a, b in pairwise(places):
+        middle = (a + b) / 2
+        E = next(E for (_, E), end in zip(sections, ends[1:], strict=True) if middle < end)
+        below = tapped or middle < total / 2
+        compliance += 4 / (pi * E) * (ring(a, b) if below else ring(total - b, total - a))
+    return compliance
+
+
+def embedding_guide(Rz: float) -> tuple[float, float, float]:
+    """Return the guideline's embedding [m] in the thread, at each bearing area, and at each interface, for axial load.
+
+    Args:
+        Rz: Mean height of the roughness [m], below 160 um.
+
+    Raises:
+        InputError: The roughness lies beyond the table.
+
+    Source:
+        VDI 2230 Part 1:2015, Table 5.4/1.
+    """
+    if not 0 <= Rz < ROUGHEST:
+        raise InputError(f"Rz = {Rz:g} m: the guideline's values of embedding end at {ROUGHEST:g} m")
+    return EMBEDDING[max(limit for limit in EMBEDDING if limit <= Rz)]
