@@ -1,11 +1,19 @@
-"""One thread for every library, and the same examples in every run of CI."""
+"""One thread for every library, the same examples in every run of CI, and each contact solved once in a run."""
 
+import atexit
 import os
+import shutil
+import tempfile
 
 from hypothesis import settings
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
+
+# the workers of a run inherit the folder from the process that starts them
+if "FAYING_CACHE" not in os.environ:
+    os.environ["FAYING_CACHE"] = tempfile.mkdtemp(prefix="faying-tests-")
+    atexit.register(shutil.rmtree, os.environ["FAYING_CACHE"], ignore_errors=True)
 
 settings.register_profile("ci", derandomize=True, print_blob=True)
 if os.environ.get("CI"):

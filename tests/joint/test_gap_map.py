@@ -5,6 +5,7 @@ import pytest
 
 import faying
 from faying.files import read_numbers
+from faying.joint.form import Form
 from faying.joint.gap_map import GapMap, read_gap_map
 from tests.helpers.plates import plates, stacked
 
@@ -34,8 +35,10 @@ def test_missing_points_are_bridged_and_the_rim_takes_the_nearest():
 
 
 def test_the_gap_adds_to_that_of_the_geometry():
-    joint = plates(stacked(gap=1e-6)).joints[0]
-    with_map = GapMap(places=GRID, gaps=np.full(len(GRID), 3e-6)).on(joint.interface)
+    structure = plates(stacked(gap=1e-6))
+    joint = structure.joints[0]
+    form = Form(gap=GapMap(places=GRID, gaps=np.full(len(GRID), 3e-6)))
+    with_map = form.on(joint.interface, structure.mesh, joint.faces)
     assert with_map.gap == pytest.approx(np.full(len(with_map.gap), 4e-6), rel=1e-6)
 
 

@@ -78,12 +78,22 @@ def test_modes_that_the_test_cannot_see_are_passed_over():
     assert pair_frequencies(test, model, dim).tolist() == [1, 2]
 
 
+def test_a_twist_lets_the_test_see_a_little_of_modes_across_it():
+    """T-specimen with a crown of 12 um and a twist of 4 um at 8 kN: bending modes keep 98 % of their shape (MAC with
+    the flat joint), and modes across the width move a tenth as much at the point of the test, one of them nearer to a
+    test frequency than the mode that it is."""
+    test = np.array([[410.0, 1135, 2175, 3285, 4725]])
+    model = np.array([[408.1, 446.9, 1117.0, 1298.7, 1868.8, 2053.4, 2221.0, 2880.9, 3115.8, 3251.9, 3790.2, 4692.4]])
+    seen = np.array([[1.0, 0.126, 0.984, 0, 0, 0.960, 0.103, 0, 0, 0.914, 0, 0.908]])
+    assert pair_frequencies(test, model, seen).tolist() == [0, 2, 5, 9, 11]
+
+
 def test_the_assignment_has_the_least_stated_cost():
     generator = np.random.default_rng(4)
     for _ in range(20):
         test, model = (np.sort(generator.uniform(100, 200, (1, n))) for n in (3, 4))
         seen = generator.uniform(0.05, 1, (1, 4))
-        alone = (np.log(1.3) / 0.05) ** 2 + 1
+        alone = (np.log(1.3) / 0.05) ** 2 + 2
 
         def cost(places, test=test, model=model, seen=seen, alone=alone):
             total, chosen = 0.0, [int(p) for p in places]
@@ -93,7 +103,7 @@ def test_the_assignment_has_the_least_stated_cost():
                 apart = 0.0 if m < 0 else np.log(model[0, m] / test[0, t])
                 if m >= 0 and (abs(apart) > np.log(1.3) or seen[0, m] < 0.1):
                     return np.inf
-                total += alone if m < 0 else (apart / 0.05) ** 2 - np.log10(seen[0, m])
+                total += alone if m < 0 else (apart / 0.05) ** 2 - 2 * np.log10(seen[0, m])
             return total
 
         best = brute(cost, [slice(-1, 4)] * 3, finish=None)

@@ -1,10 +1,14 @@
 """What a result says beside its numbers: the law that was taken, what it assumes, what falls with preload."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import faying
 from faying.contact.stability import stability
+from faying.joint.form import Form
+from faying.output import table
 from faying.study import Study, run
 from faying.study.template import write
 
@@ -36,6 +40,9 @@ surface = { scan = "surface.x3p", counter = "smooth" }
 [[beside]]
 name = "GW"
 law = { model = "gw-ke" }
+[[beside]]
+name = "hollow"
+form = { crown_along = "-20 um" }
 """
 
 
@@ -81,7 +88,7 @@ def test_modes_that_fall_with_preload_are_named_with_the_reason(default):
 
 
 def test_other_laws_stand_beside_as_if_they_were_run_alone(default, closed, tmp_path):
-    assert default.beside == ("JK, one rough face", "GW")
+    assert default.beside == ("JK, one rough face", "GW", "hollow")
     assert default.beside_frequencies[1] == pytest.approx(closed.frequencies, rel=1e-6)
     assert np.isnan(default.beside_loss_factors[1]).all()
     assert np.all(default.beside_loss_factors[0] > 0)
@@ -91,6 +98,28 @@ def test_other_laws_stand_beside_as_if_they_were_run_alone(default, closed, tmp_
     assert any("alpha = 0.2" in text for text in told)
     again = faying.Result.load(default.to_netcdf(tmp_path / "result.nc"))
     assert again == default
+
+
+def test_the_table_of_laws_has_shares_reach_and_both_answers(default, closed):
+    """The other law's columns are those of its own run."""
+    head, own, jk, gw, hollow = table.laws(default)
+    assert [row[0] for row in (own, jk, gw, hollow)] == ["half-space", *default.beside]
+    assert default.beside_reach[1] == pytest.approx(closed.laws[0]["greatest_pressure [Pa]"])
+    assert default.beside_outside_share[1] == pytest.approx(closed.outside_share, abs=1e-6)
+    past = default.pressure > default.beside_reach[0]
+    assert default.beside_beyond_share[0] == pytest.approx(past @ default.weights / default.weights.sum(), abs=0.05)
+    assert np.all(default.beside_beyond_frequencies >= default.beside_frequencies * (1 - 1e-9))
+    assert np.all(default.beside_beyond_share[1] == 0)
+    assert len(head) == len(own) == len(jk) == len(gw)
+
+
+@pytest.mark.slow
+def test_a_form_beside_is_that_of_a_run_with_it(default, tmp_path):
+    hollow = Study.read(coarse(tmp_path))
+    joint = replace(hollow.joints[0], form=Form(crown_along=-20e-6))
+    found = run(replace(hollow, joints=(joint,)))
+    assert default.beside_frequencies[2] == pytest.approx(found.frequencies, rel=1e-6)
+    assert np.abs(found.frequencies / default.frequencies - 1).max() > 1e-3
 
 
 def test_a_law_far_from_the_contact_of_its_scan_is_told(closed):
@@ -116,7 +145,7 @@ def test_a_stiffness_that_hangs_on_the_window_is_told_where_it_does(default, clo
 
 def test_faults_of_beside_are_found_when_the_study_is_read(tmp_path):
     for extra, words in (
-        ("\n[[beside]]\nname = 'x'\n", "give a law or a surface"),
+        ("\n[[beside]]\nname = 'x'\n", "give a law, a surface or a form"),
         ("\n[[beside]]\nlaw = { model = 'jk', cutof = 1 }\n", "cutoff"),
         ("\n[[beside]]\nlaw = { model = 'power-law' }\n", "power-law|Power law"),
     ):

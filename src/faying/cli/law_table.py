@@ -168,10 +168,11 @@ def table(inputs: Any, comparison: Any) -> str:
                 text = "-" if np.isnan(value) else f"{value:.4g}"
                 cells.append(f"{text + ('' if response.valid[i] else '*'):>11}")
             lines.append(f"  {name:<12}" + "".join(cells))
-        if "half-space" in laws:
+        ratios = comparison.ratios(what)
+        if ratios:
             lines.append("  times that of the half-space")
             for name in laws:
-                ratio = comparison.ratio(what, name)
+                ratio = ratios.get(name, np.full(comparison.pressure.shape, np.nan))
                 cells = [f"{'-' if np.isnan(ratio[i]) else f'{ratio[i]:.3g}':>11}" for i in shown]
                 lines.append(f"  {name:<12}" + "".join(cells))
         spread = comparison.spread(what)

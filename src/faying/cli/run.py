@@ -65,6 +65,8 @@ def text(result: Any) -> str:
         "range of the frequencies, from that of the stiffness": table.ranges(result),
         "d f/d preload, if the faces are hollow or crowned by 3 um (flat faces are an assumption)": table.form(result),
         "beyond the end of a law: stiffness held, and bonded": table.beyond(result),
+        f"laws beside each other at {result.loads[-1] / 1e3:g} kN: where they end, shares of the joint beyond their "
+        "end and outside their validity range, modes that differ most": table.laws(result),
         "joints": table.joints(result),
         f"bolts, tightened in the order {', '.join(result.tightening)}": table.bolts(result),
         table.bolting_head(result): table.bolting(result),

@@ -44,10 +44,6 @@ class Comparison:
             out[several] = np.nanmax(kept, axis=0) / np.nanmin(kept, axis=0)
         return out
 
-    def ratio(self, quantity: str, name: str) -> Array:
-        """A quantity of one law over that of the half-space, per pressure [-]; NaN where one of them is silent."""
-        return self.ratios(quantity).get(name, np.full(self.pressure.shape, np.nan))
-
     def ratios(self, quantity: str) -> dict[str, Array]:
         """A quantity of every law that defines it over that of the half-space, per pressure [-]; empty without it."""
         values = {name: r.quantities()[quantity] for name, r in self.responses.items() if quantity in r.quantities()}

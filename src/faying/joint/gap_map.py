@@ -1,13 +1,12 @@
 """Measured form: the gap between two faces, or the heights of one, laid on a joint as its gap before any load."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.interface import Interface
 from faying.files import read_numbers
 from faying.joint.face_axes import FaceAxes
 from faying.joint.flatness import minimum_zone
@@ -54,10 +53,6 @@ class GapMap:
             )
         inside = LinearNDInterpolator(self.places, self.gaps)(local)
         return np.asarray(np.where(np.isfinite(inside), inside, NearestNDInterpolator(self.places, self.gaps)(local)))
-
-    def on(self, interface: Interface) -> Interface:
-        """Return the joint with this gap added to that of its geometry."""
-        return replace(interface, gap=interface.gap + self.at(interface.positions))
 
 
 def _box(low: Array, high: Array) -> str:

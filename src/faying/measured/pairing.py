@@ -54,8 +54,9 @@ def changes(macs: Sequence[Any]) -> tuple[list[tuple[int, int, int]], list[tuple
 def pair_frequencies(test: Any, model: Any, visibility: Any, *, threshold: float = 0.1) -> Index:
     """The model's mode (t,) of each of the test's, -1 where none fits: one assignment over all modes and loads.
 
-    A pair costs the mean over the loads of (d/.05)^2 - lg v, with d the logarithm of the ratio of the frequencies and v
-    the visibility: 5 % in frequency count as much as a factor of ten in motion. No pair is made beyond 30 % in
+    A pair costs the mean over the loads of (d/.05)^2 - 2 lg v, with d the logarithm of the ratio of the frequencies and
+    v the visibility. A peak of the response at the point that is hit grows with the square of the motion there; 5 % in
+    frequency count as much as a factor of ten in that peak. No pair is made beyond 30 % in
     frequency, the mean over the loads, nor of a mode that no load shows above the threshold; a mode of the test left
     alone costs as much as the farthest pair. The set of pairs with the least sum is taken.
 
@@ -70,8 +71,8 @@ def pair_frequencies(test: Any, model: Any, visibility: Any, *, threshold: float
     test, model, visibility = (np.atleast_2d(np.asarray(x, dtype=float)) for x in (test, model, visibility))
     apart = np.log(model[:, None, :] / test[:, :, None])
     seen = np.maximum(visibility, 1e-300)
-    alone = (np.log1p(FARTHEST) / NEAR) ** 2 - np.log10(threshold)
-    cost = (apart / NEAR) ** 2 - np.log10(np.maximum(seen, threshold))[:, None, :]
+    alone = (np.log1p(FARTHEST) / NEAR) ** 2 - 2 * np.log10(threshold)
+    cost = (apart / NEAR) ** 2 - 2 * np.log10(np.maximum(seen, threshold))[:, None, :]
     cost = cost.mean(axis=0)
     barred = (np.abs(apart).mean(axis=0) > np.log1p(FARTHEST)) | (visibility.max(axis=0) < threshold)[None]
     cost = np.where(barred, 1e6, cost)

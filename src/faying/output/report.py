@@ -36,6 +36,13 @@ def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
         parts += [f"<h2>{head}</h2>", page.table(table.form(result)), "<p>Flat faces are an assumption.</p>"]
     if result.beyond_frequencies is not None:
         parts += ["<h2>Beyond the end of a law: stiffness held, and bonded</h2>", page.table(table.beyond(result))]
+    if result.beside:
+        parts += [
+            f"<h2>Laws beside each other at {result.loads[-1] / 1e3:g} kN</h2>",
+            page.table(table.laws(result)),
+            "<p>Where each law ends, shares of the joints beyond that and outside its validity range, and the modes "
+            "that differ most between the laws.</p>",
+        ]
     if result.comparison is not None:
         parts += [
             f"<h2>Comparison with the {result.comparison.reference}</h2>",

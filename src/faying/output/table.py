@@ -3,9 +3,12 @@
 import numpy as np
 
 from faying.result import Result
+from faying.result.result import preload_slope
 from faying.typing import Array
 
 Rows = list[list[str]]
+SHOWN = 2  # modes in the table of laws
+SAME = 1e-4  # relative difference of two frequencies that is not shown
 
 
 def modes(result: Result) -> Rows:
@@ -48,6 +51,42 @@ def beyond(result: Result) -> Rows:
     return rows
 
 
+def laws(result: Result) -> Rows:
+    """One row per law at the greatest preload, the study's own first; empty where there is no other law.
+
+    Where each law ends, the share of the joints beyond that, the share outside its validity range, and of the modes
+    that differ most between the laws the frequency with its loss factor; two frequencies where it matters whether what
+    is beyond the end is held or bonded.
+    """
+    r = result
+    if r.beside_frequencies is None or r.beside_loss_factors is None or r.beside_beyond_frequencies is None:
+        return []
+    if r.beside_reach is None or r.beside_beyond_share is None or r.beside_outside_share is None:
+        return []
+    own = r.frequencies[-1] if r.beyond_frequencies is None else r.beyond_frequencies[-1]
+    held = np.stack([r.frequencies[-1], *r.beside_frequencies[:, -1]])
+    bonded = np.stack([own, *r.beside_beyond_frequencies[:, -1]])
+    lost = np.stack([r.loss_factors[-1], *r.beside_loss_factors[:, -1]])
+    reach = [min(float(law["greatest_pressure [Pa]"]) for law in r.laws), *r.beside_reach]
+    beyond = [r.beyond_share[-1], *r.beside_beyond_share[:, -1]]
+    outside = [r.outside_share[-1], *r.beside_outside_share[:, -1]]
+    spread = np.nanmax(bonded, axis=0) / np.nanmin(held, axis=0)
+    shown = np.sort(np.argsort(-spread)[:SHOWN])
+    rows: Rows = [["law", "ends [MPa]", "beyond", "outside", *(f"mode {j + 1} [Hz] (loss)" for j in shown)]]
+    names = (" + ".join(dict.fromkeys(str(law["name"]) for law in r.laws)), *r.beside)
+    for k, name in enumerate(names):
+        if np.isnan(reach[k]) or np.isnan(held[k]).all():
+            rows.append([name, *["-"] * (3 + len(shown))])
+            continue
+        cells = []
+        for j in shown:
+            apart = bonded[k, j] / held[k, j] - 1 > SAME
+            two = f"{held[k, j]:.1f} .. {bonded[k, j]:.1f}" if apart else f"{held[k, j]:.1f}"
+            cells.append(two + ("" if np.isnan(lost[k, j]) else f" ({lost[k, j]:.1e})"))
+        rows.append([name, f"{reach[k] / 1e6:.3g}", f"{beyond[k]:.1%}", f"{outside[k]:.1%}", *cells])
+    return rows
+
+
 def form(result: Result) -> Rows:
     """One row per mode: d f/d preload with hollow, flat and crowned faces; empty where a form is given, or one load."""
     if result.form_slopes is None or result.form_crowns is None:
@@ -82,7 +121,7 @@ def comparison(result: Result) -> Rows:
             rows.append(["", f"{name} error [%]", *(_or_dash(e, "+.2f") for e in errors)])
     if len(result.loads) > 1:
         for name, values in ((c.reference, c.frequencies), *theirs, *ours):
-            slope = c.sensitivity(values, result.loads) * 1e3
+            slope = preload_slope(values, result.loads) * 1e3
             rows.append(["d f/d preload", f"{name} [Hz/kN]", *(_or_dash(s, "+.3f") for s in slope)])
     return rows
 
@@ -253,7 +292,7 @@ def text(rows: Rows) -> str:
     lines = []
     for row in rows:
         cells = [
-            cell.ljust(w) if k < 2 and rows[0][k] in ("preload", "source") else cell.rjust(w)
+            cell.ljust(w) if k < 2 and rows[0][k] in ("preload", "source", "law") else cell.rjust(w)
             for k, (cell, w) in enumerate(zip(row, widths, strict=True))
         ]
         lines.append("  ".join(cells).rstrip())

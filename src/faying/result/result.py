@@ -24,6 +24,14 @@ Point = tuple[float, float, float]
 MAPS = ("point", "node", "triangle", "mode_other")  # dimensions of what only a file holds, not the JSON
 
 
+def preload_slope(values: Array, loads: Array) -> Array:
+    """Change with preload [value/N] (mode,) of values (load, mode), by a straight line; NaN for a single load."""
+    if len(loads) < 2:
+        return np.full(values.shape[1], np.nan)
+    about = loads - loads.mean()
+    return np.asarray(about @ values / (about @ about))
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Comparison:
     """Listed frequencies of a hammer test beside the study's, and the mode (from 0) that each was paired with."""
@@ -45,13 +53,6 @@ class Comparison:
     def reference(self) -> str:
         """What tables and figures call the frequencies that ours are set beside."""
         return "test" if self.kind == "test" else "reference model"
-
-    def sensitivity(self, values: Array, loads: Array) -> Array:
-        """Change of frequency with preload, d f/d preload [Hz/N] (mode,), by a straight line through all loads."""
-        if len(loads) < 2:
-            return np.full(values.shape[1], np.nan)
-        about = loads - loads.mean()
-        return np.asarray(about @ values / (about @ about))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -148,6 +149,10 @@ class Result:
     shapes: Any = variable(
         "load", "mode", "node", "axis", unit="kg^-1/2", long_name="mass-normalised mode shapes", dtype="f4"
     )
+    outside_share: Array = variable(
+        "load", unit="1", long_name="share of the joints where their law is outside its validity range"
+    )
+    beyond_share: Array = variable("load", unit="1", long_name="share of the joints beyond the end of their law")
     low: Array | None = variable(
         "load", "mode", unit="Hz", long_name="frequency at the lower end of the laws' range", default=None
     )
@@ -176,6 +181,34 @@ class Result:
     )
     beside_loss_factors: Array | None = variable(
         "beside", "load", "mode", unit="1", long_name="loss factor under another law", gaps=True, default=None
+    )
+    beside_beyond_frequencies: Array | None = variable(
+        "beside",
+        "load",
+        "mode",
+        unit="Hz",
+        long_name="frequency under another law with what is beyond its end bonded",
+        gaps=True,
+        default=None,
+    )
+    beside_outside_share: Array | None = variable(
+        "beside",
+        "load",
+        unit="1",
+        long_name="share of the joints where another law is outside its validity range",
+        gaps=True,
+        default=None,
+    )
+    beside_beyond_share: Array | None = variable(
+        "beside",
+        "load",
+        unit="1",
+        long_name="share of the joints beyond the end of another law",
+        gaps=True,
+        default=None,
+    )
+    beside_reach: Array | None = variable(
+        "beside", unit="Pa", long_name="pressure at which another law ends", gaps=True, default=None
     )
     thermal_conductance: Array | None = variable(
         "load", "joint", unit="W/K", long_name="conductance of heat, clean metal in vacuum", gaps=True, default=None

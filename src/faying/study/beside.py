@@ -1,16 +1,16 @@
-"""The same structure under other laws: what [[beside]] asks for."""
+"""The same structure under other laws and forms: what [[beside]] asks for."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from faying.errors import FayingError
 from faying.notes import Note
-from faying.study.case import Case, Progress, joint_law, law_reasons, materials_of, surfaces_of
+from faying.study.case import Case, Progress, interface_of, joint_law, law_reasons, materials_at, surfaces_of
 from faying.study.keys.beside import BesideChoice
 from faying.study.solve import State, solve
-from faying.typing import Array
 
 TOLD = ("open", "beyond-law", "outside-validity", "law-choice", "assumed")  # notes of the other law that are told
 
@@ -44,41 +44,63 @@ def solve_beside(case: Case, choice: BesideChoice, progress: Progress) -> Beside
         text = f"{choice.name} beside: no answer: {fault}"
         return Beside(name=choice.name, case=None, states=(), notes=(Note(code="beside", text=text),))
     notes = [*law_reasons(other.structure, other.surfaces), *(note for state in states for note in state.notes)]
-    told = tuple(replace(note, text=f"{choice.name} beside: {note.text}") for note in notes if note.code in TOLD)
+    told = tuple(
+        replace(note, text=f"{choice.name} beside: {note.text}")
+        for note in notes
+        if note.code in TOLD and note not in case.notes
+    )
     return Beside(name=choice.name, case=other, states=states, notes=tuple(dict.fromkeys(told)))
 
 
 def _changed(case: Case, choice: BesideChoice) -> Case:
-    """The case under another law, with the same mesh and what is assembled on it."""
+    """The case under another law or form, with the same mesh and what is assembled on it."""
     study = case.study
     joints = tuple(
         replace(
             joint,
             law=choice.law or joint.law,
             surface=choice.surface or joint.surface,
+            form=choice.form or joint.form,
         )
         for joint in study.joints
     )
     study = replace(study, joints=joints, response=None, hammer=None)
     surfaces = surfaces_of(study)
-    mesh, materials = case.structure.mesh, materials_of(study, case.structure.mesh)
+    mesh = case.structure.mesh
     placed = []
     for joint, old, surface in zip(joints, case.structure.joints, surfaces, strict=True):
-        rough, other = (materials[mesh.face_part[face]] for face in joint.faces)
-        law = joint_law(joint, study.law_of(joint), surface, rough, other)
-        placed.append(replace(old, law=law, scan_area=surface.scan_area))
+        law = joint_law(joint, study.law_of(joint), surface, *materials_at(study, mesh, joint))
+        interface = old.interface if choice.form is None else interface_of(study, mesh, joint)[0]
+        placed.append(replace(old, law=law, scan_area=surface.scan_area, interface=interface))
     structure = replace(case.structure, joints=tuple(placed))
     return replace(case, study=study, structure=structure, surfaces=surfaces, hammer=None, test_points=None, notes=())
 
 
-def stacked(besides: Sequence[Beside], what: str, loads: int, modes: int) -> Array | None:
-    """Frequencies [Hz] or loss factors [-] of all (b, loads, modes), NaN where there was none; None without any."""
+def beside_fields(besides: Sequence[Beside], loads: int, modes: int) -> dict[str, Any]:
+    """Fields of the result for the other laws, NaN where one has no answer; none without any."""
     if not besides:
-        return None
-    out = np.full((len(besides), loads, modes), np.nan)
-    for row, beside in zip(out, besides, strict=True):
-        joints = () if beside.case is None else beside.case.structure.joints
-        if what == "frequencies" or any(joint.law.predicts_loss for joint in joints):
-            for k, state in enumerate(beside.states):
-                row[k] = getattr(state.damped, what)
-    return out
+        return {}
+    nothing = np.full((loads, modes), np.nan)
+    alone = np.full(loads, np.nan)
+    rows: dict[str, list[Any]] = {
+        "beside_frequencies": [],
+        "beside_loss_factors": [],
+        "beside_beyond_frequencies": [],
+        "beside_outside_share": [],
+        "beside_beyond_share": [],
+        "beside_reach": [],
+    }
+    for beside in besides:
+        joints, states = () if beside.case is None else beside.case.structure.joints, beside.states
+        lossless = not any(joint.law.predicts_loss for joint in joints)
+        found = [
+            np.stack([s.damped.frequencies for s in states]) if states else nothing,
+            nothing if lossless else np.stack([s.damped.loss_factors for s in states]),
+            np.stack([s.bonded_frequencies for s in states]) if states else nothing,
+            np.array([s.outside_share for s in states]) if states else alone,
+            np.array([s.beyond_share for s in states]) if states else alone,
+            min((joint.law.model.greatest_pressure for joint in joints), default=np.nan),
+        ]
+        for values, one in zip(rows.values(), found, strict=True):
+            values.append(one)
+    return {"beside": tuple(b.name for b in besides)} | {name: np.stack(values) for name, values in rows.items()}

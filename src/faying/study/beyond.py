@@ -13,9 +13,8 @@ from faying.fe.interface import Interface
 from faying.fe.modes import lowest_modes
 from faying.joint.springs import Springs
 from faying.joint.structure import Joint, Structure
-from faying.materials import RIGID, ContactPair
 from faying.notes import Note
-from faying.study.case import Case, materials_of
+from faying.study.case import Case, materials_at
 from faying.typing import Array, Mask
 
 STIFF = 1e3  # times the stiffness of the parts over their size: what counts as bonded
@@ -39,7 +38,7 @@ def bonded_beyond(case: Case, load: float, springs: Sequence[Springs[Interface]]
     law's end, `held`, and these; modes count in rising order. None where no point is beyond.
     """
     structure, study = case.structure, case.study
-    past = [_past(joint, s) for joint, s in zip(structure.joints, springs, strict=True)]
+    past = [past_end(joint, s) for joint, s in zip(structure.joints, springs, strict=True)]
     if not any(np.any(mask) for mask in past):
         return None
     parts = stiff_as_bonded(structure)
@@ -61,7 +60,7 @@ def stiff_as_bonded(structure: Structure) -> float:
     return STIFF * max(m.E for m in structure.materials.values()) / structure.mesh.size
 
 
-def _past(joint: Joint, springs: Springs[Interface]) -> Mask:
+def past_end(joint: Joint, springs: Springs[Interface]) -> Mask:
     """Points whose pressure is beyond the end of the law, as the law is asked."""
     pressure = springs.pressure
     if joint.per_node:
@@ -116,9 +115,7 @@ def _others(case: Case, number: int, pressure: float) -> str:
     choice, surface = case.study.joints[number], case.surfaces[number]
     if surface.rough is None:
         return "Give a law that reaches further, such as a table"
-    materials = materials_of(case.study, case.structure.mesh)
-    rough, other = (materials[case.structure.mesh.face_part[face]] for face in choice.faces)
-    pair = ContactPair(rough, RIGID if case.study.law_of(choice).counterbody == "rigid" else other)
+    pair = case.study.law_of(choice).pair(*materials_at(case.study, case.structure.mesh, choice))
     found = []
     for label, kind in kinds().items():
         if label == AUTO or kind.law is HalfSpace or kind.missing({}, surface.rough):

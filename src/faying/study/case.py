@@ -180,6 +180,12 @@ def checked_laws(study: Study, surfaces: Sequence[Surface]) -> dict[tuple[str, s
     return out
 
 
+def materials_at(study: Study, mesh: Mesh, joint: JointChoice) -> tuple[Material, Material]:
+    """Material of the part with the rough face of a joint, and that of the other part."""
+    rough, other = (study.materials[study.parts[mesh.face_part[face]]] for face in joint.faces)
+    return rough, other
+
+
 def materials_of(study: Study, mesh: Mesh) -> dict[str, Material]:
     """Material of every part of the mesh."""
     return {name: study.materials[study.parts[name]] for name in mesh.parts}
@@ -212,20 +218,20 @@ def structure_of(
     study: Study, mesh: Mesh, surfaces: tuple[Surface, ...], laws: Mapping[tuple[str, str, str], JointLaw] | None = None
 ) -> Structure:
     """Return the structure of a study on a mesh, with the surface of each joint; laws: those of `checked_laws`."""
-    materials = materials_of(study, mesh)
     joints: list[Joint] = []
     notes: list[Note] = []
     for joint, surface in zip(study.joints, surfaces, strict=True):
-        rough, other = (materials[mesh.face_part[face]] for face in joint.faces)
         parts = (mesh.face_part[joint.faces[0]], mesh.face_part[joint.faces[1]])
-        law = (laws or {}).get((joint.name, *parts)) or joint_law(joint, study.law_of(joint), surface, rough, other)
-        interface, closed = snapped(join(mesh, *joint.faces, search_distance=joint.search_distance), study, joint.name)
+        law = (laws or {}).get((joint.name, *parts)) or joint_law(
+            joint, study.law_of(joint), surface, *materials_at(study, mesh, joint)
+        )
+        interface, closed = interface_of(study, mesh, joint)
         notes += closed
         joints.append(
             Joint(
                 name=joint.name,
                 faces=joint.faces,
-                interface=interface if joint.form is None else joint.form.on(interface, mesh, joint.faces),
+                interface=interface,
                 law=law,
                 per_node=joint.springs == "per-node",
                 scan_area=surface.scan_area,
@@ -234,12 +240,18 @@ def structure_of(
         )
     return Structure(
         mesh=replace(mesh, notes=(*mesh.notes, *notes)) if notes else mesh,
-        materials=materials,
+        materials=materials_of(study, mesh),
         joints=tuple(joints),
         bolts=study.bolts,
         supports=study.supports,
         masses=study.masses,
     )
+
+
+def interface_of(study: Study, mesh: Mesh, joint: JointChoice) -> tuple[Interface, list[Note]]:
+    """How the faces of a joint meet, with their form; and a note where a gap of the CAD model was closed."""
+    met, notes = snapped(join(mesh, *joint.faces, search_distance=joint.search_distance), study, joint.name)
+    return met if joint.form is None else joint.form.on(met, mesh, joint.faces), notes
 
 
 def snapped(interface: Interface, study: Study, name: str) -> tuple[Interface, list[Note]]:

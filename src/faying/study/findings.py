@@ -9,9 +9,8 @@ from faying.contact.build import build, label_of
 from faying.contact.half_space import HalfSpace
 from faying.contact.stability import stability, stiffness_at
 from faying.errors import FayingError
-from faying.materials import RIGID, ContactPair
 from faying.notes import Note
-from faying.study.case import Case, materials_of
+from faying.study.case import Case, materials_at
 from faying.study.solve import State
 from faying.surface.scan import Scan
 
@@ -50,7 +49,6 @@ def against_exact_contact(case: Case, state: State) -> list[Note]:
     """
     out: list[Note] = []
     seen: set[object] = set()
-    materials = materials_of(case.study, case.structure.mesh)
     for choice, joint, surface, pressure in zip(
         case.study.joints, case.structure.joints, case.surfaces, state.preload.pressures, strict=True
     ):
@@ -66,9 +64,8 @@ def against_exact_contact(case: Case, state: State) -> list[Note]:
         weights = joint.interface.weights
         mean = float(weights[touching] @ pressure[touching] / weights[touching].sum())
         mean = min(max(mean, law.least_pressure), law.greatest_pressure)
-        rough, other = (materials[case.structure.mesh.face_part[face]] for face in choice.faces)
         chosen = case.study.law_of(choice)
-        pair = ContactPair(rough, RIGID if chosen.counterbody == "rigid" else other)
+        pair = chosen.pair(*materials_at(case.study, case.structure.mesh, choice))
         at = f"{joint.name}, {mean / 1e6:.3g} MPa"
         try:
             if not isinstance(law, HalfSpace):

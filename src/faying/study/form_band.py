@@ -12,6 +12,7 @@ from faying.joint.joint_law import JointLaw
 from faying.joint.reduce import Reduction
 from faying.joint.solid_bolt import SolidBolt
 from faying.notes import Note
+from faying.result.result import preload_slope
 from faying.study.case import Case
 from faying.study.solve import State
 from faying.typing import Array
@@ -59,8 +60,7 @@ def form_band(case: Case, states: Sequence[State]) -> tuple[FormBand | None, lis
         rows = [_frequencies(case, reduction, laws, friction, crown) for crown in (-CROWN, CROWN)]
     except FayingError as fault:
         return None, [Note(code="form-band", text=f"no answer for faces crowned by 3 um: {fault}")]
-    about = case.loads - case.loads.mean()
-    slopes = np.stack([about @ values / (about @ about) for values in (rows[0], flat, rows[1])])
+    slopes = np.stack([preload_slope(values, case.loads) for values in (rows[0], flat, rows[1])])
     return FormBand(crowns=np.array([-CROWN, 0.0, CROWN]), slopes=slopes), []
 
 

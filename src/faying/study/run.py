@@ -21,7 +21,7 @@ from faying.measured.mac import mac
 from faying.measured.pairing import by_track, changes, follow, pair_frequencies
 from faying.notes import Note
 from faying.result import BoltNumbers, Comparison, Provenance, Receptance, Result
-from faying.study.beside import Beside, solve_beside, stacked
+from faying.study.beside import Beside, beside_fields, solve_beside
 from faying.study.beyond import stiff_as_bonded
 from faying.study.bolt_numbers import bolt_numbers, conductances
 from faying.study.case import Case, Progress, Report
@@ -141,9 +141,9 @@ def collect(
         low=_stacked([s.low for s in states]),
         high=_stacked([s.high for s in states]),
         **_bonded_beyond(states, lossless),
-        beside=tuple(b.name for b in besides),
-        beside_frequencies=stacked(besides, "frequencies", len(states), len(bounds[0])),
-        beside_loss_factors=stacked(besides, "loss_factors", len(states), len(bounds[0])),
+        outside_share=np.array([s.outside_share for s in states]),
+        beyond_share=np.array([s.beyond_share for s in states]),
+        **beside_fields(besides, len(states), len(bounds[0])),
         rigid=rigid,
         mac=_macs(case, states),
         **_at_points(states),
@@ -218,10 +218,10 @@ def _bonded_beyond(states: Sequence[State], lossless: bool) -> dict[str, Any]:
     """Frequencies and loss factors with what is beyond the end of a law bonded, where anything is at any load."""
     if all(s.beyond is None for s in states):
         return {}
-    both = [s.damped if s.beyond is None else s.beyond for s in states]
+    losses = [(s.beyond or s.damped).loss_factors for s in states]
     return {
-        "beyond_frequencies": np.stack([one.frequencies for one in both]),
-        "beyond_loss_factors": np.stack([np.where(lossless, np.nan, one.loss_factors) for one in both]),
+        "beyond_frequencies": np.stack([s.bonded_frequencies for s in states]),
+        "beyond_loss_factors": np.stack([np.where(lossless, np.nan, loss) for loss in losses]),
     }
 
 

@@ -1,5 +1,6 @@
 """One load of a case: the preload of its joints, their springs, the modes and the response."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -14,11 +15,11 @@ from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions, checked_preload, open_joints
 from faying.measured.model import FullResponse
 from faying.notes import Note
-from faying.study.beyond import Beyond, bonded_beyond
+from faying.study.beyond import Beyond, bonded_beyond, past_end
 from faying.study.case import Case, Progress
 from faying.study.response import LoadedStructure, ResponseAtLoad
 from faying.study.strength import pressure_notes
-from faying.typing import Array
+from faying.typing import Array, Mask
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,6 +35,8 @@ class State:
         response: what [response] asks for; test_response: that at the points of a hammer test.
         beyond: what bonding the points beyond the end of their law makes of the modes; None where there are none.
         notes: where a law leaves its validity range, and the like.
+        outside_share, beyond_share: of the area of all joints [-], where their law is outside its validity range and
+            where the pressure exceeds its end.
     """
 
     load: float
@@ -47,6 +50,13 @@ class State:
     test_response: FullResponse | None
     beyond: Beyond | None
     notes: tuple[Note, ...]
+    outside_share: float
+    beyond_share: float
+
+    @property
+    def bonded_frequencies(self) -> Array:
+        """Frequencies [Hz] (m,) with what is beyond the end of its law bonded."""
+        return self.damped.frequencies if self.beyond is None else self.beyond.frequencies
 
 
 RANGE_ERROR = 1e-5  # of the squared frequencies at the ends of a range
@@ -107,6 +117,10 @@ def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress) 
             *law_notes(structure, preload, load),
             *pressure_notes(structure, preload.pressures, load),
         ),
+        outside_share=_share(
+            springs, [~j.law.answer(s.pressure).valid for j, s in zip(structure.joints, springs, strict=True)]
+        ),
+        beyond_share=_share(springs, [past_end(j, s) for j, s in zip(structure.joints, springs, strict=True)]),
     )
 
 
@@ -127,6 +141,12 @@ def modes_of(case: Case, springs: tuple[Springs[Interface], ...]) -> tuple[Modes
         solver=study.modes.solver,
     )
     return modes, stiffness, loss
+
+
+def _share(springs: Sequence[Springs[Interface]], masks: Sequence[Mask]) -> float:
+    """Share of the area of all joints where a mask of its points holds [-]."""
+    held = sum(float(s.interface.weights @ mask) for s, mask in zip(springs, masks, strict=True))
+    return held / sum(s.interface.area for s in springs)
 
 
 def _at_end(end: Literal["low", "high"], case: Case, preload: PreloadState, modes: Modes) -> Array | None:

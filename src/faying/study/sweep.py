@@ -21,7 +21,7 @@ from faying.joint.reduced import ReducedModel
 from faying.joint.structure import Structure
 from faying.materials import Material
 from faying.study.axes import Axis, Grid
-from faying.study.case import checked_laws, checked_mesh, joint_law, materials_of, structure_of, surfaces_of
+from faying.study.case import checked_laws, checked_mesh, joint_law, materials_at, structure_of, surfaces_of
 from faying.study.study import Study
 from faying.study.sweep_files import Store, Sweep
 from faying.typing import Array
@@ -199,10 +199,9 @@ def _begun(
 ) -> tuple["_Trainer", ReducedModel]:
     """What makes the bases, and the model in them: made now, or left by an interrupted sweep."""
     mesh = checked_mesh(study)
-    materials = materials_of(study, mesh)
-    pairs = [tuple(materials[mesh.face_part[face]] for face in joint.faces) for joint in study.joints]
+    pairs = tuple(materials_at(study, mesh, joint) for joint in study.joints)
     structure = structure_of(study, mesh, grid.surfaces)
-    recipe = Recipe(grid=grid, pairs=tuple(pairs), places=Place.all(structure, grid))  # type: ignore[arg-type]
+    recipe = Recipe(grid=grid, pairs=pairs, places=Place.all(structure, grid))
     trainer = _Trainer(study, structure, recipe, tolerance, report)
     model = store.model()
     if model is None:

@@ -1,7 +1,9 @@
-"""[[beside]]: another law or surface for every joint, whose modes stand beside the study's own."""
+"""[[beside]]: another law, surface or form for every joint, whose modes stand beside the study's own."""
 
 from dataclasses import dataclass
 
+from faying.joint.form import Form
+from faying.study.keys.form import read_form
 from faying.study.keys.law import LawChoice
 from faying.study.keys.reader import Table
 from faying.study.keys.surface import SurfaceChoice
@@ -9,7 +11,7 @@ from faying.study.keys.surface import SurfaceChoice
 
 @dataclass(frozen=True, kw_only=True)
 class BesideChoice:
-    """A law and a surface for all joints, in place of those of the study where they are given.
+    """A law, a surface and a form for all joints, in place of those of the study where they are given.
 
     name: what the tables call it.
     """
@@ -17,15 +19,18 @@ class BesideChoice:
     name: str
     law: LawChoice | None = None
     surface: SurfaceChoice | None = None
+    form: Form | None = None
 
     @classmethod
     def of(cls, table: Table, index: int) -> "BesideChoice":
         """Read one [[beside]]."""
         law, surface = table.table("law"), table.table("surface")
-        if law is None and surface is None:
-            table.faults.add(f"{table.where}: give a law or a surface that differs from the study's")
+        form = read_form(table.table("form"))
+        if law is None and surface is None and form is None:
+            table.faults.add(f"{table.where}: give a law, a surface or a form that differs from the study's")
         read = None if law is None else LawChoice.of(law)
         name = table.text("name", read.model if read is not None else f"beside {index + 1}")
-        choice = cls(name=name or "", law=read, surface=None if surface is None else SurfaceChoice.of(surface))
+        other = None if surface is None else SurfaceChoice.of(surface)
+        choice = cls(name=name or "", law=read, surface=other, form=form)
         table.close()
         return choice

@@ -99,8 +99,11 @@ class LawChoice:
 
     def make(self, surface: Surface, rough: Material, other: Material) -> Choice:
         """Return the law between the rough material and the other one, and why it. Raises InputError as `pick`."""
-        pair = ContactPair(rough, RIGID if self.counterbody == "rigid" else other)
-        return pick(self.kind, self.given, surface.rough, pair)
+        return pick(self.kind, self.given, surface.rough, self.pair(rough, other))
+
+    def pair(self, rough: Material, other: Material) -> ContactPair:
+        """Return the materials that meet in the law: a rigid counterbody in place of the other one where asked for."""
+        return ContactPair(rough, RIGID if self.counterbody == "rigid" else other)
 
 
 def _text(value: object, name: str) -> str:
