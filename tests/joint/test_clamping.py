@@ -250,3 +250,34 @@ def test_a_face_that_is_a_ring_is_a_seat():
     assert stack.seat == pytest.approx((HOLE, 20e-3))
     area = pi / 4 * (20e-3**2 - HOLE**2)
     assert stack.cone == pytest.approx(26e-3 / (210e9 * area), rel=5e-3)
+
+
+def meshed(**changes):
+    from tests.helpers.voxels import bolted
+    from tests.joint.test_solid_bolt import structure as with_solid_bolts
+
+    made = with_solid_bolts(bolted(kind="hex8"), **changes)
+    at = made.springs([np.full(len(j.interface.weights), 5e6) for j in made.joints])
+    K, M = made.joined(at)[0], made.vibrating[1]
+    modes = lowest_modes(K, M, 8, shift_frequency=made.shift_frequency)
+    return made, K, at, clamping(made, K, modes, at)
+
+
+def test_a_meshed_bolt_divides_between_itself_and_its_members():
+    """Wherever its shank is drawn in; 1 N of tension runs through joint, head and nut; its whole is its stiffness.
+
+    Turned by a, the nut gives the tension a/(delta_S + delta_P).
+    """
+    made, K, _, found = meshed()
+    for spread, joint in zip(found.traction, made.joints, strict=True):
+        assert spread[0] @ joint.interface.weights == pytest.approx(1.0, rel=1e-6)
+    *_, other = meshed(at=(0.02, 0.02, 13e-3))
+    assert other.members == pytest.approx(found.members, rel=1e-6)
+    assert other.bolt == pytest.approx(found.bolt, rel=1e-5)
+    bolt, M = made.fitted_bolts[0], made.vibrating[1]
+    from scipy.sparse.linalg import splu
+
+    shifted = (K + 1e-10 * K.diagonal().mean() * M / M.diagonal().mean()).tocsc()
+    turned = bolt.rigidity + bolt.pull @ splu(shifted).solve(-bolt.pull)
+    assert 1 / turned == pytest.approx(found.bolt[0] + found.members[0], rel=1e-4)
+    assert 0 < found.members[0] < found.bolt[0]

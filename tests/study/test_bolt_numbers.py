@@ -112,7 +112,7 @@ def test_tables_and_files(tight, tmp_path):
     assert "embedding [um]" not in rows[0]
     assert rows[1][1] == "bolt"
     assert table.conductance(tight)[0] == ["preload", "joint [W/K]", "joint [S]"]
-    assert "bolts and what they clamp" in text(tight)
+    assert "bolts and what they clamp (no law here has a loading curve of its own: no embed" in text(tight)
     assert "Conductance of the joints" in "".join(report._bolts(tight))
     assert Result.load(tight.to_netcdf(tmp_path / "result.nc")) == tight
     out = tight.to_dict()["bolt_numbers"]
@@ -149,6 +149,8 @@ def test_a_force_alone_has_members_and_embedding_but_no_loss(loose):
     assert np.all(b.member_compliance > 0)
     assert np.isnan(b.proof_share).all()
     least, greatest = b.embedding[:, 0, 0, 0]
+    assert "bolts and what they clamp\n" in text(loose)
+    assert "embedding [um]" in table.bolting(loose)[0]
     assert 0 < least <= greatest < 20e-6
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from faying import InputError, Scan
 from faying.surface.filters import gaussian_lowpass
 from faying.surface.form import filled, find_spikes, levelled, prepared
-from faying.surface.roughness import roughness
+from faying.surface.roughness import mean_peak_to_valley, roughness
 from faying.surface.scan import Profile
 from faying.surface.synthesize import spectral, with_missing
 
@@ -131,3 +131,16 @@ def test_cutoffs_outside_the_scan_are_refused():
     rough = spectral((64, 64), spacing=1e-6, D=2.5, Rq=1e-6)
     with pytest.raises(InputError, match="between twice the spacing"):
         gaussian_lowpass(rough, 1e-6)
+
+
+def test_the_mean_height_of_a_sine_is_twice_its_amplitude():
+    """Across the grooves; along them, and between its five parts, a slow wave counts for little."""
+    x = np.arange(1000) * 1e-6
+    line = 2e-6 * np.sin(2 * np.pi * x / 50e-6)
+    assert mean_peak_to_valley(Profile(heights=line, spacing=1e-6)) == pytest.approx(4e-6, rel=0.01)
+    grooves = Scan(heights=np.tile(line, (60, 1)), spacing=(1e-6, 1e-6))
+    assert mean_peak_to_valley(grooves) == pytest.approx(4e-6, rel=0.01)
+    turned = Scan(heights=np.tile(line, (60, 1)).T, spacing=(1e-6, 1e-6))
+    assert mean_peak_to_valley(turned) == pytest.approx(4e-6, rel=0.01)
+    slow = 3e-6 * np.cos(2 * np.pi * x / x[-1])
+    assert mean_peak_to_valley(Profile(heights=slow, spacing=1e-6)) < 0.7 * np.ptp(slow)

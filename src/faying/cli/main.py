@@ -13,6 +13,7 @@ COMMANDS = {
     "asperity": ("asperity", "Press one asperity by finite elements: force, area, stresses."),
     "attach": ("attach", "Lay a joint on a model of another solver, and write it in its words."),
     "compare": ("compare", "Set a hammer test beside the result of a study: MAC, pairs, FRFs."),
+    "condense": ("condense", "One joint as a 6 x 6 stiffness and loss between two points, with its error."),
     "form": ("form", "Flatness, crowns and twist of a measured face or gap."),
     "init": ("init", "Write a commented study file to start from."),
     "law": ("law", "Curves of a contact law: area, stiffness and loss against pressure."),

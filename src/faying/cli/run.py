@@ -69,7 +69,7 @@ def text(result: Any) -> str:
         "end and outside their validity range, modes that differ most": table.laws(result),
         "joints": table.joints(result),
         f"bolts, tightened in the order {', '.join(result.tightening)}": table.bolts(result),
-        "bolts and what they clamp": table.bolting(result),
+        table.bolting_head(result): table.bolting(result),
         f"force in the bolts per motion where a mode moves most, at {result.loads[-1] / 1e3:g} kN": table.modal_forces(
             result
         ),

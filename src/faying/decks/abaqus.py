@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.decks.deck import JointDeck, grouped, real
+from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real
 from faying.decks.keywords import DATA, Block, blocks, elements, orientations, table
 from faying.decks.raw import RawMesh, index, ranged, read_text
 from faying.errors import ReadError
@@ -488,3 +488,29 @@ def contact(deck: JointDeck) -> str:
         lines += ["*CONTACT DAMPING,DEFINITION=DAMPING COEFFICIENT", f"{real(c, 20)},"]
     lines += ["*CONTACT PAIR,INTERACTION=JK,TYPE=SURFACE TO SURFACE", ",".join(deck.faces)]
     return "\n".join(lines) + "\n"
+
+
+def condensed(deck: CondensedDeck) -> dict[str, str]:
+    """Two nodes and the joint between them as a matrix, to include in an input deck before its first step, by name."""
+    note = (
+        "loss as a structural damping matrix, the imaginary part of the stiffness; frequency-domain steps with SIM only"
+    )
+    lines = [*comments("**", *deck.facts, *([note] if np.any(deck.loss) else [])), "*NODE"]
+    for node, at in zip(deck.nodes, deck.places, strict=True):
+        lines.append(f"{node}," + ",".join(real(float(x), 20) for x in at))
+    lines += _upper("KJ", deck, deck.stiffness)
+    assemble = "*MATRIX ASSEMBLE,STIFFNESS=KJ"
+    if np.any(deck.loss):
+        lines += _upper("SJ", deck, deck.loss)
+        assemble += ",STRUCTURAL DAMPING=SJ"
+    return {"condensed_matrix.inp": "\n".join([*lines, assemble]) + "\n"}
+
+
+def _upper(name: str, deck: CondensedDeck, matrix: Array) -> list[str]:
+    values, rows = deck.in_units(matrix), deck.entries
+    return [f"*MATRIX INPUT,NAME={name},TYPE=SYMMETRIC"] + [
+        f"{rows[i][0]},{rows[i][1]},{rows[j][0]},{rows[j][1]},{real(float(values[i, j]), 23)}"
+        for i in range(12)
+        for j in range(i, 12)
+        if values[i, j]
+    ]

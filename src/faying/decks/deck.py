@@ -91,16 +91,7 @@ class JointDeck:
 
     def header(self, mark: str, *more: str) -> list[str]:
         """Comment lines: the facts of the joint and the notes of this form, cut to 100 columns."""
-        out = []
-        for text in (*self.facts, *more):
-            line = mark
-            for word in text.split():
-                if len(line) + len(word) > 100:
-                    out.append(line)
-                    line = mark + "  "
-                line += " " + word
-            out.append(line)
-        return out
+        return comments(mark, *self.facts, *more)
 
     def damping_note(self) -> str:
         """A sentence on the dampers of a form that takes no loss factor."""
@@ -115,6 +106,55 @@ class JointDeck:
                 "the square root of the number of pairs, so the damping depends on the mesh"
             )
         return f"dampers c = eta k/omega, right at {self.frequency:g} Hz: loss grows with frequency beyond it"
+
+
+def comments(mark: str, *texts: str) -> list[str]:
+    """Comment lines after a mark, cut to 100 columns."""
+    out = []
+    for text in texts:
+        line = mark
+        for word in text.split():
+            if len(line) + len(word) > 100:
+                out.append(line)
+                line = mark + "  "
+            line += " " + word
+        out.append(line)
+    return out
+
+
+@dataclass(frozen=True, kw_only=True)
+class CondensedDeck:
+    """A joint as one matrix between two points, ready to be written.
+
+    points (2, 3) [m]; nodes: their numbers; element: number of the element or property; stiffness and loss, its
+    imaginary part (12, 12) [N/m, N, N m]: three translations and three rotations of the first point, then of the
+    second, in the axes of the model; facts: lines for the header.
+    """
+
+    points: Array
+    nodes: tuple[int, int]
+    element: int
+    stiffness: Array
+    loss: Array
+    system: System
+    facts: tuple[str, ...]
+
+    def in_units(self, matrix: Array) -> Array:
+        """A matrix (12, 12) in the deck's units, without the rounding of zeros."""
+        size = np.sqrt(np.maximum(np.diag(self.stiffness), 0.0))
+        clean = np.where(np.abs(matrix) > NOTHING * np.outer(size, size), matrix, 0.0)
+        lengths = np.tile(np.repeat([self.system.metre, 1.0], 3), 2)
+        return np.asarray(clean * self.system.newton * self.system.metre / np.outer(lengths, lengths))
+
+    @property
+    def places(self) -> Array:
+        """Coordinates of both points (2, 3) in the deck's unit."""
+        return np.asarray(self.points * self.system.metre)
+
+    @property
+    def entries(self) -> list[tuple[int, int]]:
+        """Node and direction, from 1, of each row."""
+        return [(node, direction) for node in self.nodes for direction in range(1, 7)]
 
 
 def _clean(blocks: Array) -> Array:

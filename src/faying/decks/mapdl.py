@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.decks.deck import JointDeck, grouped, real
+from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real
 from faying.decks.raw import RawMesh, gathered, index, ranged, undoubled
 from faying.errors import ReadError
 from faying.typing import Array, Index
@@ -330,3 +330,20 @@ def contact(deck: JointDeck) -> str:
         f"RMODIF,cid,12,{real(-law.k_t * scale, 20)}",
     ]
     return "\n".join(lines) + "\n"
+
+
+def condensed(deck: CondensedDeck) -> dict[str, str]:
+    """Commands for /PREP7 that make two nodes and one MATRIX27 between them, by name."""
+    lost = np.diag(deck.loss)[6:] / np.diag(deck.stiffness)[6:]
+    factors = ", ".join(f"{value:.3g}" for value in lost)
+    note = f"MATRIX27 takes no loss factor; those of the six motions are {factors}" if np.any(lost) else "no loss"
+    lines = [*comments("!", *deck.facts, note), "/PREP7"]
+    for node, at in zip(deck.nodes, deck.places, strict=True):
+        lines.append(f"N,{node}," + ",".join(real(float(x), 20) for x in at))
+    lines += [f"ET,{TYPE},MATRIX27", f"KEYOPT,{TYPE},2,0", f"KEYOPT,{TYPE},3,4"]
+    row = deck.in_units(deck.stiffness)[ROW, COLUMN]
+    words = ["0" if v == 0 else real(float(v), 17) for v in row]
+    lines.append(f"R,{deck.element}," + ",".join(words[:6]))
+    lines += ["RMORE," + ",".join(words[j : j + 6]) for j in range(6, 78, 6)]
+    lines += [f"TYPE,{TYPE}", f"REAL,{deck.element}", f"EN,{deck.element},{deck.nodes[0]},{deck.nodes[1]}"]
+    return {"condensed_matrix27.inp": "\n".join(lines) + "\n"}

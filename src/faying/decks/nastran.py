@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.decks.deck import JointDeck, grouped, real, springs_of
+from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real, springs_of
 from faying.decks.raw import Matrices, RawMesh, both_triangles, face_blocks, gathered, index, once, read_text
 from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS, SOLIDS
@@ -486,3 +486,63 @@ def _dmig(name: str, deck: JointDeck, blocks: Array) -> list[str]:
         if len(words) > 4:
             lines += card("DMIG", *words)
     return lines
+
+
+COUPLED = 1e-2  # of the mean of two diagonals: a coupling above it a CBUSH cannot leave out
+
+
+def condensed(deck: CondensedDeck) -> dict[str, str]:
+    """Bulk data of a condensed joint, by name: a DMIG, and a CBUSH where both points coincide and little couples."""
+    grids = [
+        line
+        for node, at in zip(deck.nodes, deck.places, strict=True)
+        for line in card("GRID", node, 0, *map(float, at), 0)
+    ]
+    chosen = ["case control: K2GG = KJOINT"]
+    lines = _triangle("KJOINT", deck, deck.in_units(deck.stiffness))
+    if np.any(deck.loss):
+        chosen.append("case control: K42GG = K4JOINT, the loss as a structural damping matrix")
+        lines += _triangle("K4JOINT", deck, deck.in_units(deck.loss))
+    out = {"condensed_dmig.bdf": "\n".join([*comments("$", *deck.facts, *chosen), *grids, *lines]) + "\n"}
+    bush = _bush(deck)
+    if bush:
+        note, cards = bush
+        out["condensed_cbush.bdf"] = "\n".join([*comments("$", *deck.facts, note), *grids, *cards]) + "\n"
+    return out
+
+
+def _triangle(name: str, deck: CondensedDeck, matrix: Array) -> list[str]:
+    lines = card("DMIG", name, 0, 6, 2, 0)
+    for j, (node, direction) in enumerate(deck.entries):
+        words: list[Field] = [name, node, direction, ""]
+        for i in range(j, 12):
+            if matrix[i, j]:
+                words += [*deck.entries[i], float(matrix[i, j]), ""]
+        if len(words) > 4:
+            lines += card("DMIG", *words)
+    return lines
+
+
+def _bush(deck: CondensedDeck) -> tuple[str, list[str]] | None:
+    """A note and the cards of a CBUSH in the principal axes of the rotations; None where it leaves out too much."""
+    one, two = deck.points
+    if np.linalg.norm(two - one) > 0:
+        return None
+    K, lost = deck.in_units(deck.stiffness)[6:, 6:], deck.in_units(deck.loss)[6:, 6:]
+    _, axes = np.linalg.eigh(K[3:, 3:])
+    axes = axes * np.where(axes[np.abs(axes).argmax(axis=0), range(3)] < 0, -1.0, 1.0)
+    axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
+    axes = axes + 0.0  # no -0
+    turn = np.kron(np.eye(2), axes)
+    K, lost = turn.T @ K @ turn, turn.T @ lost @ turn
+    own = np.diag(K)
+    coupling = float(np.abs((K - np.diag(own)) / np.sqrt(np.outer(own, own))).max())
+    if coupling > COUPLED:
+        return None
+    note = f"GE of directions 1 to 6; a CBUSH couples none of them: it leaves out couplings of up to {coupling:.1e}"
+    lines = card("CORD2R", deck.element, 0, 0.0, 0.0, 0.0, *map(float, axes[:, 2]), *map(float, axes[:, 0]))
+    words: list[Field] = [deck.element, "K", *map(float, own)]
+    if np.any(lost):
+        words += ["", "GE", *map(float, np.diag(lost) / own)]
+    lines += card("PBUSH", *words)
+    return note, lines + card("CBUSH", deck.element, deck.element, *deck.nodes, "", "", "", deck.element)

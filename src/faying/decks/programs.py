@@ -10,20 +10,24 @@ from faying.errors import ReadError
 
 @dataclass(frozen=True, kw_only=True)
 class Program:
-    """What the module `faying.decks.<name>` does: suffixes of meshes and matrices it reads, whether it writes joints.
+    """What the module `faying.decks.<name>` does: suffixes of meshes and matrices it reads, which joints it writes.
 
-    Such a module has `read(path) -> RawMesh`, `read_matrices(path, names) -> Matrices`, `decks(deck) -> {file: text}`.
+    Such a module has `read(path) -> RawMesh`, `read_matrices(path, names) -> Matrices`, `decks(deck) -> {file: text}`,
+    and `condensed(deck) -> {file: text}`.
     """
 
     meshes: tuple[str, ...] = ()
     matrices: tuple[str, ...] = ()
     joints: bool = False
+    condensed: bool = False
 
 
 PROGRAMS: dict[str, Program] = {
-    "mapdl": Program(meshes=(".cdb",), joints=True),
-    "abaqus": Program(meshes=(".inp",), joints=True),
-    "nastran": Program(meshes=(".bdf", ".nas", ".dat"), matrices=(".bdf", ".nas", ".dat", ".pch"), joints=True),
+    "mapdl": Program(meshes=(".cdb",), joints=True, condensed=True),
+    "abaqus": Program(meshes=(".inp",), joints=True, condensed=True),
+    "nastran": Program(
+        meshes=(".bdf", ".nas", ".dat"), matrices=(".bdf", ".nas", ".dat", ".pch"), joints=True, condensed=True
+    ),
     "calculix": Program(matrices=(".sti",), joints=True),
     "aster": Program(joints=True),
     "gmsh": Program(meshes=(".msh",)),
@@ -31,6 +35,7 @@ PROGRAMS: dict[str, Program] = {
     "vtk": Program(meshes=(".vtk", ".vtu", ".med")),
 }
 SOLVERS = tuple(name for name, program in PROGRAMS.items() if program.joints)
+CONDENSED = tuple(name for name, program in PROGRAMS.items() if program.condensed)
 MESHES = {suffix: name for name, program in PROGRAMS.items() for suffix in program.meshes}
 MATRICES = {suffix: name for name, program in PROGRAMS.items() for suffix in program.matrices}
 

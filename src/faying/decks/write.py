@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.decks.deck import JointDeck
+from faying.decks.deck import CondensedDeck, JointDeck
+from faying.decks.programs import CONDENSED, module_of
 from faying.decks.programs import SOLVERS as SOLVERS
-from faying.decks.programs import module_of
 from faying.errors import InputError
 from faying.files import together, write_atomically
 
@@ -25,6 +25,20 @@ def write(deck: JointDeck, solver: str, folder: Path) -> list[Path]:
         )
     texts: dict[str, str] = module_of(solver).decks(deck)
     texts["joint_pairs.csv"] = pairs_csv(deck)
+    return _written(texts, folder)
+
+
+def write_condensed(deck: CondensedDeck, solver: str, folder: Path) -> list[Path]:
+    """Write a condensed joint for `solver`. Raises InputError for one that takes no such matrix."""
+    if solver not in CONDENSED:
+        raise InputError(
+            f"{solver!r} has no exporter for a matrix between two points with rotations; there are "
+            f"{', '.join(CONDENSED)}. faying attach writes the springs of the joint for {', '.join(SOLVERS)}"
+        )
+    return _written(module_of(solver).condensed(deck), folder)
+
+
+def _written(texts: dict[str, str], folder: Path) -> list[Path]:
     with together(folder, "give another with --out") as hidden:
         for name, text in texts.items():
             write_atomically(hidden / name, lambda temporary, text=text: temporary.write_text(text, encoding="utf-8"))  # type: ignore[misc]

@@ -96,6 +96,8 @@ def cone_compliance(
 def embedding_guide(Rz: float) -> tuple[float, float, float]:
     """Return the guideline's embedding [m] in the thread, at each bearing area, and at each interface, for axial load.
 
+    The guideline gives these values for bolts, nuts and compact clamped parts of steel.
+
     Args:
         Rz: Mean height of the roughness [m], below 160 um.
 

@@ -228,6 +228,16 @@ def bolting(result: Result) -> Rows:
     return _without_empty(rows)
 
 
+def bolting_head(result: Result) -> str:
+    """Heading of `bolting`, which says where no law predicts an embedding."""
+    b = result.bolt_numbers
+    silent = b is not None and bool(np.isnan(b.embedding).all())
+    return (
+        "bolts and what they clamp"
+        + " (no law here has a loading curve of its own: no embedding is predicted)" * silent
+    )
+
+
 def _without_empty(rows: Rows) -> Rows:
     """The columns in which any row has more than a dash."""
     keep = [k for k in range(len(rows[0])) if k < 2 or any(row[k] != "-" for row in rows[1:])]

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 from faying.fe.damped import DampedModes, damped_modes
 from faying.fe.interface import Interface
@@ -71,14 +71,11 @@ def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress, 
     study, structure = case.study, case.structure
     load = study.loads[number]
     progress.begin(f"preload {load / 1e3:g} kN")
-    preload = checked_preload(structure, problem, study.forces(number), order=study.order)
+    preload = settled(case, number, problem)
     springs = structure.springs(preload.pressures)
     progress.begin(f"modes at {load / 1e3:g} kN")
-    stiffness, loss = structure.joined(springs, viscous=study.modes.damping == "viscous")
     mass = structure.vibrating[1]
-    modes = lowest_modes(
-        stiffness, mass, case.mode_count, shift_frequency=case.shift_frequency, solver=study.modes.solver
-    )
+    modes, stiffness, loss = modes_of(case, springs)
     check_motions(structure, modes)
     damped = damped_modes(
         modes,
@@ -126,6 +123,25 @@ def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress, 
         ),
         beyond_share=_share(springs, [past_end(j, s) for j, s in zip(structure.joints, springs, strict=True)]),
     )
+
+
+def settled(case: Case, number: int, problem: PreloadProblem) -> PreloadState:
+    """The preload of a case at one of its loads, counted from 0."""
+    return checked_preload(case.structure, problem, case.study.forces(number), order=case.study.order)
+
+
+def modes_of(case: Case, springs: tuple[Springs[Interface], ...]) -> tuple[Modes, Any, Any]:
+    """Real modes of a case with springs on its joints, and the stiffness and loss that they belong to."""
+    structure, study = case.structure, case.study
+    stiffness, loss = structure.joined(springs, viscous=study.modes.damping == "viscous")
+    modes = lowest_modes(
+        stiffness,
+        structure.vibrating[1],
+        case.mode_count,
+        shift_frequency=case.shift_frequency,
+        solver=study.modes.solver,
+    )
+    return modes, stiffness, loss
 
 
 def _share(springs: Sequence[Springs[Interface]], masks: Sequence[Mask]) -> float:

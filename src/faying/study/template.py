@@ -77,6 +77,9 @@ springs = "per-area"           # or "per-node": the paper's use, which depends o
 name = "bolt"
 faces = ["upper.seat", "lower.seat"]   # the two seats that head and nut press on
 preload = ["2 kN", "6 kN"]             # one or more, rising
+# diameter = "8 mm"            # with a material: a shank that resists and weighs, and has a load factor
+# material = "45 steel"
+# grade = "8.8"                # sets the preload beside the proof load
 
 [modes]
 count = 6                      # elastic modes

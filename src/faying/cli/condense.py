@@ -1,0 +1,107 @@
+"""faying condense STUDY.toml: one joint as a 6 x 6 stiffness and loss between two points."""
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from faying.decks.programs import CONDENSED
+
+WORDS = ("x", "y", "z", "turn x", "turn y", "turn z")
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option("--joint", metavar="NAME", help="Which of the study's joints; the only one where left out.")
+@click.option("--preload", metavar="FORCE", help='Which of the study\'s preloads, such as "8 kN" (default: greatest).')
+@click.option("--point-a", metavar="POINT", help='Point of the first face, "0 mm; 10 mm; 5 mm" (default: its centre).')
+@click.option("--point-b", metavar="POINT", help="Point of the second face.")
+@click.option("--to", "solver", type=click.Choice(CONDENSED), help="The solver to write for.")
+@click.option("--unit", help='Unit of length of that model, such as "mm".')
+@click.option("--force-unit", default="N", show_default=True, help="Unit of force of that model.")
+@click.option("--node-a", type=int, default=900001, show_default=True, help="Number of the first point's node.")
+@click.option("--node-b", type=int, default=900002, show_default=True, help="Number of the second point's node.")
+@click.option("--element", type=int, default=900001, show_default=True, help="Number of the element and property.")
+@click.option("--out", type=click.Path(path_type=Path), help="Folder of the deck (default: joint/ beside the study).")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
+def command(
+    study: Path,
+    joint: str | None,
+    preload: str | None,
+    point_a: str | None,
+    point_b: str | None,
+    solver: str | None,
+    unit: str | None,
+    force_unit: str,
+    node_a: int,
+    node_b: int,
+    element: int,
+    out: Path | None,
+    as_json: bool,
+) -> None:
+    """Condense a joint of STUDY to six motions, and say how far that holds."""
+    from faying.decks.write import write_condensed
+    from faying.errors import InputError
+    from faying.output.table import text
+    from faying.study import Study
+    from faying.study.condense import STAGES, condense
+
+    if solver is not None and unit is None:
+        raise InputError('--to needs --unit, the unit of length of that model, such as "mm"')
+    plan = Study.read(study)
+    points = (_point(point_a, "--point-a"), _point(point_b, "--point-b"))
+    with click.progressbar(
+        length=STAGES + len(plan.loads), file=sys.stderr, label="study", item_show_func=lambda stage: stage or ""
+    ) as bar:
+        found = condense(
+            plan,
+            joint=joint,
+            preload=preload,
+            points=points,
+            report=lambda stage, done, total: bar.update(min(done, 1), stage),
+        )
+    files: list[Path] = []
+    if solver is not None:
+        deck = found.deck(unit=unit or "", force_unit=force_unit, nodes=(node_a, node_b), element=element)
+        files = write_condensed(deck, solver, out or plan.folder / "joint")
+    if as_json:
+        click.echo(json.dumps(found.to_dict() | {"files": [str(f) for f in files]}, indent=2, allow_nan=False))
+        return
+    place = ", ".join(f"{x:.4g}" for x in (1e3 * found.joint.point).round(6) + 0.0)
+    lines = [
+        f"{found.name} at {found.load / 1e3:g} kN, about ({place}) mm: stiffness [N/m, N, N m]",
+        *_matrix(found.joint.stiffness),
+        *(["no loss is predicted"] if found.lossless else ["loss, its imaginary part", *_matrix(found.joint.loss)]),
+        "",
+        text(found.rows()),
+        "",
+        f"mean ties are right within 1 % up to {found.reach:.4g} Hz"
+        if found.reach
+        else "mean ties err by more than 1 % in the first mode already",
+        *(f"written: {file}" for file in files),
+    ]
+    click.echo("\n".join(lines))
+
+
+def _matrix(values: Any) -> list[str]:
+    import numpy as np
+
+    own = np.sqrt(np.abs(np.diag(values)))
+    rows = zip(WORDS, np.where(np.abs(values) > 1e-12 * np.outer(own, own), values, 0.0), strict=True)
+    return [f"  {word:>7}" + "".join(f"{value:>13.4e}" for value in row) for word, row in rows]
+
+
+def _point(given: str | None, name: str) -> Any:
+    import numpy as np
+
+    from faying import units
+    from faying.errors import InputError
+
+    if given is None:
+        return None
+    parts = given.split(";")
+    if len(parts) != 3:
+        raise InputError(f'{name} "{given}": give three lengths with semicolons between, such as "0 mm; 10 mm; 5 mm"')
+    return np.array([units.parse(part.strip(), "m", name=name) for part in parts])
