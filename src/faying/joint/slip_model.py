@@ -6,48 +6,13 @@ Everything is measured from the preload: coordinates, forces and tractions are 0
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Protocol, Self
+from typing import Self
 
 import numpy as np
 
+from faying.joint.hysteresis import Cycle
+from faying.joint.microslip import Microslip
 from faying.typing import Array
-
-
-class LocalCycle(Protocol):
-    """What a local law says of one cycle; see `faying.joint.hysteresis.Cycle`."""
-
-    @property
-    def traction(self) -> Array:
-        """Fourier coefficients of the tractions [Pa] (1 + 2H, q, 3)."""
-
-    @property
-    def derivative(self) -> Any:
-        """Derivatives of the tractions [Pa/m] (q, 3(1 + 2H), 3(1 + 2H)), or None where not asked for."""
-
-    @property
-    def dissipated(self) -> Array:
-        """Energy lost in a cycle [J/m2] (q,)."""
-
-    @property
-    def slipping(self) -> Array:
-        """Share of the limit of friction that slides [-] (q,)."""
-
-    @property
-    def open(self) -> Array:
-        """Whether a point opens in the cycle (q,)."""
-
-
-class LocalLaw(Protocol):
-    """A microslip law at the points of a joint; see `faying.joint.microslip.Microslip`."""
-
-    def start(self, motion: Array) -> Any:
-        """The state at rest."""
-
-    def advance(self, state: Any, motion: Array) -> tuple[Any, Array, Array]:
-        """The next state, tractions [Pa] (q, 3) and tangent [Pa/m] (q, 3, 3)."""
-
-    def cycle(self, coefficients: Array, *, derivative: bool = True, samples: int = 64) -> LocalCycle:
-        """Tractions of one cycle, from the Fourier coefficients of the motion [m] (1 + 2H, q, 3)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,7 +26,7 @@ class SlipJoint:
     weights: Array
     relative: Array
     rest: Array
-    law: LocalLaw
+    law: Microslip
 
     def motion(self, coordinates: Array) -> Array:
         """Fourier coefficients of the relative motion [m] (1 + 2H, q, 3) from those of the coordinates (1 + 2H, m)."""
@@ -75,22 +40,28 @@ class SlipJoint:
         _, traction, tangent = self.law.advance(self.law.start(self.rest), self.rest)
         return traction, tangent
 
-    def projected(self, tangent: Array, other: Array | None = None) -> Array:
+    def cycle(self, coordinates: Array, *, derivative: bool, samples: int) -> Cycle:
+        """Tractions of the cycle that the coordinates (1 + 2H, m) make, sliders without shear at rest."""
+        start = self.law.start(self.rest)
+        return self.law.cycle(self.motion(coordinates), derivative=derivative, samples=samples, start=start)
+
+    def projected(self, tangent: Array) -> Array:
         """Stiffness (m, m) [N/m] of a tangent per area [Pa/m] (q, 3, 3)."""
         turned = np.matmul(self.weights[:, None, None] * tangent, self.relative.reshape(len(self.weights), 3, -1))
         return np.asarray(self.relative.T @ turned.reshape(self.relative.shape))
 
     def halved(self) -> Self:
-        """The same joint at every other point, each with the area of the one that was left out beside it.
-
-        Raises InputError where the law cannot be taken at some of its points.
-        """
+        """The same joint at every other point, each with the area of the one that was left out beside it."""
         kept = np.arange(0, len(self.weights), 2)
-        weights = np.add.reduceat(self.weights, kept)
         rows = (3 * kept[:, None] + np.arange(3)).ravel()
-        law: Any = self.law
+        law = self.law
+        at = {name: getattr(law, name)[kept] for name in ("onset", "k_n", "k_t", "gap")}
         return replace(
-            self, weights=weights, relative=self.relative[rows], rest=self.rest[kept], law=law.at(kept)
+            self,
+            weights=np.add.reduceat(self.weights, kept),
+            relative=self.relative[rows],
+            rest=self.rest[kept],
+            law=replace(law, **at),
         )
 
 
@@ -103,15 +74,12 @@ class SlipForces:
 
     force: Array
     stiffness: Array | None
-    cycles: tuple[LocalCycle, ...]
+    cycles: tuple[Cycle, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
 class SlipModel:
-    """Stiffness [N/m] and mass [kg] (m, m) of the parts in a basis, without the joints, and the joints in it.
-
-    extra (m, m) [N/m]: stiffness beside the laws, such as that of points that `halved` has left out.
-    """
+    """Stiffness [N/m] and mass [kg] (m, m) of the parts in a basis, without the joints, and the joints in it."""
 
     stiffness: Array
     mass: Array
@@ -158,12 +126,13 @@ class SlipModel:
                 jacobian[k, :, k, :] = self.stiffness
         cycles = []
         for joint in self.joints:
-            cycle = joint.law.cycle(joint.motion(coordinates), derivative=derivative, samples=samples)
+            cycle = joint.cycle(coordinates, derivative=derivative, samples=samples)
             traction = cycle.traction.copy()
             traction[0] -= joint.at_rest[0]
             traction *= joint.weights[:, None]
             force = force + traction.reshape(count, -1) @ joint.relative
             if jacobian is not None:
+                assert cycle.derivative is not None
                 _add_projected(jacobian, joint, cycle.derivative)
             cycles.append(cycle)
         full = None if jacobian is None else jacobian.reshape(count * size, count * size)
