@@ -1,0 +1,347 @@
+"""March of sliders under a moving normal load: quasi-static steps, and steady cycles in Fourier coefficients.
+
+A slider is a spring of stiffness k_t whose end is dragged along when its stretch reaches its limit. The limit is
+`reach` times the approach beyond the slider's onset, so that it follows the normal load; a slider that opens drops its
+shear. A step that goes beyond the limit is returned radially (implicit return mapping in two directions).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.typing import Array, Index, Mask
+
+BLOCK = 4096  # sliders marched together, so that the work stays in the cache
+ROUNDS = 2  # of the cycle: the first forgets the start, the second is read
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sliders:
+    """One-sided springs with sliders, s at each of q points; all arrays (q, s).
+
+    onset: approach at which each closes [m]; k_n, k_t [Pa/m]; reach: greatest stretch over the closing beyond the
+    onset [-].
+    """
+
+    onset: Array
+    k_n: Array
+    k_t: Array
+    reach: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class SliderState:
+    """Where the sliders are: tangential motion slip (q, 2) [m] and stretch (q, s, 2) [m]."""
+
+    slip: Array
+    stretch: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cycle:
+    """A steady cycle of q points with harmonics 0 to H.
+
+    traction (1 + 2H, q, 3) [Pa]: coefficients of mean, cos 1, sin 1, cos 2, ...; derivative (q, 3(1+2H), 3(1+2H))
+    [Pa/m] of the traction's coefficients by those of the motion, harmonic first, None where not asked for; dissipated
+    (q,) [J/m2] in a cycle; slipping (q,): share of the limits of all springs that touch whose spring slides [-];
+    open (q,): whether the point opens at any time.
+    """
+
+    traction: Array
+    derivative: Array | None
+    dissipated: Array
+    slipping: Array
+    open: Mask
+
+
+def fourier(harmonics: int, samples: int) -> tuple[Array, Array]:
+    """Matrices (samples, 1 + 2H) and (1 + 2H, samples) from coefficients to a cycle, and back."""
+    if samples < 2 * harmonics + 2:
+        raise InputError(
+            f"samples: {samples} cannot resolve {harmonics} harmonics; give at least {2 * harmonics + 2}, better 64"
+        )
+    phase = 2 * np.pi * np.arange(samples) / samples
+    waves = [np.ones(samples)]
+    for h in range(1, harmonics + 1):
+        waves += [np.cos(h * phase), np.sin(h * phase)]
+    to_time = np.stack(waves, axis=1)
+    back = to_time.T * (2 / samples)
+    back[0] /= 2
+    return to_time, back
+
+
+def advance(sliders: Sliders, state: SliderState, slip: Array, approach: Array) -> tuple[SliderState, Array, Array]:
+    """Take one quasi-static step.
+
+    Args:
+        sliders: (q, s).
+        state: before the step.
+        slip: tangential motion (q, 2) [m] after the step.
+        approach: (q,) [m] after the step.
+
+    Returns:
+        The state after it, the traction (q, 3) [Pa] = (minus pressure, shear) and its derivative (q, 3, 3) [Pa/m] by
+        the motion (opening, slip).
+    """
+    depth = approach[:, None] - sliders.onset
+    shut = depth > 0
+    limit = np.where(shut, sliders.reach * depth, 0.0)
+    trial = state.stretch + (slip - state.slip)[:, None, :]
+    size = np.linalg.norm(trial, axis=2)
+    slides = size > limit
+    along = trial / np.where(size > 0, size, 1.0)[:, :, None]
+    left = np.where(slides, limit / np.where(size > 0, size, 1.0), 1.0)
+    stretch = trial * left[:, :, None]
+    k_t = np.where(shut, sliders.k_t, 0.0)
+
+    traction = np.empty((len(slip), 3))
+    traction[:, 0] = -np.sum(np.where(shut, sliders.k_n * depth, 0.0), axis=1)
+    traction[:, 1:] = np.einsum("qs,qsi->qi", k_t, stretch)
+    tangent = np.zeros((len(slip), 3, 3))
+    tangent[:, 0, 0] = np.sum(np.where(shut, sliders.k_n, 0.0), axis=1)
+    dragged = np.where(slides, k_t * left, 0.0)
+    tangent[:, 1:, 1:] = np.sum(k_t * left, axis=1)[:, None, None] * np.eye(2)
+    tangent[:, 1:, 1:] -= np.einsum("qs,qsi,qsj->qij", dragged, along, along)
+    tangent[:, 1:, 0] = -np.einsum("qs,qsi->qi", np.where(slides & shut, k_t * sliders.reach, 0.0), along)
+    return SliderState(slip=slip, stretch=stretch), traction, tangent
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """A cycle in time: slip (samples, q, 2), approach (samples, q), with the Fourier matrices."""
+
+    coefficients: Array
+    gap: Array
+    to_time: Array
+    back: Array
+    slip: tuple[Array, Array]
+    approach: Array
+
+
+def _in_time(coefficients: Array, gap: Array, samples: int) -> _Motion:
+    to_time, back = fourier((len(coefficients) - 1) // 2, samples)
+    opening, first, second = (to_time @ np.ascontiguousarray(coefficients[:, :, i]) for i in range(3))
+    return _Motion(coefficients, gap, to_time, back, (first, second), -(opening + gap))
+
+
+def steady(
+    sliders: Sliders,
+    start: SliderState,
+    coefficients: Array,
+    *,
+    gap: Array,
+    samples: int = 64,
+    derivative: bool = True,
+) -> Cycle:
+    """March sliders from `start` round a cycle until it repeats itself, and transform it.
+
+    Springs that stay shut or open throughout, and sliders that cannot slip, are linear and taken in closed form.
+
+    Args:
+        sliders: (q, s).
+        start: state from which the sliders set out.
+        coefficients: of the motion (1 + 2H, q, 3) [m]: opening and two slips; mean, cos 1, sin 1, cos 2, ...
+        gap: (q,) [m]; approach is minus (opening + gap).
+        samples: instants in the cycle; the error falls with their square.
+        derivative: whether it is asked for.
+    """
+    motion = _in_time(coefficients, gap, samples)
+    count, q, _ = coefficients.shape
+    answer = _Answer(
+        traction=np.zeros((count, q, 3)),
+        derivative=np.zeros((q, count, 3, count, 3)) if derivative else None,
+        slid=np.zeros(q),
+    )
+    least, greatest = motion.approach.min(axis=0), motion.approach.max(axis=0)
+    _normal(sliders, motion, least, greatest, answer)
+    moved = np.sqrt(np.max(sum((u - start.slip[:, i]) ** 2 for i, u in enumerate(motion.slip)), axis=0))
+    stays = np.linalg.norm(start.stretch, axis=2) + moved[:, None] <= sliders.reach * (least[:, None] - sliders.onset)
+    _stuck(sliders, start, motion, stays, answer)
+    active = ~stays & (greatest[:, None] > sliders.onset) & (sliders.k_t > 0)
+    for points in _blocks(active.sum(axis=1)):
+        _march(sliders, start, motion, points, active, answer)
+    touch = sliders.k_n * np.maximum(greatest[:, None] - sliders.onset, 0.0)
+    total = touch.sum(axis=1)
+    return Cycle(
+        traction=answer.traction,
+        derivative=None if answer.derivative is None else answer.derivative.reshape(q, 3 * count, 3 * count),
+        dissipated=_loop_area(coefficients, answer.traction),
+        slipping=answer.slid / np.where(total > 0, total, 1.0),
+        open=least <= np.where(sliders.k_n > 0, sliders.onset, np.inf).min(axis=1),
+    )
+
+
+@dataclass
+class _Answer:
+    """What is summed over springs: traction (1+2H, q, 3), its derivative (q, 1+2H, 3, 1+2H, 3), limits that slid."""
+
+    traction: Array
+    derivative: Array | None
+    slid: Array
+
+
+def _loop_area(motion: Array, traction: Array) -> Array:
+    """Work per cycle (q,) of a traction on a motion: pi times the sum of h (t_sin u_cos - ...), exact for harmonics."""
+    area = np.zeros(motion.shape[1])
+    for h in range(1, (len(motion) + 1) // 2):
+        cos, sin = 2 * h - 1, 2 * h
+        area += np.pi * h * np.sum(traction[cos] * motion[sin] - traction[sin] * motion[cos], axis=1)
+    return area
+
+
+def _normal(sliders: Sliders, motion: _Motion, least: Array, greatest: Array, answer: _Answer) -> None:
+    """Add the pressure: springs shut throughout in closed form, those that open and shut in time."""
+    onset, k_n = sliders.onset, sliders.k_n
+    shut = onset <= least[:, None]
+    stiffness = np.sum(np.where(shut, k_n, 0.0), axis=1)
+    answer.traction[:, :, 0] += stiffness * motion.coefficients[:, :, 0]
+    answer.traction[0, :, 0] += stiffness * motion.gap + np.sum(np.where(shut, k_n * onset, 0.0), axis=1)
+    if answer.derivative is not None:
+        for a in range(len(motion.coefficients)):
+            answer.derivative[:, a, 0, a, 0] += stiffness
+    points, which = np.nonzero(~shut & (onset < greatest[:, None]) & (k_n > 0))
+    if not points.size:
+        return
+    for part in np.array_split(np.arange(points.size), max(1, points.size // BLOCK)):
+        owner, first = np.unique(points[part], return_index=True)
+        depth = motion.approach[:, points[part]] - onset[points[part], which[part]]
+        k = k_n[points[part], which[part]]
+        force = np.add.reduceat(k * np.maximum(depth, 0.0), first, axis=1)
+        answer.traction[:, owner, 0] -= motion.back @ force
+        if answer.derivative is not None:
+            tangent = np.add.reduceat(np.where(depth > 0, k, 0.0), first, axis=1)
+            found = np.einsum("at,tq,tb->qab", motion.back, tangent, motion.to_time, optimize=True)
+            answer.derivative[owner, :, 0, :, 0] += found
+
+
+def _stuck(sliders: Sliders, start: SliderState, motion: _Motion, stays: Mask, answer: _Answer) -> None:
+    """Add the shear of sliders that never slip."""
+    k = np.where(stays, sliders.k_t, 0.0)
+    total = k.sum(axis=1)
+    answer.traction[:, :, 1:] += total[:, None] * motion.coefficients[:, :, 1:]
+    answer.traction[0, :, 1:] += np.einsum("qs,qsi->qi", k, start.stretch) - total[:, None] * start.slip
+    if answer.derivative is not None:
+        for a in range(len(motion.coefficients)):
+            for i in (1, 2):
+                answer.derivative[:, a, i, a, i] += total
+
+
+def _blocks(counts: Index) -> Iterator[Index]:
+    """Groups of points of which each has sliders to march, about BLOCK sliders in a group."""
+    points = np.flatnonzero(counts)
+    if points.size:
+        group = np.cumsum(counts[points]) // BLOCK
+        yield from np.split(points, np.flatnonzero(np.diff(group)) + 1)
+
+
+def _march(sliders: Sliders, start: SliderState, motion: _Motion, points: Index, active: Mask, answer: _Answer) -> None:
+    """March the active sliders of some points, and add what they carry."""
+    local, which = np.nonzero(active[points])
+    owner = points[local]
+    first = np.flatnonzero(np.diff(local, prepend=-1))
+    k, reach, onset = sliders.k_t[owner, which], sliders.reach[owner, which], sliders.onset[owner, which]
+    depth = np.maximum(motion.approach[:, owner] - onset, 0.0)
+    limit = reach * depth
+    square = limit * limit
+    slip = [u[:, owner] for u in motion.slip]
+    anchor = [start.slip[owner, i] - start.stretch[owner, which, i] for i in range(2)]
+    memory = None if answer.derivative is None else _Memory.start(motion.to_time, k, reach, local, first)
+    slid = np.zeros(len(owner), dtype=bool)
+    shear = np.empty((2, len(limit), len(points)))
+    for turn in range(ROUNDS):
+        last = turn == ROUNDS - 1
+        for t in range(len(limit)):
+            one, two = slip[0][t] - anchor[0], slip[1][t] - anchor[1]
+            size = one * one + two * two
+            slides = np.flatnonzero(size > square[t])
+            if slides.size:
+                x, y, size = one[slides], two[slides], np.sqrt(size[slides])
+                left = limit[t, slides] / size
+                one[slides], two[slides] = x * left, y * left
+                anchor[0][slides] += x * (1 - left)
+                anchor[1][slides] += y * (1 - left)
+                if memory is not None:
+                    memory.slide(t, slides, np.stack([x, y]) / size, left, depth[t, slides] > 0)
+            if last:
+                slid[slides] = True
+                shear[0, t], shear[1, t] = (np.add.reduceat(k * e, first) for e in (one, two))
+                if memory is not None:
+                    memory.read(t)
+    answer.traction[:, points, 1] += motion.back @ shear[0]
+    answer.traction[:, points, 2] += motion.back @ shear[1]
+    touch = sliders.k_n[owner, which] * depth.max(axis=0)
+    answer.slid[points] += np.add.reduceat(np.where(slid, touch, 0.0), first)
+    if memory is not None:
+        assert answer.derivative is not None
+        found = memory.coefficients(motion.back)
+        answer.derivative[points, :, 1:] += found
+
+
+@dataclass
+class _Memory:
+    """Derivatives of the anchors by the coefficients of the motion.
+
+    A slider's stretch is slip minus anchor. The anchor moves only while it slides, so its derivative does; summed over
+    the sliders of a point with their stiffness, it is kept as `total`. Layout (2, sliders, 3(1+2H)).
+    """
+
+    to_time: Array
+    k: Array
+    reach: Array
+    local: Index
+    anchor: Array
+    total: Array
+    history: Array
+    stiffness: Array
+
+    @classmethod
+    def start(cls, to_time: Array, k: Array, reach: Array, local: Index, first: Index) -> "_Memory":
+        samples, count = to_time.shape
+        return cls(
+            to_time=to_time,
+            k=k,
+            reach=reach,
+            local=local,
+            anchor=np.zeros((2, len(k), count, 3)),
+            total=np.zeros((2, len(first), count, 3)),
+            history=np.empty((samples, 2, len(first), count, 3)),
+            stiffness=np.add.reduceat(k, first),
+        )
+
+    def slide(self, t: int, which: Index, along: Array, left: Array, shut: Mask) -> None:
+        """Sliders `which` are dragged: stretch = limit(approach) n, n the direction (2, m) of the trial stretch."""
+        now = self.to_time[t]
+        old = self.anchor[:, which]
+        trial = -old
+        trial[0, :, :, 1] += now
+        trial[1, :, :, 2] += now
+        across = -along[1][:, None, None] * trial[0] + along[0][:, None, None] * trial[1]
+        across *= left[:, None, None]
+        grows = np.where(shut, -self.reach[which], 0.0)[:, None] * now  # limit by the opening
+        new = np.empty_like(old)
+        new[0] = along[1][:, None, None] * across
+        new[1] = -along[0][:, None, None] * across
+        new[0, :, :, 0] -= along[0][:, None] * grows
+        new[1, :, :, 0] -= along[1][:, None] * grows
+        new[0, :, :, 1] += now
+        new[1, :, :, 2] += now
+        self.anchor[:, which] = new
+        change = (new - old) * self.k[which][:, None, None]
+        owner = self.local[which]
+        first = np.flatnonzero(np.diff(owner, prepend=-1))
+        self.total[:, owner[first]] += np.add.reduceat(change, first, axis=1)
+
+    def read(self, t: int) -> None:
+        """Keep the derivative of the anchors' forces at an instant."""
+        self.history[t] = self.total
+
+    def coefficients(self, back: Array) -> Array:
+        """Derivative of the shear's coefficients (points, 1+2H, 2, 1+2H, 3) [Pa/m]."""
+        samples, count = self.to_time.shape
+        found = -(back @ self.history.reshape(samples, -1)).reshape(count, 2, -1, count, 3)
+        for a in range(count):
+            for i in range(2):
+                found[a, i, :, a, 1 + i] += self.stiffness
+        return np.moveaxis(found, 2, 0)
