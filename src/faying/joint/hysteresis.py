@@ -252,6 +252,8 @@ def _march(sliders: Sliders, start: SliderState, motion: _Motion, points: Index,
     shear = np.empty((2, len(limit), len(points)))
     for turn in range(ROUNDS):
         last = turn == ROUNDS - 1
+        if last and memory is not None:
+            memory.listen()
         for t in range(len(limit)):
             one, two = slip[0][t] - anchor[0], slip[1][t] - anchor[1]
             size = one * one + two * two
@@ -263,7 +265,7 @@ def _march(sliders: Sliders, start: SliderState, motion: _Motion, points: Index,
                 anchor[0][slides] += x * (1 - left)
                 anchor[1][slides] += y * (1 - left)
                 if memory is not None:
-                    memory.slide(t, slides, np.stack([x, y]) / size, left, depth[t, slides] > 0)
+                    memory.slide(t, slides, (x / size, y / size), left, depth[t, slides] > 0)
             if last:
                 slid[slides] = True
                 shear[0, t], shear[1, t] = (np.add.reduceat(k * e, first) for e in (one, two))
@@ -281,67 +283,73 @@ def _march(sliders: Sliders, start: SliderState, motion: _Motion, points: Index,
 
 @dataclass
 class _Memory:
-    """Derivatives of the anchors by the coefficients of the motion.
+    """Derivatives of the anchors (2, 3, 1+2H, sliders) by the coefficients of opening and of both slips.
 
-    A slider's stretch is slip minus anchor. The anchor moves only while it slides, so its derivative does; summed over
-    the sliders of a point with their stiffness, it is kept as `total`. Layout (2, sliders, 3(1+2H)).
+    A slider's stretch is slip minus anchor. The anchor moves only while it slides, so its derivative does.
     """
 
     to_time: Array
     k: Array
     reach: Array
     local: Index
+    first: Index
     anchor: Array
-    total: Array
-    history: Array
-    stiffness: Array
+    total: Array | None = None
+    history: Array | None = None
 
     @classmethod
     def start(cls, to_time: Array, k: Array, reach: Array, local: Index, first: Index) -> "_Memory":
-        samples, count = to_time.shape
-        return cls(
-            to_time=to_time,
-            k=k,
-            reach=reach,
-            local=local,
-            anchor=np.zeros((2, len(k), count, 3)),
-            total=np.zeros((2, len(first), count, 3)),
-            history=np.empty((samples, 2, len(first), count, 3)),
-            stiffness=np.add.reduceat(k, first),
-        )
+        """Return anchors that do not depend on the motion."""
+        anchor = np.zeros((2, 3, to_time.shape[1], len(k)))
+        return cls(to_time=to_time, k=k, reach=reach, local=local, first=first, anchor=anchor)
 
-    def slide(self, t: int, which: Index, along: Array, left: Array, shut: Mask) -> None:
-        """Sliders `which` are dragged: stretch = limit(approach) n, n the direction (2, m) of the trial stretch."""
-        now = self.to_time[t]
-        old = self.anchor[:, which]
-        trial = -old
-        trial[0, :, :, 1] += now
-        trial[1, :, :, 2] += now
-        across = -along[1][:, None, None] * trial[0] + along[0][:, None, None] * trial[1]
-        across *= left[:, None, None]
-        grows = np.where(shut, -self.reach[which], 0.0)[:, None] * now  # limit by the opening
+    def listen(self) -> None:
+        """From now on, keep the derivative of the forces that the anchors of a point hold together."""
+        self.total = np.add.reduceat(self.anchor * self.k, self.first, axis=-1)
+        self.history = np.empty((len(self.to_time), *self.total.shape))
+
+    def slide(self, t: int, which: Index, along: tuple[Array, Array], left: Array, shut: Mask) -> None:
+        """Sliders `which` are dragged along (n1, n2), the direction of the trial stretch, of which `left` is left.
+
+        Along it the stretch is the limit, whatever was before; across it the trial stretch shrinks by `left`.
+        """
+        now = self.to_time[t][:, None]
+        n1, n2 = along
+        old = self.anchor.take(which, axis=-1)
+        across = n1 * old[1]
+        across -= n2 * old[0]
+        across *= left
+        gone = 1 - left
+        across[1] -= (gone * n2) * now
+        across[2] += (gone * n1) * now
+        limit = np.where(shut, self.reach[which], 0.0)
+        held = limit * now, n1 * now, n2 * now
         new = np.empty_like(old)
-        new[0] = along[1][:, None, None] * across
-        new[1] = -along[0][:, None, None] * across
-        new[0, :, :, 0] -= along[0][:, None] * grows
-        new[1, :, :, 0] -= along[1][:, None] * grows
-        new[0, :, :, 1] += now
-        new[1, :, :, 2] += now
-        self.anchor[:, which] = new
-        change = (new - old) * self.k[which][:, None, None]
-        owner = self.local[which]
-        first = np.flatnonzero(np.diff(owner, prepend=-1))
-        self.total[:, owner[first]] += np.add.reduceat(change, first, axis=1)
+        np.multiply(across, -n2, out=new[0])
+        np.multiply(across, n1, out=new[1])
+        for i in range(3):
+            new[0, i] += n1 * held[i]
+            new[1, i] += n2 * held[i]
+        self.anchor[..., which] = new
+        if self.total is not None:
+            owner = self.local[which]
+            first = np.flatnonzero(np.diff(owner, prepend=-1))
+            new -= old
+            new *= self.k[which]
+            self.total[..., owner[first]] += np.add.reduceat(new, first, axis=-1)
 
     def read(self, t: int) -> None:
-        """Keep the derivative of the anchors' forces at an instant."""
+        """Note the derivative at an instant."""
+        assert self.history is not None
         self.history[t] = self.total
 
     def coefficients(self, back: Array) -> Array:
         """Derivative of the shear's coefficients (points, 1+2H, 2, 1+2H, 3) [Pa/m]."""
+        assert self.history is not None
         samples, count = self.to_time.shape
-        found = -(back @ self.history.reshape(samples, -1)).reshape(count, 2, -1, count, 3)
+        found = -(back @ self.history.reshape(samples, -1)).reshape(count, 2, 3, count, -1)
+        stiffness = np.add.reduceat(self.k, self.first)
         for a in range(count):
             for i in range(2):
-                found[a, i, :, a, 1 + i] += self.stiffness
-        return np.moveaxis(found, 2, 0)
+                found[a, i, 1 + i, a] += stiffness
+        return found.transpose(4, 0, 1, 3, 2)
