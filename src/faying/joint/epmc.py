@@ -27,9 +27,11 @@ from faying.typing import Array
 
 PER_DECADE = 6.0  # points of the curve
 SHORTEST = 1 / 16  # of a step, below which the continuation gives up
-TOLERANCE = 1e-8  # of the residual over the elastic forces of the mode
+TOLERANCE = 1e-7  # of the residual over the elastic forces of the mode
 MOST_STEPS = 25  # Newton steps of a point
-FAST = 0.25  # fall of the residual from one step to the next with which an old derivative is kept
+FAST = 0.3  # fall of the residual from one step to the next with which an old derivative is kept
+COARSER = 4  # times fewer instants for the derivative
+NEAR = 2e-3  # of the last level: nearer than that a curve has reached its end
 OTHER_MODES = 0.2  # share of other modes in the motion above which it is no longer the mode's
 ALL_SLIDING = 0.98  # share of the limit of friction that slides, above which the joint holds no more
 
@@ -145,22 +147,19 @@ class Epmc:
         Raises NotConverged where Newton stops short.
         """
         z = self._predicted(amplitude, known or [self.first()])
-        old, lu, size = np.inf, None, np.inf
+        old, size = np.inf, np.inf
+        step: _Accelerated | None = None
         for _ in range(MOST_STEPS):
-            fresh = lu is None
-            left, forces = self._residual(z, amplitude, derivative=fresh)
+            left, forces = self._residual(z, amplitude)
             size = float(np.abs(left / self._scales).max())
             if size < self.tolerance:
                 return self._point(z, amplitude, forces)
             if not np.isfinite(size) or size > 1e6:
                 break
-            if not fresh and size > FAST * old:
-                lu = None
-                continue
-            if lu is None:
-                lu = self._factored(z, amplitude, forces)
+            if step is None or size > FAST * old:
+                step = _Accelerated(self._factored(z, amplitude))
             old = size
-            z = z - lu(left)
+            z = step(z, left)
         raise NotConverged(f"backbone: at the modal amplitude {amplitude:.3g} a residual of {size:.1e} is left")
 
     def follow(
@@ -194,7 +193,7 @@ class Epmc:
                 ended = self._ended(last, high)
                 if ended is not None:
                     return EpmcCurve(points=tuple(points), code=ended[0], reason=ended[1])
-                amplitude = last.amplitude * min(step, max(high / last.level, 1.0) * (1 + 1e-9))
+                amplitude = last.amplitude * min(step, self._to_end(points, high))
             else:
                 amplitude = low / self.level_of(1.0)
             try:
@@ -214,7 +213,7 @@ class Epmc:
                 return EpmcCurve(points=tuple(points), code="basis", reason=said)
 
     def _ended(self, last: EpmcPoint, high: float) -> tuple[str, str] | None:
-        if last.level >= high * (1 - 1e-3):
+        if last.level >= high * (1 - NEAR):
             return "amplitude", "the amplitude that was asked for is reached"
         if last.other_modes > OTHER_MODES:
             return "other-modes", f"other modes make {last.other_modes:.0%} of the motion, which is no longer this mode's"
@@ -223,6 +222,14 @@ class Epmc:
         if last.open >= 1:
             return "open", "the joint opens wholly in every cycle"
         return None
+
+    def _to_end(self, points: Sequence[EpmcPoint], high: float) -> float:
+        """Factor of the amplitude that leads to the last level, as the last two points go."""
+        slope = 1.0
+        if len(points) > 1:
+            before, last = points[-2:]
+            slope = np.log(last.level / before.level) / np.log(last.amplitude / before.amplitude)
+        return float((high / points[-1].level) ** (1 / np.clip(slope, 0.3, 2.0)))
 
     @cached_property
     def _scales(self) -> Array:
@@ -254,10 +261,10 @@ class Epmc:
             total += np.prod((here - others) / (x[k] - others)) * self._packed(point)
         return total
 
-    def _residual(self, z: Array, amplitude: float, *, derivative: bool) -> tuple[Array, SlipForces]:
+    def _residual(self, z: Array, amplitude: float) -> tuple[Array, SlipForces]:
         w0, size = self.linear_frequency, len(self.model.mass)
         Y, (rate, zeta) = z[:-2].reshape(-1, size), z[-2:]
-        forces = self._modal.forces(amplitude * Y, derivative=derivative, samples=self.samples)
+        forces = self._modal.forces(amplitude * Y, derivative=False, samples=self.samples)
         left = forces.force / (amplitude * w0**2)
         for h in range(1, self.harmonics + 1):
             c, s = 2 * h - 1, 2 * h
@@ -266,12 +273,14 @@ class Epmc:
         norm = float(Y[1] @ Y[1] + Y[2] @ Y[2]) - 1
         return np.concatenate([left.ravel(), [norm, Y[2, self.mode]]]), forces
 
-    def _factored(self, z: Array, amplitude: float, forces: SlipForces) -> Callable[[Array], Array]:
-        """Solver of the equations linearised at z."""
+    def _factored(self, z: Array, amplitude: float) -> Callable[[Array], Array]:
+        """Solver of the equations linearised at z, with the derivative from fewer instants: it only has to lead on."""
         from scipy.linalg import lu_factor, lu_solve
 
         w0, size = self.linear_frequency, len(self.model.mass)
         Y, (rate, zeta) = z[:-2].reshape(-1, size), z[-2:]
+        samples = max(self.samples // COARSER, 4 * self.harmonics + 4)
+        forces = self._modal.forces(amplitude * Y, derivative=True, samples=samples)
         assert forces.stiffness is not None
         n = len(z)
         J = np.zeros((n, n))
@@ -316,3 +325,23 @@ class Epmc:
             opening=tuple(np.asarray(cycle.open, dtype=float) for cycle in forces.cycles),
             dissipated=tuple(np.asarray(cycle.dissipated, dtype=float) for cycle in forces.cycles),
         )
+
+
+class _Accelerated:
+    """Newton's iteration with the derivative kept, accelerated by the steps before (Anderson)."""
+
+    def __init__(self, solver: Callable[[Array], Array]) -> None:
+        self.solver = solver
+        self.places: list[Array] = []
+        self.steps: list[Array] = []
+
+    def __call__(self, z: Array, left: Array) -> Array:
+        """The next iterate, from the residual at z."""
+        self.places.append(z)
+        self.steps.append(-self.solver(left))
+        step = self.steps[-1]
+        if len(self.steps) == 1:
+            return z + step
+        moved, changed = (np.diff(np.array(rows), axis=0).T for rows in (self.places, self.steps))
+        weights, *_ = np.linalg.lstsq(changed, step, rcond=None)
+        return np.asarray(z + step - (moved + changed) @ weights)
