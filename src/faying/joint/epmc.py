@@ -26,6 +26,7 @@ from faying.joint.slip_model import SlipForces, SlipModel, share
 from faying.typing import Array
 
 PER_DECADE = 6.0  # points of the curve
+LEAD_IN = 4  # decades below the first level that a curve may start
 SHORTEST = 1 / 16  # of a step, below which the continuation gives up
 TOLERANCE = 1e-7  # of the residual over the elastic forces of the mode
 MOST_STEPS = 25  # Newton steps of a point
@@ -185,22 +186,19 @@ class Epmc:
         Raises:
             NotConverged: Not even the first point is found.
         """
-        points = list(known)
+        points, said = list(known), None
+        if not points:
+            points = [self._led_in(low)]
+            said = None if keep is None else keep(points[0])
         step = longest = float(10 ** (1 / per_decade))
         while True:
-            if points:
-                last = points[-1]
-                ended = self._ended(last, high)
-                if ended is not None:
-                    return EpmcCurve(points=tuple(points), code=ended[0], reason=ended[1])
-                amplitude = last.amplitude * min(step, self._to_end(points, high))
-            else:
-                amplitude = low / self.level_of(1.0)
+            last = points[-1]
+            ended = ("basis", said) if said else self._ended(last, high)
+            if ended is not None:
+                return EpmcCurve(points=tuple(points), code=ended[0], reason=ended[1])
             try:
-                point = self.solve(amplitude, points[-3:])
+                point = self.solve(last.amplitude * min(step, self._to_end(points, high)), points[-3:])
             except NotConverged as fault:
-                if not points:
-                    raise
                 step = step**0.5
                 if np.log(step) < SHORTEST * np.log(longest):
                     reason = f"no periodic motion is found beyond {points[-1].level:.3g}: {fault}"
@@ -209,14 +207,23 @@ class Epmc:
             points.append(point)
             step = min(longest, step**1.5)
             said = None if keep is None else keep(point)
-            if said:
-                return EpmcCurve(points=tuple(points), code="basis", reason=said)
+
+    def _led_in(self, low: float) -> EpmcPoint:
+        """The first point, or one decades below where the linear limit is too far from it."""
+        for decades in range(LEAD_IN + 1):
+            try:
+                return self.solve(low / 10**decades / self.level_of(1.0))
+            except NotConverged:
+                if decades == LEAD_IN:
+                    raise
+        raise AssertionError
 
     def _ended(self, last: EpmcPoint, high: float) -> tuple[str, str] | None:
         if last.level >= high * (1 - NEAR):
             return "amplitude", "the amplitude that was asked for is reached"
         if last.other_modes > OTHER_MODES:
-            return "other-modes", f"other modes make {last.other_modes:.0%} of the motion, which is no longer this mode's"
+            text = f"other modes make {last.other_modes:.0%} of the motion, which is no longer this mode's"
+            return "other-modes", text
         if last.slipping > self.most_sliding:
             return "all-slipping", f"{last.slipping:.0%} of the joint slides in every cycle; it holds no more"
         if last.open >= 1:
@@ -320,7 +327,7 @@ class Epmc:
             level=float(level),
             other_modes=float(np.sqrt((others**2).sum() + (harmonics**2).sum())),
             slipping=share([cycle.slipping for cycle in forces.cycles], joints),
-            open=share([cycle.open for cycle in forces.cycles], joints),
+            open=share([np.asarray(cycle.open, dtype=float) for cycle in forces.cycles], joints),
             sliding=tuple(np.asarray(cycle.slipping, dtype=float) for cycle in forces.cycles),
             opening=tuple(np.asarray(cycle.open, dtype=float) for cycle in forces.cycles),
             dissipated=tuple(np.asarray(cycle.dissipated, dtype=float) for cycle in forces.cycles),

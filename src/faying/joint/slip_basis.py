@@ -15,7 +15,7 @@ from faying.errors import InputError, NotConverged
 from faying.fe.interface import Interface
 from faying.fe.modes import Modes
 from faying.fe.nearby import nearby_modes
-from faying.joint.epmc import Epmc, EpmcPoint
+from faying.joint.epmc import ALL_SLIDING, OTHER_MODES, Epmc, EpmcPoint
 from faying.joint.equilibrium import PreloadState
 from faying.joint.microslip import Microslip
 from faying.joint.reduce import Basis
@@ -28,6 +28,7 @@ TANGENTIAL = (0.3, 0.1, 0.03, 0.01)  # of k_t: joints that slip
 NORMAL = (0.3, 0.1)  # of k_n: joints that open
 NEIGHBOURS = 2  # modes above the one wanted that are trained with softened joints, too
 ROUGH = 1e-3  # relative error of the squared frequencies of a softened joint: the residual sees to the rest
+NEARBY = 1e-9  # the same of modes under another preload
 SMALL = 1e-5  # of the energy of the vectors that a residual asks for: less is left out
 GOOD = 0.01  # residual, in energy, at which a basis is good: it errs by the square of that in frequency
 ENRICHMENTS = 8  # of one amplitude
@@ -67,12 +68,15 @@ class SlipBasis:
                 )
         self.stiffness, self.mass = structure.vibrating
         self.joined, _ = structure.joined(self.springs)
+        self.basis = self._empty()
+
+    def _empty(self) -> Basis:
         reference = (self.joined + self.modes.shift * self.mass).tocsr()
-        free = self.modes.shapes[:, :rigid]
-        self.basis = Basis(
+        free = self.modes.shapes[:, : self.structure.rigid_count]
+        return Basis(
             reference=reference,
             operators=(self.stiffness, self.mass),
-            traces=[joint.interface for joint in structure.joints],
+            traces=[joint.interface for joint in self.structure.joints],
             rigid=free,
             rigid_momentum=np.asarray(self.mass @ free),
         )
@@ -91,7 +95,6 @@ class SlipBasis:
         """Take the modes at rest and those with softened joints."""
         rigid = self.structure.rigid_count
         self.basis.add(self.modes.shapes[:, rigid:])
-        count = min(self.mode + NEIGHBOURS, self.modes.shapes.shape[1] - rigid)
         kinds = [("k_t", factor) for factor in TANGENTIAL] + [("k_n", factor) for factor in NORMAL]
         for name, factor in kinds:
             if report is not None:
@@ -100,15 +103,43 @@ class SlipBasis:
             stiffness, _ = self.structure.joined(softened)
             try:
                 _, shapes = nearby_modes(
-                    self.modes, stiffness, self.mass, rigid=rigid, count=count, tolerance=ROUGH
+                    self.modes, stiffness, self.mass, rigid=rigid, count=self._trained, tolerance=ROUGH
                 )
             except NotConverged:
                 continue  # too soft for these modes to go by; the residual tells whether that matters
             self.basis.add(shapes, least=SMALL * float(self._energy(self.shape)))
 
     def restore(self, vectors: Array) -> None:
-        """Take vectors (unknowns, m) that were a basis of the same structure before."""
-        self.basis.add(vectors)
+        """Take vectors (unknowns, m) that were the basis of the same structure before, as they are."""
+        self.basis.append(vectors)
+
+    def under(self, preload: PreloadState, springs: Sequence[Springs[Interface]]) -> "SlipBasis":
+        """The same structure under another preload, in the same basis."""
+        other = replace(self, preload=preload, springs=springs)
+        other.basis = self.basis
+        return other
+
+    def take_modes(self) -> None:
+        """Take the modes under this preload, where the factorisation is that under another."""
+        rigid = self.structure.rigid_count
+        _, shapes = nearby_modes(self.modes, self.joined, self.mass, rigid=rigid, count=self._trained, tolerance=NEARBY)
+        self.basis.add(shapes)
+
+    def modes_here(self) -> Modes:
+        """The modes under this preload, rigid motions first, with the factorisation that there is."""
+        rigid = self.structure.rigid_count
+        f, shapes = nearby_modes(self.modes, self.joined, self.mass, rigid=rigid, count=self.mode, tolerance=NEARBY)
+        free = slice(0, rigid)
+        return replace(
+            self.modes,
+            frequencies=np.concatenate([self.modes.frequencies[free], f]),
+            shapes=np.concatenate([self.modes.shapes[:, free], shapes], axis=1),
+        )
+
+    @property
+    def _trained(self) -> int:
+        """Elastic modes that are followed into softened joints."""
+        return min(self.mode + NEIGHBOURS, int(self.modes.shapes.shape[1]) - self.structure.rigid_count)
 
     def _energy(self, x: Array) -> Any:
         return np.einsum("i...,i...->...", x, self.basis.reference @ x)
@@ -121,9 +152,7 @@ class SlipBasis:
             joints.append(SlipJoint(weights=joint.interface.weights, relative=relative, rest=rest, law=law))
         return SlipModel(stiffness=self.basis.small[0], mass=self.basis.small[1], joints=tuple(joints))
 
-    def epmc(
-        self, laws: Sequence[Microslip], *, harmonics: int, samples: int, observer: Array | None = None
-    ) -> Epmc:
+    def epmc(self, laws: Sequence[Microslip], *, harmonics: int, samples: int, observer: Array | None = None) -> Epmc:
         """The curve of the mode; observer (unknowns,): what takes a displacement to the one observed [m]."""
         model = self.model(laws)
         _, shapes = model.modes
@@ -175,27 +204,32 @@ class SlipBasis:
         amplitudes: modal amplitudes that are looked at, from the curve at hand; where no motion is found, or nothing
         improves it, the training ends.
         """
-        worst, known = 0.0, []
+        worst = 0.0
+        known: list[EpmcPoint] = []
         first = self.epmc(laws, harmonics=1, samples=samples, observer=observer)
         for amplitude in amplitudes(first):
             error = np.inf
+            here: EpmcPoint | None = None
             for turn in range(ENRICHMENTS + 1):
                 epmc = self.epmc(laws, harmonics=1, samples=samples, observer=observer)
-                grown = [self._padded(point) for point in known[-2:]]
+                grown = [self._padded(point) for point in ([here] if here else known[-2:])]
                 try:
-                    point = epmc.solve(amplitude, grown)
+                    here = epmc.solve(amplitude, grown)
                 except NotConverged:
                     return worst
-                error, mend = self.residual(epmc, point)
+                error, mend = self.residual(epmc, here)
                 if report is not None:
                     report(f"basis: {self.basis.vectors.shape[1]} vectors, residual {error:.1e}")
                 if error < tolerance or turn == ENRICHMENTS:
                     break
-                size = float(self._energy(self.basis.vectors @ point.coordinates[1:3].T).sum())
+                size = float(self._energy(self.basis.vectors @ here.coordinates[1:3].T).sum())
                 if not self.basis.add(mend, least=(0.1 * tolerance) ** 2 * size):
                     break
             worst = max(worst, error)
-            known.append(point)
+            if here is not None and (here.slipping > ALL_SLIDING or here.other_modes > OTHER_MODES):
+                break
+            assert here is not None
+            known.append(here)
         return worst
 
     def _padded(self, point: EpmcPoint) -> EpmcPoint:
@@ -206,4 +240,3 @@ class SlipBasis:
     def rows(self, columns: Array) -> Array:
         """What functionals (unknowns, k) give of the coordinates (k, m)."""
         return np.asarray(columns.T @ self.basis.vectors)
-

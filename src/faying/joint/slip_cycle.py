@@ -126,7 +126,7 @@ class _Statics:
                 return
             matrix = np.zeros((len(x) + 1, len(x) + 1))
             matrix[:-1, :-1] = tangent
-            matrix[self.mode, -1] = -self.rate**2
+            matrix[self.mode, -1] = -(self.rate**2)
             matrix[-1, self.mode] = 1.0
             scales = np.append(scale, size)
             step = np.linalg.solve(matrix / scales[:, None], np.append(miss, short) / scales)

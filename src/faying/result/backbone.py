@@ -106,9 +106,11 @@ class Backbone:
     slipping: Array = variable("amplitude", unit="1", long_name="share of the joints' friction that slides in a cycle")
     open: Array = variable("amplitude", unit="1", long_name="share of the joints' area that opens in a cycle")
     other_modes: Array = variable("amplitude", unit="1", long_name="share of other modes and harmonics in the motion")
-    residual: Array = variable("amplitude", unit="1", long_name="what the cycle leaves in the full equations, in energy")
-    joint_slipping: Array = variable("amplitude", "joint", unit="1", long_name="share of each joint's friction that slides")
-    joint_open: Array = variable("amplitude", "joint", unit="1", long_name="share of each joint's area that opens")
+    residual: Array = variable("amplitude", unit="1", long_name="residual of the full equations, in energy")
+    joint_slipping: Array = variable(
+        "amplitude", "joint", unit="1", long_name="share of a joint's friction that slides"
+    )
+    joint_open: Array = variable("amplitude", "joint", unit="1", long_name="share of a joint's area that opens")
     energy: Array = variable("amplitude", "joint", unit="J", long_name="energy lost in each joint in a cycle")
     bolt_force: Array = variable("amplitude", "bolt", unit="N", long_name="amplitude of each bolt's force")
     slip_map: Array = variable("amplitude", "point", unit="1", long_name="share of the friction that slides")
@@ -263,9 +265,7 @@ class Backbone:
         """Write everything as NetCDF-4 that xarray opens; the file appears complete or not at all."""
         group = to_group(self)
         names = {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
-        labels = {
-            name: Variable(dims=(name,), values=np.array(values, dtype=object)) for name, values in names.items()
-        }
+        labels = {name: Variable(dims=(name,), values=np.array(values, dtype=object)) for name, values in names.items()}
         attributes = {"Conventions": "CF-1.11", **group.attributes}
         whole = Group(variables={**labels, **group.variables}, attributes=attributes, groups=group.groups)
         return netcdf.write(Path(path), whole)
