@@ -34,12 +34,14 @@ class Witness:
 
 @dataclass(frozen=True, kw_only=True)
 class ErrorBounds:
-    """What changes at the largest amplitude, relatively, when the computation is made coarser; NaN: not looked at.
+    """What changes, relatively, at an acceleration [m/s2] when the computation is made coarser; NaN: not looked at.
 
+    The acceleration is the largest of the curve at which the coarser computations have an answer.
     harmonics: {0, 1} in place of all; points: half of the joints' points; samples: half of the instants of a cycle.
     Damping is that of the joints alone. residual: the greatest of what the cycles leave in the full equations.
     """
 
+    acceleration: float = float("nan")
     harmonics_frequency: float = float("nan")
     harmonics_damping: float = float("nan")
     points_frequency: float = float("nan")
@@ -132,7 +134,9 @@ class Backbone:
             object.__setattr__(self, name, value)
 
     def __eq__(self, other: object) -> bool:
-        return same(to_group(self), to_group(other)) if type(other) is type(self) else False
+        return type(other) is type(self) and all(
+            same(getattr(self, f.name), getattr(other, f.name)) for f in fields(self)
+        )
 
     __hash__ = None  # type: ignore[assignment]
 

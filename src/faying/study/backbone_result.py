@@ -23,6 +23,7 @@ WITNESSES = 3  # amplitudes of the static cycle, from the last a factor 5 down e
 APART = 5.0
 STEPS = 16  # load steps from end to end
 DIFFERS = 0.02  # damping of the static cycle against the curve's from which there is a note
+TRIED = 3  # points at the end of the curve at which error bounds are looked for
 NOTED = 0.05  # error bound of damping from which there is a note
 
 
@@ -49,7 +50,7 @@ def collected(curve: Curve) -> Backbone:
     low = curve.choice.amplitude[0]
     first = next((k for k, p in enumerate(line.points) if p.level >= low * (1 - 1e-3)), len(line.points) - 1)
     points, residuals = line.points[first:], curve.residuals[first:]
-    bounds, witness = error_bounds(curve, points[-1]), _witness(curve, points)
+    bounds, witness = error_bounds(curve, points), _witness(curve, points)
     interfaces = [joint.interface for joint in structure.joints]
     row = curve.epmc.observer
     assert row is not None
@@ -120,10 +121,16 @@ def _bolt_forces(curve: Curve, points: Sequence[EpmcPoint]) -> Array:
     return np.asarray((cycles.max(axis=2) - cycles.min(axis=2)) / 2)
 
 
-def error_bounds(curve: Curve, last: EpmcPoint) -> ErrorBounds:
-    """What changes at the largest amplitude when the computation is made coarser."""
-    epmc = curve.epmc
+def error_bounds(curve: Curve, points: Sequence[EpmcPoint]) -> ErrorBounds:
+    """What changes at the largest amplitude when the computation is made coarser, or at one before where that fails."""
+    for last in points[: -TRIED - 1 : -1]:
+        found = _bounds_at(curve.epmc, last)
+        if np.isfinite(found.points_damping):
+            break
+    return found
 
+
+def _bounds_at(epmc: Epmc, last: EpmcPoint) -> ErrorBounds:
     def change(make: Callable[[], Epmc]) -> tuple[float, float]:
         try:
             other = make().solve(last.amplitude, [last])
@@ -137,6 +144,7 @@ def error_bounds(curve: Curve, last: EpmcPoint) -> ErrorBounds:
     samples = change(lambda: replace(epmc, samples=epmc.samples // 2))
     halved = change(lambda: replace(epmc, model=epmc.model.halved()))
     return ErrorBounds(
+        acceleration=last.level,
         harmonics_frequency=harmonics[0],
         harmonics_damping=harmonics[1],
         points_frequency=halved[0],
@@ -153,7 +161,7 @@ def _witness(curve: Curve, points: Sequence[EpmcPoint]) -> Witness | None:
     for k in nearest(levels, wanted):
         p = points[k]
         try:
-            found = static_cycle(curve.epmc.model, curve.epmc.mode, p.amplitude, steps=STEPS, rounds=1)
+            found = static_cycle(curve.epmc.model, curve.epmc.mode, p.amplitude, steps=STEPS)
         except NotConverged:
             continue
         change = found.damping / p.damping - 1 if p.damping > 0 else 0.0
@@ -189,7 +197,7 @@ def _notes(curve: Curve, bounds: ErrorBounds, witness: Witness | None) -> list[N
         ("half of the instants of a cycle", bounds.samples_damping),
     ):
         if abs(value) > NOTED:
-            text = f"at the largest amplitude {what} change the joints' damping by {value:+.0%}"
+            text = f"at {bounds.acceleration:.3g} m/s2 {what} change the joints' damping by {value:+.0%}"
             out.append(Note(code="backbone-bound", load=load, text=text))
     if curve.rest_damping == 0 and any(joint.law.predicts_loss for joint in case.structure.joints):
         text = (
