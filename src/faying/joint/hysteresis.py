@@ -9,12 +9,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from faying.errors import InputError
 from faying.typing import Array, Index, Mask
 
 BLOCK = 4096  # sliders marched together, so that the work stays in the cache
 ROUNDS = 2  # of the cycle: the first forgets the start, the second is read
+TINY = float(np.finfo(float).tiny)
+TOUCHES = 1e-9  # relative: a slider that comes back to its limit has not slid
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -244,9 +247,8 @@ def _march(sliders: Sliders, start: SliderState, motion: _Motion, points: Index,
     k, reach, onset = sliders.k_t[owner, which], sliders.reach[owner, which], sliders.onset[owner, which]
     depth = np.maximum(motion.approach[:, owner] - onset, 0.0)
     limit = reach * depth
-    square = limit * limit
-    slip = [u[:, owner] for u in motion.slip]
-    anchor = [start.slip[owner, i] - start.stretch[owner, which, i] for i in range(2)]
+    step = _steps(motion, start, owner)
+    one, two = (start.stretch[owner, which, i] for i in range(2))
     memory = None if answer.derivative is None else _Memory.start(motion.to_time, k, reach, local, first)
     slid = np.zeros(len(owner), dtype=bool)
     shear = np.empty((2, len(limit), len(points)))
@@ -255,19 +257,21 @@ def _march(sliders: Sliders, start: SliderState, motion: _Motion, points: Index,
         if last and memory is not None:
             memory.listen()
         for t in range(len(limit)):
-            one, two = slip[0][t] - anchor[0], slip[1][t] - anchor[1]
-            size = one * one + two * two
-            slides = np.flatnonzero(size > square[t])
-            if slides.size:
-                x, y, size = one[slides], two[slides], np.sqrt(size[slides])
-                left = limit[t, slides] / size
-                one[slides], two[slides] = x * left, y * left
-                anchor[0][slides] += x * (1 - left)
-                anchor[1][slides] += y * (1 - left)
-                if memory is not None:
-                    memory.slide(t, slides, (x / size, y / size), left, depth[t, slides] > 0)
+            one += step[0][turn, t]
+            two += step[1][turn, t]
+            size = one * one
+            size += two * two
+            np.sqrt(size, out=size)
+            left = limit[t] / np.maximum(size, TINY)
+            slides = left < 1
+            if memory is not None and slides.any():
+                memory.slide(t, np.flatnonzero(slides), (one, two), size, left, depth[t])
             if last:
-                slid[slides] = True
+                slid |= left < 1 - TOUCHES
+            np.minimum(left, 1.0, out=left)
+            one *= left
+            two *= left
+            if last:
                 shear[0, t], shear[1, t] = (np.add.reduceat(k * e, first) for e in (one, two))
                 if memory is not None:
                     memory.read(t)
@@ -281,11 +285,25 @@ def _march(sliders: Sliders, start: SliderState, motion: _Motion, points: Index,
         answer.derivative[points, :, 1:] += found
 
 
+def _steps(motion: _Motion, start: SliderState, owner: Index) -> tuple[Array, Array]:
+    """Moves of each slider's point in one direction, then the other (turns, samples, sliders) [m]."""
+    steps = []
+    for i, u in enumerate(motion.slip):
+        move = np.diff(u, axis=0, prepend=u[-1:])
+        moves = np.stack([move, move])
+        moves[0, 0] = u[0] - start.slip[:, i]
+        steps.append(moves[:, :, owner])
+    return steps[0], steps[1]
+
+
 @dataclass
 class _Memory:
-    """Derivatives of the anchors (2, 3, 1+2H, sliders) by the coefficients of opening and of both slips.
+    """Derivatives of the anchors by the coefficients of opening and of both slips.
 
-    A slider's stretch is slip minus anchor. The anchor moves only while it slides, so its derivative does.
+    A slider's stretch is slip minus anchor. The anchor moves only while it slides, so its derivative does. Along the
+    direction n of the last slide it depends on that instant alone: n times (reach, n1, n2) times the waves then. So
+    those parts are summed over the sliders of a point by instant, `held` (samples, 5, points). Across n it remembers
+    what was before: `across` (1+2H, 3, sliders), in single precision, with which Newton's method converges as fast.
     """
 
     to_time: Array
@@ -293,63 +311,94 @@ class _Memory:
     reach: Array
     local: Index
     first: Index
-    anchor: Array
-    total: Array | None = None
+    along: Array  # (3, sliders): n1, n2 and reach at the last slide; 0 before the first
+    when: Index
+    across: NDArray[np.float32]
+    held: Array | None = None
     history: Array | None = None
 
     @classmethod
     def start(cls, to_time: Array, k: Array, reach: Array, local: Index, first: Index) -> "_Memory":
         """Return anchors that do not depend on the motion."""
-        anchor = np.zeros((2, 3, to_time.shape[1], len(k)))
-        return cls(to_time=to_time, k=k, reach=reach, local=local, first=first, anchor=anchor)
+        return cls(
+            to_time=to_time,
+            k=k,
+            reach=reach,
+            local=local,
+            first=first,
+            along=np.zeros((3, len(k))),
+            when=np.zeros(len(k), dtype=np.int64),
+            across=np.zeros((to_time.shape[1], 3, len(k)), dtype=np.float32),
+        )
 
     def listen(self) -> None:
         """From now on, keep the derivative of the forces that the anchors of a point hold together."""
-        self.total = np.add.reduceat(self.anchor * self.k, self.first, axis=-1)
-        self.history = np.empty((len(self.to_time), *self.total.shape))
+        samples, count = self.to_time.shape
+        self.held = np.zeros((samples, 5, len(self.first)))
+        self.history = np.empty((samples, count, 2, 3, len(self.first)))
+        self._hold(np.arange(len(self.k)), self.along, 1.0)
 
-    def slide(self, t: int, which: Index, along: tuple[Array, Array], left: Array, shut: Mask) -> None:
-        """Sliders `which` are dragged along (n1, n2), the direction of the trial stretch, of which `left` is left.
+    def _hold(self, which: Index, along: Array, sign: float) -> None:
+        """Add or take away what sliders hold along their last slide: (n1 reach, n2 reach, n1 n1, n1 n2, n2 n2)."""
+        assert self.held is not None
+        n1, n2, reach = along
+        points = len(self.first)
+        place = self.when[which] * (5 * points) + self.local[which]
+        one, two = (sign * self.k[which] * n for n in (n1, n2))
+        for i, force in enumerate((one * reach, two * reach, one * n1, one * n2, two * n2)):
+            np.add.at(self.held.reshape(-1), place + i * points, force)
+
+    def slide(self, t: int, which: Index, trial: tuple[Array, Array], size: Array, left: Array, depth: Array) -> None:
+        """Sliders `which` are dragged along the trial stretch, of length `size`, of which `left` is left.
 
         Along it the stretch is the limit, whatever was before; across it the trial stretch shrinks by `left`.
         """
-        now = self.to_time[t][:, None]
-        n1, n2 = along
-        old = self.anchor.take(which, axis=-1)
-        across = n1 * old[1]
-        across -= n2 * old[0]
-        across *= left
+        size, left = size[which], left[which]
+        old, new = self.along.take(which, axis=1), np.empty((3, len(which)))
+        moves = size > 0  # an open slider that does not move has no direction: any will do, for nothing is left
+        new[0], new[1] = (e[which] / np.where(moves, size, 1.0) for e in trial)
+        new[0, ~moves] = 1.0
+        new[2] = np.where(depth[which] > 0, self.reach[which], 0.0)
+        waves = self.to_time.astype(np.float32)
+        now, then = waves[t][:, None], waves.T.take(self.when[which], axis=1)
+        turn = left * (new[0] * old[1] - new[1] * old[0])
         gone = 1 - left
-        across[1] -= (gone * n2) * now
-        across[2] += (gone * n1) * now
-        limit = np.where(shut, self.reach[which], 0.0)
-        held = limit * now, n1 * now, n2 * now
-        new = np.empty_like(old)
-        np.multiply(across, -n2, out=new[0])
-        np.multiply(across, n1, out=new[1])
-        for i in range(3):
-            new[0, i] += n1 * held[i]
-            new[1, i] += n2 * held[i]
-        self.anchor[..., which] = new
-        if self.total is not None:
-            owner = self.local[which]
-            first = np.flatnonzero(np.diff(owner, prepend=-1))
-            new -= old
-            new *= self.k[which]
-            self.total[..., owner[first]] += np.add.reduceat(new, first, axis=-1)
+        across = self.across.take(which, axis=-1)
+        across *= _single(left * (new[0] * old[0] + new[1] * old[1]))
+        for i, by in enumerate((old[2], old[0], old[1])):
+            across[:, i] += _single(turn * by) * then
+        across[:, 1] -= _single(gone * new[1]) * now
+        across[:, 2] += _single(gone * new[0]) * now
+        self.across[..., which] = across
+        if self.held is not None:
+            self._hold(which, old, -1.0)
+        self.along[:, which] = new
+        self.when[which] = t
+        if self.held is not None:
+            self._hold(which, new, 1.0)
 
     def read(self, t: int) -> None:
         """Note the derivative at an instant."""
+        assert self.held is not None
         assert self.history is not None
-        self.history[t] = self.total
+        samples, count = self.to_time.shape
+        held = (self.to_time.T @ self.held.reshape(samples, -1)).reshape(count, 5, -1)
+        now = self.history[t]
+        now[:, 0], now[:, 1] = held[:, [0, 2, 3]], held[:, [1, 3, 4]]
+        now[:, 0] -= np.add.reduceat(self.across * _single(self.k * self.along[1]), self.first, axis=-1)
+        now[:, 1] += np.add.reduceat(self.across * _single(self.k * self.along[0]), self.first, axis=-1)
 
     def coefficients(self, back: Array) -> Array:
         """Derivative of the shear's coefficients (points, 1+2H, 2, 1+2H, 3) [Pa/m]."""
         assert self.history is not None
         samples, count = self.to_time.shape
-        found = -(back @ self.history.reshape(samples, -1)).reshape(count, 2, 3, count, -1)
+        found = -(back @ self.history.reshape(samples, -1)).reshape(count, count, 2, 3, -1)
         stiffness = np.add.reduceat(self.k, self.first)
         for a in range(count):
             for i in range(2):
-                found[a, i, 1 + i, a] += stiffness
-        return found.transpose(4, 0, 1, 3, 2)
+                found[a, a, i, 1 + i] += stiffness
+        return found.transpose(4, 0, 2, 1, 3)
+
+
+def _single(values: Array) -> NDArray[np.float32]:
+    return values.astype(np.float32)
