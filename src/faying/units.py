@@ -20,6 +20,7 @@ EXAMPLES = {
     "Hz": "5 kHz",
     "rad": "30 deg",
     "N/m": "1 kN/mm",
+    "m/s^2": "10 m/s^2",
 }
 
 _PREFIXES = (
