@@ -1,4 +1,4 @@
-"""Small structures that slip: masses, springs and sliders with a constant normal force, in numbers that one can check."""
+"""Small structures that slip: masses, springs and sliders under a constant normal force."""
 
 import numpy as np
 

@@ -1,6 +1,7 @@
 """The extended periodic motion against closed forms, and against time integration of what it stands for."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -152,7 +153,7 @@ def test_ring_down_falls_as_the_curve_says():
         if before < 0 <= q[-1]:
             crossings.append(times[-2] + motion.step * before / (before - q[-1]))
     q, times = np.array(q), np.array(times)
-    for a, b in zip(crossings[3:-1], crossings[4:], strict=True):  # one period after another, past the transient
+    for a, b in pairwise(crossings[3:]):  # one period after another, past the transient
         inside = (times >= a) & (times < b)
         peaks.append((q[inside].max() - q[inside].min()) / 2)
     amplitude = np.array(peaks)
