@@ -168,7 +168,7 @@ def backbone(curve: Backbone) -> Rows:
             [
                 f"{level:.4g}",
                 f"{curve.frequency[k]:.3f}",
-                f"{100 * curve.damping[k]:.4f}",
+                f"{100 * curve.damping[k]:.3g}",
                 f"{curve.slipping[k]:.1%}",
                 f"{curve.open[k]:.1%}",
                 f"{curve.energy[k].sum():.3g}",
