@@ -18,6 +18,7 @@ from faying.result.result import Provenance
 from faying.typing import Array, Index
 
 DECAY = 200  # points of a ring-down
+SHORT = 1e-3  # step of the logarithm of the amplitude for the slope of the frequency
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -187,7 +188,8 @@ class Backbone:
     def ring_down(self, acceleration: float, time: float, *, points: int = DECAY) -> RingDown:
         """Free decay from an acceleration amplitude [m/s2] over a time [s].
 
-        The modal amplitude falls by dq/dt = -zeta(q) w(q) q, one mode alone.
+        One mode alone, by averaging: d(w q^2)/dt = -2 zeta w (w q^2) with w and zeta of the curve at q. Where the
+        frequency hardly changes that is dq/dt = -zeta w q.
         """
         self.at_acceleration(acceleration)
         q = float(np.exp(np.interp(np.log(acceleration), np.log(self.acceleration), np.log(self.modal_amplitude))))
@@ -196,8 +198,10 @@ class Backbone:
         times = np.linspace(0.0, time, points)
 
         def rate(log_q: float) -> float:
-            f, z = self._between(self.modal_amplitude, np.asarray(np.exp(log_q)))
-            return -float(z * 2 * np.pi * f)
+            near = np.exp(log_q + np.array([-SHORT, 0.0, SHORT]))
+            f, z = self._between(self.modal_amplitude, near)
+            bend = float(np.log(f[2] / f[0])) / (2 * SHORT)
+            return -float(z[1] * 2 * np.pi * f[1]) / (1 + bend / 2)
 
         logs = [float(np.log(q))]
         for step in np.diff(times):  # Runge-Kutta, whose steps are far shorter than the decay bends

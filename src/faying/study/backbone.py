@@ -123,7 +123,7 @@ def backbone(
         given = ", ".join(f"{value:g}" for value in choice.friction)
         raise InputError(f"[backbone] lists friction {given}: give one of them, or the list for a tuple of curves")
     curves = backbones(
-        study, choice, loads=[len(study.loads) - 1 if load is None else _load(study, load)], out=out, report=report
+        study, choice, loads=[len(study.loads) - 1 if load is None else load_index(study, load)], out=out, report=report
     )
     return curves if many else curves[0]
 
@@ -136,7 +136,8 @@ def chosen(study: Study, friction: float | Sequence[float] | None, asked: dict[s
     return replace(study.backbone or BackboneChoice(), **given)
 
 
-def _load(study: Study, load: float) -> int:
+def load_index(study: Study, load: float) -> int:
+    """Index of a preload [N] of the study. Raises InputError where it has none such."""
     index = int(np.argmin(np.abs(np.array(study.loads) - load)))
     if abs(study.loads[index] - load) > 1e-3 * abs(load):
         known = ", ".join(f"{value / 1e3:g} kN" for value in study.loads)

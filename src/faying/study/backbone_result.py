@@ -181,7 +181,8 @@ def _witness(curve: Curve, points: Sequence[EpmcPoint]) -> Witness | None:
 def _notes(curve: Curve, bounds: ErrorBounds, witness: Witness | None) -> list[Note]:
     case, line, load = curve.case, curve.line, curve.load
     preload = curve.basis.preload
-    out = [*case.notes, *law_notes(case.structure, preload, load)]
+    out = [note for note in case.notes if note.code != "no-loss"]  # the loss is that of slip here
+    out += law_notes(case.structure, preload, load)
     out += pressure_notes(case.structure, preload.pressures, load)
     if line.code != "amplitude":
         end = f"the curve ends at {line.points[-1].level:.3g} m/s2 of {curve.choice.amplitude[1]:.3g}: {line.reason}"
