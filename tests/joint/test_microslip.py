@@ -83,6 +83,18 @@ def test_points_that_are_open_close_as_the_law_says():
         assert p == pytest.approx(np.full(2, exact), rel=0.02)
 
 
+@pytest.mark.filterwarnings("error")
+def test_no_spring_lies_beyond_the_end_of_the_law():
+    """Where a law grows a thousandfold in a few nanometres, points that carry little would reach far beyond it."""
+    law = JointLaw(model=Given(greatest_pressure=5e6, k_n=lambda p: p / 4e-9))
+    cut, here = at_pressure(law, (10.0, 4e6))
+    k_end = law.stiffness(np.array([5e6]))[0][0]
+    far = here + 1e-6
+    p, k = (a[:, 0, 0] if a.ndim == 3 else -a[:, 0] for a in cut.advance(cut.start(pressed(far)), pressed(far))[1:])
+    assert k == pytest.approx(np.full(2, k_end), rel=0.02)
+    assert np.all(p < 1.1 * k_end * 1e-6)
+
+
 def test_a_law_that_yields_springs_back_by_its_own_stiffness():
     """After loading by k_load the pressure falls along the curve by k_n: p = (c w/2)^2 for k_n = c sqrt(p)."""
     law = LAWS["yielding"]

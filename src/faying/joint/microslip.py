@@ -77,9 +77,10 @@ class Microslip:
         shut = p > 0
         offset = np.empty((len(p), springs + above))  # onset less present approach
         rise = np.empty_like(offset)
-        nodes = _nodes(here[shut], p[shut] / k_n[shut], top, springs, above)
+        end = max(curve.end, top)  # beyond the law's end no spring is added
+        nodes = np.minimum(_nodes(here[shut], p[shut] / k_n[shut], top, springs, above), end)
         offset[shut], rise[shut] = _springs(curve, nodes, springs, p[shut], k_n[shut])
-        loose = np.concatenate([[0.0], np.geomspace(1e-3 * top, 2 * top, springs + above)])
+        loose = np.concatenate([[0.0], np.geomspace(1e-3 * top, min(2 * top, end), springs + above)])
         offset[~shut], rise[~shut] = _springs(curve, loose[None], 0, np.zeros(1), np.zeros(1))
         onset = offset + np.where(shut, approach, 0.0)[:, None]
         return cls(onset=onset, k_n=rise, k_t=rise * (k_t / k_n)[:, None], friction=friction, gap=_gap(gap, p))

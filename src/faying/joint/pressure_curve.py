@@ -39,6 +39,11 @@ class PressureCurve:
         w = first + np.concatenate([[0.0], np.cumsum(pieces)])
         return cls(np.log(w), np.log(p), k * w / p)
 
+    @property
+    def end(self) -> float:
+        """Approach [m] at the last pressure."""
+        return float(np.exp(self.log_w[-1]))
+
     @cached_property
     def _cubic(self) -> Any:
         from scipy.interpolate import CubicHermiteSpline
@@ -55,7 +60,7 @@ class PressureCurve:
         """Pressure [Pa] and its slope [Pa/m] at approaches [m] of any shape; both 0 where the faces are apart."""
         log_w, slope = self.log_w, self.slope
         shut = approach > 0
-        x = np.log(np.where(shut, approach, 1.0))
+        x = np.log(np.where(shut, approach, self.end))
         inside = np.clip(x, log_w[0], log_w[-1])
         cell = np.clip(np.searchsorted(log_w, inside, side="right") - 1, 0, len(log_w) - 2)
         cubic = self._cubic.c[:, cell]
