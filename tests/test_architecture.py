@@ -12,7 +12,7 @@ SOURCE = Path(__file__).parent.parent / "src" / "faying"
 ORDER = [
     {"errors"},
     {"units", "files", "memory", "typing", "notes"},
-    {"materials", "netcdf"},
+    {"materials", "netcdf", "columns"},
     {"surface", "fe", "halfspace"},
     {"contact", "asperity_fe"},
     {"joint"},
@@ -69,6 +69,7 @@ EXCEPTIONS = {
     "halfspace/solve.py:solve_half_space": PUBLIC,
     "measured/records.py:frf_from_records": PUBLIC,
     "study/attach.py:attach": PUBLIC,
+    "study/backbone.py:backbone": PUBLIC,
     "surface/synthesize.py:spectral": PUBLIC,
     "surface/synthesize.py:weierstrass_mandelbrot": PUBLIC,
 }

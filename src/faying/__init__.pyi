@@ -25,9 +25,11 @@ from .measured.records import frf_from_records
 from .measured.uff import read_uff
 from .measured.uff_write import write_uff
 from .result import Result, read_model_modes
+from .result.backbone import Backbone
 from .study import Study, run
 from .study.attach import attach
 from .study.axes import axis_of
+from .study.backbone import backbone
 from .study.sweep import sweep
 from .surface import synthesize
 from .surface.combine import Combined, combine

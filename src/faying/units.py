@@ -22,6 +22,7 @@ EXAMPLES = {
     "N/m": "1 kN/mm",
     "W/(m*K)": "50 W/(m K)",
     "ohm*m": "0.2 uohm m",
+    "m/s^2": "10 m/s^2",
 }
 
 _PREFIXES = (

@@ -12,6 +12,7 @@ import click
 COMMANDS = {
     "asperity": ("asperity", "Press one asperity by finite elements: force, area, stresses."),
     "attach": ("attach", "Lay a joint on a model of another solver, and write it in its words."),
+    "backbone": ("backbone", "Frequency and damping of a mode against its amplitude."),
     "compare": ("compare", "Set a hammer test beside the result of a study: MAC, pairs, FRFs."),
     "condense": ("condense", "One joint as a 6 x 6 stiffness and loss between two points, with its error."),
     "form": ("form", "Flatness, crowns and twist of a measured face or gap."),

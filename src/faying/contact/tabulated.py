@@ -1,16 +1,15 @@
 """A law from any measured or computed curve."""
 
-import csv
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
-from math import isfinite
 from pathlib import Path
 from typing import Any, ClassVar, Self, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from faying.columns import read_columns
 from faying.contact.law import ContactLaw, Response, checked, require
 from faying.contact.parameter import FILE, TABLE, TEXT, Parameter
 from faying.contact.response import UNITS
@@ -111,7 +110,7 @@ class TabulatedLaw(ContactLaw):
         or do not hold a table.
         """
         try:
-            return cls(**read_columns(Path(path)), origin=str(path))
+            return cls(**_read(Path(path)), origin=str(path))
         except ReadError:
             raise
         except InputError as fault:
@@ -162,110 +161,35 @@ def _frozen(values: Array) -> Array:
     return out
 
 
-def read_columns(path: Path) -> dict[str, Array]:
-    """Read the columns of a CSV file whose head names quantities and units; SI arrays by name.
+def _read(path: Path) -> dict[str, Array]:
+    """SI arrays by name from a CSV file; a column "valid", as `faying law --csv` writes it, is passed over.
 
-    Comments begin with #; a column "valid", as `faying law --csv` writes it, is passed over. Raises ReadError.
+    Raises ReadError.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as fault:
-        raise ReadError(f"{path}: cannot be read as text ({fault})") from None
-    lines = [(i, bare) for i, line in enumerate(text.splitlines(), start=1) if (bare := line.partition("#")[0].strip())]
-    if not lines:
-        raise ReadError(f"{path}: the head is empty; {FORM}")
-    (first, head), *body = lines
-    if "," not in head and (";" in head or "\t" in head):
-        mark = "semicolons" if ";" in head else "tabs"
+    table = read_columns(path, UNITS, needed="pressure", form=FORM, examples=EXAMPLES, passed_over=(PASSED_OVER,))
+    found, lines = dict(table.values), table.lines
+    if not set(found) & set(QUANTITIES):
+        known = ", ".join(QUANTITIES)
+        raise ReadError(f"{path}, line {table.head}: nothing but pressure is given; add any of {known}")
+    if len(lines) < 2:
         raise ReadError(
-            f"{path}, line {first}: {mark} between the columns; put commas there, and points in decimal numbers"
+            f"{path}: {len(lines)} row{'s' * (len(lines) != 1)} under the head; give 2 or more, rising in pressure"
         )
-    if _is_number(_cells(head)[0]):
-        raise ReadError(f"{path}, line {first}: no head with the names of the columns; {FORM}")
-    columns = [_column(cell, f"{path}, line {first}") for cell in _cells(head)]
-    names = [name for name, _ in columns]
-    for name in names:
-        if names.count(name) > 1:
-            raise ReadError(f'{path}, line {first}: {names.count(name)} columns are called "{name}"; leave one')
-    if "pressure" not in names:
-        raise ReadError(f'{path}, line {first}: no column "pressure [unit]"; the head is {head}')
-    if not set(names) & set(QUANTITIES):
-        raise ReadError(f"{path}, line {first}: nothing but pressure is given; add any of {', '.join(QUANTITIES)}")
-    rows = [_row(line, names, f"{path}, line {number}") for number, line in body]
-    if len(rows) < 2:
-        raise ReadError(
-            f"{path}: {len(rows)} row{'s' * (len(rows) != 1)} under the head; give 2 or more, rising in pressure"
-        )
-    for (number, _), above, row in zip(body[1:], rows, rows[1:], strict=False):
-        if not row["pressure"] > above["pressure"]:
-            raise ReadError(
-                f"{path}, line {number}: the pressure {row['pressure']:g} does not rise above {above['pressure']:g}, "
-                "that of the row before; sort the rows and drop repetitions"
-            )
-    return {name: factor * np.array([row[name] for row in rows]) for name, factor in columns if name != PASSED_OVER}
-
-
-def _cells(line: str) -> list[str]:
-    """The cells of one line, without blanks and quotation marks around them."""
-    return [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))]
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True
-
-
-def _column(cell: str, where: str) -> tuple[str, float]:
-    """Name and factor to SI of one cell of the head."""
-    from faying.units import scale
-
-    name, _, unit = cell.partition("[")
-    name, unit = name.strip(), unit.rstrip("] ").strip()
-    if name == PASSED_OVER:
-        return name, 1.0
-    if name != "pressure" and name not in QUANTITIES:
-        known = ", ".join(("pressure", *QUANTITIES))
-        raise ReadError(f'{where}: the column "{cell}" is unknown; known are {known}; {FORM}')
-    wanted = UNITS[name]
-    if not wanted:
-        if unit not in ("", "-", "1"):
-            raise ReadError(f'{where}: the column "{cell}" has no unit; give plain numbers under "{name}"')
-        return name, 1.0
-    example = f'write for example "{name} [{EXAMPLES[wanted]}]"'
-    if not unit:
-        raise ReadError(f'{where}: the column "{cell}" lacks its unit; {example}')
-    try:
-        return name, scale(unit, wanted)
-    except InputError:
-        raise ReadError(f'{where}: "{unit}" of the column "{cell}" is not a unit like {wanted}; {example}') from None
-
-
-def _row(line: str, names: list[str], where: str) -> dict[str, float]:
-    """The numbers of one line by the names of their columns."""
-    cells = _cells(line)
-    if len(cells) > len(names):
-        raise ReadError(f"{where}: {len(cells)} values under the {len(names)} columns of the head; {FORM}")
-    row = {}
-    for i, name in enumerate(names):
-        if name == PASSED_OVER:
-            continue
-        cell = cells[i] if i < len(cells) else ""
-        if not cell:
-            raise ReadError(f'{where}: no value in the column "{name}"; give one, or leave the row out')
-        try:
-            value = row[name] = float(cell)
-        except ValueError:
-            raise ReadError(f'{where}: "{cell}" in the column "{name}" is not a number') from None
-        if not isfinite(value):
-            raise ReadError(f'{where}: "{cell}" in the column "{name}" is not a finite number; leave the row out')
-        if value < 0 or (value == 0 and name == "pressure"):
+    for name, values in found.items():
+        low = values <= 0 if name == "pressure" else values < 0
+        if np.any(low):
             least = (
                 "pressures must be above 0, where the faces begin to touch"
                 if name == "pressure"
                 else "it must be 0 or more"
             )
-            raise ReadError(f'{where}: {cell} in the column "{name}"; {least}')
-    return row
+            row = int(np.argmax(low))
+            raise ReadError(f'{path}, line {lines[row]}: {table.given(name, row)} in the column "{name}"; {least}')
+    falls = np.diff(found["pressure"]) <= 0
+    if np.any(falls):
+        row = int(np.argmax(falls)) + 1
+        raise ReadError(
+            f"{path}, line {lines[row]}: the pressure {table.given('pressure', row)} does not rise above "
+            f"{table.given('pressure', row - 1)}, that of the row before; sort the rows and drop repetitions"
+        )
+    return found

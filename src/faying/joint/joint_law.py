@@ -2,18 +2,18 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
 from faying.contact.law import ContactLaw
 from faying.contact.response import Response
 from faying.errors import InputError
+from faying.joint.pressure_curve import PressureCurve, fade
 from faying.joint.springs import Motion, Springs
 from faying.typing import Array
 
 FEW = 200  # pressures up to which a law is inverted exactly; more are read from the table between its points
-GREATEST_FADE = 2 / 3  # power of k in p below the least pressure
 LEAST_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p(approach) goes on as a power
 
 
@@ -73,7 +73,7 @@ class JointLaw:
 
     def check(self) -> None:
         """Raise InputError where a joint cannot use the law: it has no stiffness."""
-        self._samples, self._table  # noqa: B018  # names their own faults
+        self._samples, self._curve  # noqa: B018  # names their own faults
 
     @property
     def least_pressure(self) -> float:
@@ -104,24 +104,26 @@ class JointLaw:
     @property
     def _fade(self) -> float:
         """Power of the pressure with which the stiffness goes on below the least pressure [-]."""
-        k = self._loading
-        return min(float(np.log(k[1] / k[0]) / np.log(self._grid[1] / self._grid[0])), GREATEST_FADE)
+        return fade(self._grid, self._loading)
 
     @cached_property
-    def _table(self) -> tuple[Array, Array, Array]:
-        """ln approach, ln pressure, and d ln p/d ln w, from the least pressure to where the law ends."""
+    def _curve(self) -> PressureCurve:
+        """Pressure over approach on loading."""
         p, k = self._grid, self._loading
         if np.any(k <= 0):
             raise InputError(f"{self.model.name}: no stiffness on loading at {p[np.argmax(k <= 0)]:.4g} Pa")
-        w = _closing(p, k, self._fade)
-        return np.log(w), np.log(p), k * w / p
+        return PressureCurve.of(p, k)
 
     @cached_property
-    def _curve(self) -> Any:
-        from scipy.interpolate import CubicHermiteSpline
+    def elastic(self) -> PressureCurve:
+        """Pressure over approach by k_n alone: how a joint that was loaded before springs back and closes again.
 
-        log_w, log_p, slope = self._table
-        return CubicHermiteSpline(log_w, log_p, slope)
+        It is the curve of `pressure` unless the law has a k_load of its own.
+        """
+        k_n = np.exp(self._samples[1][0])
+        if np.any(k_n <= 0):
+            raise InputError(f"{self.model.name}: no normal stiffness at {self._grid[np.argmax(k_n <= 0)]:.4g} Pa")
+        return PressureCurve.of(self._grid, k_n)
 
     def _ask(self, pressure: Array) -> tuple[Array, Array]:
         answer = self.model.at_pressure(pressure)
@@ -198,21 +200,7 @@ class JointLaw:
         Beyond the end of the law the curve goes on as a power, so that an iteration may pass through; whoever keeps a
         result checks the pressure against `law.greatest_pressure`.
         """
-        log_w, _, slope = self._table
-        shut = approach > 0
-        x = np.log(np.where(shut, approach, 1.0))
-        inside = np.clip(x, log_w[0], log_w[-1])
-        cell = np.clip(np.searchsorted(log_w, inside, side="right") - 1, 0, len(log_w) - 2)
-        cubic = self._curve.c[:, cell]
-        dx = inside - log_w[cell]
-        value = ((cubic[0] * dx + cubic[1]) * dx + cubic[2]) * dx + cubic[3]
-        steep = (3 * cubic[0] * dx + 2 * cubic[1]) * dx + cubic[2]
-        end = np.where(x > log_w[-1], slope[-1], slope[0])
-        beyond = x != inside
-        value = value + np.where(beyond, end * (x - inside), 0.0)
-        steep = np.where(beyond, end, steep)
-        p = np.where(shut, np.exp(value), 0.0)
-        return p, np.where(shut, p * steep / np.where(shut, approach, 1.0), 0.0)
+        return self._curve.pressure(approach)
 
     def lasting_approach(self, pressure: Array) -> tuple[Array, Array] | None:
         """Bounds of the approach [m] that is left when pressures [Pa] are taken off; None where the law is elastic.
@@ -224,27 +212,12 @@ class JointLaw:
         if not self.yields:
             return None
         p, k = self._grid, np.exp(self._samples[1][0])
-        lasting = np.exp(self._table[0])
-        bounds = lasting - _closing(p, k, self._fade), lasting - p / k
+        closing = np.exp(self._curve.log_w)
+        bounds = closing - np.exp(self.elastic.log_w), closing - p / k
         x = np.log(np.where(pressure > 0, self._within(pressure), p[0]))
         least, greatest = (np.interp(x, np.log(p), np.maximum(bound, 0.0)) for bound in bounds)
         return np.where(pressure > 0, least, 0.0), np.where(pressure > 0, greatest, 0.0)
 
     def approach(self, pressure: float) -> float:
         """Closing [m] at one pressure [Pa] between the least and the greatest of the law."""
-        from scipy.interpolate import CubicHermiteSpline
-
-        log_w, log_p, slope = self._table
-        return float(np.exp(CubicHermiteSpline(log_p, log_w, 1 / slope)(np.log(pressure))))
-
-
-def _closing(p: Array, k: Array, fade: float) -> Array:
-    """Integral of dp/k [m] from 0 to pressures [Pa] at which the slope is k [Pa/m]; below the first, k goes as p^fade.
-
-    Between two pressures k is a power of p, so that the integral is exact there.
-    """
-    from scipy.special import exprel
-
-    steps = np.diff(np.log(p))
-    pieces = p[:-1] / k[:-1] * steps * exprel(steps - np.diff(np.log(k)))
-    return np.asarray(p[0] / k[0] / (1 - fade) + np.concatenate([[0.0], np.cumsum(pieces)]))
+        return float(self._curve.approach(np.asarray(pressure)))

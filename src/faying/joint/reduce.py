@@ -81,6 +81,11 @@ class Basis:
         new = new @ (rotation[:, keep] / np.sqrt(values[keep]))[:, ::-1]
         new = new - self.vectors @ (self.vectors.T @ (self.reference @ new))
         new /= np.sqrt(np.einsum("ij,ij->j", new, self.reference @ new))
+        self.append(new)
+        return int(new.shape[1])
+
+    def append(self, new: Array) -> None:
+        """Take columns (n, k) as they are: orthonormal, with each other and with those that are here."""
         for i, operator in enumerate(self.operators):
             image = operator @ new
             corner, side = new.T @ image, self.vectors.T @ image
@@ -90,7 +95,6 @@ class Basis:
             for old, trace in zip(self.relative, self.traces, strict=True)
         ]
         self.vectors = np.concatenate([self.vectors, new], axis=1)
-        return int(new.shape[1])
 
     def turn(self, rotation: Array) -> None:
         """Replace the vectors by combinations of them, the columns of `rotation` (size, k), orthonormal."""

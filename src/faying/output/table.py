@@ -3,6 +3,7 @@
 import numpy as np
 
 from faying.result import Result
+from faying.result.backbone import Backbone
 from faying.result.result import preload_slope
 from faying.typing import Array
 
@@ -297,3 +298,41 @@ def text(rows: Rows) -> str:
         ]
         lines.append("  ".join(cells).rstrip())
     return "\n".join(lines)
+
+
+def backbone(curve: Backbone) -> Rows:
+    """One row per amplitude, the static cycle beside the amplitudes that it was computed at."""
+    rows: Rows = [["a [m/s2]", "f [Hz]", "damping [%]", "slips", "opens", "loss [J]", "static cycle: df, d damping"]]
+    beside = {} if curve.witness is None else dict(enumerate(curve.witness.acceleration))
+    for k, level in enumerate(curve.acceleration):
+        found = [i for i, at in beside.items() if abs(at / level - 1) < 1e-9]
+        cell = ""
+        if found and curve.witness is not None:
+            one = curve.witness
+            cell = f"{one.frequency_change[found[0]]:+.2%}, {one.damping_change[found[0]]:+.1%}"
+        rows.append(
+            [
+                f"{level:.4g}",
+                f"{curve.frequency[k]:.3f}",
+                f"{100 * curve.damping[k]:.3g}",
+                f"{curve.slipping[k]:.1%}",
+                f"{curve.open[k]:.1%}",
+                f"{curve.energy[k].sum():.3g}",
+                cell,
+            ]
+        )
+    return rows
+
+
+def backbone_bounds(curve: Backbone) -> Rows:
+    """What coarser computations change, and what the basis leaves in the full equations."""
+    bounds = curve.bounds
+    rows: Rows = [[f"at {bounds.acceleration:.4g} m/s2", "frequency", "damping of the joints"]]
+    for name, words in (
+        ("harmonics", f"harmonics 0, 1 in place of 0 to {curve.harmonics}"),
+        ("points", "half of the joints' points"),
+        ("samples", "half of the instants of a cycle"),
+    ):
+        f, z = (getattr(bounds, f"{name}_{of}") for of in ("frequency", "damping"))
+        rows.append([words, _or_dash(f, "+.1e"), _or_dash(z, "+.2%")])
+    return [*rows, ["residual of the full equations, in energy", f"{bounds.residual:.1e}", ""]]

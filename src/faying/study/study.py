@@ -10,6 +10,7 @@ from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt
 from faying.joint.solid_bolt import SolidBolt
 from faying.materials import Material
+from faying.study.keys.backbone import BackboneChoice
 from faying.study.keys.beside import BesideChoice
 from faying.study.keys.bolt import read_bolt
 from faying.study.keys.geometry import GeometryChoice, read_geometry
@@ -32,6 +33,7 @@ class Study:
         text: the study file as it was read; files: all files that it names, so that a result depends on them.
         materials, parts: materials by name; name of the material of each part.
         geometry, surface, law, joints, bolts, supports, masses, modes, response, test, hammer: the tables of the file.
+        backbone: which curve over amplitude is asked for; None where the file does not say.
         beside: other laws and surfaces whose modes stand beside those of the study.
         order: the order of tightening as indices of bolts, pass after pass; None where all are pulled at once.
     """
@@ -52,6 +54,7 @@ class Study:
     response: ResponseChoice | None = None
     test: TestChoice | None = None
     hammer: HammerChoice | None = None
+    backbone: BackboneChoice | None = None
     beside: tuple[BesideChoice, ...] = ()
     text: str = field(default="", repr=False)
     files: tuple[Path, ...] = ()
@@ -119,6 +122,7 @@ class Study:
         modes = ModesChoice.of(top.table("modes"))
         order = read_order(top.table("tightening"), [bolt.name for bolt in bolts])
         response = ResponseChoice.of(top.table("response"))
+        backbone = BackboneChoice.of(top.table("backbone"))
         test, hammer = read_test(top, max((b.preload for b in bolts if b.preload), key=len, default=()))
         top.close()
         faults.raise_if_any(where)
@@ -139,6 +143,7 @@ class Study:
             response=response,
             test=test,
             hammer=hammer,
+            backbone=backbone,
             beside=beside,
             text=text,
             files=tuple(dict.fromkeys(faults.files)),

@@ -1,22 +1,17 @@
 """What a sweep keeps on disk while it runs, and the NetCDF file it ends in."""
 
-import json
-import shutil
-import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any, ClassVar
-from zipfile import BadZipFile
+from typing import Any, ClassVar
 
 import numpy as np
 
 from faying import netcdf
-from faying.errors import InputError
-from faying.files import write_atomically
 from faying.joint.reduced import ReducedModel
 from faying.netcdf import Variable
 from faying.study.axes import Axis, Grid
+from faying.study.part_folder import PartFolder, load_arrays, save_arrays
 from faying.typing import Array
 
 BEYOND = 0.1  # share of the contact beyond the end of the law from which a point is told
@@ -83,11 +78,8 @@ class Store:
     )
 
     def __init__(self, out: Path, fingerprint: str, size: int, count: int) -> None:
-        if out.suffix != ".nc":
-            raise InputError(f"the output {out} should end in .nc: a sweep is written as NetCDF")
-        if not out.parent.is_dir():
-            raise InputError(f"no folder {out.parent} to write {out.name} in; make it first")
-        self.out, self.folder = out, out.with_name(out.name + ".part")
+        self._part = PartFolder(out, fingerprint, what="sweep", facts={"points": size})
+        self.out, self.folder = out, self._part.path
         self.rows: dict[str, Array] = {
             name: np.full((size, count) if name in ("frequencies", "loss_factors") else size, np.nan)
             for name in self.COLUMNS
@@ -95,35 +87,13 @@ class Store:
         self.reasons = np.full(size, "", dtype=object)
         self.done = np.zeros(size, dtype=bool)
         self.found = 0
-        self._open(fingerprint, size)
+        self._take_up()
 
-    def _open(self, fingerprint: str, size: int) -> None:
-        """Make the folder, or take up what an interrupted sweep has left in it."""
-        label = self.folder / "sweep.json"
-        if not self.folder.exists():
-            try:
-                self.folder.mkdir()
-            except OSError as fault:
-                raise InputError(f"cannot make {self.folder}: {fault.strerror}; choose another output") from None
-            self._lock = locked(self.folder)
-            text = json.dumps({"fingerprint": fingerprint, "points": size})
-            write_atomically(label, lambda temporary: temporary.write_text(text, encoding="utf-8"))
-            self.number = 0
-            return
-        self._lock = locked(self.folder)
-        try:
-            known = json.loads(label.read_text(encoding="utf-8"))["fingerprint"]
-        except (OSError, ValueError, KeyError):
-            known = None
-        if known != fingerprint:
-            self.close()
-            raise InputError(
-                f"{self.folder} is what another sweep has left, or another version of this study; remove it, "
-                "or choose another output with --out"
-            )
+    def _take_up(self) -> None:
+        """Take up what an interrupted sweep has left."""
         chunks = sorted(self.folder.glob("chunk-*.npz"))
         for file in chunks:
-            rows = _loaded(file)
+            rows = load_arrays(file)
             if rows is None or not {"indices", "reasons", *self.COLUMNS} <= rows.keys():
                 file.unlink()  # damaged: its points are evaluated again
                 continue
@@ -133,13 +103,13 @@ class Store:
 
     def close(self) -> None:
         """Let other processes have the folder."""
-        self._lock.close()
+        self._part.close()
 
     def forget(self) -> None:
         """Remove the folder where nothing has been kept in it, so that it bars no other sweep."""
         self.close()
         if not any(self.folder.glob("chunk-*.npz")) and self.model() is None:
-            shutil.rmtree(self.folder, ignore_errors=True)
+            self._part.remove()
 
     def _take(self, indices: Any, rows: dict[str, Array]) -> None:
         for name in self.COLUMNS:
@@ -150,7 +120,7 @@ class Store:
     def keep(self, indices: Sequence[int], rows: dict[str, Array]) -> None:
         """Note rows and write them, whole or not at all."""
         self._take(np.asarray(indices), rows)
-        _save(self.folder / f"chunk-{self.number:06d}.npz", {"indices": np.asarray(indices), **rows})
+        save_arrays(self.folder / f"chunk-{self.number:06d}.npz", {"indices": np.asarray(indices), **rows})
         self.number += 1
 
     def keep_model(self, model: ReducedModel) -> None:
@@ -162,12 +132,12 @@ class Store:
         for i in range(len(model.weights)):
             for name in ("weights", "gaps", "static_relative", "dynamic_relative"):
                 arrays[f"{name}_{i}"] = getattr(model, name)[i]
-        _save(self.folder / "model.npz", arrays)
+        save_arrays(self.folder / "model.npz", arrays)
 
     def model(self) -> ReducedModel | None:
         """Return the reduced model that an interrupted sweep left, if it came that far."""
         file = self.folder / "model.npz"
-        data = _loaded(file)
+        data = load_arrays(file)
         if data is None:
             return None
         joints = sum(name.startswith("weights_") for name in data)
@@ -198,46 +168,8 @@ class Store:
             **shaped,
         )
         _netcdf(done)
-        self.close()
-        shutil.rmtree(self.folder)
+        self._part.remove()
         return done
-
-
-def locked(folder: Path) -> IO[str]:
-    """Hold a lock on a folder until the file returned is closed or the process ends.
-
-    Raises InputError where another process holds it. Windows has no such lock: there it holds nothing.
-    """
-    file = (folder / "lock").open("w", encoding="utf-8")
-    try:
-        import fcntl
-    except ImportError:
-        return file
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        file.close()
-        raise InputError(
-            f"another sweep is writing to {folder}; wait for it, or choose another output with --out"
-        ) from None
-    return file
-
-
-def _loaded(file: Path) -> dict[str, Any] | None:
-    """The arrays of a file, None where it is missing or damaged."""
-    try:
-        with file.open("rb") as opened, np.load(opened) as data:
-            return {name: data[name] for name in data.files}
-    except (OSError, ValueError, EOFError, KeyError, BadZipFile, zlib.error):
-        return None
-
-
-def _save(path: Path, arrays: dict[str, Any]) -> None:
-    def write(temporary: Path) -> None:
-        with temporary.open("wb") as file:  # a file, since savez adds .npz to names
-            np.savez(file, **arrays)
-
-    write_atomically(path, write)
 
 
 UNITS = {"frequencies": "Hz", "greatest_pressure": "Pa"}

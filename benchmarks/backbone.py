@@ -1,0 +1,210 @@
+"""Speed of a backbone: EPMC beside tmdsimpy on the same reduced matrices and friction elements, and the kernel alone.
+
+Run `python benchmarks/backbone.py STUDY.toml [--points N] [--tmdsimpy FOLDER --python ITS_PYTHON]`. tmdsimpy
+(github.com/tmd-lab/tmdsimpy, MIT) is run from its own folder by its own Python, which needs NumPy, SciPy and JAX. Each
+point has one Coulomb slider that slips along one direction; with "jenkins" its normal load is constant, with "dry" it
+moves. What tmdsimpy does not have (the other slip, and the normal spring of "jenkins") becomes a linear spring for
+both. CPU seconds of one thread each; JAX has compiled before. Both stop at the same modal amplitude; how many points
+each takes until then is its own affair and printed.
+"""
+
+import argparse
+import os
+import subprocess
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+
+for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ[name] = "1"
+
+import numpy as np  # noqa: E402  the thread limits are read when it is loaded
+
+from faying import Study  # noqa: E402
+from faying.fe.modes import lowest_modes  # noqa: E402
+from faying.joint.epmc import Epmc  # noqa: E402
+from faying.joint.microslip import Microslip  # noqa: E402
+from faying.joint.slip_basis import SlipBasis  # noqa: E402
+from faying.joint.slip_model import SlipJoint, SlipModel  # noqa: E402
+from faying.joint.support_check import checked_preload  # noqa: E402
+from faying.study.case import Case  # noqa: E402
+
+MODES = 15
+
+
+def basis_of(study: Study, mode: int) -> tuple[SlipBasis, Case]:
+    case = Case.of(study)
+    structure = case.structure
+    preload = checked_preload(structure, structure.assembly(), study.forces(len(study.loads) - 1), order=study.order)
+    springs = structure.springs(preload.pressures)
+    modes = lowest_modes(
+        structure.joined(springs)[0],
+        structure.vibrating[1],
+        structure.rigid_count + MODES,
+        shift_frequency=case.shift_frequency,
+    )
+    basis = SlipBasis(structure=structure, preload=preload, springs=springs, modes=modes, mode=mode)
+    basis.begin()
+    return basis, case
+
+
+def laws(basis: SlipBasis, case: Case, friction: float, *, springs: int) -> list[Microslip]:
+    """The laws cut into springs, or one slider a point where springs = 1."""
+    out = []
+    for joint, opening in zip(case.structure.joints, basis.preload.openings, strict=True):
+        gap = joint.interface.gap
+        if springs == 1:
+            out.append(Microslip.coulomb(joint.law, -opening, friction=friction, gap=gap))
+        else:
+            out.append(Microslip.cut(joint.law, -opening, friction=friction, springs=springs, gap=gap))
+    return out
+
+
+def thinned(model: SlipModel, points: int) -> SlipModel:
+    while sum(len(joint.weights) for joint in model.joints) > points:
+        model = model.halved()
+    return model
+
+
+def along_one(model: SlipModel, mode: int, law: str) -> SlipModel:
+    """Elements that slip along the direction in which the mode moves most; all else as linear springs."""
+    shape = model.modes[1][:, mode]
+    stiffness, joints = model.stiffness.copy(), []
+    for joint in model.joints:
+        _, tangent = joint.at_rest
+        rows = joint.relative.reshape(len(joint.weights), 3, -1)
+        moves = np.abs(np.einsum("qim,m->qi", rows, shape)).sum(axis=0)
+        linear = [1 if moves[2] > moves[1] else 2] + ([0] if law == "jenkins" else [])
+        kept = rows.copy()
+        for i in linear:
+            k = joint.weights * tangent[:, i, i]
+            stiffness += np.einsum("qm,q,qn->mn", rows[:, i], k, rows[:, i])
+            kept[:, i] = 0.0
+        joints.append(replace(joint, relative=kept.reshape(joint.relative.shape)))
+    return replace(model, stiffness=stiffness, joints=tuple(joints))
+
+
+def elements(joint: SlipJoint) -> dict[str, np.ndarray]:
+    """Rows of slip and closing, stiffnesses [N/m] and closing at rest [m] of the points that are closed."""
+    rows = joint.relative.reshape(len(joint.weights), 3, -1)
+    slip = rows[:, 1] + rows[:, 2]  # one of them is 0
+    depth = joint.law.approach(joint.rest) - joint.law.onset[:, 0]
+    k_n, k_t = (joint.weights * k[:, 0] for k in (joint.law.k_n, joint.law.k_t))
+    return {"slip": slip, "closing": -rows[:, 0], "k_t": k_t, "k_n": k_n, "depth": depth}
+
+
+def ours(model: SlipModel, mode: int, low: float, high: float, samples: int) -> tuple[float, np.ndarray, Epmc]:
+    start = time.process_time()
+    epmc = Epmc(model=model, mode=mode, harmonics=3, samples=samples)
+    curve = epmc.follow(low, high)
+    seconds = time.process_time() - start
+    found = np.array([(p.amplitude, p.frequency, p.damping) for p in curve.points])
+    print(f"  faying    {seconds:8.2f} s CPU  {len(found):3d} points ({curve.code})")
+    return seconds, found, epmc
+
+
+def theirs(
+    model: SlipModel, mode: int, law: str, low: float, high: float, samples: int, folder: Path, python: str
+) -> tuple[float, np.ndarray]:
+    parts = [elements(joint) for joint in model.joints]
+    joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    omega, shapes = model.modes
+    count, size = 7, len(model.mass)
+    trial = np.random.default_rng(1).normal(size=(count, size)) * high / 3
+    static = sum(
+        joint.relative.T @ (joint.weights[:, None] * joint.at_rest[0] * [1, 0, 0]).ravel() for joint in model.joints
+    )
+    with tempfile.TemporaryDirectory() as scratch:
+        given, out = Path(scratch, "case.npz"), Path(scratch, "out.npz")
+        np.savez(
+            given,
+            **joined,
+            law=law,
+            mass=model.mass,
+            stiffness=model.stiffness,
+            friction=model.joints[0].law.friction,
+            frequency=omega[mode],
+            shape=shapes[:, mode],
+            trial=(trial @ shapes.T)[[0, *range(1, count)]],
+            static=static,
+            low=low,
+            high=high,
+            samples=samples,
+            harmonics=3,
+        )
+        flags = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
+        environment = os.environ | {"PYTHONPATH": str(folder), "XLA_FLAGS": flags, "JAX_ENABLE_X64": "1"}
+        command = ["taskset", "-c", "0", python, str(Path(__file__).with_name("backbone_tmdsimpy.py")), given, out]
+        subprocess.run(command, env=environment, check=True)
+        found = dict(np.load(out))
+    forces = (
+        model.forces(trial @ shapes.T, derivative=False, samples=samples).force - trial @ shapes.T @ model.stiffness
+    )
+    forces[0] += static
+    miss = np.abs(found["forces"].reshape(count, size) - forces).max() / np.abs(forces[1:]).max()
+    curve = np.stack([found["amplitude"], found["frequency"], found["damping"]], axis=1)
+    print(
+        f"  tmdsimpy  {found['seconds']:8.2f} s CPU  {len(curve):3d} points to {curve[-1, 0] / high:.2f} of the last "
+        f"amplitude, {found['wall']:.1f} s wall; forces of a trial motion differ by {miss:.1e}"
+    )
+    return float(found["seconds"]), curve
+
+
+def compare(own: np.ndarray, other: np.ndarray) -> None:
+    """Print both curves where both have one; tmdsimpy's is interpolated between its points."""
+    other = other[np.argsort(other[:, 0])]
+    inside = own[(own[:, 0] >= other[0, 0]) & (own[:, 0] <= other[-1, 0])]
+    x = np.log(inside[:, 0])
+    frequency, damping = (np.interp(x, np.log(other[:, 0]), other[:, i]) for i in (1, 2))
+    print("  amplitude [m kg^1/2]   frequency less the first [1e-6]      damping [1e-6]: faying, tmdsimpy")
+    for row, f, z in zip(inside, frequency, damping, strict=True):
+        ours_, theirs_ = ((value / own[0, 1] - 1) * 1e6 for value in (row[1], f))
+        print(f"  {row[0]:12.4g}  {ours_:16.1f} {theirs_:12.1f}  {row[2] * 1e6:16.1f} {z * 1e6:12.1f}")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("study", type=Path)
+    parser.add_argument("--mode", type=int, default=1)
+    parser.add_argument("--friction", type=float, default=0.2)
+    parser.add_argument("--points", type=int, default=120, help="of the joints, beside tmdsimpy")
+    parser.add_argument("--high", type=float, default=50.0, help="greatest acceleration where it is greatest [m/s2]")
+    parser.add_argument("--decades", type=float, default=2.0)
+    parser.add_argument("--samples", type=int, default=128)
+    parser.add_argument("--tmdsimpy", type=Path)
+    parser.add_argument("--python", default="python")
+    given = parser.parse_args()
+    start = time.process_time()
+    basis, case = basis_of(Study.read(given.study), given.mode)
+    mode = given.mode - 1
+    print(f"preload, modes, first basis: {time.process_time() - start:.1f} s CPU")
+    omega = basis.linear_frequency
+    high = given.high / (np.abs(basis.shape).max() * omega**2)
+    low = high / 10**given.decades
+
+    full = basis.model(laws(basis, case, given.friction, springs=32))
+    points = sum(len(joint.weights) for joint in full.joints)
+    print(f"microslip law, {points} points, {len(full.mass)} coordinates, 32 springs, 64 instants")
+    ours(full, mode_index(full, omega), low, high, 64)
+
+    one = thinned(basis.model(laws(basis, case, given.friction, springs=1)), given.points)
+    for law in ("jenkins", "dry"):
+        model = along_one(one, mode_index(one, omega), law)
+        mode = mode_index(model, omega)
+        points = sum(len(joint.weights) for joint in model.joints)
+        print(f"{law}: {points} points, {len(model.mass)} coordinates, one slider, {given.samples} instants")
+        seconds, own, _ = ours(model, mode, low, high, given.samples)
+        if given.tmdsimpy is not None:
+            other, curve = theirs(model, mode, law, low, high, given.samples, given.tmdsimpy, given.python)
+            each = other / len(curve) / (seconds / len(own))
+            print(f"  ratio of CPU seconds: {other / seconds:.0f} per curve, {each:.0f} per point of it")
+            compare(own, curve)
+
+
+def mode_index(model: SlipModel, omega: float) -> int:
+    return int(np.argmin(np.abs(model.modes[0] - omega)))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,140 @@
+"""faying backbone STUDY.toml --friction 0.2"""
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+STEPS = 1000  # of the progress bar
+
+
+@click.command()
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option("--mode", type=click.IntRange(1), help="Elastic mode, counted from the lowest [that of the study, or 1].")
+@click.option(
+    "--amplitude", metavar="FIRST:LAST", help='Accelerations, for example "0.1 m/s^2:60 m/s^2" [0.1 to 100 m/s^2].'
+)
+@click.option("--at", metavar="POINT", help='Where, for example "10,0,5 mm" [where the mode moves most].')
+@click.option("--friction", metavar="MU[,MU]", help="Of all joints; several give several curves [that of the joints].")
+@click.option(
+    "--preload", "preloads", multiple=True, help='One of the study, for example "8 kN" [the greatest], or all.'
+)
+@click.option("--harmonics", type=click.IntRange(1, 9), help="Highest harmonic of the motion; 1 is quick [3].")
+@click.option("--rest-damping", metavar="RATIO", help='Ratio to critical that is added, for example 0.001, or "law".')
+@click.option("--coulomb", is_flag=True, help="One slider at each point in place of the law's own curve.")
+@click.option("--measured", multiple=True, type=click.Path(path_type=Path), help="CSV of measured points to draw.")
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="NetCDF file (default: results/backbone.nc beside the study)."
+)
+@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw the curves (svg, png, pdf).")
+@click.option("--json", "as_json", is_flag=True, help="Print the curves as JSON.")
+def command(study: Path, **options: Any) -> None:
+    """Frequency and damping of one mode of STUDY against its amplitude, from rest to large motions.
+
+    What is done is kept beside the output; the same command goes on after an interruption.
+    """
+    from faying.files import new_folder
+    from faying.measured.ring_down import MeasuredBackbone
+    from faying.output.figures import backbone as drawing
+    from faying.output.figures.save import save
+    from faying.study import Study
+    from faying.study.backbone import backbones, names
+
+    plot, out = options["plot"], options["out"]
+    if plot:
+        drawing.check(plot)
+    measured = [MeasuredBackbone.read(path) for path in options["measured"]]
+    plan = Study.read(study)
+    choice, loads = asked(plan, options)
+    out = out or plan.folder / "results" / "backbone.nc"
+    bar = click.progressbar(length=STEPS, file=sys.stderr, label="backbone", item_show_func=lambda s: s or "")
+    with new_folder(out.parent, "give another file with --out"), bar:
+        curves = backbones(
+            plan,
+            choice,
+            loads=loads,
+            out=out,
+            report=lambda text, share: bar.update(int(STEPS * share) - bar.pos, text),
+        )
+        bar.update(STEPS - bar.pos, "done")
+    files = names(out, len(curves))
+    if plot:
+        files.append(save(drawing.figure(curves, measured), plot))
+    if options["as_json"]:
+        click.echo(json.dumps({"curves": [c.to_dict() for c in curves], "files": [str(f) for f in files]}, indent=2))
+        return
+    for curve in curves:
+        click.echo(text(curve))
+    click.echo(f"\nwritten to {', '.join(str(file) for file in files)}")
+
+
+def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
+    """The choice of the study with the options in place of it, and the indices of its loads."""
+    from faying import units
+    from faying.errors import InputError
+    from faying.study.backbone import chosen, load_index
+    from faying.study.keys.backbone import accelerations
+
+    given: dict[str, Any] = {"mode": options["mode"], "harmonics": options["harmonics"]}
+    if options["amplitude"] is not None:
+        given["amplitude"] = accelerations(options["amplitude"], "--amplitude")
+    if options["at"] is not None:
+        given["at"] = place(options["at"])
+    if options["rest_damping"] is not None:
+        rest = options["rest_damping"]
+        given["rest_damping"] = "law" if rest == "law" else plain_number(rest, "--rest-damping")
+    if options["coulomb"]:
+        given["slip"] = "coulomb"
+    friction = None
+    if options["friction"] is not None:
+        friction = [plain_number(part, "--friction") for part in options["friction"].split(",")]
+    preloads = options["preloads"]
+    if "all" in preloads:
+        if len(preloads) > 1:
+            raise InputError("--preload all takes every preload of the study; leave out the others")
+        loads = list(range(len(plan.loads)))
+    elif preloads:
+        loads = [load_index(plan, units.parse(value, "N", name="--preload")) for value in preloads]
+    else:
+        loads = [len(plan.loads) - 1]
+    return chosen(plan, friction, given), loads
+
+
+def plain_number(text: str, name: str) -> float:
+    """Turn the text of a plain number into one; InputError otherwise."""
+    from faying.errors import InputError
+
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f'{name} = "{text}" should be a plain number, for example 0.2') from None
+
+
+def place(text: str) -> tuple[float, float, float]:
+    """Turn "10,0,5 mm" into a point [m]; InputError that shows the form otherwise."""
+    from faying import units
+    from faying.errors import InputError
+
+    numbers, _, unit = text.strip().rpartition(" ")
+    parts = [part.strip() for part in numbers.split(",")]
+    if len(parts) != 3 or not unit:
+        raise InputError(f'--at = "{text}" should be three lengths with their unit, for example "10,0,5 mm"')
+    x, y, z = (units.parse(f"{part} {unit}", "m", name="--at") for part in parts)
+    return x, y, z
+
+
+def text(curve: Any) -> str:
+    """The table, error bounds and notes of a curve for the terminal."""
+    from faying.output import table
+
+    at = ", ".join(f"{1e3 * x:.4g}" for x in curve.at)
+    head = (
+        f"{curve.title}: mode {curve.mode}, {curve.load / 1e3:g} kN, friction {curve.friction_text}; at ({at}) mm\n"
+        f"{curve.unknowns:,} unknowns in {curve.basis_size} vectors, harmonics 0 to {curve.harmonics}; at rest "
+        f"{curve.linear_frequency:.3f} Hz\n"
+    )
+    parts = [head, table.text(table.backbone(curve)), f"\nends: {curve.reason}\n"]
+    parts += ["error bounds", table.text(table.backbone_bounds(curve)), ""]
+    return "\n".join([*parts, *(f"note: {line}" for line in curve.warnings)])

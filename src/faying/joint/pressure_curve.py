@@ -1,0 +1,87 @@
+"""Pressure as a function of approach, from a stiffness known at many pressures."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+
+from faying.typing import Array
+
+GREATEST_FADE = 2 / 3  # power of k in p below the least pressure
+
+
+@dataclass(frozen=True)
+class PressureCurve:
+    """p(w) with w the integral of dp/k from 0 to p, as a cubic of ln p over ln w with the slopes that k gives.
+
+    Below the first pressure k goes on as a power of p, of at most 2/3, so that w is finite; beyond the last, p goes on
+    as a power of w.
+
+    Args:
+        log_w, log_p: ln of approach [m] and of pressure [Pa], rising.
+        slope: d ln p/d ln w [-].
+    """
+
+    log_w: Array
+    log_p: Array
+    slope: Array
+
+    @classmethod
+    def of(cls, p: Array, k: Array) -> Self:
+        """Return the curve of a stiffness k [Pa/m], positive, at rising pressures p [Pa]."""
+        from scipy.special import exprel
+
+        # between two points k is a power of p, so that the integral of dp/k is exact there
+        steps = np.diff(np.log(p))
+        pieces = p[:-1] / k[:-1] * steps * exprel(steps - np.diff(np.log(k)))
+        first = p[0] / k[0] / (1 - fade(p, k))
+        w = first + np.concatenate([[0.0], np.cumsum(pieces)])
+        return cls(np.log(w), np.log(p), k * w / p)
+
+    @property
+    def end(self) -> float:
+        """Approach [m] at the last pressure."""
+        return float(np.exp(self.log_w[-1]))
+
+    @cached_property
+    def _cubic(self) -> Any:
+        from scipy.interpolate import CubicHermiteSpline
+
+        return CubicHermiteSpline(self.log_w, self.log_p, self.slope)
+
+    @cached_property
+    def _inverse(self) -> Any:
+        from scipy.interpolate import CubicHermiteSpline
+
+        return CubicHermiteSpline(self.log_p, self.log_w, 1 / self.slope)
+
+    def pressure(self, approach: Array) -> tuple[Array, Array]:
+        """Pressure [Pa] and its slope [Pa/m] at approaches [m] of any shape; both 0 where the faces are apart."""
+        log_w, slope = self.log_w, self.slope
+        shut = approach > 0
+        x = np.log(np.where(shut, approach, self.end))
+        inside = np.clip(x, log_w[0], log_w[-1])
+        cell = np.clip(np.searchsorted(log_w, inside, side="right") - 1, 0, len(log_w) - 2)
+        cubic = self._cubic.c[:, cell]
+        dx = inside - log_w[cell]
+        value = ((cubic[0] * dx + cubic[1]) * dx + cubic[2]) * dx + cubic[3]
+        steep = (3 * cubic[0] * dx + 2 * cubic[1]) * dx + cubic[2]
+        end = np.where(x > log_w[-1], slope[-1], slope[0])
+        beyond = x != inside
+        value = value + np.where(beyond, end * (x - inside), 0.0)
+        steep = np.where(beyond, end, steep)
+        p = np.where(shut, np.exp(value), 0.0)
+        return p, np.where(shut, p * steep / np.where(shut, approach, 1.0), 0.0)
+
+    def approach(self, pressure: Array) -> Array:
+        """Approach [m] at pressures [Pa] of any shape; 0 where there is none."""
+        x = np.log(np.where(pressure > 0, pressure, 1.0))
+        inside = np.clip(x, self.log_p[0], self.log_p[-1])
+        end = np.where(x > inside, self.slope[-1], self.slope[0])
+        return np.where(pressure > 0, np.exp(self._inverse(inside) + (x - inside) / end), 0.0)
+
+
+def fade(p: Array, k: Array) -> float:
+    """Power of the pressure with which k goes on below the first of the pressures p [-]."""
+    return min(float(np.log(k[1] / k[0]) / np.log(p[1] / p[0])), GREATEST_FADE)

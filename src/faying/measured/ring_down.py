@@ -1,0 +1,236 @@
+"""Frequency and damping against amplitude from a free decay, by band-pass and Hilbert transform; measured points."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, Self
+
+import numpy as np
+
+from faying.columns import read_columns
+from faying.errors import InputError, ReadError
+from faying.measured.frf import FRF, QUANTITIES
+from faying.typing import Array, Complex
+
+EDGE = 0.25  # of the band, on both sides, over which the filter rises
+RINGING = 3.0  # over the width of an edge: how long the ends of the record are felt [-]
+CYCLES = 20  # least length of the stretch that gives one point
+SCATTER = 0.05  # of ln amplitude about a stretch's parabola, beyond which it is noise or more than one mode
+LEAST = 5  # points without which there is no curve
+MOTIONS = {"displacement": 0, "velocity": 1, "acceleration": 2}  # how often displacement is differentiated
+KNOWN = {"acceleration": "m/s^2", "displacement": "m", "frequency": "Hz", "damping": "1", "time": "s"}
+FORM = (
+    "measured points look like: acceleration [m/s^2],frequency [Hz],damping [%] and under it rows such as 3,178.2,.21"
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeasuredBackbone:
+    """Frequency and damping of one mode against its amplitude, as measured; all arrays (n,), NaN where not known.
+
+    acceleration [m/s2]: amplitude of the fundamental; frequency [Hz]; damping [-] of critical; frequency_error,
+    damping_error: standard errors; time [s] in the record.
+    """
+
+    acceleration: Array
+    frequency: Array
+    damping: Array
+    frequency_error: Array
+    damping_error: Array
+    time: Array
+    source: str = ""
+
+    @classmethod
+    def read(cls, path: str | Path) -> Self:
+        """Read measured points from a CSV file whose head names quantities and units.
+
+        Columns: acceleration [m/s^2] or displacement [um] (amplitudes; the one follows from the other), frequency [Hz],
+        and damping [%] where it is known. Lines from # on are comments.
+
+        Raises:
+            ReadError: with the file and the line, where it is no such table.
+        """
+        path = Path(path)
+        table = read_columns(path, KNOWN, needed="frequency", form=FORM)
+        found, lines = table.values, table.lines
+        if not lines:
+            raise ReadError(f"{path}: no rows under the head; {FORM}")
+        if ("acceleration" in found) == ("displacement" in found):
+            raise ReadError(f"{path}: give either acceleration or displacement, the amplitude of each row; {FORM}")
+        for name, values in found.items():
+            low = values < 0 if name in ("damping", "time") else values <= 0
+            if np.any(low):
+                row = int(np.argmax(low))
+                raise ReadError(
+                    f'{path}, line {lines[row]}: {table.given(name, row)} in the column "{name}" must be positive'
+                )
+        frequency = found["frequency"]
+        unknown = np.full(len(lines), np.nan)
+        shift = (2 * np.pi * frequency) ** 2
+        return cls(
+            acceleration=found["acceleration"] if "acceleration" in found else found["displacement"] * shift,
+            frequency=frequency,
+            damping=found.get("damping", unknown),
+            frequency_error=unknown,
+            damping_error=unknown,
+            time=found.get("time", unknown),
+            source=str(path),
+        )
+
+
+def ring_down(
+    signal: Any,
+    sampling_rate: float,
+    *,
+    band: tuple[float, float],
+    quantity: Literal["acceleration", "velocity", "displacement"] = "acceleration",
+    cycles: int = CYCLES,
+    start: float = 0.0,
+) -> MeasuredBackbone:
+    """Frequency and damping of one mode along a free decay.
+
+    The record is filtered by a band with smooth edges and without its negative frequencies (so that nothing is shifted
+    in phase): the analytic signal, whose size is the amplitude and whose angle is the phase. Stretches of `cycles`
+    periods each get a parabola of ln amplitude and of phase by least squares; their slopes are the decay and the
+    frequency. No peak is read, in time or frequency. What lies within three over the width of the filter's edges from
+    an end of the record is discarded: there the filter rings.
+
+    damping is that of a Backbone, the loss in a cycle over 2 pi w^2 q^2, with q the displacement amplitude times the
+    root of the modal mass and w the circular frequency. A loss D lowers the action w q^2/2 by D/(w T) in a period T
+    (dE = w dJ, whatever the restoring force), so that damping = -d ln(q sqrt w)/dt/w. Where the frequency changes with
+    amplitude this is not -d ln q/dt/w: the two differ by d ln w/d ln q/2.
+
+    Args:
+        signal: (n,), in the SI unit of `quantity`, free from `start` on.
+        sampling_rate: samples per second [1/s].
+        band: [Hz] in which this mode is alone; its width should be ten times the decay rate or more.
+        quantity: of the signal.
+        cycles: in a stretch: more average the noise, fewer follow a quick change.
+        start: of the free decay [s] in the record.
+
+    Raises:
+        InputError: a record that is too short for the band, a band outside it, or one in which noise or other modes
+            leave no curve.
+
+    Source:
+        Feldman 1994, doi:10.1006/mssp.1994.1011 (FREEVIB: the analytic signal of a free decay).
+    """
+    x = np.asarray(signal, dtype=float)
+    if quantity not in MOTIONS:
+        raise InputError(f"quantity {quantity!r}: use one of {', '.join(MOTIONS)}")
+    if x.ndim != 1 or not np.all(np.isfinite(x)):
+        raise InputError(f"the record has the shape {x.shape} or holds NaN; give one row of finite samples")
+    if not 0 < sampling_rate < np.inf:
+        raise InputError(f"sampling_rate = {sampling_rate}: samples per second must be positive")
+    _check_band(band, sampling_rate / 2)
+    x = x[round(start * sampling_rate) :]
+    padded = 2 * len(x)  # so that the end does not wrap round onto the beginning
+    lines = np.fft.rfft(x, padded)
+    frequency = np.asarray(np.fft.rfftfreq(padded, 1 / sampling_rate), float)
+    weighted = np.zeros(padded, dtype=complex)
+    weighted[: len(lines)] = 2 * lines * _filter(frequency, band)
+    analytic = np.fft.ifft(weighted)[: len(x)]
+    return _curve(analytic, sampling_rate, band, MOTIONS[quantity], cycles, start)
+
+
+def ring_down_of_frf(
+    frf: FRF,
+    *,
+    impulse: float,
+    band: tuple[float, float],
+    output: int = 0,
+    input: int = 0,
+    cycles: int = CYCLES,
+) -> MeasuredBackbone:
+    """Frequency and damping along the decay that a hammer's FRF stands for.
+
+    A linear structure has one FRF, a joint one for each strength of the hit: take the FRF of a single hit, or of hits
+    alike. Its lines in the band, transformed back and multiplied by the hit's impulse, are the analytic signal of the
+    free decay after it; from there on as `ring_down`. An exponential window's decay is taken off.
+
+    Args:
+        frf: with evenly spaced lines.
+        impulse: of the hit [N s], positive.
+        band: [Hz] in which this mode is alone.
+        output, input: which function.
+        cycles: in a stretch.
+
+    Raises:
+        InputError: as `ring_down`.
+    """
+    if not 0 < impulse < np.inf:
+        raise InputError(f"impulse = {impulse}: give the impulse of the hit [N s], positive")
+    _check_band(band, float(frf.frequency[-1]))
+    values, step = frf.values[output, input], frf.step
+    if not np.all(np.isfinite(values)):
+        raise InputError(f"output {output} and input {input} were not measured together")
+    # more instants than lines, so that the curve is smooth: zeros beyond the last line
+    count = 1 << int(np.ceil(np.log2(4 * frf.frequency[-1] / step)))
+    weighted = np.zeros(count, dtype=complex)
+    weighted[np.rint(frf.frequency / step).astype(int)] = values * _filter(frf.frequency, band)
+    analytic = 2 * impulse * step * count * np.fft.ifft(weighted)
+    if frf.window_decay:
+        analytic = analytic * np.exp(frf.window_decay * np.arange(count) / (count * step))
+    return _curve(analytic, count * step, band, QUANTITIES[frf.quantity], cycles, 0.0)
+
+
+def _check_band(band: tuple[float, float], highest: float) -> None:
+    low, high = band
+    if not 0 < low < high <= highest:
+        raise InputError(f"band = {low:g} to {high:g} Hz: it must rise and lie between 0 and {highest:g} Hz")
+
+
+def _filter(frequency: Array, band: tuple[float, float]) -> Array:
+    """1 in the middle of the band, 0 outside, with edges without corners to any order."""
+    low, high = band
+    edge = EDGE * (high - low)
+    inward = np.clip(np.minimum(frequency - low, high - frequency) / edge, 0.0, 1.0)
+    inside = (inward > 0) & (inward < 1)
+    x = np.where(inside, inward, 0.5)
+    return np.where(inside, 1 / (1 + np.exp(np.clip(1 / x - 1 / (1 - x), -500, 500))), inward)
+
+
+def _curve(
+    analytic: Complex, rate: float, band: tuple[float, float], power: int, cycles: int, start: float
+) -> MeasuredBackbone:
+    """Slopes of ln amplitude and phase of an analytic signal, stretch by stretch."""
+    width = band[1] - band[0]
+    cut = int(np.ceil(RINGING / (EDGE * width) * rate))
+    stretch = int(np.ceil(cycles / ((band[0] + band[1]) / 2) * rate)) // 2 * 2 + 1
+    free = analytic[cut : len(analytic) - cut]
+    if len(free) < stretch + 2:
+        raise InputError(
+            f"the record of {len(analytic) / rate:.3g} s is too short for a band of {width:g} Hz: {2 * cut / rate:.3g} "
+            f"s are lost at its ends and one stretch takes {stretch / rate:.3g} s; widen the band or record longer"
+        )
+    size, phase = np.log(np.maximum(np.abs(free), 1e-300)), np.unwrap(np.angle(free))
+    middles = np.arange(stretch // 2, len(free) - stretch // 2, max(1, stretch // 2))
+    t = (np.arange(stretch) - stretch // 2) / rate
+    parabola = np.linalg.pinv(np.stack([np.ones(stretch), t, t * t], axis=1))
+    windows = middles[:, None] + np.arange(stretch) - stretch // 2
+    fits = [np.stack([parabola @ own[row] for row in windows]) for own in (size, phase)]
+    residual = [
+        np.sqrt(np.mean((own[windows] - fit @ np.stack([np.ones(stretch), t, t * t])) ** 2, axis=1))
+        for own, fit in zip((size, phase), fits, strict=True)
+    ]
+    good = residual[0] < SCATTER
+    count = int(np.argmin(good)) if not np.all(good) else len(good)
+    if count < LEAST:
+        raise InputError(
+            f"{count} stretches of {cycles} cycles have a smooth decay in {band[0]:g} to {band[1]:g} Hz; {LEAST} are "
+            "needed: noise, or more than one mode in the band; narrow or move it, or take shorter stretches"
+        )
+    size_fit, phase_fit = (fit[:count] for fit in fits)
+    omega = phase_fit[:, 1]
+    change = 2 * phase_fit[:, 2] / omega  # d ln omega/dt
+    decay = -(size_fit[:, 1] - (power - 0.5) * change)
+    # noise in the band has so many independent values in a stretch, of which the parabola takes three
+    length = stretch / rate
+    spread = np.sqrt(12 / max(1.0, (1 - EDGE) * width * length - 3)) / length
+    return MeasuredBackbone(
+        acceleration=np.exp(size_fit[:, 0]) * omega ** (2 - power),
+        frequency=omega / (2 * np.pi),
+        damping=decay / omega,
+        frequency_error=residual[1][:count] * spread / (2 * np.pi),
+        damping_error=residual[0][:count] * spread / omega,
+        time=start + (cut + middles[:count]) / rate,
+    )

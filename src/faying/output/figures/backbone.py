@@ -1,0 +1,112 @@
+"""Figure of backbones: frequency and damping against acceleration, with what was measured and the static cycle."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.measured.ring_down import MeasuredBackbone
+from faying.output.figures.save import check_ending, new_figure, plain
+from faying.result.backbone import Backbone
+
+
+def check(path: str | Path) -> None:
+    """Raise InputError, before anything is computed, for a figure that cannot be written."""
+    file = Path(path)
+    check_ending(file)
+    if not file.parent.is_dir():
+        raise InputError(f"no folder {file.parent} to write {file.name} in; make it first")
+
+
+def label(curve: Backbone, curves: Sequence[Backbone]) -> str:
+    """What tells a curve from the others: friction and preload, where these differ."""
+    parts = []
+    if len({other.load for other in curves}) > 1:
+        parts.append(f"{curve.load / 1e3:g} kN")
+    if len({other.friction for other in curves}) > 1 or not parts:
+        parts.append(f"friction {curve.friction_text}")
+    return ", ".join(parts)
+
+
+def panel(ax: Any, curves: Sequence[Backbone], quantity: str, measured: Sequence[MeasuredBackbone] = ()) -> Any:
+    """Draw frequency [Hz] or damping [%] of curves over acceleration, the static cycle as circles.
+
+    quantity: "frequency" or "damping". Measured points are crosses.
+    """
+    factor = 100.0 if quantity == "damping" else 1.0
+    for k, curve in enumerate(curves):
+        color = f"C{k % 10}"
+        ax.plot(
+            curve.acceleration,
+            factor * getattr(curve, quantity),
+            color=color,
+            lw=1.5,
+            marker=".",
+            ms=3.5,
+            label=label(curve, curves),
+        )
+        if curve.witness is not None:
+            ax.plot(
+                curve.witness.acceleration,
+                factor * getattr(curve.witness, quantity),
+                "o",
+                mfc="none",
+                mec=color,
+                ms=6,
+                mew=1.0,
+                label="static cycle" if k == 0 else None,
+            )
+    for k, points in enumerate(measured):
+        known = np.isfinite(getattr(points, quantity))
+        ax.plot(
+            points.acceleration[known],
+            factor * getattr(points, quantity)[known],
+            "xv+s"[k % 4],
+            color="0.25",
+            ms=4.5,
+            mew=1.1,
+            mfc="none",
+            label=plain(Path(points.source).stem if points.source else "measured"),
+        )
+    ax.set_xscale("log")
+    ax.grid(which="major", alpha=0.3)
+    ax.grid(which="minor", alpha=0.1)
+    if quantity == "frequency":
+        ax.set_ylabel("frequency [Hz]")
+        ax.ticklabel_format(axis="y", useOffset=False)
+        return ax
+    ax.set(ylabel="damping ratio [%]", yscale="log")
+    _readable(ax.yaxis)
+    return ax
+
+
+def _readable(axis: Any) -> None:
+    """Plain numbers on a logarithmic axis."""
+    from matplotlib.ticker import FuncFormatter, NullFormatter
+
+    low, high = axis.get_view_interval()
+    number = FuncFormatter(lambda value, _: f"{value:g}")
+    axis.set_major_formatter(number)
+    axis.set_minor_formatter(number if high < 30 * low else NullFormatter())
+
+
+def figure(curves: Sequence[Backbone], measured: Sequence[MeasuredBackbone] = ()) -> Any:
+    """Return the figure of curves of one mode: frequency above, damping below, over the same acceleration.
+
+    Args:
+        curves: of one mode, at one point.
+        measured: points to lay over them.
+    """
+    fig = new_figure(6.3, 6.2)
+    upper, lower = fig.subplots(2, 1, sharex=True)
+    panel(upper, curves, "frequency", measured)
+    panel(lower, curves, "damping", measured)
+    first = curves[0]
+    at = ", ".join(f"{1e3 * x:.4g}" for x in first.at)
+    lower.set_xlabel(f"acceleration at ({at}) mm [m/s²]")
+    _readable(lower.xaxis)
+    upper.set_title(f"{plain(first.title)}: mode {first.mode}", fontsize=10)
+    upper.legend(fontsize=8)
+    return fig

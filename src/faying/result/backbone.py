@@ -1,0 +1,314 @@
+"""Frequency and damping of a mode against its amplitude: the curve with its error bounds, and what follows from it."""
+
+import csv
+import io
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+
+from faying import netcdf
+from faying.errors import InputError, ReadError
+from faying.files import write_atomically
+from faying.netcdf import Group, Variable
+from faying.notes import Note
+from faying.result.fields import declared, from_group, listed, same, to_group, variable
+from faying.result.result import Provenance
+from faying.typing import Array, Index
+
+DECAY = 200  # points of a ring-down
+SHORT = 1e-3  # step of the logarithm of the amplitude for the slope of the frequency
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Witness:
+    """The same mode from statics alone: a quasi-static cycle under inertia forces, at some of the amplitudes."""
+
+    amplitude: Array = variable("witness", unit="m kg^1/2", long_name="modal amplitude")
+    acceleration: Array = variable("witness", unit="m/s2", long_name="acceleration at the point")
+    frequency: Array = variable("witness", unit="Hz", long_name="frequency of the static cycle")
+    damping: Array = variable("witness", unit="1", long_name="damping ratio of the static cycle")
+    frequency_change: Array = variable("witness", unit="1", long_name="static cycle over the curve's frequency, less 1")
+    damping_change: Array = variable("witness", unit="1", long_name="static cycle over the joints' damping, less 1")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ErrorBounds:
+    """What changes, relatively, at an acceleration [m/s2] when the computation is made coarser; NaN: not looked at.
+
+    The acceleration is the largest of the curve at which the coarser computations have an answer.
+    harmonics: {0, 1} in place of all; points: half of the joints' points; samples: half of the instants of a cycle.
+    Damping is that of the joints alone. residual: the greatest of what the cycles leave in the full equations.
+    """
+
+    acceleration: float = float("nan")
+    harmonics_frequency: float = float("nan")
+    harmonics_damping: float = float("nan")
+    points_frequency: float = float("nan")
+    points_damping: float = float("nan")
+    samples_frequency: float = float("nan")
+    samples_damping: float = float("nan")
+    residual: float = float("nan")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ForcedResponse:
+    """Steady response to a harmonic force near one mode, along the curve; a frequency may have several answers.
+
+    force [N]; frequency [Hz], acceleration [m/s2], phase [rad] of the motion behind the force: (k,).
+    """
+
+    force: float
+    frequency: Array
+    acceleration: Array
+    phase: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RingDown:
+    """Free decay along the curve: time [s], acceleration amplitude [m/s2], frequency [Hz], damping ratio [-] (k,)."""
+
+    time: Array
+    acceleration: Array
+    frequency: Array
+    damping: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Backbone:
+    """Frequency and damping of one mode against its amplitude.
+
+    The amplitude is that of the fundamental harmonic at the point `at` along `direction`. damping is the joints' ratio
+    to critical plus `rest_damping`; friction is that of each joint; mode counts elastic modes from 1; load [N] is the
+    preload of the first bolt. code and reason say why the curve ends. shape_at [kg^-1/2]: what the mode at rest moves
+    at the point.
+    """
+
+    title: str
+    mode: int
+    load: float
+    friction: tuple[float, ...]
+    harmonics: int
+    linear_frequency: float
+    rest_damping: float
+    shape_at: float
+    code: str
+    reason: str
+    joints: tuple[str, ...]
+    bolts: tuple[str, ...]
+    basis_size: int
+    unknowns: int
+    at: Array = variable("axis", unit="m", long_name="point whose motion is given")
+    direction: Array = variable("axis", unit="1", long_name="direction of that motion")
+    acceleration: Array = variable("amplitude", unit="m/s2", long_name="acceleration amplitude at the point")
+    frequency: Array = variable("amplitude", unit="Hz", long_name="frequency")
+    damping: Array = variable("amplitude", unit="1", long_name="damping ratio to critical")
+    modal_amplitude: Array = variable("amplitude", unit="m kg^1/2", long_name="modal amplitude")
+    displacement: Array = variable("amplitude", unit="m", long_name="displacement amplitude at the point")
+    slipping: Array = variable("amplitude", unit="1", long_name="share of the joints' friction that slides in a cycle")
+    open: Array = variable("amplitude", unit="1", long_name="share of the joints' area that opens in a cycle")
+    other_modes: Array = variable("amplitude", unit="1", long_name="share of other modes and harmonics in the motion")
+    residual: Array = variable("amplitude", unit="1", long_name="residual of the full equations, in energy")
+    joint_slipping: Array = variable(
+        "amplitude", "joint", unit="1", long_name="share of a joint's friction that slides"
+    )
+    joint_open: Array = variable("amplitude", "joint", unit="1", long_name="share of a joint's area that opens")
+    energy: Array = variable("amplitude", "joint", unit="J", long_name="energy lost in each joint in a cycle")
+    bolt_force: Array = variable("amplitude", "bolt", unit="N", long_name="amplitude of each bolt's force")
+    slip_map: Array = variable("amplitude", "point", unit="1", long_name="share of the friction that slides")
+    open_map: Array = variable("amplitude", "point", unit="1", long_name="whether the point opens")
+    points: Array = variable("point", "axis", unit="m", long_name="points of the joints")
+    weights: Array = variable("point", unit="m2", long_name="area of each point")
+    joint_of_point: Index = variable("point", unit="1", long_name="joint of each point, from 0", dtype="i8")
+    witness: Witness | None = None
+    bounds: ErrorBounds = field(default_factory=ErrorBounds)
+    notes: tuple[Note, ...] = ()
+    provenance: Provenance = field(default_factory=Provenance)
+
+    def __post_init__(self) -> None:
+        for name, meta in declared(type(self)).items():
+            value = np.asarray(getattr(self, name), dtype=meta.dtype)
+            if not np.all(np.isfinite(value)):
+                raise InputError(f"the backbone has NaN in {name}; this is a fault of Faying, please report it")
+            value.setflags(write=False)
+            object.__setattr__(self, name, value)
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and all(
+            same(getattr(self, f.name), getattr(other, f.name)) for f in fields(self)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        lines = [
+            f"Backbone {self.title!r}: mode {self.mode}, {self.load / 1e3:g} kN, friction {self.friction_text}",
+            f"{'m/s2':>10}{'Hz':>12}{'damping':>10}{'slips':>8}",
+        ]
+        for a, f, z, s in zip(self.acceleration, self.frequency, self.damping, self.slipping, strict=True):
+            lines.append(f"{a:>10.4g}{f:>12.3f}{100 * z:>9.3g}%{s:>8.0%}")
+        return "\n".join([*lines, f"ends: {self.reason}"])
+
+    @property
+    def friction_text(self) -> str:
+        """The friction of the joints, once where it is the same for all."""
+        return ", ".join(f"{value:g}" for value in dict.fromkeys(self.friction))
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """The notes as sentences."""
+        return tuple(note.text for note in self.notes)
+
+    def at_acceleration(self, acceleration: Any) -> tuple[Array, Array]:
+        """Frequency [Hz] and damping ratio [-] at accelerations [m/s2] of any shape.
+
+        Interpolated between the points of the curve in the logarithm of the amplitude; below the first point damping
+        from slip falls in proportion to the amplitude and the frequency goes to that at rest. Raises InputError beyond
+        the end of the curve.
+        """
+        wanted = np.asarray(acceleration, dtype=float)
+        if np.any(wanted > self.acceleration[-1] * (1 + 1e-9)) or np.any(wanted <= 0):
+            raise InputError(
+                f"the curve goes from 0 to {self.acceleration[-1]:.4g} m/s2 ({self.reason}); it says nothing of "
+                f"{wanted.max():.4g} m/s2"
+            )
+        return self._between(self.acceleration, wanted)
+
+    def _between(self, scale: Array, wanted: Array) -> tuple[Array, Array]:
+        slope = np.minimum(wanted / scale[0], 1.0)
+        x, known = np.log(np.maximum(wanted, scale[0])), np.log(scale)
+        low = np.minimum(wanted / scale[0], 1.0)
+        f = np.interp(x, known, self.frequency)
+        z = np.interp(x, known, self.damping)
+        f = np.where(wanted < scale[0], self.linear_frequency + low * (self.frequency[0] - self.linear_frequency), f)
+        z = np.where(wanted < scale[0], self.rest_damping + slope * (self.damping[0] - self.rest_damping), z)
+        return f, z
+
+    def ring_down(self, acceleration: float, time: float, *, points: int = DECAY) -> RingDown:
+        """Free decay from an acceleration amplitude [m/s2] over a time [s].
+
+        One mode alone, by averaging: d(w q^2)/dt = -2 zeta w (w q^2) with w and zeta of the curve at q. Where the
+        frequency hardly changes that is dq/dt = -zeta w q.
+        """
+        self.at_acceleration(acceleration)
+        q = float(np.exp(np.interp(np.log(acceleration), np.log(self.acceleration), np.log(self.modal_amplitude))))
+        if acceleration < self.acceleration[0]:
+            q = self.modal_amplitude[0] * acceleration / self.acceleration[0]
+        times = np.linspace(0.0, time, points)
+
+        def rate(log_q: float) -> float:
+            near = np.exp(log_q + np.array([-SHORT, 0.0, SHORT]))
+            f, z = self._between(self.modal_amplitude, near)
+            bend = float(np.log(f[2] / f[0])) / (2 * SHORT)
+            return -float(z[1] * 2 * np.pi * f[1]) / (1 + bend / 2)
+
+        logs = [float(np.log(q))]
+        for step in np.diff(times):  # Runge-Kutta, whose steps are far shorter than the decay bends
+            here = logs[-1]
+            a = rate(here)
+            b = rate(here + step / 2 * a)
+            c = rate(here + step / 2 * b)
+            logs.append(here + step / 6 * (a + 2 * b + 2 * c + rate(here + step * c)))
+        amplitude = np.exp(logs)
+        f, z = self._between(self.modal_amplitude, amplitude)
+        return RingDown(time=times, acceleration=self._acceleration(amplitude), frequency=f, damping=z)
+
+    def _acceleration(self, amplitude: Array) -> Array:
+        """Acceleration [m/s2] at the point at modal amplitudes [m kg^1/2]."""
+        scale = self.acceleration / self.modal_amplitude
+        return np.asarray(amplitude * np.interp(np.log(amplitude), np.log(self.modal_amplitude), scale))
+
+    def forced_response(self, force: float, *, points: int = 400) -> ForcedResponse:
+        """Steady response to a harmonic force [N] at the point `at` along `direction`, near this mode alone.
+
+        At each amplitude q of the curve (-W^2 + 2 i zeta w W + w^2) q = modal force has up to two frequencies W, below
+        and above the resonance; beyond the force's reach it has none.
+        """
+        if not force > 0:
+            raise InputError(f"force = {force:g} N should be positive")
+        pushed = force * abs(self.shape_at)
+        q = np.geomspace(self.modal_amplitude[0], self.modal_amplitude[-1], points)
+        last = np.flatnonzero(self._left(q, pushed)[0] >= 0)[-1:]
+        if len(last) and last[0] + 1 < points:  # finer about the greatest amplitude
+            top = np.geomspace(q[last[0]], q[last[0] + 1], points // 4)
+            q = np.unique(np.concatenate([q, top]))
+        inside, w, z = self._left(q, pushed)
+        middle = w**2 * (1 - 2 * z**2)
+        reached = inside >= 0
+        half = np.sqrt(np.where(reached, inside, 0.0))
+        below = reached & (middle > half)
+        lower, upper = np.sqrt(np.where(below, middle - half, 1.0)), np.sqrt(middle + half)
+        drive = np.concatenate([lower[below], upper[reached][::-1]])
+        amplitude = np.concatenate([q[below], q[reached][::-1]])
+        w, z = (np.concatenate([x[below], x[reached][::-1]]) for x in (w, z))
+        return ForcedResponse(
+            force=force,
+            frequency=drive / (2 * np.pi),
+            acceleration=self._acceleration(amplitude) * (drive / w) ** 2,
+            phase=np.arctan2(2 * z * w * drive, w**2 - drive**2),
+        )
+
+    def _left(self, q: Array, pushed: float) -> tuple[Array, Array, Array]:
+        """What is under the root for the frequencies of a modal force, below 0 beyond its reach; w and zeta."""
+        f, z = self._between(self.modal_amplitude, q)
+        w = 2 * np.pi * f
+        return (pushed / q) ** 2 - (2 * z * w**2) ** 2 * (1 - z**2), w, z
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the numbers a reader wants, ready for JSON: {"unit", "values"} in SI; maps are left out."""
+        out: dict[str, Any] = {
+            name: getattr(self, name)
+            for name in ("title", "mode", "harmonics", "basis_size", "unknowns", "code", "reason")
+        }
+        out["friction"], out["joints"], out["bolts"] = (list(x) for x in (self.friction, self.joints, self.bolts))
+        for name, unit in (("load", "N"), ("linear_frequency", "Hz"), ("rest_damping", "1"), ("shape_at", "kg^-1/2")):
+            out[name] = {"unit": unit, "values": getattr(self, name)}
+        for name, meta in declared(type(self)).items():
+            if "point" not in meta.dims:
+                out[name] = {"unit": meta.unit, "values": listed(getattr(self, name))}
+        if self.witness is not None:
+            out["witness"] = {
+                name: {"unit": meta.unit, "values": listed(getattr(self.witness, name))}
+                for name, meta in declared(Witness).items()
+            }
+        out["bounds"] = {f.name: listed(getattr(self.bounds, f.name)) for f in fields(self.bounds)}
+        out["bounds"] = {name: None if value != value else value for name, value in out["bounds"].items()}
+        out["notes"] = [{f.name: getattr(note, f.name) for f in fields(note)} for note in self.notes]
+        return out
+
+    def to_netcdf(self, path: str | Path) -> Path:
+        """Write everything as NetCDF-4 that xarray opens; the file appears complete or not at all."""
+        group = to_group(self)
+        names = {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
+        labels = {name: Variable(dims=(name,), values=np.array(values, dtype=object)) for name, values in names.items()}
+        attributes = {"Conventions": "CF-1.11", **group.attributes}
+        whole = Group(variables={**labels, **group.variables}, attributes=attributes, groups=group.groups)
+        return netcdf.write(Path(path), whole)
+
+    @classmethod
+    def load_file(cls, path: str | Path) -> Self:
+        """Read a curve that `to_netcdf` wrote; it equals the one that was written.
+
+        Raises ReadError where the file is missing, damaged or no backbone of Faying.
+        """
+        file = Path(path)
+        if not file.is_file():
+            raise ReadError(f"{file}: no such file; write one with: faying backbone STUDY.toml")
+        try:
+            return from_group(cls, netcdf.read(file))
+        except (ReadError, TypeError, KeyError, ValueError, AttributeError) as fault:
+            raise ReadError(
+                f"{file}: no backbone of Faying, or damaged ({fault}); write one with: faying backbone STUDY.toml"
+            ) from None
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write one row for each amplitude, units in the heading; the file appears complete or not at all."""
+        out = io.StringIO()
+        rows = csv.writer(out, lineterminator="\n")
+        names = ("acceleration", "frequency", "damping", "modal_amplitude", "displacement", "slipping", "open")
+        units = declared(type(self))
+        rows.writerow([f"{name} [{'-' if units[name].unit == '1' else units[name].unit}]" for name in names])
+        for k in range(len(self.acceleration)):
+            rows.writerow([f"{float(getattr(self, name)[k]):.8g}" for name in names])
+        return write_atomically(Path(path), lambda temporary: temporary.write_text(out.getvalue(), encoding="utf-8"))

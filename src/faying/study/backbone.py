@@ -1,0 +1,399 @@
+"""From a study to the frequency and damping of a mode against its amplitude."""
+
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal, overload
+
+import numpy as np
+
+from faying.errors import FayingError, InputError
+from faying.fe.damped import damped_modes
+from faying.fe.modes import Modes, lowest_modes
+from faying.joint.attachments import nearest_node
+from faying.joint.epmc import EpmcCurve, EpmcPoint
+from faying.joint.microslip import Microslip
+from faying.joint.slip_basis import SlipBasis
+from faying.joint.structure import Structure
+from faying.joint.support_check import check_motions, checked_preload
+from faying.result.backbone import Backbone
+from faying.study.backbone_result import Curve, collected
+from faying.study.backbone_store import CurveStore, fingerprint
+from faying.study.case import Case
+from faying.study.keys.backbone import BackboneChoice, Point, check_friction
+from faying.study.study import Study
+from faying.typing import Array
+
+EXTRA_MODES = 14  # real modes beyond the one that is followed, in its basis
+SPRINGS = 32  # of the law's curve at a point
+FEW = 16  # springs with which the basis is trained
+SAMPLES = 64  # instants of a cycle
+TRAINED = 2.5  # decades below the last level in which the basis is trained,
+EACH = 0.5  # in steps of so many
+SPENT = 0.05  # residual, in energy, at which a basis is spent
+STILL = 1e-3  # of the greatest motion: a point that moves less says nothing of the mode
+
+Report = Callable[[str, float], None]
+
+
+@overload
+def backbone(
+    study: Study | str | Path,
+    mode: int | None = ...,
+    friction: float | None = ...,
+    amplitude: tuple[float, float] | None = ...,
+    at: Point | None = ...,
+    harmonics: int | None = ...,
+    *,
+    load: float | None = ...,
+    rest_damping: float | Literal["law"] | None = ...,
+    slip: Literal["microslip", "coulomb"] | None = ...,
+    out: str | Path | None = ...,
+    report: Report | None = ...,
+) -> Backbone: ...
+
+
+@overload
+def backbone(
+    study: Study | str | Path,
+    mode: int | None = ...,
+    friction: Sequence[float] = ...,
+    amplitude: tuple[float, float] | None = ...,
+    at: Point | None = ...,
+    harmonics: int | None = ...,
+    *,
+    load: float | None = ...,
+    rest_damping: float | Literal["law"] | None = ...,
+    slip: Literal["microslip", "coulomb"] | None = ...,
+    out: str | Path | None = ...,
+    report: Report | None = ...,
+) -> tuple[Backbone, ...]: ...
+
+
+def backbone(
+    study: Study | str | Path,
+    mode: int | None = None,
+    friction: float | Sequence[float] | None = None,
+    amplitude: tuple[float, float] | None = None,
+    at: Point | None = None,
+    harmonics: int | None = None,
+    *,
+    load: float | None = None,
+    rest_damping: float | Literal["law"] | None = None,
+    slip: Literal["microslip", "coulomb"] | None = None,
+    out: str | Path | None = None,
+    report: Report | None = None,
+) -> Backbone | tuple[Backbone, ...]:
+    """Follow one mode of a study from rest to large amplitudes: frequency and damping of its slipping joints.
+
+    What is left out is taken from [backbone] of the study, or its default.
+
+    Args:
+        study: A Study or the path of its TOML file.
+        mode: Elastic mode, from 1.
+        friction: Coefficient [-] of all joints, 0 to 10; that of each joint in the study where left out. A list gives a
+            tuple of curves, from one basis.
+        amplitude: First and last acceleration amplitude [m/s2]; (0.1, 100) by default. The curve may end before.
+        at: Point [m] whose acceleration that is; where the mode moves most by default.
+        harmonics: Highest harmonic of the motion, 3 by default; 1 is quick.
+        load: Preload of the first bolt [N], one of the study's; the greatest by default.
+        rest_damping: Ratio to critical [-] that is added to that of slip, or "law": what the laws lose without slip.
+        slip: "microslip" (default) cuts the law's curve into springs with sliders; "coulomb" takes one slider a point.
+        out: File (.nc) that the curve is written to. What is done is kept beside it until then: a computation that was
+            killed goes on where it stopped. With several curves, their files are numbered.
+        report: Called with the stage and the share of the work that is done [-].
+
+    Returns:
+        The curve, with its error bounds and the reason why it ends.
+
+    Raises:
+        InputError: No friction is given, the law has no tangential stiffness, there is no such mode or load.
+        NotConverged: The preload, the modes or the first point of the curve are not found.
+
+    Source:
+        Extended periodic motion concept: Krack 2015, doi:10.1016/j.compstruc.2015.03.008.
+    """
+    many = isinstance(friction, Sequence)
+    asked: dict[str, Any] = {"mode": mode, "amplitude": amplitude, "at": at, "harmonics": harmonics}
+    asked |= {"rest_damping": rest_damping, "slip": slip}
+    study = Study.read(study)
+    choice = chosen(study, friction, asked)
+    if not many and len(choice.friction) > 1:
+        given = ", ".join(f"{value:g}" for value in choice.friction)
+        raise InputError(f"[backbone] lists friction {given}: give one of them, or the list for a tuple of curves")
+    curves = backbones(
+        study, choice, loads=[len(study.loads) - 1 if load is None else load_index(study, load)], out=out, report=report
+    )
+    return curves if many else curves[0]
+
+
+def chosen(study: Study, friction: float | Sequence[float] | None, asked: dict[str, Any]) -> BackboneChoice:
+    """[backbone] of the study with what is asked for in place of it."""
+    given = {name: value for name, value in asked.items() if value is not None}
+    if friction is not None:
+        given["friction"] = tuple(friction) if isinstance(friction, Sequence) else (friction,)
+    return replace(study.backbone or BackboneChoice(), **given)
+
+
+def load_index(study: Study, load: float) -> int:
+    """Index of a preload [N] of the study. Raises InputError where it has none such."""
+    index = int(np.argmin(np.abs(np.array(study.loads) - load)))
+    if abs(study.loads[index] - load) > 1e-3 * abs(load):
+        known = ", ".join(f"{value / 1e3:g} kN" for value in study.loads)
+        raise InputError(f"no preload of {load / 1e3:g} kN in the study; it has {known}")
+    return index
+
+
+def backbones(
+    study: Study,
+    choice: BackboneChoice,
+    *,
+    loads: Sequence[int] | None = None,
+    out: str | Path | None = None,
+    report: Report | None = None,
+) -> tuple[Backbone, ...]:
+    """Curves for every friction of a choice at some loads of a study (indices, all where None), from one basis.
+
+    Args, Raises: see `backbone`.
+    """
+    indices = list(range(len(study.loads))) if loads is None else list(loads)
+    frictions = friction_of(study, choice)
+    progress = _Progress(report, len(indices) * len(frictions))
+    file = None if out is None else Path(out)
+    with closing(CurveStore(file, fingerprint(study, (choice, indices)))) as store:
+        try:
+            made = _curves(study, choice, indices, frictions, store, progress)
+        except FayingError:
+            store.forget()
+            raise
+        if file is not None:
+            for path, curve in zip(names(file, len(made)), made, strict=True):
+                curve.to_netcdf(path)
+            store.finish()
+    return tuple(made)
+
+
+def names(out: Path, count: int) -> list[Path]:
+    """The files of several curves: numbered, but for one alone."""
+    return [out] if count == 1 else [out.with_name(f"{out.stem}-{k + 1}{out.suffix}") for k in range(count)]
+
+
+def friction_of(study: Study, choice: BackboneChoice) -> list[tuple[float, ...]]:
+    """Coefficient of each joint for each curve. Raises InputError where a joint has none."""
+    if choice.friction:
+        return [(value,) * len(study.joints) for value in choice.friction]
+    own: list[float] = []
+    for joint in study.joints:
+        if joint.friction is None:
+            raise InputError(
+                f"joint {joint.name!r} has no friction, without which nothing slips; give friction = 0.2 "
+                "(--friction 0.2), or friction in its [[joint]] or in [backbone]"
+            )
+        check_friction(joint.friction)
+        own.append(joint.friction)
+    return [tuple(own)]
+
+
+@dataclass
+class _Progress:
+    """Shares of the work: a fifth until the basis stands, the rest in equal parts for the curves."""
+
+    report: Report | None
+    curves: int
+    curve: int = 0
+
+    def stage(self, text: str, share: float) -> None:
+        if self.report is not None:
+            self.report(text, 0.2 * share)
+
+    def within(self, text: str, share: float) -> None:
+        if self.report is not None:
+            self.report(text, 0.2 + 0.8 * (self.curve + min(max(share, 0.0), 1.0)) / self.curves)
+
+
+def _curves(
+    study: Study,
+    choice: BackboneChoice,
+    indices: Sequence[int],
+    frictions: Sequence[tuple[float, ...]],
+    store: CurveStore,
+    progress: _Progress,
+) -> list[Backbone]:
+    progress.stage("surface and mesh", 0.0)
+    case = Case.of(study)
+    bases = _bases(case, choice, indices, progress)
+    prepared = [
+        _Prepared(case=case, choice=choice, load=study.loads[k], basis=b) for k, b in zip(indices, bases, strict=True)
+    ]
+    vectors = store.basis()
+    if vectors is not None:
+        bases[0].restore(vectors)
+    else:
+        bases[0].begin(lambda text: progress.stage(text, 0.5))
+        for other in bases[1:]:
+            other.take_modes()
+        for one in prepared:
+            for friction in frictions:
+                one.train(friction, progress)
+        store.keep_basis(bases[0].basis.vectors)
+    out = []
+    for one in prepared:
+        for friction in frictions:
+            number = progress.curve
+
+            def keep(count: int, point: EpmcPoint, number: int = number) -> None:
+                store.keep(number, count, point)
+
+            found = one.curve(friction, store.points(number), keep, progress)
+            out.append(collected(found))
+            progress.curve += 1
+    return out
+
+
+def _bases(case: Case, choice: BackboneChoice, indices: Sequence[int], progress: _Progress) -> list[SlipBasis]:
+    """The structure under each load, with one basis, which is empty yet."""
+    study, structure = case.study, case.structure
+    problem = structure.assembly(solver=study.modes.solver)
+    bases: list[SlipBasis] = []
+    for index in indices:
+        progress.stage(f"preload {study.loads[index] / 1e3:g} kN", 0.2)
+        preload = checked_preload(structure, problem, study.forces(index), order=study.order)
+        springs = structure.springs(preload.pressures)
+        for joint, own in zip(structure.joints, springs, strict=True):
+            if not np.any(own.k_t > 0):
+                raise InputError(
+                    f"joint {joint.name!r}: {joint.law.model.name} has no tangential stiffness, so that nothing slips; "
+                    'set tangential = "mindlin", or take another law'
+                )
+        if bases:
+            bases.append(bases[0].under(preload, springs))
+            continue
+        progress.stage("modes", 0.4)
+        bases.append(
+            SlipBasis(
+                structure=structure,
+                preload=preload,
+                springs=springs,
+                modes=_modes(case, structure, springs, choice.mode),
+                mode=choice.mode,
+            )
+        )
+    return bases
+
+
+def _modes(case: Case, structure: Structure, springs: Any, mode: int) -> Modes:
+    stiffness, _ = structure.joined(springs)
+    mass = structure.vibrating[1]
+    most = int(np.count_nonzero(mass.diagonal() > 0)) // 2
+    wanted = max(min(mode + EXTRA_MODES, most - structure.rigid_count), 1)
+    solver = case.study.modes.solver
+    modes = lowest_modes(
+        stiffness, mass, structure.rigid_count + wanted, shift_frequency=case.shift_frequency, solver=solver
+    )
+    check_motions(structure, modes)
+    return modes
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Prepared:
+    """A case under one load, ready for its curves."""
+
+    case: Case
+    choice: BackboneChoice
+    load: float
+    basis: SlipBasis
+
+    def laws(self, friction: Sequence[float], springs: int = SPRINGS) -> list[Microslip]:
+        """The microslip law of each joint under the preload."""
+        out = []
+        openings = self.basis.preload.openings
+        for joint, opening, mu in zip(self.case.structure.joints, openings, friction, strict=True):
+            gap = joint.interface.gap
+            if self.choice.slip == "coulomb":
+                out.append(Microslip.coulomb(joint.law, -opening, friction=mu, gap=gap))
+            else:
+                out.append(Microslip.cut(joint.law, -opening, friction=mu, springs=springs, gap=gap))
+        return out
+
+    def train(self, friction: Sequence[float], progress: _Progress) -> None:
+        """Make the basis fit the curve."""
+        _, _, observer = self.observed()
+        levels = self.choice.amplitude[1] * 10 ** -np.arange(0.0, TRAINED + EACH / 2, EACH)[::-1]
+        self.basis.train(
+            self.laws(friction, FEW),
+            lambda epmc: [level / epmc.level_of(1.0) for level in levels],
+            samples=SAMPLES // 2,
+            observer=observer,
+            report=lambda text: progress.stage(text, 0.8),
+        )
+
+    def observed(self) -> tuple[int, Array, Array]:
+        """Node, direction (3,) and functional (unknowns,) of the motion that is given."""
+        mesh, shape = self.case.structure.mesh, self.basis.shape.reshape(-1, 3)
+        size = np.linalg.norm(shape, axis=1)
+        at = self.choice.at
+        node = int(np.argmax(size)) if at is None else nearest_node(mesh, at, "point of the backbone")
+        if size[node] < STILL * size.max():
+            most = ", ".join(f"{1e3 * x:.4g}" for x in mesh.points[np.argmax(size)])
+            raise InputError(
+                f"mode {self.choice.mode} hardly moves at this point ({size[node] / size.max():.1e} of its greatest "
+                f"motion); give another one, such as ({most}) mm, where it moves most"
+            )
+        direction = shape[node] / size[node]
+        functional = np.zeros(mesh.unknowns)
+        functional[3 * node : 3 * node + 3] = direction
+        return node, direction, functional
+
+    def rest_damping(self) -> float:
+        """Ratio to critical [-] that is added."""
+        if self.choice.rest_damping != "law":
+            return float(self.choice.rest_damping)
+        if not any(joint.law.predicts_loss for joint in self.case.structure.joints):
+            raise InputError('rest_damping = "law": no law of this study predicts a loss; give a number such as 0.001')
+        return self.law_damping()
+
+    def law_damping(self) -> float:
+        """Half of the loss factor [-] that the laws give the mode at rest."""
+        basis, structure = self.basis, self.case.structure
+        stiffness, loss = structure.joined(basis.springs)
+        own = basis.modes_here()
+        found = damped_modes(own, stiffness, basis.mass, loss, rigid=structure.rigid_count, count=basis.mode)
+        return float(found.damping_ratios[basis.mode - 1])
+
+    def curve(
+        self,
+        friction: tuple[float, ...],
+        known: Sequence[EpmcPoint],
+        keep: Callable[[int, EpmcPoint], None],
+        progress: _Progress,
+    ) -> Curve:
+        """Follow the curve, from the points that are known."""
+        node, direction, observer = self.observed()
+        epmc = self.basis.epmc(self.laws(friction), harmonics=self.choice.harmonics, samples=SAMPLES, observer=observer)
+        low, high = self.choice.amplitude
+        residuals: list[float] = [self.basis.residual(epmc, point)[0] for point in known]
+
+        def found(point: EpmcPoint) -> str | None:
+            residuals.append(self.basis.residual(epmc, point)[0])
+            keep(len(residuals) - 1, point)
+            progress.within(f"{point.level:.3g} m/s2", 0.8 * np.log(point.level / low) / np.log(high / low))
+            if residuals[-1] > SPENT:
+                return f"the basis is spent: the full equations leave a residual of {residuals[-1]:.1%} in energy"
+            return None
+
+        line: EpmcCurve = epmc.follow(low, high, known=known, keep=found)
+        progress.within("error bounds", 0.85)
+        return Curve(
+            case=self.case,
+            choice=self.choice,
+            load=self.load,
+            friction=friction,
+            basis=self.basis,
+            epmc=epmc,
+            line=line,
+            residuals=residuals,
+            node=node,
+            direction=direction,
+            rest_damping=self.rest_damping(),
+        )

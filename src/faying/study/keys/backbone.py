@@ -1,0 +1,99 @@
+"""[backbone]: frequency and damping of a mode against its amplitude."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from faying import units
+from faying.errors import InputError
+from faying.study.keys.reader import Table, number, point
+
+Point = tuple[float, float, float]
+RANGE = (0.1, 100.0)  # m/s2
+
+
+@dataclass(frozen=True, kw_only=True)
+class BackboneChoice:
+    """Which curve is asked for.
+
+    Args:
+        mode: Elastic mode, from 1.
+        amplitude: First and last acceleration [m/s2].
+        at: Point [m] whose acceleration that is; where the mode moves most if None.
+        friction: Coefficients [-], each for all joints and each a curve; those of the joints where empty.
+        harmonics: Highest harmonic of the motion, 1 to 9.
+        rest_damping: Ratio to critical [-] that is added, or "law": what the laws lose without slip.
+        slip: "microslip" cuts the law's own curve, "coulomb" takes one slider a point.
+
+    Raises:
+        InputError: One of them is out of range.
+    """
+
+    mode: int = 1
+    amplitude: tuple[float, float] = RANGE
+    at: Point | None = None
+    friction: tuple[float, ...] = ()
+    harmonics: int = 3
+    rest_damping: float | Literal["law"] = 0.0
+    slip: Literal["microslip", "coulomb"] = "microslip"
+
+    def __post_init__(self) -> None:
+        if isinstance(self.mode, bool) or self.mode < 1:
+            raise InputError(f"mode = {self.mode}: elastic modes count from 1")
+        low, high = self.amplitude
+        if not 0 < low < high < float("inf"):
+            raise InputError(
+                f"amplitude from {low:g} to {high:g} m/s2: give the least acceleration, above 0, and then the greatest"
+            )
+        for value in self.friction:
+            check_friction(value)
+        if not 1 <= self.harmonics <= 9:
+            raise InputError(f"harmonics = {self.harmonics}: give 1 to 9; 3 is usual, 1 is quick")
+        if self.rest_damping != "law" and not 0 <= self.rest_damping < 1:
+            raise InputError(
+                f'rest_damping = {self.rest_damping}: give a ratio to critical such as 0.001 (0.1 %), or "law"'
+            )
+        if self.slip not in ("microslip", "coulomb"):
+            raise InputError(f'slip = "{self.slip}" should be one of microslip, coulomb')
+
+    @classmethod
+    def of(cls, table: Table | None) -> "BackboneChoice | None":
+        """Read [backbone]."""
+        if table is None:
+            return None
+        given = {
+            "mode": table.count("mode", 1),
+            "amplitude": table.take("amplitude", accelerations, RANGE),
+            "at": table.take("at", point, None),
+            "friction": table.take("friction", frictions, ()),
+            "harmonics": table.count("harmonics", 3),
+            "rest_damping": table.take("rest_damping", _rest, 0.0),
+            "slip": table.text("slip", "microslip", ("microslip", "coulomb")),
+        }
+        table.close()
+        return table.made(lambda: cls(**given))
+
+
+def check_friction(value: float) -> None:
+    """Raise InputError unless a value is a coefficient with which a joint holds and can slip."""
+    if not 0 < value < 10:
+        raise InputError(f"friction = {value:g} is no coefficient of a joint that slips; give one such as 0.2")
+
+
+def accelerations(value: Any, name: str) -> tuple[float, float]:
+    """Convert two accelerations with units, as a list or as "first:last"; InputError that shows the form."""
+    parts = value.split(":") if isinstance(value, str) else value
+    if not isinstance(parts, list) or len(parts) != 2:
+        raise InputError(f'{name} = {value!r} should be two accelerations, for example ["0.1 m/s^2", "60 m/s^2"]')
+    low, high = (units.parse(part, "m/s^2", name=name) for part in parts)
+    return low, high
+
+
+def frictions(value: Any, name: str) -> tuple[float, ...]:
+    """Convert one coefficient of friction, or a list of them."""
+    values: Sequence[Any] = value if isinstance(value, list) else [value]
+    return tuple(number(one, name) for one in values)
+
+
+def _rest(value: Any, name: str) -> float | str:
+    return "law" if value == "law" else number(value, name)

@@ -1,0 +1,104 @@
+"""The folder OUT.part that long work keeps beside its output, so that it goes on where it was stopped."""
+
+import json
+import shutil
+import zlib
+from pathlib import Path
+from typing import IO, Any
+from zipfile import BadZipFile
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.files import write_atomically
+
+
+class PartFolder:
+    """The folder, locked and labelled with what it belongs to.
+
+    Args:
+        out: The output, ending in .nc.
+        fingerprint: What tells this work from another.
+        what: The name of such work in messages, and of the label.
+        facts: More for the label.
+
+    Raises:
+        InputError: The output is no .nc in a folder that exists, another process is at it, or other work has left it.
+    """
+
+    def __init__(self, out: Path, fingerprint: str, *, what: str, facts: dict[str, Any] | None = None) -> None:
+        if out.suffix != ".nc":
+            raise InputError(f"the output {out} should end in .nc: a {what} is written as NetCDF")
+        if not out.parent.is_dir():
+            raise InputError(f"no folder {out.parent} to write {out.name} in; make it first")
+        self.path = out.with_name(out.name + ".part")
+        self.found = self.path.exists()
+        label = self.path / f"{what}.json"
+        if not self.found:
+            try:
+                self.path.mkdir()
+            except OSError as fault:
+                raise InputError(f"cannot make {self.path}: {fault.strerror}; choose another output") from None
+            self._lock = locked(self.path, what)
+            text = json.dumps({"fingerprint": fingerprint, **(facts or {})})
+            write_atomically(label, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+            return
+        self._lock = locked(self.path, what)
+        try:
+            known = json.loads(label.read_text(encoding="utf-8"))["fingerprint"]
+        except (OSError, ValueError, KeyError):
+            known = None
+        if known != fingerprint:
+            self.close()
+            raise InputError(
+                f"{self.path} is what another {what} has left, or another version of this study; remove it, "
+                "or choose another output with --out"
+            )
+
+    def close(self) -> None:
+        """Let other processes have the folder."""
+        self._lock.close()
+
+    def remove(self) -> None:
+        """Remove it: the work is done, or has kept nothing."""
+        self.close()
+        shutil.rmtree(self.path, ignore_errors=True)
+
+
+def locked(folder: Path, what: str) -> IO[str]:
+    """Hold a lock on a folder until the file returned is closed or the process ends.
+
+    Raises InputError where another process holds it. Windows has no such lock: there it holds nothing.
+    """
+    file = (folder / "lock").open("w", encoding="utf-8")
+    try:
+        import fcntl
+    except ImportError:
+        return file
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        file.close()
+        raise InputError(
+            f"another {what} is writing to {folder}; wait for it, or choose another output with --out"
+        ) from None
+    return file
+
+
+def load_arrays(file: Path) -> dict[str, Any] | None:
+    """The arrays of a file, None where it is missing or damaged."""
+    try:
+        with file.open("rb") as opened, np.load(opened) as data:
+            return {name: data[name] for name in data.files}
+    except (OSError, ValueError, EOFError, KeyError, BadZipFile, zlib.error):
+        return None
+
+
+def save_arrays(path: Path, arrays: dict[str, Any]) -> None:
+    """Write arrays, whole or not at all."""
+
+    def write(temporary: Path) -> None:
+        with temporary.open("wb") as file:  # a file, since savez adds .npz to names
+            np.savez(file, **arrays)
+
+    write_atomically(path, write)

@@ -1,0 +1,209 @@
+"""Backbones from free decays whose curves are known: linear, Duffing's and Jenkins' oscillators."""
+
+import re
+
+import numpy as np
+import pytest
+from scipy.integrate import cumulative_simpson, simpson, solve_ivp
+from scipy.optimize import brentq
+
+import faying
+from faying.measured.frf import FRF
+from faying.measured.records import frf_from_records
+from faying.measured.ring_down import MeasuredBackbone, ring_down, ring_down_of_frf
+
+RATE, HZ = 4096.0, 100.0
+OMEGA = 2 * np.pi * HZ
+
+
+def decay(t, hz=HZ, ratio=0.01, amplitude=10.0, phase=0.4):
+    """Exact decay of a linear mode: `hz` is the damped frequency, `ratio` the decay over 2 pi hz."""
+    return amplitude * np.exp(-ratio * 2 * np.pi * hz * t) * np.cos(2 * np.pi * hz * t + phase)
+
+
+@pytest.mark.parametrize("quantity", ["acceleration", "velocity", "displacement"])
+def test_a_linear_mode_keeps_its_frequency_and_damping(quantity):
+    t = np.arange(int(2 * RATE)) / RATE
+    found = ring_down(decay(t, ratio=0.003), RATE, band=(70, 130), quantity=quantity)
+    assert found.frequency == pytest.approx(HZ, rel=1e-6)
+    assert found.damping == pytest.approx(0.003, rel=5e-4)
+    power = {"acceleration": 0, "velocity": 1, "displacement": 2}[quantity]
+    exact = 10.0 * np.exp(-0.003 * OMEGA * found.time) * OMEGA**power
+    assert found.acceleration == pytest.approx(exact, rel=1e-4)
+
+
+def test_other_modes_and_an_offset_outside_the_band_do_not_matter():
+    t = np.arange(int(2 * RATE)) / RATE
+    others = decay(t, hz=170.0, ratio=0.004, amplitude=30.0) + decay(t, hz=33.0, ratio=0.01) + 5.0
+    found = ring_down(decay(t, ratio=0.003) + others, RATE, band=(70, 130))
+    assert found.frequency == pytest.approx(HZ, rel=2e-5)
+    assert found.damping == pytest.approx(0.003, rel=0.01)
+
+
+def test_two_modes_in_the_band_are_refused():
+    t = np.arange(int(2 * RATE)) / RATE
+    with pytest.raises(faying.InputError, match="more than one mode in the band"):
+        ring_down(decay(t, ratio=0.003) + decay(t, hz=108.0, ratio=0.003), RATE, band=(70, 130))
+
+
+def test_duffings_oscillator():
+    """x'' + c x' + w0^2 x + b x^3 = 0: frequency by the exact period; damping c/(2 w), which the decay alone is not.
+
+    The frequency falls by 20 % over the record, and c is small, so that each cycle is nearly one without damping.
+    """
+    c, b = 2.0, 0.8 * OMEGA**2
+    t = np.arange(int(1.2 * RATE)) / RATE
+    path = solve_ivp(
+        lambda _, y: [y[1], -c * y[1] - OMEGA**2 * y[0] - b * y[0] ** 3],
+        (0, t[-1]),
+        [1.0, 0.0],
+        t_eval=t,
+        rtol=1e-10,
+        atol=1e-10,
+    )
+    found = ring_down(path.y[0], RATE, band=(60, 180), quantity="displacement", cycles=8)
+    size = found.acceleration / (2 * np.pi * found.frequency) ** 2
+    for fundamental, hz in list(zip(size, found.frequency, strict=True))[::3]:
+        amplitude = brentq(lambda a, q=fundamental: duffing(a, b)[1] - q, fundamental, 1.2 * fundamental)
+        assert hz == pytest.approx(duffing(amplitude, b)[0], rel=2e-4)
+    assert found.frequency[0] > 1.1 * found.frequency[-1]
+    assert found.damping == pytest.approx(c / (4 * np.pi * found.frequency), rel=0.01)
+
+
+def duffing(q, b):
+    """Frequency [Hz] of free motion of amplitude q without damping, and its first harmonic."""
+    rate = lambda a: np.sqrt(OMEGA**2 + b * q**2 * (1 + np.sin(a) ** 2) / 2)  # noqa: E731  # da/dt where x = q sin a
+    a = np.linspace(0, np.pi / 2, 2001)
+    time = cumulative_simpson(1 / rate(a), x=a, initial=0)
+    omega = np.pi / 2 / time[-1]
+    return omega / (2 * np.pi), 4 / np.pi * simpson(q * np.sin(a) * np.sin(omega * time) * omega / rate(a), x=a)
+
+
+def test_jenkins_oscillator_gives_the_loss_of_its_hysteresis():
+    """A slider of 4 % of the spring's stiffness: damping and frequency by the first harmonic's exact integrals.
+
+    Damping rises from 0 to about 1 % and falls again; the cycle is nearly harmonic since the slider is weak.
+    """
+    weak, limit = 0.04 * OMEGA**2, 0.04 * OMEGA**2 * 1.0  # slips at a displacement of 1
+    c = 2 * 0.0005 * OMEGA
+    step = 1 / (16 * RATE)
+    x, v, rest = 12.0, 0.0, 0.0  # displacement, velocity, force of the slider
+    record = []
+    for k in range(int(3 * RATE) * 16):
+        if k % 16 == 0:
+            record.append(x)
+        v += step * (-(OMEGA**2) * x - rest - c * v)  # symplectic Euler: frequency right to (w dt)^2/24
+        x += step * v
+        rest = min(max(rest + weak * step * v, -limit), limit)
+    found = ring_down(record, RATE, band=(60, 140), quantity="displacement", cycles=10)
+    q = found.acceleration / (2 * np.pi * found.frequency) ** 2
+    slips = q > 1.3  # away from the knee, which a stretch rounds off
+    assert np.count_nonzero(slips) > 10
+    turn = np.arccos(1 - 2 / q[slips])
+    stiff = OMEGA**2 + weak / np.pi * (turn - np.sin(2 * turn) / 2)
+    ratio = c / (2 * np.sqrt(stiff)) + 4 * limit * (q[slips] - 1) / (2 * np.pi * stiff * q[slips] ** 2)
+    assert found.frequency[slips] == pytest.approx(np.sqrt(stiff) / (2 * np.pi), rel=5e-4)
+    assert found.damping[slips] == pytest.approx(ratio, rel=0.03)
+    sticks = (q < 0.8) & (q > 0.05)
+    assert found.damping[sticks] == pytest.approx(c / (2 * OMEGA), rel=0.03)
+    assert found.frequency[sticks] == pytest.approx(np.sqrt(1.04) * HZ, rel=1e-4)
+
+
+def test_noise_widens_the_standard_errors_and_ends_the_curve():
+    """Errors are within three standard errors nearly always, and the curve stops above the noise."""
+    rng = np.random.default_rng(5)
+    t = np.arange(int(4 * RATE)) / RATE
+    beyond, number = 0, 0
+    for _ in range(8):
+        found = ring_down(decay(t, ratio=0.003) + rng.normal(size=t.size) * 0.05, RATE, band=(70, 130), cycles=40)
+        beyond += np.count_nonzero(np.abs(found.damping - 0.003) > 3 * found.damping_error)
+        beyond += np.count_nonzero(np.abs(found.frequency - HZ) > 3 * found.frequency_error)
+        number += 2 * len(found.damping)
+        assert found.acceleration.min() > 0.05
+        assert found.damping_error[-1] > 2 * found.damping_error[0]
+    assert beyond < 0.05 * number
+
+
+@pytest.mark.parametrize("window", ["none", "exponential"])
+def test_a_hammers_frf_with_the_impulse_of_its_hit_is_the_same_decay(window):
+    """Accelerance of one hit: the decay begins with the hit; the window's decay is taken off."""
+    t = np.arange(int(4 * RATE)) / RATE
+    ratio, mass, impulse = 0.004, 2.0, 0.05
+    damped = OMEGA * np.sqrt(1 - ratio**2)
+    speed = (
+        impulse / mass * np.exp(-ratio * OMEGA * t) * (np.cos(damped * t) - ratio * OMEGA / damped * np.sin(damped * t))
+    )
+    force = np.zeros_like(t)
+    force[0] = impulse * RATE
+    frf = frf_from_records(
+        force[None],
+        speed[None, None],
+        RATE,
+        outputs=[(1, "z")],
+        quantity="mobility",
+        window=window,
+        decay=2.0 if window == "exponential" else 0.0,
+    )
+    assert isinstance(frf, FRF)
+    found = ring_down_of_frf(frf, impulse=impulse, band=(70, 130))
+    head = found.time < 0.8
+    assert found.frequency[head] == pytest.approx(damped / (2 * np.pi), rel=1e-5)
+    assert found.damping[head] == pytest.approx(ratio * OMEGA / damped, rel=2e-3)
+    exact = impulse / mass * OMEGA * np.exp(-ratio * OMEGA * found.time[head])
+    assert found.acceleration[head] == pytest.approx(exact, rel=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"band": (130, 70)}, "it must rise and lie between"),
+        ({"band": (70, 3000)}, "it must rise and lie between 0 and 2048 Hz"),
+        ({"band": (99, 101)}, "too short for a band of 2 Hz"),
+        ({"quantity": "strain"}, "use one of displacement, velocity, acceleration"),
+        ({"sampling_rate": 0.0}, "samples per second must be positive"),
+        ({"signal": [1.0, np.nan]}, "one row of finite samples"),
+        ({"signal": np.random.default_rng(0).normal(size=8192)}, "noise, or more than one mode"),
+    ],
+)
+def test_what_gives_no_curve_is_refused(changes, message):
+    given = {"signal": decay(np.arange(8192) / RATE), "sampling_rate": RATE, "band": (70, 130)} | changes
+    with pytest.raises(faying.InputError, match=message):
+        ring_down(given.pop("signal"), given.pop("sampling_rate"), **given)
+
+
+def test_an_impulse_is_needed_for_an_frf():
+    frf = FRF(frequency=[1.0, 2.0], values=[[[1, 1]]], outputs=[(1, "z")], inputs=[(1, "z")], quantity="accelerance")
+    with pytest.raises(faying.InputError, match="impulse of the hit"):
+        ring_down_of_frf(frf, impulse=0.0, band=(1, 2))
+
+
+def test_measured_points_from_a_table(tmp_path):
+    file = tmp_path / "points.csv"
+    file.write_text("# beam\nfrequency [Hz],damping [%],acceleration [g_0]\n180,0.1,0.5\n178.5,0.32,2\n")
+    found = MeasuredBackbone.read(file)
+    assert found.frequency == pytest.approx([180, 178.5])
+    assert found.damping == pytest.approx([0.001, 0.0032])
+    assert found.acceleration == pytest.approx([0.5 * 9.80665, 2 * 9.80665])
+    file.write_text("displacement [um],frequency [Hz]\n3,100\n")
+    found = MeasuredBackbone.read(file)
+    assert found.acceleration == pytest.approx([3e-6 * (200 * np.pi) ** 2])
+    assert np.all(np.isnan(found.damping))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("frequency [Hz],damping [%]\n1,2\n", "give either acceleration or displacement"),
+        ("acceleration [m/s^2],displacement [um],frequency [Hz]\n1,2,3\n", "give either acceleration or displacement"),
+        ("acceleration [m/s^2],frequency\n1,2\n", 'line 1: the column "frequency" lacks its unit'),
+        ("acceleration [m/s^2],damping [%]\n1,2\n", 'no column "frequency [unit]"'),
+        ("acceleration [m/s^2],frequency [Hz]\n1,180\n-2,170\n", 'line 3: -2 in the column "acceleration"'),
+        ("acceleration [m/s^2],frequency [Hz]\n", "no rows under the head"),
+        ("acceleration [m/s^2],zeta [%]\n", "known are acceleration, displacement, frequency, damping, time"),
+    ],
+)
+def test_a_table_of_another_form_is_refused(tmp_path, text, message):
+    file = tmp_path / "points.csv"
+    file.write_text(text)
+    with pytest.raises(faying.ReadError, match=re.escape(message)):
+        MeasuredBackbone.read(file)
