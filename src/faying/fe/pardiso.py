@@ -21,9 +21,9 @@ SINGULAR = (-4, -7)  # a zero or negative pivot
 @cache
 def _library() -> Any:
     """The function pardiso of MKL; looking for the library takes longer than a small factorisation."""
-    from pypardiso import PyPardisoSolver
+    from pypardiso.scipy_aliases import pypardiso_solver  # it has looked for the library already
 
-    function = PyPardisoSolver()._mkl_pardiso
+    function = pypardiso_solver._mkl_pardiso
     function.argtypes = [ctypes.c_void_p] * 16
     return function
 

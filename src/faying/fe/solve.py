@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
 from typing import Any, Protocol
 
@@ -27,6 +28,22 @@ class Factorisation(Protocol):
 
         The analysis is kept if it can.
         """
+
+
+@dataclass(kw_only=True)
+class Released:
+    """Stands for a factorisation that was given up for its memory [B]."""
+
+    name: str
+    memory: float
+
+    def solve(self, right: Array) -> Array:
+        """Raise RuntimeError: there is nothing left to solve with."""
+        raise RuntimeError(f"the factorisation by {self.name} was released")
+
+    def again(self, matrix: Any) -> "Factorisation":
+        """Raise RuntimeError, too."""
+        raise RuntimeError(f"the factorisation by {self.name} was released")
 
 
 class _Mumps:

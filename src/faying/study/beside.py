@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import FayingError
+from faying.fe.solve import Released
 from faying.notes import Note
 from faying.study.case import Case, Progress, interface_of, joint_law, law_reasons, materials_at, surfaces_of
 from faying.study.keys.beside import BesideChoice
@@ -38,7 +39,7 @@ def solve_beside(case: Case, choice: BesideChoice, progress: Progress) -> Beside
     try:
         other = _changed(case, choice)
         problem = other.structure.assembly(solver=case.study.modes.solver)
-        states = tuple(solve(other, number, problem, progress) for number in range(len(case.study.loads)))
+        states = tuple(_slim(solve(other, k, problem, progress, ranges=False)) for k in range(len(case.study.loads)))
     except FayingError as fault:
         progress.done = done + 2 * len(case.study.loads)
         text = f"{choice.name} beside: no answer: {fault}"
@@ -50,6 +51,12 @@ def solve_beside(case: Case, choice: BesideChoice, progress: Progress) -> Beside
         if note.code in TOLD and note not in case.notes
     )
     return Beside(name=choice.name, case=other, states=states, notes=tuple(dict.fromkeys(told)))
+
+
+def _slim(state: State) -> State:
+    """The state without its factorisation: what is beside needs none, and memory is short."""
+    factor = state.modes.factorisation
+    return replace(state, modes=replace(state.modes, factorisation=Released(name=factor.name, memory=factor.memory)))
 
 
 def _changed(case: Case, choice: BesideChoice) -> Case:
