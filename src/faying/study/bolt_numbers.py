@@ -13,7 +13,7 @@ from faying.joint.structure import Structure
 from faying.joint.vdi2230 import embedding_guide
 from faying.materials import ContactPair
 from faying.result.bolts import BoltNumbers
-from faying.study.case import Case, materials_of
+from faying.study.case import Case, materials_at
 from faying.study.keys.surface import Surface
 from faying.study.solve import State
 from faying.study.strength import seat_area, seat_limit
@@ -141,12 +141,11 @@ def conductances(case: Case, states: Sequence[State]) -> dict[str, Any]:
 
     NaN where a material's value is not known; a field is left out where none is. Clean metal in vacuum.
     """
-    materials = materials_of(case.study, case.structure.mesh)
     out: dict[str, Any] = {}
     for field, kind in (("thermal_conductance", "conductivity"), ("electrical_conductance", "resistivity")):
         values = np.full((len(states), len(case.structure.joints)), NAN)
         for number, joint in enumerate(case.structure.joints):
-            pair = ContactPair(*(materials[case.structure.mesh.face_part[face]] for face in joint.faces))
+            pair = ContactPair(*materials_at(case.study, case.structure.mesh, case.study.joints[number]))
             known = [getattr(m, kind) for m in (pair.first, pair.second)]
             if None in known:
                 continue
