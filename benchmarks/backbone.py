@@ -100,7 +100,11 @@ def ours(model: SlipModel, mode: int, low: float, high: float, samples: int) -> 
     curve = epmc.follow(low, high)
     seconds = time.process_time() - start
     found = np.array([(p.amplitude, p.frequency, p.damping) for p in curve.points])
-    print(f"  faying    {seconds:8.2f} s CPU  {len(found):3d} points ({curve.code})")
+    last = curve.points[-1]
+    print(
+        f"  faying    {seconds:8.2f} s CPU  {len(found):3d} points ({curve.code}), frequency "
+        f"{last.frequency / epmc.linear_frequency - 1:+.2%}, damping {last.damping:.2%}, slipping {last.slipping:.0%}"
+    )
     return seconds, found, epmc
 
 
