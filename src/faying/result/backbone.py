@@ -30,7 +30,12 @@ class Witness:
     frequency: Array = variable("witness", unit="Hz", long_name="frequency of the static cycle")
     damping: Array = variable("witness", unit="1", long_name="damping ratio of the static cycle")
     frequency_change: Array = variable("witness", unit="1", long_name="static cycle over the curve's frequency, less 1")
-    damping_change: Array = variable("witness", unit="1", long_name="static cycle over the joints' damping, less 1")
+    damping_change: Array = variable(
+        "witness",
+        unit="1",
+        long_name="static cycle over the joints' damping, less 1; NaN where there is none",
+        gaps=True,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
