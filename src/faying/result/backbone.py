@@ -234,9 +234,9 @@ class Backbone:
             raise InputError(f"force = {force:g} N should be positive")
         pushed = force * abs(self.shape_at)
         q = np.geomspace(self.modal_amplitude[0], self.modal_amplitude[-1], points)
-        reached = np.flatnonzero(self._left(q, pushed)[0] >= 0)
-        if len(reached) and reached[-1] + 1 < points:  # finer about the greatest amplitude
-            top = np.geomspace(q[reached[-1]], q[reached[-1] + 1], points // 4)
+        known = np.flatnonzero(self._left(q, pushed)[0] >= 0)
+        if len(known) and known[-1] + 1 < points:  # finer about the greatest amplitude
+            top = np.geomspace(q[known[-1]], q[known[-1] + 1], points // 4)
             q = np.unique(np.concatenate([q, top]))
         inside, w, z = self._left(q, pushed)
         middle = w**2 * (1 - 2 * z**2)
