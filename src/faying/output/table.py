@@ -163,12 +163,12 @@ def backbone(curve: Backbone) -> Rows:
         cell = ""
         if found and curve.witness is not None:
             one = curve.witness
-            cell = f"{one.frequency_change[found[0]]:+.2%}, {one.damping_change[found[0]]:+.1%}"
+            cell = f"{one.frequency_change[found[0]]:+.2%}, {_or_dash(one.damping_change[found[0]], '+.1%')}"
         rows.append(
             [
                 f"{level:.4g}",
                 f"{curve.frequency[k]:.3f}",
-                f"{100 * curve.damping[k]:.4f}",
+                f"{100 * curve.damping[k]:.3g}",
                 f"{curve.slipping[k]:.1%}",
                 f"{curve.open[k]:.1%}",
                 f"{curve.energy[k].sum():.3g}",

@@ -30,7 +30,12 @@ class Witness:
     frequency: Array = variable("witness", unit="Hz", long_name="frequency of the static cycle")
     damping: Array = variable("witness", unit="1", long_name="damping ratio of the static cycle")
     frequency_change: Array = variable("witness", unit="1", long_name="static cycle over the curve's frequency, less 1")
-    damping_change: Array = variable("witness", unit="1", long_name="static cycle over the joints' damping, less 1")
+    damping_change: Array = variable(
+        "witness",
+        unit="1",
+        long_name="static cycle over the joints' damping, less 1; NaN where there is none",
+        gaps=True,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -147,7 +152,7 @@ class Backbone:
             f"{'m/s2':>10}{'Hz':>12}{'damping':>10}{'slips':>8}",
         ]
         for a, f, z, s in zip(self.acceleration, self.frequency, self.damping, self.slipping, strict=True):
-            lines.append(f"{a:>10.4g}{f:>12.3f}{z:>10.3%}{s:>8.0%}")
+            lines.append(f"{a:>10.4g}{f:>12.3f}{100 * z:>9.3g}%{s:>8.0%}")
         return "\n".join([*lines, f"ends: {self.reason}"])
 
     @property
@@ -229,10 +234,12 @@ class Backbone:
             raise InputError(f"force = {force:g} N should be positive")
         pushed = force * abs(self.shape_at)
         q = np.geomspace(self.modal_amplitude[0], self.modal_amplitude[-1], points)
-        f, z = self._between(self.modal_amplitude, q)
-        w = 2 * np.pi * f
+        known = np.flatnonzero(self._left(q, pushed)[0] >= 0)
+        if len(known) and known[-1] + 1 < points:  # finer about the greatest amplitude
+            top = np.geomspace(q[known[-1]], q[known[-1] + 1], points // 4)
+            q = np.unique(np.concatenate([q, top]))
+        inside, w, z = self._left(q, pushed)
         middle = w**2 * (1 - 2 * z**2)
-        inside = (pushed / q) ** 2 - (2 * z * w**2) ** 2 * (1 - z**2)
         reached = inside >= 0
         half = np.sqrt(np.where(reached, inside, 0.0))
         below = reached & (middle > half)
@@ -246,6 +253,12 @@ class Backbone:
             acceleration=self._acceleration(amplitude) * (drive / w) ** 2,
             phase=np.arctan2(2 * z * w * drive, w**2 - drive**2),
         )
+
+    def _left(self, q: Array, pushed: float) -> tuple[Array, Array, Array]:
+        """What is under the root for the frequencies of a modal force, below 0 beyond its reach; w and zeta."""
+        f, z = self._between(self.modal_amplitude, q)
+        w = 2 * np.pi * f
+        return (pushed / q) ** 2 - (2 * z * w**2) ** 2 * (1 - z**2), w, z
 
     def to_dict(self) -> dict[str, Any]:
         """Return the numbers a reader wants, ready for JSON: {"unit", "values"} in SI; maps are left out."""
