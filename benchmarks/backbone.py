@@ -100,7 +100,11 @@ def ours(model: SlipModel, mode: int, low: float, high: float, samples: int) -> 
     curve = epmc.follow(low, high)
     seconds = time.process_time() - start
     found = np.array([(p.amplitude, p.frequency, p.damping) for p in curve.points])
-    print(f"  faying    {seconds:8.2f} s CPU  {len(found):3d} points ({curve.code})")
+    last = curve.points[-1]
+    print(
+        f"  faying    {seconds:8.2f} s CPU  {len(found):3d} points ({curve.code}), frequency "
+        f"{last.frequency / epmc.linear_frequency - 1:+.2%}, damping {last.damping:.2%}, slipping {last.slipping:.0%}"
+    )
     return seconds, found, epmc
 
 
@@ -172,24 +176,29 @@ def main() -> None:
     parser.add_argument("--high", type=float, default=50.0, help="greatest acceleration where it is greatest [m/s2]")
     parser.add_argument("--decades", type=float, default=2.0)
     parser.add_argument("--samples", type=int, default=128)
+    parser.add_argument("--laws", nargs="+", default=["microslip", "jenkins", "dry"])
     parser.add_argument("--tmdsimpy", type=Path)
     parser.add_argument("--python", default="python")
     given = parser.parse_args()
     start = time.process_time()
     basis, case = basis_of(Study.read(given.study), given.mode)
     mode = given.mode - 1
-    print(f"preload, modes, first basis: {time.process_time() - start:.1f} s CPU")
-    omega = basis.linear_frequency
+    print(
+        f"preload, modes, first basis: {time.process_time() - start:.1f} s CPU; mode {given.mode} at "
+        f"{basis.linear_frequency:.2f} Hz"
+    )
+    omega = 2 * np.pi * basis.linear_frequency
     high = given.high / (np.abs(basis.shape).max() * omega**2)
     low = high / 10**given.decades
 
-    full = basis.model(laws(basis, case, given.friction, springs=32))
-    points = sum(len(joint.weights) for joint in full.joints)
-    print(f"microslip law, {points} points, {len(full.mass)} coordinates, 32 springs, 64 instants")
-    ours(full, mode_index(full, omega), low, high, 64)
+    if "microslip" in given.laws:
+        full = basis.model(laws(basis, case, given.friction, springs=32))
+        points = sum(len(joint.weights) for joint in full.joints)
+        print(f"microslip law, {points} points, {len(full.mass)} coordinates, 32 springs, 64 instants")
+        ours(full, mode_index(full, omega), low, high, 64)
 
     one = thinned(basis.model(laws(basis, case, given.friction, springs=1)), given.points)
-    for law in ("jenkins", "dry"):
+    for law in [name for name in ("jenkins", "dry") if name in given.laws]:
         model = along_one(one, mode_index(one, omega), law)
         mode = mode_index(model, omega)
         points = sum(len(joint.weights) for joint in model.joints)

@@ -5,7 +5,7 @@ A slider is a spring of stiffness k_t whose end is dragged along when its stretc
 shear. A step that goes beyond the limit is returned radially (implicit return mapping in two directions).
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,6 @@ from faying.errors import InputError
 from faying.typing import Array, Index, Mask
 
 BLOCK = 4096  # sliders marched together, so that the work stays in the cache
-ROUNDS = 2  # of the cycle: the first forgets the start, the second is read
 TINY = float(np.finfo(float).tiny)
 TOUCHES = 1e-9  # relative: a slider that comes back to its limit has not slid
 
@@ -212,10 +211,11 @@ def _normal(sliders: Sliders, motion: _Motion, least: Array, greatest: Array, an
         return
     for part in np.array_split(np.arange(points.size), max(1, points.size // BLOCK)):
         owner, first = np.unique(points[part], return_index=True)
-        depth = motion.approach[:, points[part]] - onset[points[part], which[part]]
         k = k_n[points[part], which[part]]
-        force = np.add.reduceat(k * np.maximum(depth, 0.0), first, axis=1)
-        answer.traction[:, owner, 0] -= motion.back @ force
+        depth = motion.approach[:, points[part]]
+        depth -= onset[points[part], which[part]]
+        np.maximum(depth, 0.0, out=depth)
+        answer.traction[:, owner, 0] -= np.add.reduceat((motion.back @ depth) * k, first, axis=1)
         if answer.derivative is not None:
             tangent = np.add.reduceat(np.where(depth > 0, k, 0.0), first, axis=1)
             found = np.einsum("at,tq,tb->qab", motion.back, tangent, motion.to_time, optimize=True)
@@ -245,58 +245,119 @@ def _blocks(counts: Index) -> Iterator[Index]:
 def _march(sliders: Sliders, start: SliderState, motion: _Motion, points: Index, active: Mask, answer: _Answer) -> None:
     """March the active sliders of some points, and add what they carry."""
     local, which = np.nonzero(active[points])
-    owner = points[local]
+    set_ = _Set.of(sliders, start, motion, points[local], which)
+    memory = _Memory.start(motion.to_time, set_, local) if answer.derivative is not None else None
+    slid = set_.turn(motion, first=True, memory=memory)
+    # a slider that did not slide in the first turn never will: it is linear
+    loose = np.flatnonzero(~slid)
+    stuck = np.zeros_like(active)
+    stuck[points[local[loose]], which[loose]] = True
+    _stuck(sliders, start, motion, stuck, answer)
+    moving = np.flatnonzero(slid)
+    if not moving.size:
+        return
+    set_, local = set_.only(moving), local[moving]
+    kept, local = np.unique(local, return_inverse=True)
     first = np.flatnonzero(np.diff(local, prepend=-1))
-    k, reach, onset = sliders.k_t[owner, which], sliders.reach[owner, which], sliders.onset[owner, which]
-    depth = np.maximum(motion.approach[:, owner] - onset, 0.0)
-    limit = reach * depth
-    step = _steps(motion, start, owner)
-    one, two = (start.stretch[owner, which, i] for i in range(2))
-    memory = None if answer.derivative is None else _Memory.start(motion.to_time, k, reach, local, first)
-    slid = np.zeros(len(owner), dtype=bool)
-    shear = np.empty((2, len(limit), len(points)))
-    for turn in range(ROUNDS):
-        last = turn == ROUNDS - 1
-        if last and memory is not None:
-            memory.listen()
-        for t in range(len(limit)):
-            one += step[0][turn, t]
-            two += step[1][turn, t]
-            size = one * one
-            size += two * two
-            np.sqrt(size, out=size)
-            left = limit[t] / np.maximum(size, TINY)
-            slides = left < 1
-            if memory is not None and slides.any():
-                memory.slide(t, np.flatnonzero(slides), (one, two), size, left, depth[t])
-            if last:
-                slid |= left < 1 - TOUCHES
-            np.minimum(left, 1.0, out=left)
-            one *= left
-            two *= left
-            if last:
-                shear[0, t], shear[1, t] = (np.add.reduceat(k * e, first) for e in (one, two))
-                if memory is not None:
-                    memory.read(t)
-    answer.traction[:, points, 1] += motion.back @ shear[0]
-    answer.traction[:, points, 2] += motion.back @ shear[1]
-    touch = sliders.k_n[owner, which] * depth.max(axis=0)
+    points = points[kept]
+    if memory is not None:
+        memory = memory.listening(moving, set_, local, first)
+    slid = set_.turn(motion, first=False, memory=memory)
+    for i in range(2):
+        found = (motion.back @ set_.stretch[i]) * set_.k
+        answer.traction[:, points, 1 + i] += np.add.reduceat(found, first, axis=1)
+    touch = sliders.k_n[set_.owner, set_.which] * set_.depth.max(axis=0)
     answer.slid[points] += np.add.reduceat(np.where(slid, touch, 0.0), first)
     if memory is not None:
         assert answer.derivative is not None
-        found = memory.coefficients(motion.back)
-        answer.derivative[points, :, 1:] += found
+        answer.derivative[points, :, 1:] += memory.coefficients(motion.back)
 
 
-def _steps(motion: _Motion, start: SliderState, owner: Index) -> tuple[Array, Array]:
-    """Moves of each slider's point in one direction, then the other (turns, samples, sliders) [m]."""
-    steps = []
-    for i, u in enumerate(motion.slip):
-        move = np.diff(u, axis=0, prepend=u[-1:])
-        moves = np.stack([move, move])
-        moves[0, 0] = u[0] - start.slip[:, i]
-        steps.append(moves[:, :, owner])
-    return steps[0], steps[1]
+@dataclass
+class _Set:
+    """Sliders that are marched together: n of them, sorted by point.
+
+    owner, which: point and spring of each; k, reach as in Sliders; depth, limit (samples, n): closing beyond the onset
+    and greatest stretch; step: move since the instant before, begin: since the start (2 directions); stretch: what is
+    left of both, instant by instant.
+    """
+
+    owner: Index
+    which: Index
+    k: Array
+    reach: Array
+    depth: Array
+    limit: Array
+    step: tuple[Array, Array]
+    begin: tuple[Array, Array]
+    stretch: tuple[Array, Array]
+
+    @classmethod
+    def of(cls, sliders: Sliders, start: SliderState, motion: _Motion, owner: Index, which: Index) -> "_Set":
+        """Sliders `which` of points `owner`, at their start."""
+        reach = sliders.reach[owner, which]
+        depth = motion.approach[:, owner]
+        depth -= sliders.onset[owner, which]
+        np.maximum(depth, 0.0, out=depth)
+        return cls(
+            owner=owner,
+            which=which,
+            k=sliders.k_t[owner, which],
+            reach=reach,
+            depth=depth,
+            limit=reach * depth,
+            step=_both(lambda i: np.diff(motion.slip[i], axis=0, prepend=motion.slip[i][-1:])[:, owner]),
+            begin=_both(lambda i: (motion.slip[i][0] - start.slip[:, i])[owner] + start.stretch[owner, which, i]),
+            stretch=_both(lambda _: np.empty(depth.shape)),
+        )
+
+    def only(self, kept: Index) -> "_Set":
+        """Some of the sliders, where they are."""
+
+        def part(pair: tuple[Array, Array]) -> tuple[Array, Array]:
+            return pair[0][..., kept], pair[1][..., kept]
+
+        return _Set(
+            owner=self.owner[kept],
+            which=self.which[kept],
+            k=self.k[kept],
+            reach=self.reach[kept],
+            depth=self.depth[:, kept],
+            limit=self.limit[:, kept],
+            step=part(self.step),
+            begin=part(self.begin),
+            stretch=part(self.stretch),
+        )
+
+    def turn(self, motion: _Motion, *, first: bool, memory: "_Memory | None") -> Mask:
+        """Take them round the cycle once, the first time from the start; return which slid."""
+        slid = np.zeros(len(self.k), dtype=bool)
+        for t in range(len(self.limit)):
+            one, two = self.stretch[0][t], self.stretch[1][t]
+            if first and t == 0:
+                one[:], two[:] = self.begin
+            else:
+                np.add(self.stretch[0][t - 1], self.step[0][t], out=one)
+                np.add(self.stretch[1][t - 1], self.step[1][t], out=two)
+            size = one * one
+            size += two * two
+            np.sqrt(size, out=size)
+            left = self.limit[t] / np.maximum(size, TINY)
+            slides = left < 1
+            if memory is not None and slides.any():
+                memory.slide(t, np.flatnonzero(slides), (one, two), size, left, self.depth[t])
+            slid |= left < 1 - TOUCHES
+            np.minimum(left, 1.0, out=left)
+            one *= left
+            two *= left
+            if memory is not None and not first:
+                memory.read(t)
+        return slid
+
+
+def _both(make: Callable[[int], Array]) -> tuple[Array, Array]:
+    """What is made for both directions of slip."""
+    return make(0), make(1)
 
 
 @dataclass
@@ -321,25 +382,37 @@ class _Memory:
     history: Array | None = None
 
     @classmethod
-    def start(cls, to_time: Array, k: Array, reach: Array, local: Index, first: Index) -> "_Memory":
+    def start(cls, to_time: Array, sliders: _Set, local: Index) -> "_Memory":
         """Return anchors that do not depend on the motion."""
+        n = len(sliders.k)
         return cls(
             to_time=to_time,
-            k=k,
-            reach=reach,
+            k=sliders.k,
+            reach=sliders.reach,
             local=local,
-            first=first,
-            along=np.zeros((3, len(k))),
-            when=np.zeros(len(k), dtype=np.int64),
-            across=np.zeros((to_time.shape[1], 3, len(k)), dtype=np.float32),
+            first=np.zeros(0, dtype=np.int64),
+            along=np.zeros((3, n)),
+            when=np.zeros(n, dtype=np.int64),
+            across=np.zeros((to_time.shape[1], 3, n), dtype=np.float32),
         )
 
-    def listen(self) -> None:
-        """From now on, keep the derivative of the forces that the anchors of a point hold together."""
+    def listening(self, kept: Index, sliders: _Set, local: Index, first: Index) -> "_Memory":
+        """Some of the sliders, of which the derivative of the forces that a point's anchors hold together is kept."""
         samples, count = self.to_time.shape
-        self.held = np.zeros((samples, 5, len(self.first)))
-        self.history = np.empty((samples, count, 2, 3, len(self.first)))
-        self._hold(np.arange(len(self.k)), self.along, 1.0)
+        found = _Memory(
+            to_time=self.to_time,
+            k=sliders.k,
+            reach=sliders.reach,
+            local=local,
+            first=first,
+            along=self.along[:, kept],
+            when=self.when[kept],
+            across=self.across[..., kept],
+            held=np.zeros((samples, 5, len(first))),
+            history=np.empty((samples, count, 2, 3, len(first))),
+        )
+        found._hold(np.arange(len(kept)), found.along, 1.0)
+        return found
 
     def _hold(self, which: Index, along: Array, sign: float) -> None:
         """Add or take away what sliders hold along their last slide: (n1 reach, n2 reach, n1 n1, n1 n2, n2 n2)."""

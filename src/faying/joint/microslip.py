@@ -65,6 +65,9 @@ class Microslip:
 
         Raises:
             InputError: friction or springs out of range, a law without stiffness, or a joint that is wholly open.
+
+        Source:
+            Jäger 1998, doi:10.1115/1.2833765: the traction of slip as the difference of two pressures.
         """
         if springs < 2:
             raise InputError(f"springs: {springs} cannot follow a law; give 2 or more, e.g. 32")
@@ -143,6 +146,9 @@ class Microslip:
             derivative: whether the derivative of the traction is asked for.
             samples: instants in the cycle; the error falls with their square.
             start: state from which the sliders set out; where left out, no shear at no slip.
+
+        Raises:
+            InputError: fewer instants than the harmonics need.
         """
         if start is None:
             start = self.start(np.zeros((len(self.gap), 3)))

@@ -309,7 +309,7 @@ def backbone(curve: Backbone) -> Rows:
         cell = ""
         if found and curve.witness is not None:
             one = curve.witness
-            cell = f"{one.frequency_change[found[0]]:+.2%}, {one.damping_change[found[0]]:+.1%}"
+            cell = f"{one.frequency_change[found[0]]:+.2%}, {_or_dash(one.damping_change[found[0]], '+.1%')}"
         rows.append(
             [
                 f"{level:.4g}",

@@ -30,7 +30,12 @@ class Witness:
     frequency: Array = variable("witness", unit="Hz", long_name="frequency of the static cycle")
     damping: Array = variable("witness", unit="1", long_name="damping ratio of the static cycle")
     frequency_change: Array = variable("witness", unit="1", long_name="static cycle over the curve's frequency, less 1")
-    damping_change: Array = variable("witness", unit="1", long_name="static cycle over the joints' damping, less 1")
+    damping_change: Array = variable(
+        "witness",
+        unit="1",
+        long_name="static cycle over the joints' damping, less 1; NaN where there is none",
+        gaps=True,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -229,9 +234,9 @@ class Backbone:
             raise InputError(f"force = {force:g} N should be positive")
         pushed = force * abs(self.shape_at)
         q = np.geomspace(self.modal_amplitude[0], self.modal_amplitude[-1], points)
-        last = np.flatnonzero(self._left(q, pushed)[0] >= 0)[-1:]
-        if len(last) and last[0] + 1 < points:  # finer about the greatest amplitude
-            top = np.geomspace(q[last[0]], q[last[0] + 1], points // 4)
+        known = np.flatnonzero(self._left(q, pushed)[0] >= 0)
+        if len(known) and known[-1] + 1 < points:  # finer about the greatest amplitude
+            top = np.geomspace(q[known[-1]], q[known[-1] + 1], points // 4)
             q = np.unique(np.concatenate([q, top]))
         inside, w, z = self._left(q, pushed)
         middle = w**2 * (1 - 2 * z**2)

@@ -24,6 +24,7 @@ APART = 5.0
 STEPS = 16  # load steps from end to end
 DIFFERS = 0.02  # damping of the static cycle against the curve's from which there is a note
 TRIED = 3  # points at the end of the curve at which error bounds are looked for
+NOTHING = 1e-7  # damping of slip below which it is rounding and no slip
 NOTED = 0.05  # error bound of damping from which there is a note
 
 
@@ -125,7 +126,7 @@ def error_bounds(curve: Curve, points: Sequence[EpmcPoint]) -> ErrorBounds:
     """What changes at the largest amplitude when the computation is made coarser, or at one before where that fails."""
     for last in points[: -TRIED - 1 : -1]:
         found = _bounds_at(curve.epmc, last)
-        if np.isfinite(found.points_damping):
+        if np.isfinite(found.points_frequency):
             break
     return found
 
@@ -136,7 +137,7 @@ def _bounds_at(epmc: Epmc, last: EpmcPoint) -> ErrorBounds:
             other = make().solve(last.amplitude, [last])
         except NotConverged:
             return float("nan"), float("nan")
-        damping = float("nan") if last.damping <= 0 else other.damping / last.damping - 1
+        damping = other.damping / last.damping - 1 if last.damping > NOTHING else float("nan")
         return other.frequency / last.frequency - 1, damping
 
     nothing = float("nan"), float("nan")
@@ -164,7 +165,7 @@ def _witness(curve: Curve, points: Sequence[EpmcPoint]) -> Witness | None:
             found = static_cycle(curve.epmc.model, curve.epmc.mode, p.amplitude, steps=STEPS)
         except NotConverged:
             continue
-        change = found.damping / p.damping - 1 if p.damping > 0 else 0.0
+        change = found.damping / p.damping - 1 if p.damping > NOTHING else float("nan")
         rows.append((p.amplitude, p.level, found, found.frequency / p.frequency - 1, change))
     if not rows:
         return None
@@ -200,6 +201,12 @@ def _notes(curve: Curve, bounds: ErrorBounds, witness: Witness | None) -> list[N
         if abs(value) > NOTED:
             text = f"at {bounds.acceleration:.3g} m/s2 {what} change the joints' damping by {value:+.0%}"
             out.append(Note(code="backbone-bound", load=load, text=text))
+    if line.points[-1].damping <= NOTHING:
+        text = (
+            f"up to {line.points[-1].level:.3g} m/s2 slip damps mode {curve.choice.mode} by less than {NOTHING:g} of "
+            "critical: its joints open and close rather than slip"
+        )
+        out.append(Note(code="backbone-no-slip", load=load, text=text))
     if curve.rest_damping == 0 and any(joint.law.predicts_loss for joint in case.structure.joints):
         text = (
             "the damping is that of slip alone; the laws predict a loss at rest, too, which is left out so that slip "
@@ -213,7 +220,7 @@ def _differences(curve: Curve, witness: Witness) -> list[Note]:
     """Say where the static cycle gives another damping, and what they do not share."""
     out = []
     for level, change in zip(witness.acceleration, witness.damping_change, strict=True):
-        if abs(change) <= DIFFERS:
+        if not abs(change) > DIFFERS:
             continue
         point = min(curve.line.points, key=lambda p: abs(np.log(p.level / level)))
         why = (
