@@ -31,6 +31,7 @@ def found(file):
     return condense(Study.read(file), preload="2 kN")
 
 
+@pytest.mark.slow
 def test_the_full_model_is_that_of_run(file, found):
     data = tomllib.loads(file.read_text())
     data["bolt"][0]["preload"] = ["2 kN"]
