@@ -37,16 +37,16 @@ def test_modes_lie_between_free_and_bonded(outcome):
     assert max(data["rigid"]["values"]) < 1e-2
 
 
-def test_the_row_used_for_identification_fits_and_the_others_are_near(outcome):
-    """4 kN was used to find the dimensions, under JK, 8 and 12 kN are predictions. Bound: the worst of the paper."""
+def test_the_rows_used_for_identification_fit_and_the_third_is_near(outcome):
+    """Dimensions and crown were found on 4 and 8 kN, 12 kN is a prediction. Bound: the worst of the paper, 4.3 %."""
     c = outcome[0]["comparison"]
-    error = np.array(c["beside"]["values"][0]) / np.array(c["frequencies"]["values"]) - 1
-    assert np.abs(error[0]).max() < 0.041
-    assert np.abs(error[1:]).max() < 0.05
-    assert np.abs(np.array(c["predicted"]["values"]) / np.array(c["frequencies"]["values"]) - 1).max() < 0.06
+    error = np.array(c["predicted"]["values"]) / np.array(c["frequencies"]["values"]) - 1
+    assert np.abs(error).max() < 0.043
+    assert np.abs(error[2, [0, 1, 3, 4]]).max() < 0.01  # mode 3 hangs on the dimensions
 
 
-def test_the_default_changes_with_preload_as_the_test_does_more_than_jk_or_the_paper(outcome):
+def test_the_change_with_preload_follows_the_test_more_than_the_paper_does(outcome):
+    """Modes 1, 3 and 5, which open and close the joint, within a factor of 1.8 of the test; the paper's beyond 8."""
     c, loads = outcome[0]["comparison"], np.array(outcome[0]["loads"]["values"])
     slope = {
         name: np.polyfit(loads, np.array(values), 1)[0]
@@ -57,11 +57,20 @@ def test_the_default_changes_with_preload_as_the_test_does_more_than_jk_or_the_p
             ("default", c["predicted"]["values"]),
         )
     }
-    share = {name: slope[name] / slope["test"] for name in slope}
-    kept = [0, 2, 3, 4]  # the second mode hardly bends the joint
-    assert np.all(share["default"][kept] > 2 * share["JK"][kept])
-    assert np.all(share["default"][kept] > share["paper"][kept])
-    assert np.all((share["default"][kept] > 0.25) & (share["default"][kept] < 1))
+    share = {name: slope[name][[0, 2, 4]] / slope["test"][[0, 2, 4]] for name in slope}
+    assert np.all((share["default"] > 1 / 1.8) & (share["default"] < 1.8))
+    assert np.all(share["paper"] < 1 / 8)
+    assert np.all(share["default"] > 3 * share["JK"])
+
+
+def test_the_crown_was_fitted_to_the_change_from_4_to_8_kn(outcome):
+    """Mean relative rise of modes 1, 3 and 5 between the loads of the fit: the test's to a tenth."""
+    c = outcome[0]["comparison"]
+    rise = {
+        name: np.log(np.array(c[name]["values"])[1] / np.array(c[name]["values"])[0])[[0, 2, 4]].mean()
+        for name in ("frequencies", "predicted")
+    }
+    assert rise["predicted"] == pytest.approx(rise["frequencies"], rel=0.1)
 
 
 def test_only_the_law_that_has_a_loss_damps(outcome):
