@@ -4,10 +4,13 @@ import json
 import types
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+from pathlib import Path
 from typing import Any, TypeVar, Union, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 
+from faying import netcdf
+from faying.errors import ReadError
 from faying.netcdf import Attribute, Group, Variable
 
 Whole = TypeVar("Whole")
@@ -87,6 +90,29 @@ def to_group(value: Any) -> Group:
         else:
             attributes[f.name] = json.dumps(item, default=_jsonable, ensure_ascii=False)
     return Group(variables=variables, attributes=attributes, groups=groups)
+
+
+def write_whole(value: Any, path: str | Path, labels: Mapping[str, Any]) -> Path:
+    """Write a dataclass as NetCDF-4 that xarray opens, with labels of its dimensions; whole or not at all."""
+    group = to_group(value)
+    coordinates = {
+        name: Variable(dims=(name,), values=np.asarray(item, dtype=object if isinstance(item, tuple) else None))
+        for name, item in labels.items()
+    }
+    attributes = {"Conventions": "CF-1.11", **group.attributes}
+    whole = Group(variables={**coordinates, **group.variables}, attributes=attributes, groups=group.groups)
+    return netcdf.write(Path(path), whole)
+
+
+def read_whole(kind: type[Whole], path: str | Path, *, what: str, command: str) -> Whole:
+    """Read what `write_whole` wrote. Raises ReadError, with the command that writes one, where it cannot be read."""
+    file = Path(path)
+    if not file.is_file():
+        raise ReadError(f"{file}: no such file; write one with: {command}")
+    try:
+        return from_group(kind, netcdf.read(file))
+    except (ReadError, TypeError, KeyError, ValueError, AttributeError) as fault:
+        raise ReadError(f"{file}: no {what} of Faying, or damaged ({fault}); write one with: {command}") from None
 
 
 def _is_arrays(item: Any) -> bool:

@@ -9,15 +9,13 @@ from typing import Any, Self
 
 import numpy as np
 
-from faying import netcdf
-from faying.errors import InputError, ReadError
+from faying.errors import InputError
 from faying.files import write_atomically
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse, ModelModes
-from faying.netcdf import Group, Variable
 from faying.notes import Note
 from faying.result.bolts import BoltNumbers
-from faying.result.fields import declared, from_group, listed, same, to_group, variable
+from faying.result.fields import declared, listed, read_whole, same, variable, write_whole
 from faying.typing import Array, Complex, Index
 
 Point = tuple[float, float, float]
@@ -346,18 +344,11 @@ class Result:
     def to_netcdf(self, path: str | Path) -> Path:
         """Write everything as NetCDF-4 that xarray opens, with named coordinates; the file appears complete or not
         at all."""
-        group = to_group(self)
-        names = {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
+        labels: dict[str, Any] = {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
         if self.beside:
-            names["beside"] = self.beside
-        labels = {name: np.array(values, dtype=object) for name, values in names.items()}
+            labels["beside"] = self.beside
         labels["mode"] = np.arange(1, len(self.free) + 1)
-        coordinates = {name: Variable(dims=(name,), values=values) for name, values in labels.items()}
-        attributes = {"Conventions": "CF-1.11", **group.attributes}
-        return netcdf.write(
-            Path(path),
-            Group(variables={**coordinates, **group.variables}, attributes=attributes, groups=group.groups),
-        )
+        return write_whole(self, path, labels)
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -365,15 +356,7 @@ class Result:
 
         Raises ReadError where the file is missing, damaged or no result of Faying.
         """
-        file = Path(path)
-        if not file.is_file():
-            raise ReadError(f"{file}: no such file; write one with: faying run STUDY.toml")
-        try:
-            return from_group(cls, netcdf.read(file))
-        except (ReadError, TypeError, KeyError, ValueError, AttributeError) as fault:
-            raise ReadError(
-                f"{file}: no result of Faying, or damaged ({fault}); write one with: faying run STUDY.toml"
-            ) from None
+        return read_whole(cls, path, what="result", command="faying run STUDY.toml")
 
     def to_xarray(self) -> Any:
         """Return the arrays as an xarray.Dataset, as xarray.open_dataset reads them from the file."""
