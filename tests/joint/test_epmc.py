@@ -78,6 +78,19 @@ def test_the_curve_ends_where_everything_slides():
     assert "slides" in curve.reason
 
 
+def test_the_curve_ends_where_the_joint_opens():
+    """A mass between a spring and a one-sided one: stiff until the faces part, and softer beyond."""
+    model = oscillator(slider(1.0, 1.0))
+    joint = model.joints[0]
+    model = replace(model, joints=(replace(joint, relative=joint.relative[[1, 0, 2]]),))
+    curve = Epmc(model=model).follow(0.1, 100.0)
+    assert curve.code == "open"
+    assert "opens wholly" in curve.reason
+    assert all(abs(point.damping) < 1e-9 for point in curve.points)
+    assert curve.points[0].frequency == pytest.approx(np.sqrt(3 + 1), rel=1e-9)
+    assert np.sqrt(3) < Epmc(model=model).solve(4.0).frequency < np.sqrt(3.9)
+
+
 def test_the_curve_ends_where_its_keeper_says_so():
     curve = Epmc(model=oscillator(slider(*IWAN))).follow(
         0.01, 1.0, keep=lambda point: "enough" if point.amplitude > 0.05 else None

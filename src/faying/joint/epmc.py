@@ -224,10 +224,10 @@ class Epmc:
         if last.other_modes > OTHER_MODES:
             text = f"other modes make {last.other_modes:.0%} of the motion, which is no longer this mode's"
             return "other-modes", text
-        if last.slipping > self.most_sliding:
-            return "all-slipping", f"{last.slipping:.0%} of the joint slides in every cycle; it holds no more"
         if last.open >= 1:
             return "open", "the joint opens wholly in every cycle"
+        if last.slipping > self.most_sliding:
+            return "all-slipping", f"{last.slipping:.0%} of the joint slides in every cycle; it holds no more"
         return None
 
     def _to_end(self, points: Sequence[EpmcPoint], high: float) -> float:

@@ -15,7 +15,7 @@ from faying.errors import InputError
 from faying.typing import Array, Index, Mask
 
 BLOCK = 4096  # sliders marched together, so that the work stays in the cache
-TINY = float(np.finfo(float).tiny)
+TINY = 1e-280
 TOUCHES = 1e-9  # relative: a slider that comes back to its limit has not slid
 
 

@@ -30,8 +30,8 @@ NEIGHBOURS = 2  # modes above the one wanted that are trained with softened join
 ROUGH = 1e-3  # relative error of the squared frequencies of a softened joint: the residual sees to the rest
 NEARBY = 1e-9  # the same of modes under another preload
 SMALL = 1e-5  # of the energy of the vectors that a residual asks for: less is left out
-GOOD = 0.01  # residual, in energy, at which a basis is good: it errs by the square of that in frequency
-ENRICHMENTS = 8  # of one amplitude
+GOOD = 0.003  # residual, in energy, at which a basis is good: it errs by the square of that in frequency
+ENRICHMENTS = 10  # of one amplitude
 
 
 @dataclass
@@ -194,24 +194,25 @@ class SlipBasis:
         laws: Sequence[Microslip],
         amplitudes: Callable[[Epmc], Sequence[float]],
         *,
+        harmonics: int,
         samples: int,
         tolerance: float = GOOD,
         observer: Array | None = None,
         report: Callable[[str], None] | None = None,
     ) -> float:
-        """Enrich until the cycles with harmonics 0 and 1 are right to `tolerance`; return the worst residual left.
+        """Enrich until the cycles are right to `tolerance`; return the worst residual left.
 
         amplitudes: modal amplitudes that are looked at, from the curve at hand; where no motion is found, or nothing
         improves it, the training ends.
         """
         worst = 0.0
         known: list[EpmcPoint] = []
-        first = self.epmc(laws, harmonics=1, samples=samples, observer=observer)
+        first = self.epmc(laws, harmonics=harmonics, samples=samples, observer=observer)
         for amplitude in amplitudes(first):
             error = np.inf
             here: EpmcPoint | None = None
             for turn in range(ENRICHMENTS + 1):
-                epmc = self.epmc(laws, harmonics=1, samples=samples, observer=observer)
+                epmc = self.epmc(laws, harmonics=harmonics, samples=samples, observer=observer)
                 grown = [self._padded(point) for point in ([here] if here else known[-2:])]
                 try:
                     here = epmc.solve(amplitude, grown)

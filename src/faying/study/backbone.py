@@ -323,6 +323,7 @@ class _Prepared:
         self.basis.train(
             self.laws(friction, FEW),
             lambda epmc: [level / epmc.level_of(1.0) for level in levels],
+            harmonics=min(self.choice.harmonics, 2),
             samples=SAMPLES // 2,
             observer=observer,
             report=lambda text: progress.stage(text, 0.8),

@@ -71,6 +71,7 @@ def panel(ax: Any, curves: Sequence[Backbone], quantity: str, measured: Sequence
             label=plain(Path(points.source).stem if points.source else "measured"),
         )
     ax.set_xscale("log")
+    _readable(ax.xaxis)
     ax.grid(which="major", alpha=0.3)
     ax.grid(which="minor", alpha=0.1)
     if quantity == "frequency":
@@ -106,7 +107,6 @@ def figure(curves: Sequence[Backbone], measured: Sequence[MeasuredBackbone] = ()
     first = curves[0]
     at = ", ".join(f"{1e3 * x:.4g}" for x in first.at)
     lower.set_xlabel(f"acceleration at ({at}) mm [m/s²]")
-    _readable(lower.xaxis)
     upper.set_title(f"{plain(first.title)}: mode {first.mode}", fontsize=10)
     upper.legend(fontsize=8)
     return fig
