@@ -31,6 +31,7 @@ from faying.joint.support_check import checked_preload  # noqa: E402
 from faying.study.case import Case  # noqa: E402
 
 MODES = 15
+REPEATS = 10  # of the evaluation that is timed
 
 
 def basis_of(study: Study, mode: int) -> tuple[SlipBasis, Case]:
@@ -109,7 +110,15 @@ def ours(model: SlipModel, mode: int, low: float, high: float, samples: int) -> 
 
 
 def theirs(
-    model: SlipModel, mode: int, law: str, low: float, high: float, samples: int, folder: Path, python: str
+    model: SlipModel,
+    mode: int,
+    law: str,
+    low: float,
+    high: float,
+    samples: int,
+    most: int,
+    folder: Path,
+    python: str,
 ) -> tuple[float, np.ndarray]:
     parts = [elements(joint) for joint in model.joints]
     joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -136,21 +145,29 @@ def theirs(
             high=high,
             samples=samples,
             harmonics=3,
+            most=most,
         )
         flags = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
         environment = os.environ | {"PYTHONPATH": str(folder), "XLA_FLAGS": flags, "JAX_ENABLE_X64": "1"}
         command = ["taskset", "-c", "0", python, str(Path(__file__).with_name("backbone_tmdsimpy.py")), given, out]
         subprocess.run(command, env=environment, check=True)
         found = dict(np.load(out))
-    forces = (
-        model.forces(trial @ shapes.T, derivative=False, samples=samples).force - trial @ shapes.T @ model.stiffness
-    )
+    motion = trial @ shapes.T
+    start = time.process_time()
+    for _ in range(REPEATS):
+        evaluated = model.forces(motion, samples=samples)
+    each = (time.process_time() - start) / REPEATS
+    forces = evaluated.force - motion @ model.stiffness
     forces[0] += static
     miss = np.abs(found["forces"].reshape(count, size) - forces).max() / np.abs(forces[1:]).max()
     curve = np.stack([found["amplitude"], found["frequency"], found["damping"]], axis=1)
     print(
         f"  tmdsimpy  {found['seconds']:8.2f} s CPU  {len(curve):3d} points to {curve[-1, 0] / high:.2f} of the last "
         f"amplitude, {found['wall']:.1f} s wall; forces of a trial motion differ by {miss:.1e}"
+    )
+    print(
+        f"  one evaluation of forces and derivative, every point slipping: {1e3 * each:.1f} ms, tmdsimpy "
+        f"{1e3 * float(found['evaluation']):.1f} ms, ratio {float(found['evaluation']) / each:.0f}"
     )
     return float(found["seconds"]), curve
 
@@ -177,6 +194,7 @@ def main() -> None:
     parser.add_argument("--decades", type=float, default=2.0)
     parser.add_argument("--samples", type=int, default=128)
     parser.add_argument("--laws", nargs="+", default=["microslip", "jenkins", "dry"])
+    parser.add_argument("--most", type=int, default=60, help="points of tmdsimpy's curve")
     parser.add_argument("--tmdsimpy", type=Path)
     parser.add_argument("--python", default="python")
     given = parser.parse_args()
@@ -205,7 +223,7 @@ def main() -> None:
         print(f"{law}: {points} points, {len(model.mass)} coordinates, one slider, {given.samples} instants")
         seconds, own, _ = ours(model, mode, low, high, given.samples)
         if given.tmdsimpy is not None:
-            other, curve = theirs(model, mode, law, low, high, given.samples, given.tmdsimpy, given.python)
+            other, curve = theirs(model, mode, law, low, high, given.samples, given.most, given.tmdsimpy, given.python)
             each = other / len(curve) / (seconds / len(own))
             print(f"  ratio of CPU seconds: {other / seconds:.0f} per curve, {each:.0f} per point of it")
             compare(own, curve)
