@@ -59,7 +59,7 @@ def main() -> None:
         out = HERE / "results" / f"backbone-{name}.nc"
         out.parent.mkdir(exist_ok=True)
         if out.is_file():
-            curve = faying.Backbone.load_file(out)
+            curve = faying.Backbone.load(out)
         else:
             study = HERE / f"{name}.toml"
             curve = faying.backbone(study, 1, FRICTION, RANGE, rest_damping=VISCOUS, out=out)

@@ -29,7 +29,7 @@ def test_it_prints_writes_and_draws(capsys, tmp_path):
     assert not code, said.err
     found = json.loads(said.out)
     assert found["files"] == [str(out), str(plot)]
-    curve = faying.Backbone.load_file(out)
+    curve = faying.Backbone.load(out)
     assert found["curves"][0]["frequency"]["values"] == pytest.approx(curve.frequency.tolist())
     assert "static cycle" in plot.read_text() or plot.stat().st_size > 10_000
 

@@ -16,7 +16,7 @@ def made(*, frequency, damping, rest=None, linear=None, points=60):
     return Backbone(
         title="given",
         mode=1,
-        load=1e3,
+        preload=1e3,
         friction=(0.2,),
         harmonics=3,
         linear_frequency=float(f[0]) if linear is None else linear,

@@ -61,17 +61,17 @@ def test_below_its_first_point_the_curve_goes_to_rest():
 
 def test_a_curve_that_is_read_is_the_one_that_was_written(tmp_path):
     file = LINEAR.to_netcdf(tmp_path / "curve.nc")
-    again = Backbone.load_file(file)
+    again = Backbone.load(file)
     assert again == LINEAR
     assert again.bounds == ErrorBounds() or np.isnan(again.bounds.residual)
     assert again != made(frequency=101.0, damping=0.01)
     text = LINEAR.to_csv(tmp_path / "curve.csv").read_text()
     assert text.startswith("acceleration [m/s2],frequency [Hz],damping [-],")
     with pytest.raises(ReadError, match="no such file"):
-        Backbone.load_file(tmp_path / "none.nc")
+        Backbone.load(tmp_path / "none.nc")
     file.write_bytes(b"nothing")
     with pytest.raises(ReadError, match="no backbone of Faying"):
-        Backbone.load_file(file)
+        Backbone.load(file)
 
 
 def test_the_curve_as_json_has_units_and_no_nan():

@@ -32,7 +32,7 @@ def curve(study):
 
 def test_it_begins_at_the_mode_at_rest(study, curve):
     result = faying.run(study)
-    assert curve.load == 3000.0
+    assert curve.preload == 3000.0
     # the mode of the complex problem differs from the real one by the square of its loss factor
     assert curve.linear_frequency == pytest.approx(result.frequencies[1, 0], rel=1e-4)
     slow = faying.backbone(study, mode=1, friction=0.2, amplitude=(1e-3, 2e-3), harmonics=1)
@@ -95,7 +95,7 @@ def test_loads_share_a_basis(study):
     choice = chosen(study, 0.2, {"amplitude": RANGE, "harmonics": 1})
     loose, tight = backbones(study, choice)
     alone = faying.backbone(study, **LOW, harmonics=1, load=3000.0)
-    assert loose.load == 1000.0
+    assert loose.preload == 1000.0
     assert tight.frequency[-1] == pytest.approx(alone.frequency[-1], rel=2e-4)
     assert tight.linear_frequency == pytest.approx(alone.linear_frequency, rel=1e-6)
 
@@ -140,7 +140,7 @@ def test_a_killed_computation_goes_on(study, curve, tmp_path, monkeypatch):
     again = faying.backbone(study, **half, out=out)
     assert not set(first) & set(solved)
     assert not part.exists()
-    assert faying.Backbone.load_file(out) == again
+    assert faying.Backbone.load(out) == again
     np.testing.assert_allclose(again.modal_amplitude[: len(first)], first, rtol=1e-12)
     with pytest.raises(InputError, match=r"should end in \.nc"):
         faying.backbone(study, **LOW, out=tmp_path / "curve.csv")

@@ -131,7 +131,7 @@ def text(curve: Any) -> str:
 
     at = ", ".join(f"{1e3 * x:.4g}" for x in curve.at)
     head = (
-        f"{curve.title}: mode {curve.mode}, {curve.load / 1e3:g} kN, friction {curve.friction_text}; at ({at}) mm\n"
+        f"{curve.title}: mode {curve.mode}, {curve.preload / 1e3:g} kN, friction {curve.friction_text}; at ({at}) mm\n"
         f"{curve.unknowns:,} unknowns in {curve.basis_size} vectors, harmonics 0 to {curve.harmonics}; at rest "
         f"{curve.linear_frequency:.3f} Hz\n"
     )

@@ -85,14 +85,14 @@ class Backbone:
     """Frequency and damping of one mode against its amplitude.
 
     The amplitude is that of the fundamental harmonic at the point `at` along `direction`. damping is the joints' ratio
-    to critical plus `rest_damping`; friction is that of each joint; mode counts elastic modes from 1; load [N] is the
-    preload of the first bolt. code and reason say why the curve ends. shape_at [kg^-1/2]: what the mode at rest moves
+    to critical plus `rest_damping`; friction is that of each joint; mode counts elastic modes from 1; preload [N] is
+    that of the first bolt. code and reason say why the curve ends. shape_at [kg^-1/2]: what the mode at rest moves
     at the point.
     """
 
     title: str
     mode: int
-    load: float
+    preload: float
     friction: tuple[float, ...]
     harmonics: int
     linear_frequency: float
@@ -148,7 +148,7 @@ class Backbone:
 
     def __repr__(self) -> str:
         lines = [
-            f"Backbone {self.title!r}: mode {self.mode}, {self.load / 1e3:g} kN, friction {self.friction_text}",
+            f"Backbone {self.title!r}: mode {self.mode}, {self.preload / 1e3:g} kN, friction {self.friction_text}",
             f"{'m/s2':>10}{'Hz':>12}{'damping':>10}{'slips':>8}",
         ]
         for a, f, z, s in zip(self.acceleration, self.frequency, self.damping, self.slipping, strict=True):
@@ -267,7 +267,12 @@ class Backbone:
             for name in ("title", "mode", "harmonics", "basis_size", "unknowns", "code", "reason")
         }
         out["friction"], out["joints"], out["bolts"] = (list(x) for x in (self.friction, self.joints, self.bolts))
-        for name, unit in (("load", "N"), ("linear_frequency", "Hz"), ("rest_damping", "1"), ("shape_at", "kg^-1/2")):
+        for name, unit in (
+            ("preload", "N"),
+            ("linear_frequency", "Hz"),
+            ("rest_damping", "1"),
+            ("shape_at", "kg^-1/2"),
+        ):
             out[name] = {"unit": unit, "values": getattr(self, name)}
         for name, meta in declared(type(self)).items():
             if "point" not in meta.dims:
@@ -292,7 +297,7 @@ class Backbone:
         return netcdf.write(Path(path), whole)
 
     @classmethod
-    def load_file(cls, path: str | Path) -> Self:
+    def load(cls, path: str | Path) -> Self:
         """Read a curve that `to_netcdf` wrote; it equals the one that was written.
 
         Raises ReadError where the file is missing, damaged or no backbone of Faying.

@@ -59,7 +59,7 @@ def collected(curve: Curve) -> Backbone:
     return Backbone(
         title=study.title,
         mode=curve.choice.mode,
-        load=curve.load,
+        preload=curve.load,
         friction=curve.friction,
         harmonics=curve.choice.harmonics,
         linear_frequency=float(rates[curve.epmc.mode]) / (2 * np.pi),

@@ -23,8 +23,8 @@ def check(path: str | Path) -> None:
 def label(curve: Backbone, curves: Sequence[Backbone]) -> str:
     """What tells a curve from the others: friction and preload, where these differ."""
     parts = []
-    if len({other.load for other in curves}) > 1:
-        parts.append(f"{curve.load / 1e3:g} kN")
+    if len({other.preload for other in curves}) > 1:
+        parts.append(f"{curve.preload / 1e3:g} kN")
     if len({other.friction for other in curves}) > 1 or not parts:
         parts.append(f"friction {curve.friction_text}")
     return ", ".join(parts)
