@@ -8,12 +8,10 @@ from typing import Any, Self
 
 import numpy as np
 
-from faying import netcdf
-from faying.errors import InputError, ReadError
+from faying.errors import InputError
 from faying.files import write_atomically
-from faying.netcdf import Group, Variable
 from faying.notes import Note
-from faying.result.fields import declared, from_group, listed, same, to_group, variable
+from faying.result.fields import declared, listed, read_whole, same, variable, write_whole
 from faying.result.result import Provenance
 from faying.typing import Array, Index
 
@@ -289,12 +287,7 @@ class Backbone:
 
     def to_netcdf(self, path: str | Path) -> Path:
         """Write everything as NetCDF-4 that xarray opens; the file appears complete or not at all."""
-        group = to_group(self)
-        names = {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
-        labels = {name: Variable(dims=(name,), values=np.array(values, dtype=object)) for name, values in names.items()}
-        attributes = {"Conventions": "CF-1.11", **group.attributes}
-        whole = Group(variables={**labels, **group.variables}, attributes=attributes, groups=group.groups)
-        return netcdf.write(Path(path), whole)
+        return write_whole(self, path, {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")})
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -302,15 +295,7 @@ class Backbone:
 
         Raises ReadError where the file is missing, damaged or no backbone of Faying.
         """
-        file = Path(path)
-        if not file.is_file():
-            raise ReadError(f"{file}: no such file; write one with: faying backbone STUDY.toml")
-        try:
-            return from_group(cls, netcdf.read(file))
-        except (ReadError, TypeError, KeyError, ValueError, AttributeError) as fault:
-            raise ReadError(
-                f"{file}: no backbone of Faying, or damaged ({fault}); write one with: faying backbone STUDY.toml"
-            ) from None
+        return read_whole(cls, path, what="backbone", command="faying backbone STUDY.toml")
 
     def to_csv(self, path: str | Path) -> Path:
         """Write one row for each amplitude, units in the heading; the file appears complete or not at all."""
