@@ -1,7 +1,7 @@
 """Write t-specimen.step: two T-shaped parts bolted flange to flange, stems in line, with named solids and faces.
 
 The published text gives no dimensions. Those below come from identify.py: least squares within bounds on the test
-frequencies at 4 and 8 kN, together with the crown of the flanges in study.toml. What the frequencies cannot tell
+frequencies at 4 and 8 kN, together with the form of the flanges in study.toml. What the frequencies cannot tell
 (width, bolts) is a plain choice, marked as such.
 """
 

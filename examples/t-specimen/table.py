@@ -1,4 +1,4 @@
-"""Print the comparison with the test for four joints: the default law and JK, each with the crown and with flat faces.
+"""Print the comparison with the test for four joints: the default law and JK, each with the hollow and with flat faces.
 
 Run: uv run --extra pardiso python examples/t-specimen/table.py (some minutes).
 """
@@ -17,5 +17,5 @@ FLAT = BesideChoice(name="default, flat", form=Form())
 (JK,) = STUDY.beside
 
 if __name__ == "__main__":
-    besides = (FLAT, replace(JK, name="JK, flat"), replace(JK, name="JK, crown", form=None))
+    besides = (FLAT, replace(JK, name="JK, flat"), replace(JK, name="JK, hollow", form=None))
     print(table.text(table.comparison(faying.run(replace(STUDY, beside=besides)))))

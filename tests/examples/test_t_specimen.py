@@ -38,7 +38,7 @@ def test_modes_lie_between_free_and_bonded(outcome):
 
 
 def test_the_rows_used_for_identification_fit_and_the_third_is_near(outcome):
-    """Dimensions and crown were found on 4 and 8 kN, 12 kN is a prediction. Bound: the worst of the paper, 4.3 %."""
+    """Dimensions and form were found on 4 and 8 kN, 12 kN is a prediction. Bound: the worst of the paper, 4.3 %."""
     c = outcome[0]["comparison"]
     error = np.array(c["predicted"]["values"]) / np.array(c["frequencies"]["values"]) - 1
     assert np.abs(error).max() < 0.043
@@ -46,7 +46,8 @@ def test_the_rows_used_for_identification_fit_and_the_third_is_near(outcome):
 
 
 def test_the_change_with_preload_follows_the_test_more_than_the_paper_does(outcome):
-    """Modes 1, 3 and 5, which open and close the joint, within a factor of 1.8 of the test; the paper's beyond 8."""
+    """Modes 1, 3 and 4 within a factor of 1.6 of the test, mode 5 of 2: it rises by 25 Hz, then by 75, and the form was
+    fitted to the first step alone. The paper's modes 1, 3 and 5 are beyond 8."""
     c, loads = outcome[0]["comparison"], np.array(outcome[0]["loads"]["values"])
     slope = {
         name: np.polyfit(loads, np.array(values), 1)[0]
@@ -57,13 +58,15 @@ def test_the_change_with_preload_follows_the_test_more_than_the_paper_does(outco
             ("default", c["predicted"]["values"]),
         )
     }
-    share = {name: slope[name][[0, 2, 4]] / slope["test"][[0, 2, 4]] for name in slope}
-    assert np.all((share["default"] > 1 / 1.8) & (share["default"] < 1.8))
-    assert np.all(share["paper"] < 1 / 8)
-    assert np.all(share["default"] > 3 * share["JK"])
+    share = {name: slope[name] / slope["test"] for name in slope}
+    assert np.all(np.abs(np.log(share["default"][[0, 2, 3]])) < np.log(1.6))
+    assert abs(np.log(share["default"][4])) < np.log(2)
+    opening = [0, 2, 4]  # they open and close the joint
+    assert np.all(share["paper"][opening] < 1 / 8)
+    assert np.all(share["default"][opening] > 3 * share["JK"][opening])
 
 
-def test_the_crown_was_fitted_to_the_change_from_4_to_8_kn(outcome):
+def test_the_form_was_fitted_to_the_change_from_4_to_8_kn(outcome):
     """Mean relative rise of modes 1, 3 and 5 between the loads of the fit: the test's to a tenth."""
     c = outcome[0]["comparison"]
     rise = {
