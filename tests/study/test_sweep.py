@@ -90,6 +90,7 @@ def test_an_interrupted_sweep_goes_on_where_it_stopped(plan, done, tmp_path, mon
     assert sorted(i for call in calls[2:] for i in call) == sorted(set(range(12)) - set(calls[0]))
 
 
+@pytest.mark.slow
 def test_what_an_interruption_changes(plan, tmp_path, monkeypatch):
     """Nothing, to the last bit: the chunks, and so the starts within them, are those of a sweep in one go."""
     monkeypatch.setattr(module, "CHUNK", 3)
@@ -272,6 +273,7 @@ def test_what_a_sweep_cannot_do(plan, tmp_path):
         sweep(plan, axes(), tmp_path / "out.nc", tolerance=1.0)
 
 
+@pytest.mark.slow
 def test_a_sweep_over_the_crown_is_that_of_full_runs(plan, tmp_path):
     """Hollow to crowned: the same frequencies as full solutions at places that were not trained on."""
     key = "joint.form.crown_along"
