@@ -11,7 +11,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.files import write_atomically
 from faying.notes import Note
-from faying.result.fields import declared, listed, read_whole, same, variable, write_whole
+from faying.result.fields import Recorded, declared, listed, read_whole, variable, write_whole
 from faying.result.result import Provenance
 from faying.typing import Array, Index
 
@@ -79,7 +79,7 @@ class RingDown:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Backbone:
+class Backbone(Recorded):
     """Frequency and damping of one mode against its amplitude.
 
     The amplitude is that of the fundamental harmonic at the point `at` along `direction`. damping is the joints' ratio
@@ -128,21 +128,6 @@ class Backbone:
     bounds: ErrorBounds = field(default_factory=ErrorBounds)
     notes: tuple[Note, ...] = ()
     provenance: Provenance = field(default_factory=Provenance)
-
-    def __post_init__(self) -> None:
-        for name, meta in declared(type(self)).items():
-            value = np.asarray(getattr(self, name), dtype=meta.dtype)
-            if not np.all(np.isfinite(value)):
-                raise InputError(f"the backbone has NaN in {name}; this is a fault of Faying, please report it")
-            value.setflags(write=False)
-            object.__setattr__(self, name, value)
-
-    def __eq__(self, other: object) -> bool:
-        return type(other) is type(self) and all(
-            same(getattr(self, f.name), getattr(other, f.name)) for f in fields(self)
-        )
-
-    __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
         lines = [

@@ -10,7 +10,7 @@ from typing import Any, TypeVar, Union, cast, get_args, get_origin, get_type_hin
 import numpy as np
 
 from faying import netcdf
-from faying.errors import ReadError
+from faying.errors import InputError, ReadError
 from faying.netcdf import Attribute, Group, Variable
 
 Whole = TypeVar("Whole")
@@ -44,6 +44,25 @@ def variable(
     """Declare a field of a dataclass as an array with named dimensions; writer, reader, JSON and tables follow."""
     declared = Declared(name=name, dims=dims, unit=unit, long_name=long_name, dtype=dtype, gaps=gaps)
     return field(metadata={KEY: declared}, **({} if default is MISSING else {"default": default}))
+
+
+class Recorded:
+    """What a dataclass of declared arrays does: they are checked and frozen, and two of them are equal part by part."""
+
+    def __post_init__(self) -> None:
+        for name, meta in declared(type(self)).items():
+            if getattr(self, name) is None:
+                continue
+            value = np.asarray(getattr(self, name), dtype=meta.dtype)
+            if not np.all(np.isfinite(value) | (meta.gaps and np.isnan(value))):
+                raise InputError(f"NaN in {name}; this is a fault of the input or of Faying, please report it")
+            value.setflags(write=False)
+            object.__setattr__(self, name, value)
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and same(self, other)
+
+    __hash__ = None  # type: ignore[assignment]
 
 
 def declared(kind: Any) -> dict[str, Declared]:

@@ -15,7 +15,7 @@ from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse, ModelModes
 from faying.notes import Note
 from faying.result.bolts import BoltNumbers
-from faying.result.fields import declared, listed, read_whole, same, variable, write_whole
+from faying.result.fields import Recorded, declared, listed, read_whole, variable, write_whole
 from faying.typing import Array, Complex, Index
 
 Point = tuple[float, float, float]
@@ -103,7 +103,7 @@ class Provenance:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Result:
+class Result(Recorded):
     """What a study gives. Load [N] means the preload of the first bolt; modes are the elastic ones.
 
     Frequencies, loss factors and shapes are those of the complex modes; "bonded" are the frequencies with the faces of
@@ -231,25 +231,6 @@ class Result:
     hammer: ModalComparison | None = None
     bolt_numbers: BoltNumbers | None = None
     provenance: Provenance = field(default_factory=Provenance)
-
-    def __post_init__(self) -> None:
-        for name, meta in declared(type(self)).items():
-            if getattr(self, name) is None:
-                continue
-            value = np.asarray(getattr(self, name), dtype=meta.dtype)
-            if not np.all(np.isfinite(value) | (meta.gaps and np.isnan(value))):
-                raise InputError(
-                    f"the study gave NaN in {name}; this is a fault of its input or of Faying, please report it"
-                )
-            value.setflags(write=False)
-            object.__setattr__(self, name, value)
-
-    def __eq__(self, other: object) -> bool:
-        return type(other) is type(self) and all(
-            same(getattr(self, f.name), getattr(other, f.name)) for f in fields(self)
-        )
-
-    __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
         lines = [f"Result {self.title!r}: {self.unknowns:,} unknowns, joints {', '.join(self.joints)}"]
