@@ -182,6 +182,7 @@ def test_ring_down_falls_as_the_curve_says():
     assert decay == pytest.approx(predicted, rel=0.02)
 
 
+@pytest.mark.slow
 def test_steady_response_at_the_frequency_of_the_curve_has_its_amplitude():
     epmc = Epmc(model=chain([1.0, 0.7], [3.0, 2.0], slider(*IWAN)), samples=256)
     point = epmc.solve(0.3)

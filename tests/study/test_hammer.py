@@ -54,6 +54,7 @@ def solved(plan):
     )
 
 
+@pytest.mark.slow
 def test_full_response_answers_the_full_equations(solved):
     """Against a factorisation of K (1 + ..) + iC - w2 M at each frequency, without any basis."""
     rng = np.random.default_rng(0)
