@@ -38,7 +38,7 @@ def result_of(name, tmp_path):
     ("name", "proof_share"),
     [
         # preload over proof load: ISO 898-1 gives 11.6, 21.2 and 48.9 kN for M6, M8 and M12 of class 8.8
-        ("sheets", 8 / 11.6),
+        pytest.param("sheets", 8 / 11.6, marks=pytest.mark.slow),
         pytest.param("plates", 16 / 21.2, marks=pytest.mark.slow),
         pytest.param("flanges", 45 / 48.9, marks=pytest.mark.slow),
     ],
