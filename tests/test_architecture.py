@@ -12,7 +12,7 @@ SOURCE = Path(__file__).parent.parent / "src" / "faying"
 ORDER = [
     {"errors"},
     {"units", "files", "memory", "typing", "notes"},
-    {"materials", "netcdf", "columns"},
+    {"materials", "netcdf", "columns", "distribution"},
     {"surface", "fe", "halfspace"},
     {"contact", "asperity_fe"},
     {"joint"},
