@@ -14,6 +14,7 @@ from faying.errors import InputError
 from faying.typing import Array
 
 FACTOR_SCORE = 1.6448536269514722  # standard normal score of 95 %: a factor spans 5 to 95 %
+UNSEEN = 6.0  # standard deviations from which a cut is not worth a word
 SIGN = r"\+-|\+/-|±"
 _RANGE = re.compile(r"\s*([+-]?[0-9.].*?)\s+to\s+([+-]?[0-9.].*?)\s*", re.DOTALL)
 _PLUS_MINUS = re.compile(rf"\s*([+-]?[0-9.].*?)\s*(?:{SIGN})\s*(.*?)\s*", re.DOTALL)
@@ -246,8 +247,9 @@ class Distribution:
             out = f"{_show(self.centre, unit)} +- {_show(self.spread, unit)} (normal"
         else:
             out = f"{_show(self.centre, unit)}, sd of ln {self.spread:.3g} (lognormal"
-        cuts = [f"above {_show(self.low, unit)}"] if self._scores[0] > -inf else []
-        cuts += [f"below {_show(self.high, unit)}"] if self._scores[1] < inf else []
+        first, last = self._scores
+        cuts = [f"above {_show(self.low, unit)}"] if first > -UNSEEN else []
+        cuts += [f"below {_show(self.high, unit)}"] if last < UNSEEN else []
         return ", ".join([out, " and ".join(cuts)] if cuts else [out]) + ")"
 
     @classmethod

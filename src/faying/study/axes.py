@@ -11,8 +11,9 @@ from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.joint.form import PARAMETERS
 from faying.study.keys.surface import Surface
+from faying.study.keys.varied import MODEL, OWN, formed, swept
 from faying.study.study import Study
-from faying.study.variation import MODEL, OWN, Point, check_key, formed, swept
+from faying.study.variation import Point, check_key
 
 MOST = 1_000_000  # points of a grid
 
@@ -59,8 +60,8 @@ def axis_of(text: str) -> Axis:
             (*OWN, "bolt.NAME.preload", "joint.NAME.stiffness", *forms, MODEL, "law.NAME (a parameter of the law)")
         )
         raise InputError(
-            f"--set {key}: a sweep varies what acts on the joints alone, which is {known}; anything else changes "
-            "the parts, and takes a study of its own"
+            f"--set {key}: a sweep varies what acts on the joints, and factors on the parts, which is {known}; "
+            "anything else takes a study of its own"
         )
     unit = parameter.unit if parameter.is_number else ""
     words = given.split(":")
@@ -138,8 +139,9 @@ class Grid:
 
     @property
     def varied_parts(self) -> tuple[str, ...]:
-        """Parts whose stiffness or mass varies: none."""
-        return ()
+        """Parts whose stiffness or mass varies."""
+        found = (axis.key.split(".") for axis in self.axes)
+        return tuple(dict.fromkeys(parts[1] for parts in found if parts[0] == "part"))
 
     def point(self, index: int) -> Point:
         """Return the study at one place of the grid."""

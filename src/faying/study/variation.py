@@ -1,61 +1,31 @@
-"""What of a study may vary while the matrices of its parts stay, and the study with other values put in."""
+"""A study with other values put in where its numbers may vary."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from faying.contact.build import check_entries, kinds
-from faying.contact.parameter import FILE, TABLE, Parameter
+from faying.contact.build import check_entries
 from faying.errors import InputError
-from faying.joint.form import PARAMETERS, Form
+from faying.joint.form import Form
 from faying.study.keys.joint import JointChoice
-from faying.study.keys.law import OF_SURFACE
 from faying.study.keys.surface import Surface
+from faying.study.keys.varied import MODEL, formed
 from faying.study.study import Study
 from faying.typing import Array
-
-# what a sweep may vary beside the entries of laws: all of it acts on the joints alone
-OWN = {
-    "surface.D": Parameter("", "fractal dimension", 2, 3),
-    "surface.G": Parameter("m", "fractal roughness", 0),
-    "surface.scan_area": Parameter("m^2", "area that the scan covers", 0),
-    "bolt.preload": Parameter("N", "preload of the bolts", 0),
-    "joint.friction": Parameter("", "coefficient of friction", 0, 10, "[)"),
-    "joint.stiffness": Parameter("", "factor on both stiffnesses of the joints", 0),
-    "law.counterbody": Parameter("text", "what the rough face presses on", choices=("part", "rigid")),
-}
-MODEL = "law.model"
-OF_ONE = {"bolt": ("preload",), "joint": ("stiffness",)}  # keys that one bolt or joint may have, by its name
-
-
-def swept(key: str) -> Parameter | None:
-    """What a sweep key declares, for any law that has it; None where there is no such key."""
-    parts = key.split(".")
-    if len(parts) == 3 and parts[-1] in OF_ONE.get(parts[0], ()):
-        return OWN[f"{parts[0]}.{parts[-1]}"]
-    if formed(parts):
-        return PARAMETERS.get(parts[-1])
-    if key in OWN:
-        return OWN[key]
-    if parts[0] != "law" or len(parts) != 2 or parts[1] in OF_SURFACE:
-        return None
-    entries = [kind.law.entries().get(parts[1]) for kind in kinds().values()]
-    return next((p for p in entries if p is not None and p.unit not in (FILE, TABLE)), None)
-
-
-def formed(parts: list[str]) -> bool:
-    """Whether a key is joint.form.SHAPE, or joint.NAME.form.SHAPE for one joint."""
-    return parts[0] == "joint" and len(parts) in (3, 4) and parts[-2] == "form"
 
 
 def check_key(study: Study, key: str, *, models: bool, where: str) -> None:
     """InputError where the study has nothing that this key could vary; models: whether the law varies, too."""
     parts = key.split(".")
-    for room, things in (("bolt", study.bolts), ("joint", study.joints)):
+    known = {
+        "bolt": [bolt.name for bolt in study.bolts],
+        "joint": [joint.name for joint in study.joints],
+        "part": list(study.parts),
+    }
+    for room, names in known.items():
         one = parts[0] == room and (len(parts) == 4 or (len(parts) == 3 and not formed(parts)))
-        names = [thing.name for thing in things]
         if one and parts[1] not in names:
             raise InputError(f"{where}: no {room} is called {parts[1]!r}; the {room}s are {', '.join(names)}")
     if parts[0] == "surface":
@@ -108,16 +78,25 @@ class Point:
         if formed(parts):
             joints = tuple(_with_form(joint, parts, value) for joint in study.joints)
             return replace(self, study=replace(study, joints=joints))
-        if room == "joint" and name == "stiffness":
-            which = [joint.name for joint in study.joints] if len(parts) == 2 else [parts[1]]
+        if room == "part":
+            return self.with_scales([parts[1]], **{name: value})
+        here = [len(parts) == 2 or thing.name == parts[1] for thing in getattr(study, f"{room}s")]
+        if room == "bolt":
+            wanted = self.forces * value if name == "factor" else np.full(len(here), value)
+            return replace(self, forces=np.where(here, wanted, self.forces))
+        which = [joint.name for joint, one in zip(study.joints, here, strict=True) if one]
+        if name == "stiffness":
             return replace(self, stiffness={**self.stiffness, **dict.fromkeys(which, value)})
-        if room == "joint":
-            return replace(self, study=replace(study, joints=tuple(replace(j, friction=value) for j in study.joints)))
-        if len(parts) == 2:
-            return replace(self, forces=np.full(len(self.forces), value))
-        forces = self.forces.copy()
-        forces[[bolt.name for bolt in study.bolts].index(parts[1])] = value
-        return replace(self, forces=forces)
+        joints = tuple(replace(j, friction=value) if j.name in which else j for j in study.joints)
+        return replace(self, study=replace(study, joints=joints))
+
+    def with_scales(self, parts: Iterable[str], *, stiffness: float = 1.0, mass: float = 1.0) -> "Point":
+        """The same with the stiffness and the mass of some parts scaled once more."""
+        scales = dict(self.scales)
+        for part in parts:
+            k, m = scales.get(part, (1.0, 1.0))
+            scales[part] = k * stiffness, m * mass
+        return replace(self, scales=scales)
 
 
 def _with_form(joint: JointChoice, key: list[str], value: float) -> JointChoice:
