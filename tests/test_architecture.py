@@ -19,6 +19,7 @@ ORDER = [
     {"measured", "decks"},
     {"result"},
     {"study"},
+    {"identify"},
     {"output"},
     {"cli"},
     {"__main__"},

@@ -66,15 +66,17 @@ class Distribution:
                 f"{self.high:g}; move the limits or widen it"
             )
 
-    # -- the one scale on which all three are simple: (x - centre)/spread, of ln x for a lognormal
+    # -- the one scale on which all three are simple
 
-    def _scaled(self, x: Any) -> Any:
+    def standardised(self, x: Any) -> Any:
+        """The scale (x - centre)/spread of values `x`, any shape; of ln x for a lognormal."""
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             if self.kind == "lognormal":
                 return (np.log(np.maximum(x, 0.0)) - log(self.centre)) / self.spread
             return (np.asarray(x, dtype=float) - self.centre) / self.spread
 
-    def _unscaled(self, z: Any) -> Array:
+    def from_standard(self, z: Any) -> Array:
+        """The values at (x - centre)/spread = z, any shape; held within the support."""
         shifted = np.asarray(z, dtype=float) * self.spread
         whole = self.centre * np.exp(shifted) if self.kind == "lognormal" else self.centre + shifted
         return np.clip(whole, *self.support)
@@ -82,7 +84,7 @@ class Distribution:
     @property
     def _scores(self) -> tuple[float, float]:
         """Where the density begins and ends on that scale."""
-        first, last = float(self._scaled(self.low)), float(self._scaled(self.high))
+        first, last = float(self.standardised(self.low)), float(self.standardised(self.high))
         return (max(first, -1.0), min(last, 1.0)) if self.kind == "uniform" else (first, last)
 
     def _log_mass(self, first: Any, last: Any) -> Any:
@@ -103,12 +105,14 @@ class Distribution:
         first, last = self._scores
         if self.kind == "uniform":
             width = last - first
-            return self._unscaled(np.where(below < above, first + width * np.exp(below), last - width * np.exp(above)))
+            return self.from_standard(
+                np.where(below < above, first + width * np.exp(below), last - width * np.exp(above))
+            )
         from scipy.special import log_ndtr, ndtri_exp
 
         lower = np.logaddexp(above + log_ndtr(first), below + log_ndtr(last))
         upper = np.logaddexp(above + log_ndtr(-first), below + log_ndtr(-last))
-        return self._unscaled(np.where(lower < upper, ndtri_exp(lower), -ndtri_exp(upper)))
+        return self.from_standard(np.where(lower < upper, ndtri_exp(lower), -ndtri_exp(upper)))
 
     @property
     def _is_cut(self) -> bool:
@@ -170,14 +174,14 @@ class Distribution:
         """The values whose probability is that of standard normal scores, exact in both tails; any shape."""
         score = np.asarray(score, dtype=float)
         if not self._is_cut:
-            return self._unscaled(score)
+            return self.from_standard(score)
         from scipy.special import log_ndtr
 
         return self._at_shares(log_ndtr(score), log_ndtr(-score))
 
     def score(self, x: Array) -> Array:
         """Standard normal scores of the probability of values `x`, any shape: the inverse of `from_score`."""
-        z = np.asarray(self._scaled(x), dtype=float)
+        z = np.asarray(self.standardised(x), dtype=float)
         if not self._is_cut:
             return z
         from scipy.special import ndtri_exp
@@ -197,7 +201,7 @@ class Distribution:
         if self.kind == "uniform":
             return np.where(inside, -log(2 * self.spread) - whole, -inf)
         with np.errstate(all="ignore"):
-            z = self._scaled(x)
+            z = self.standardised(x)
             density = -(z**2) / 2 - log(self.spread * sqrt(2 * np.pi)) - whole
             density = density - np.log(x) if self.kind == "lognormal" else density
         return np.where(inside & np.isfinite(density), density, -inf)
@@ -221,7 +225,7 @@ class Distribution:
         highest = nextafter(greatest, -inf) if ends[1] == ")" and greatest < inf else greatest
         first, last = self._scores
         # the parts outside, each by itself: 1 less the part inside would lose small shares
-        edges = (float(self._scaled(lowest)), float(self._scaled(highest)))
+        edges = (float(self.standardised(lowest)), float(self.standardised(highest)))
         outside = (self._log_mass(first, min(edges[0], last)), self._log_mass(max(edges[1], first), last))
         whole = self._log_mass(first, last)
         share = min(sum(exp(part - whole) for part in outside), 1.0)
