@@ -11,6 +11,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.files import write_atomically
+from faying.joint.loads import preload_index
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse, ModelModes
 from faying.notes import Note
@@ -275,8 +276,9 @@ class Result(Recorded):
 
         Raises InputError where there is no such load.
         """
-        index = len(self.loads) - 1 if load is None else int(np.argmin(np.abs(self.loads - load)))
-        if load is not None and abs(self.loads[index] - load) > 1e-3 * abs(self.loads[index]):
+        index = len(self.loads) - 1 if load is None else preload_index(self.loads, load)
+        if index is None:
+            assert load is not None
             raise InputError(
                 f"{source}: no preload of {load / 1e3:g} kN; it holds "
                 f"{', '.join(f'{v / 1e3:g} kN' for v in self.loads)}"

@@ -13,6 +13,7 @@ from faying.fe.damped import damped_modes
 from faying.fe.modes import Modes, lowest_modes
 from faying.joint.attachments import nearest_node
 from faying.joint.epmc import EpmcCurve, EpmcPoint
+from faying.joint.loads import preload_index
 from faying.joint.microslip import Microslip
 from faying.joint.slip_basis import SlipBasis
 from faying.joint.structure import Structure
@@ -138,8 +139,8 @@ def chosen(study: Study, friction: float | Sequence[float] | None, asked: dict[s
 
 def load_index(study: Study, load: float) -> int:
     """Index of a preload [N] of the study. Raises InputError where it has none such."""
-    index = int(np.argmin(np.abs(np.array(study.loads) - load)))
-    if abs(study.loads[index] - load) > 1e-3 * abs(load):
+    index = preload_index(study.loads, load)
+    if index is None:
         known = ", ".join(f"{value / 1e3:g} kN" for value in study.loads)
         raise InputError(f"no preload of {load / 1e3:g} kN in the study; it has {known}")
     return index

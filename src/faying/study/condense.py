@@ -11,6 +11,7 @@ from faying.decks.deck import CondensedDeck
 from faying.decks.system import System
 from faying.errors import InputError
 from faying.joint.condensed import CondensedJoint, condensed_modes
+from faying.joint.loads import preload_index
 from faying.joint.support_check import check_motions
 from faying.measured.mac import mac
 from faying.study.case import Case, Progress, Report
@@ -198,8 +199,8 @@ def _load(study: Study, preload: str | None) -> int:
     if preload is None:
         return len(study.loads) - 1
     wanted = units.parse(preload, "N", name="--preload")
-    index = int(np.argmin(np.abs(np.array(study.loads) - wanted)))
-    if abs(study.loads[index] - wanted) > 1e-6 * wanted:
+    index = preload_index(study.loads, wanted)
+    if index is None:
         loads = ", ".join(f"{load / 1e3:g} kN" for load in study.loads)
         raise InputError(f"--preload {preload}: the study has {loads}")
     return index
