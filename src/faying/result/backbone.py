@@ -2,7 +2,7 @@
 
 import csv
 import io
-from dataclasses import dataclass, field, fields
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Self
 
@@ -11,7 +11,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.files import write_atomically
 from faying.notes import Note
-from faying.result.fields import Recorded, declared, listed, read_whole, variable, write_whole
+from faying.result.fields import Recorded, declared, in_units, listed, read_whole, variable, write_whole
 from faying.result.result import Provenance
 from faying.typing import Array, Index
 
@@ -257,17 +257,11 @@ class Backbone(Recorded):
             ("shape_at", "kg^-1/2"),
         ):
             out[name] = {"unit": unit, "values": getattr(self, name)}
-        for name, meta in declared(type(self)).items():
-            if "point" not in meta.dims:
-                out[name] = {"unit": meta.unit, "values": listed(getattr(self, name))}
+        out |= in_units(self, without=("point",))
         if self.witness is not None:
-            out["witness"] = {
-                name: {"unit": meta.unit, "values": listed(getattr(self.witness, name))}
-                for name, meta in declared(Witness).items()
-            }
-        out["bounds"] = {f.name: listed(getattr(self.bounds, f.name)) for f in fields(self.bounds)}
-        out["bounds"] = {name: None if value != value else value for name, value in out["bounds"].items()}
-        out["notes"] = [{f.name: getattr(note, f.name) for f in fields(note)} for note in self.notes]
+            out["witness"] = in_units(self.witness)
+        out["bounds"] = {name: listed(value) for name, value in asdict(self.bounds).items()}
+        out["notes"] = [asdict(note) for note in self.notes]
         return out
 
     def to_netcdf(self, path: str | Path) -> Path:
