@@ -164,14 +164,14 @@ class Backbone(Recorded):
         return self._between(self.acceleration, wanted)
 
     def _between(self, scale: Array, wanted: Array) -> tuple[Array, Array]:
-        slope = np.minimum(wanted / scale[0], 1.0)
         x, known = np.log(np.maximum(wanted, scale[0])), np.log(scale)
-        low = np.minimum(wanted / scale[0], 1.0)
-        f = np.interp(x, known, self.frequency)
-        z = np.interp(x, known, self.damping)
-        f = np.where(wanted < scale[0], self.linear_frequency + low * (self.frequency[0] - self.linear_frequency), f)
-        z = np.where(wanted < scale[0], self.rest_damping + slope * (self.damping[0] - self.rest_damping), z)
-        return f, z
+        share = np.minimum(wanted / scale[0], 1.0)
+
+        def along(values: Array, rest: float) -> Array:
+            near_rest = rest + share * (values[0] - rest)
+            return np.asarray(np.where(wanted < scale[0], near_rest, np.interp(x, known, values)))
+
+        return along(self.frequency, self.linear_frequency), along(self.damping, self.rest_damping)
 
     def ring_down(self, acceleration: float, time: float, *, points: int = DECAY) -> RingDown:
         """Free decay from an acceleration amplitude [m/s2] over a time [s].
