@@ -15,7 +15,7 @@ from faying.joint.loads import preload_index
 from faying.joint.support_check import check_motions
 from faying.measured.mac import mac
 from faying.study.case import Case, Progress, Report
-from faying.study.solve import modes_of, settled
+from faying.study.modes import modes_of, settled
 from faying.study.study import Study
 from faying.typing import Array
 

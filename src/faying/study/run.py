@@ -13,7 +13,7 @@ import numpy as np
 
 from faying.errors import NotConverged
 from faying.fe.constraint import constrain
-from faying.fe.modes import Modes, lowest_modes
+from faying.fe.modes import Modes
 from faying.fe.solve import chosen
 from faying.joint.structure import bond
 from faying.joint.support_check import RIGID_BELOW
@@ -27,6 +27,7 @@ from faying.study.bolt_numbers import bolt_numbers, conductances
 from faying.study.case import Case, Progress, Report
 from faying.study.findings import against_exact_contact, falling
 from faying.study.form_band import form_band
+from faying.study.modes import modes_with
 from faying.study.solve import State, solve
 from faying.study.study import Study
 from faying.typing import Array, Index
@@ -75,22 +76,20 @@ def stage_count(study: Study) -> int:
 
 def bounds(case: Case) -> tuple[Array, Array, list[Note]]:
     """Frequencies [Hz] of the elastic modes with the faces of every joint apart, and with them bonded; notes."""
-    structure, shift, solver = case.structure, case.shift_frequency, case.study.modes.solver
-    K, M = structure.vibrating
-    free = lowest_modes(K, M, case.mode_count, shift_frequency=shift, solver=solver)
+    free = modes_with(case, *case.structure.vibrating)
     bonded, notes = _bonded(case)
     elastic = slice(case.rigid_count, case.rigid_count + case.study.modes.count)
-    still = np.where(free.frequencies < RIGID_BELOW * shift, 0.0, free.frequencies)
+    still = np.where(free.frequencies < RIGID_BELOW * case.shift_frequency, 0.0, free.frequencies)
     return still[elastic], bonded.frequencies[elastic], notes
 
 
 def _bonded(case: Case) -> tuple[Modes, list[Note]]:
-    structure, shift, solver = case.structure, case.shift_frequency, case.study.modes.solver
+    structure = case.structure
     K, M = structure.vibrating
     merge = structure.bonded()
     if merge is not None and not len(structure.fixed):
         K, M = ((merge.T @ matrix @ merge).tocsr() for matrix in (K, M))
-        return lowest_modes(K, M, case.mode_count, shift_frequency=shift, solver=solver), []
+        return modes_with(case, K, M), []
     apart = [joint.name for joint in structure.joints if bond(structure.mesh, [joint.faces]) is None]
     why = f"the faces of {', '.join(apart)} do not match node for node" if apart else "supports hold some of the nodes"
     text = f"{why}: the bonded modes use springs a thousand times as stiff as the parts in place of bonded faces"
@@ -98,8 +97,7 @@ def _bonded(case: Case) -> tuple[Modes, list[Note]]:
     for joint in structure.joints:
         springs = joint.interface.springs(*2 * (np.full(len(joint.interface.weights), stiff),))
         K = K + constrain(springs, structure.fixed, 0.0)
-    modes = lowest_modes(K, M, case.mode_count, shift_frequency=shift, solver=solver)
-    return modes, [Note(code="bonded-by-springs", text=text)]
+    return modes_with(case, K, M), [Note(code="bonded-by-springs", text=text)]
 
 
 def collect(
