@@ -348,7 +348,7 @@ class _Prepared:
         """Ratio to critical [-] that is added."""
         if self.choice.rest_damping != "law":
             return float(self.choice.rest_damping)
-        if not any(joint.law.predicts_loss for joint in self.case.structure.joints):
+        if not self.case.structure.predicts_loss:
             raise InputError('rest_damping = "law": no law of this study predicts a loss; give a number such as 0.001')
         return self.law_damping()
 
