@@ -14,7 +14,7 @@ from faying.errors import NotConverged
 from faying.fe.constraint import constrain
 from faying.fe.modes import Modes
 from faying.fe.solve import chosen
-from faying.joint.structure import bond
+from faying.joint.structure import Structure, bond
 from faying.joint.support_check import RIGID_BELOW
 from faying.notes import Note
 from faying.result import BoltNumbers, Comparison, Provenance, Receptance, Result
@@ -114,7 +114,6 @@ def collect(
         besides: the same under other laws.
     """
     study, structure = case.study, case.structure
-    nodes, triangles = structure.outline()
     shapes = shapes_of(case, states)
     steps = from_load_to_load(case, states)
     comparison, more = compared(case, states, shapes, steps)
@@ -130,26 +129,15 @@ def collect(
     result = Result(
         title=study.title,
         loads=case.loads,
-        frequencies=np.stack([s.damped.frequencies for s in states]),
-        loss_factors=np.stack([np.where(lossless, np.nan, s.damped.loss_factors) for s in states]),
-        loss_error=np.stack([s.damped.error for s in states]),
         free=bounds[0],
         bonded=bounds[1],
-        low=_stacked([s.low for s in states]),
-        high=_stacked([s.high for s in states]),
-        **_bonded_beyond(states, lossless),
-        outside_share=np.array([s.outside_share for s in states]),
-        beyond_share=np.array([s.beyond_share for s in states]),
-        **beside_fields(besides, len(states), len(bounds[0])),
         rigid=rigid,
         mac=with_first(case, states, steps),
+        **_at_loads(states, lossless),
+        **_bonded_beyond(states, lossless),
         **_at_points(states),
-        bolt_forces=np.array([s.preload.bolt_forces for s in states]),
-        imbalance=np.array([s.preload.imbalance for s in states]),
-        newton_steps=np.array([s.preload.newton_steps for s in states]),
-        outline=structure.mesh.points[nodes],
-        triangles=triangles,
-        shapes=np.stack([shape[:, nodes] for shape in shapes]),
+        **_outline(structure, shapes),
+        **beside_fields(besides, len(states), len(bounds[0])),
         joints=tuple(j.name for j in structure.joints),
         bolts=tuple(bolt.name for bolt in study.bolts),
         unknowns=structure.mesh.unknowns,
@@ -193,6 +181,32 @@ def _predicted(beside: Beside, comparison: Comparison) -> Array:
         if found is not None:
             return found.predicted
     return np.full(comparison.frequencies.shape, np.nan)
+
+
+def _at_loads(states: Sequence[State], lossless: bool) -> dict[str, Any]:
+    """Fields of the result that have a value or a row for each load."""
+    return {
+        "frequencies": np.stack([s.damped.frequencies for s in states]),
+        "loss_factors": np.stack([np.where(lossless, np.nan, s.damped.loss_factors) for s in states]),
+        "loss_error": np.stack([s.damped.error for s in states]),
+        "low": _stacked([s.low for s in states]),
+        "high": _stacked([s.high for s in states]),
+        "outside_share": np.array([s.outside_share for s in states]),
+        "beyond_share": np.array([s.beyond_share for s in states]),
+        "bolt_forces": np.array([s.preload.bolt_forces for s in states]),
+        "imbalance": np.array([s.preload.imbalance for s in states]),
+        "newton_steps": np.array([s.preload.newton_steps for s in states]),
+    }
+
+
+def _outline(structure: Structure, shapes: Sequence[Array]) -> dict[str, Any]:
+    """Fields of the result on the outer surface."""
+    nodes, triangles = structure.outline()
+    return {
+        "outline": structure.mesh.points[nodes],
+        "triangles": triangles,
+        "shapes": np.stack([shape[:, nodes] for shape in shapes]),
+    }
 
 
 def _at_points(states: Sequence[State]) -> dict[str, Any]:

@@ -90,17 +90,7 @@ def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress, 
     loaded = LoadedStructure(
         study=study, structure=structure, modes=modes, damped=damped, stiffness=stiffness, mass=mass, loss=loss
     )
-    response = test_response = None
-    notes: list[Note] = []
-    if study.response is not None:
-        progress.begin(f"frequency response at {load / 1e3:g} kN")
-        response, more = loaded.response(study.response)
-        notes += more
-    hammer = case.hammer
-    if hammer is not None and case.test_points is not None and number == hammer.choice.load and hammer.has_frf:
-        progress.begin("frequency response at the points of the test")
-        test_response, more = hammer.response(loaded, case.test_points)
-        notes += more
+    response, test_response, notes = _responses(case, number, loaded, progress)
     beyond = bonded_beyond(case, load, springs, damped)
     return State(
         load=load,
@@ -124,6 +114,24 @@ def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress, 
         ),
         beyond_share=_share(springs, [past_end(j, s) for j, s in zip(structure.joints, springs, strict=True)]),
     )
+
+
+def _responses(
+    case: Case, number: int, loaded: LoadedStructure, progress: Progress
+) -> tuple[ResponseAtLoad | None, FullResponse | None, list[Note]]:
+    """What [response] asks for and what the points of a hammer test need, at one of the loads, with notes."""
+    study, hammer = case.study, case.hammer
+    response = test_response = None
+    notes: list[Note] = []
+    if study.response is not None:
+        progress.begin(f"frequency response at {study.loads[number] / 1e3:g} kN")
+        response, more = loaded.response(study.response)
+        notes += more
+    if hammer is not None and case.test_points is not None and number == hammer.choice.load and hammer.has_frf:
+        progress.begin("frequency response at the points of the test")
+        test_response, more = hammer.response(loaded, case.test_points)
+        notes += more
+    return response, test_response, notes
 
 
 def _share(springs: Sequence[Springs[Interface]], masks: Sequence[Mask]) -> float:
