@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from faying import __version__
-from faying.files import write_atomically
+from faying.files import write_text
 from faying.output import page, report_measured
 from faying.output.figures import response, structure
 from faying.output.figures.save import new_figure, save
@@ -126,7 +126,5 @@ def write(result: Result, folder: Path) -> list[Path]:
         if name.startswith(TEST):
             continue
         made.append(save(figure, folder / f"{name}.{'png' if name == 'modes' else 'svg'}"))
-    made.append(
-        write_atomically(folder / "report.html", lambda path: path.write_text(html(result, drawn), encoding="utf-8"))
-    )
+    made.append(write_text(folder / "report.html", html(result, drawn)))
     return made

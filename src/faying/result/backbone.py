@@ -9,7 +9,7 @@ from typing import Any, Self
 import numpy as np
 
 from faying.errors import InputError
-from faying.files import write_atomically
+from faying.files import write_text
 from faying.notes import Note
 from faying.result.fields import Recorded, declared, in_units, listed, read_whole, variable, write_whole
 from faying.result.result import Provenance
@@ -285,4 +285,4 @@ class Backbone(Recorded):
         rows.writerow([f"{name} [{'-' if units[name].unit == '1' else units[name].unit}]" for name in names])
         for k in range(len(self.acceleration)):
             rows.writerow([f"{float(getattr(self, name)[k]):.8g}" for name in names])
-        return write_atomically(Path(path), lambda temporary: temporary.write_text(out.getvalue(), encoding="utf-8"))
+        return write_text(Path(path), out.getvalue())

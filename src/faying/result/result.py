@@ -10,7 +10,7 @@ from typing import Any, Self
 import numpy as np
 
 from faying.errors import InputError
-from faying.files import write_atomically
+from faying.files import write_text
 from faying.joint.loads import preload_index
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse, ModelModes
@@ -345,7 +345,7 @@ class Result(Recorded):
 
     def to_csv(self, path: str | Path) -> Path:
         """Write one row for each load and mode, units in the heading; the file appears complete or not at all."""
-        return write_atomically(Path(path), lambda temporary: temporary.write_text(self.csv_text(), encoding="utf-8"))
+        return write_text(Path(path), self.csv_text())
 
     def csv_text(self) -> str:
         """Return the rows of to_csv as text."""
