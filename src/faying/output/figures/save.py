@@ -26,6 +26,14 @@ def check_ending(path: Path) -> None:
         raise InputError(f"{path}: figures can be written as {', '.join(sorted(kinds))}; end the name in one of them")
 
 
+def check_figure(path: str | Path) -> None:
+    """Raise InputError, before anything is computed, for a figure that cannot be written."""
+    file = Path(path)
+    check_ending(file)
+    if not file.parent.is_dir():
+        raise InputError(f"no folder {file.parent} to write {file.name} in; make it first")
+
+
 def save(figure: Any, path: str | Path) -> Path:
     """Write a figure in the format of the ending of `path`; the file appears complete or not at all.
 
