@@ -117,6 +117,13 @@ class Distribution:
     def _is_cut(self) -> bool:
         return self._scores != (-inf, inf)
 
+    @property
+    def sd_standardised(self) -> float:
+        """The standard deviation on that scale; 1 but for what is uniform or cut."""
+        if self.kind == "lognormal":
+            return Distribution(kind="normal", centre=0, spread=1, low=self._scores[0], high=self._scores[1]).sd
+        return self.sd / self.spread
+
     # -- what it is
 
     @property
