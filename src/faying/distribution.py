@@ -41,7 +41,7 @@ class Distribution:
             left between `low` and `high`.
     """
 
-    kind: Literal["normal", "lognormal", "uniform"]
+    kind: str
     centre: float
     spread: float
     low: float = -inf

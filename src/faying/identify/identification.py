@@ -246,7 +246,7 @@ class Identification(Recorded):
         with tempfile.TemporaryDirectory() as folder:
             tree = xarray.open_datatree(self.save(Path(folder) / "identification.nc"), engine="h5netcdf")
             with tree:
-                return tree.load().filter(lambda node: node.name != OWN)
+                return tree.load().drop_nodes(OWN)
 
 
 def weights_of(log_evidences: Sequence[float]) -> Array:
