@@ -54,7 +54,8 @@ class Seen(Recorded):
     def combination(self, k: int) -> str:
         """The parameters that make up a combination, greatest weight first: "0.94 E - 0.31 crown"."""
         weights = self.vectors[k]
-        parts = [j for j in np.argsort(-np.abs(weights)) if abs(weights[j]) >= PART or j == np.argmax(np.abs(weights))]
+        order = np.argsort(-np.abs(weights).round(6), kind="stable")  # no order by the last digits
+        parts = [j for j in order if abs(weights[j]) >= PART or j == order[0]]
         sign = np.sign(weights[parts[0]])
         terms = [f"{'-' if sign * weights[j] < 0 else '+'} {abs(weights[j]):.2f} {self.names[j]}" for j in parts]
         return self.names[parts[0]] if len(parts) == 1 else " ".join(terms).removeprefix("+ ")
