@@ -4,6 +4,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from functools import cached_property
 from math import exp, inf, isfinite, log, nan, nextafter, sqrt
 from typing import Any, Literal, Self, final
 
@@ -80,7 +81,7 @@ class Distribution:
         whole = self.centre * np.exp(shifted) if self.kind == "lognormal" else self.centre + shifted
         return np.clip(whole, *self.support)
 
-    @property
+    @cached_property
     def _scores(self) -> tuple[float, float]:
         """Where the density begins and ends on that scale."""
         first, last = float(self.standardised(self.low)), float(self.standardised(self.high))
