@@ -71,12 +71,17 @@ class Emulator:
 
     def predict(self, values: Array) -> tuple[Array, Array]:
         """ln f and the sd of its error (n, load, mode) at values (n, d); NaN for frequencies without surrogate."""
+        logs, error = self.predict_known(values)
+        return self._spread(logs), self._spread(error)
+
+    def predict_known(self, values: Array) -> tuple[Array, Array]:
+        """ln f and the sd of its error (n, k) of the k frequencies that are known, in the order of the mask."""
         x = _standardised(self.priors, values)
-        logs, error = self.whole.predict(x), np.broadcast_to(self.whole.error, (len(x), len(self.whole.error))).copy()
+        logs, error = self.whole.predict(x), np.repeat(self.whole.error[None, :], len(x), axis=0)
         if self.close is not None:
             inside = self._inside(x)
             logs[inside], error[inside] = self.close.predict(x[inside]), self.close.error
-        return self._spread(logs), self._spread(error)
+        return logs, error
 
     def gradient(self, values: Array) -> Array:
         """The derivatives (n, load, mode, d) of ln f by the standardised parameters."""

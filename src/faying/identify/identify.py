@@ -169,9 +169,11 @@ class _Question:
 
     def offsets(self, emulator: Emulator, values: Array) -> Offsets:
         """What the test says at values of all parameters (n, d + 2)."""
-        logs, error = emulator.predict(values[:, :-2])
-        measured = np.log(np.where(self.used, self.test, 1.0))
-        return offsets(measured - logs, values[:, -2, None, None] ** 2 + error**2, values[:, -1], self.used)
+        logs, error = emulator.predict_known(values[:, :-2])
+        chosen = self.used[emulator.known]
+        variance = values[:, -2, None] ** 2 + error[:, chosen] ** 2
+        residual = np.log(self.test[self.used]) - logs[:, chosen]
+        return offsets(residual, variance, values[:, -1], np.nonzero(self.used)[1], self.test.shape[1])
 
     def sample(self, emulator: Emulator) -> Tempered:
         """Sample the posterior with a surrogate in place of the model."""

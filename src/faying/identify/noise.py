@@ -7,7 +7,7 @@ from typing import final
 import numpy as np
 
 from faying.distribution import FACTOR_SCORE, Distribution
-from faying.typing import Array, Mask
+from faying.typing import Array, Index
 
 SCATTER, DISCREPANCY = "test scatter", "model discrepancy"
 # relative: 5 to 95 % lie within a factor of three
@@ -28,25 +28,27 @@ class Offsets:
     variance: Array
 
 
-def offsets(residual: Array, variance: Array, discrepancy: Array, used: Mask) -> Offsets:
+def offsets(residual: Array, variance: Array, discrepancy: Array, modes: Index, count: int) -> Offsets:
     """Take the offsets out in closed form.
 
     ln test = ln model + b_mode + e, with e normal of the given variance, independent, and b normal of sd `discrepancy`,
     one for each mode at all loads. So the covariance of a mode's residuals is diag(variance) + discrepancy^2.
 
     Args:
-        residual: ln test - ln model (n, load, mode); anything where not used.
-        variance: of the scatter, with the square of the surrogate's error (n, load, mode).
+        residual: ln test - ln model of the k frequencies that count (n, k).
+        variance: of the scatter, with the square of the surrogate's error (n, k).
         discrepancy: sd of the offsets (n,).
-        used: which frequencies count (load, mode).
+        modes: the mode, from 0, of each frequency (k,).
+        count: of modes; one without a frequency has the likelihood 1 and the offset's prior.
     """
-    r = np.where(used, residual, 0.0)
-    weight = np.where(used, 1 / np.where(used, variance, 1.0), 0.0)
+    member = np.zeros((len(modes), count))
+    member[np.arange(len(modes)), modes] = 1.0
+    weight = 1 / variance
     prior = discrepancy[:, None] ** 2
-    whole, pull = weight.sum(axis=1), (weight * r).sum(axis=1)
+    whole, pull = weight @ member, (weight * residual) @ member
     shrunk = prior / (1 + prior * whole)
     # determinant and inverse of diag + rank one (Sherman and Morrison)
-    logs = np.where(used, np.log(np.where(used, variance, 1.0)), 0.0).sum(axis=1) + np.log1p(prior * whole)
-    square = (weight * r**2).sum(axis=1) - shrunk * pull**2
-    out = -(square + logs + used.sum(axis=0) * log(2 * pi)) / 2
-    return Offsets(log_likelihood=out, mean=shrunk * pull, variance=np.broadcast_to(shrunk, pull.shape))
+    logs = np.log(variance) @ member + np.log1p(prior * whole)
+    square = (weight * residual**2) @ member - shrunk * pull**2
+    out = -(square + logs + member.sum(axis=0) * log(2 * pi)) / 2
+    return Offsets(log_likelihood=out, mean=shrunk * pull, variance=shrunk)
