@@ -7,9 +7,10 @@ import numpy as np
 
 from faying.identify.emulator import Emulator
 from faying.result.fields import Recorded, variable
-from faying.typing import Array, Mask
+from faying.typing import Array, Index, Mask
 
 STARTS = 16
+SHOWN = 3  # combinations that are listed
 PULL = 0.01  # of the prior on a least-squares fit, in sd of the prior over sd of the scatter: it only settles ties
 REACH = 4.0  # a fit stays within so many spreads of the centre of a prior that has no ends
 SEEN, UNSEEN = 0.5, 0.9  # posterior over prior sd
@@ -21,8 +22,9 @@ PART = 0.3  # least weight of a parameter that a combination is named after
 class Fit(Recorded):
     """The least-squares fit: what the model can do at best, without discrepancy and hardly held by the priors.
 
-    misfit: root mean square of ln test - ln model over the frequencies that count, of the model itself; NaN where it
-    has no answer there. agreeing: how many of the starts came to this point.
+    misfit: root mean square of ln test - ln model over the frequencies that count, of the model itself. The searches
+    run on the surrogate, and the model is asked at the end of each; this is the best of them. NaN where it has no
+    answer at any. agreeing: how many of the starts end as near to the test.
     """
 
     misfit: float
@@ -63,23 +65,27 @@ class Seen(Recorded):
     @property
     def text(self) -> str:
         """What the test sees and what it does not, in a sentence or two."""
-        seen, unseen = (
-            [self.combination(int(k)) for k in np.flatnonzero(which)]
-            for which in (self.told < SEEN, self.told > UNSEEN)
-        )
-        first = f"The test sees {'; '.join(seen)}." if seen else "The test sees none of the parameters."
-        return f"{first} It cannot tell {'; '.join(unseen)}." if unseen else first
+        seen = self._listed(np.flatnonzero(self.told < SEEN))
+        unseen = self._listed(np.flatnonzero(self.told > UNSEEN)[::-1])
+        first = f"The test sees {seen}." if seen else "The test sees none of the parameters."
+        return f"{first} It cannot tell {unseen}." if unseen else first
+
+    def _listed(self, which: Index) -> str:
+        rest = len(which) - SHOWN
+        more = f"; and {rest} more combination{'s' * (rest > 1)}" if rest > 0 else ""
+        return "; ".join(self.combination(int(k)) for k in which[:SHOWN]) + more
 
 
-def least_squares_fit(emulator: Emulator, test: Array, used: Mask, scatter: float, seed: int) -> tuple[Array, int]:
-    """The values (d,) at which the model is nearest to the test, and how many of the starts end there.
+def least_squares_ends(emulator: Emulator, test: Array, used: Mask, scatter: float, peak: Array, seed: int) -> Array:
+    """The values (start, d) at which least squares end, from Sobol points of the priors and from one more point.
 
     Args:
         emulator: of the model, with the derivatives that the search follows.
         test: frequencies [Hz] (load, mode).
         used: which of them count.
         scatter: relative sd of the test.
-        seed: of the starts, which are Sobol points of the priors.
+        peak: the likeliest values (d,), the last start.
+        seed: of the Sobol points.
     """
     from scipy.optimize import least_squares
     from scipy.stats import qmc
@@ -102,11 +108,10 @@ def least_squares_fit(emulator: Emulator, test: Array, used: Mask, scatter: floa
         return np.concatenate([emulator.gradient(values(x))[0][used] / scatter, PULL * np.eye(len(x))])
 
     points = qmc.Sobol(len(priors), rng=np.random.default_rng(seed)).random(STARTS)
-    starts = low + (high - low) * (0.02 + 0.96 * points)
-    found = [least_squares(residual, x, jac=slope, bounds=(low, high), max_nfev=50) for x in starts]
-    costs = np.array([each.cost for each in found])
-    best = int(costs.argmin())
-    return values(found[best].x)[0], int((costs <= 1.02 * costs[best] + 0.5).sum())
+    last = (np.array([float(p.standardised(v)) for p, v in zip(priors, peak, strict=True)]) - low) / (high - low)
+    starts = low + (high - low) * np.clip(np.vstack([points, last]), 0.02, 0.98)
+    ends = [least_squares(residual, x, jac=slope, bounds=(low, high), max_nfev=50).x for x in starts]
+    return np.concatenate([values(x) for x in ends])
 
 
 def what_is_seen(emulator: Emulator, at: Array, used: Mask, noise: tuple[float, float], names: tuple[str, ...]) -> Seen:

@@ -10,7 +10,7 @@ from faying.distribution import Distribution
 from faying.errors import InputError
 from faying.identify import remarks
 from faying.identify.emulator import Emulator
-from faying.identify.fit import STARTS, Fit, least_squares_fit, what_is_seen
+from faying.identify.fit import Fit, least_squares_ends, what_is_seen
 from faying.identify.identification import Identification
 from faying.identify.model import Model, Report
 from faying.identify.noise import DISCREPANCY, DISCREPANCY_SD, SCATTER, TEST_SD, Offsets, offsets
@@ -22,6 +22,7 @@ CHECKS = 50  # points of the posterior at which the surrogate is compared with t
 ROUNDS = 3  # most times that the surrogate is drawn closer
 WORSE = 2.0  # over the leave-one-out error: a surrogate that is rough
 IDLE, BLUNT = 0.1, 0.5  # errors over the scatter of the test that do not matter, and that blur the posterior
+AGREE = 0.1  # of the scatter: misfits so near to the best are as good
 WIDENED = 1.6  # points about the posterior, over its own spread
 
 
@@ -303,7 +304,7 @@ def _identification(question: _Question, answer: _Answer) -> Identification:
         offset_sd=np.sqrt(found.variance.mean(axis=0) + found.mean.var(axis=0)),
         surrogate_error=check.error,
         checked=check.difference,
-        fit=_fit(question, answer.emulator, scatter),
+        fit=_fit(question, answer.emulator, scatter, peak),
         singular=what_is_seen(answer.emulator, peak, question.used, (scatter, discrepancy), model.names),
         notes=notes,
     )
@@ -319,15 +320,18 @@ def _predictive(question: _Question, answer: _Answer, found: Offsets) -> Array:
     return np.asarray(np.exp(logs + offset[:, None, :] + scatter * rng.standard_normal(logs.shape)))
 
 
-def _fit(question: _Question, emulator: Emulator, scatter: float) -> Fit:
-    """The least-squares fit, with the frequencies of the model itself there."""
-    values, agreeing = least_squares_fit(emulator, question.test, question.used, scatter, question.seed)
-    frequencies = question.evaluate(values[None, :]).frequencies[0]
+def _fit(question: _Question, emulator: Emulator, scatter: float, peak: Array) -> Fit:
+    """The least-squares fit: of all ends of the search, the one at which the model itself is nearest to the test."""
+    ends = least_squares_ends(emulator, question.test, question.used, scatter, peak, question.seed)
+    frequencies = question.evaluate(ends).frequencies
     used = question.used
+    misfit = np.sqrt(np.mean(np.log(question.test[used] / frequencies[:, used]) ** 2, axis=1))
+    ranked = np.where(np.isnan(misfit), np.inf, misfit)
+    best = int(ranked.argmin())
     return Fit(
-        values=values,
-        frequencies=frequencies,
-        misfit=float(np.sqrt(np.mean(np.log(question.test[used] / frequencies[used]) ** 2))),
-        starts=STARTS,
-        agreeing=agreeing,
+        values=ends[best],
+        frequencies=frequencies[best],
+        misfit=float(misfit[best]),
+        starts=len(ends),
+        agreeing=int((ranked <= ranked[best] + AGREE * scatter).sum()) if np.isfinite(ranked[best]) else 0,
     )
