@@ -133,7 +133,7 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[A
     generator = np.random.default_rng(SEED)
     last = factor.solve(mass @ generator.standard_normal((n, width)))
     last, momentum, _ = _orthonormal(last, mass)
-    before, rows = np.zeros((n, 0)), np.zeros((last.shape[1], 0))
+    before, before_momentum, rows = np.zeros((n, 0)), np.zeros((n, 0)), np.zeros((last.shape[1], 0))
     basis, projected = last, np.zeros((0, 0))
     for _ in range(MOST_STEPS // width):
         image = factor.solve(momentum)
@@ -143,10 +143,12 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[A
         edge = np.zeros((last.shape[1], old))
         edge[:, old - before.shape[1] :] = rows
         projected = np.block([[projected, edge.T], [edge, corner]])
-        size = float(np.sqrt(np.einsum("ij,ij->j", image, mass @ image).max()))
+        moved = mass @ image
+        size = float(np.sqrt(np.einsum("ij,ij->j", image, moved).max()))
         image -= last @ corner + before @ rows.T
-        image -= basis @ (basis.T @ (mass @ image))
-        before = last
+        moved -= momentum @ corner + before_momentum @ rows.T
+        image -= basis @ (basis.T @ moved)
+        before, before_momentum = last, momentum
         last, momentum, rows = _orthonormal(image, mass, nothing=NOTHING * size)
         values, vectors = np.linalg.eigh(projected)
         values, vectors = values[::-1][:count], vectors[:, ::-1][:, :count]
