@@ -153,10 +153,12 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[A
         values, vectors = np.linalg.eigh(projected)
         values, vectors = values[::-1][:count], vectors[:, ::-1][:, :count]
         converged = np.linalg.norm(rows @ vectors[old:], axis=0) <= TOLERANCE * values
-        if (len(values) == count and np.all(converged)) or not last.shape[1]:
-            often = max(int(np.count_nonzero(np.abs(values / value - 1) < SAME)) for value in values)
-            if width <= often < count and width < n:
-                return _krylov(factor, mass, count, 2 * width)
+        whole = not last.shape[1]
+        found = values if whole else values[converged]
+        often = max((int(np.count_nonzero(np.abs(found / value - 1) < SAME)) for value in found), default=0)
+        if width <= often < count and width < n:
+            return _krylov(factor, mass, count, 2 * width)
+        if whole or (len(values) == count and np.all(converged)):
             return values, np.asarray(basis @ vectors)
         basis = np.concatenate([basis, last], axis=1)
     raise NotConverged(
