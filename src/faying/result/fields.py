@@ -168,7 +168,7 @@ def from_group(kind: type[Whole], group: Group) -> Whole:
         meta: Declared | None = f.metadata.get(KEY)
         name = meta.name or f.name if meta is not None else f.name
         hint = _without_none(hints[f.name])
-        if name in group.variables:
+        if name in group.variables and (meta is not None or name not in group.attributes):  # else labels of its name
             values = group.variables[name].values
             given[f.name] = values.astype(meta.dtype) if meta is not None else _as_hinted(values, hint)
         elif f"{f.name}.0" in group.variables:

@@ -6,6 +6,8 @@ from typing import Any
 from faying.errors import InputError
 from faying.files import write_atomically
 
+RESOLUTION = 150  # dots per inch of what is no line
+
 
 def new_figure(width: float, height: float) -> Any:
     """Return an empty figure [inches] that needs no display."""
@@ -41,4 +43,6 @@ def save(figure: Any, path: str | Path) -> Path:
     """
     file = Path(path)
     check_ending(file)
-    return write_atomically(file, lambda temporary: figure.savefig(temporary, format=file.suffix[1:].lower(), dpi=150))
+    return write_atomically(
+        file, lambda temporary: figure.savefig(temporary, format=file.suffix[1:].lower(), dpi=RESOLUTION)
+    )
