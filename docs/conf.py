@@ -12,7 +12,9 @@ author = "The Faying authors"
 project_copyright = "The Faying authors, MIT licence"
 version = release = installed("faying")
 
-extensions = ["myst_parser", "mathml", "sphinxcontrib.bibtex"]
+extensions = ["sphinx.ext.autodoc", "myst_parser", "mathml", "sphinxcontrib.bibtex", "faying_reference"]
+autodoc_member_order = "bysource"
+autodoc_typehints_format = "short"
 exclude_patterns = ["_ext"]
 nitpicky = True
 
