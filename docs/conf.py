@@ -15,6 +15,7 @@ version = release = installed("faying")
 extensions = ["sphinx.ext.autodoc", "myst_parser", "mathml", "sphinxcontrib.bibtex", "faying_reference"]
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
+python_maximum_signature_line_length = 80
 exclude_patterns = ["_ext"]
 nitpicky = True
 
@@ -33,7 +34,8 @@ html_title = "Faying"
 html_show_sourcelink = False
 html_copy_source = False
 html_theme_options = {
-    "show_toc_level": 2,
+    "show_toc_level": 1,
+    "header_links_before_dropdown": 6,
     "navigation_with_keys": False,
     "footer_start": ["copyright"],
     "footer_end": [],

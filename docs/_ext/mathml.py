@@ -12,9 +12,11 @@ def _mathml(tex: str, *, block: bool) -> str:
     if block and (r"\\" in tex or "&" in tex) and r"\begin{" not in tex:
         tex = rf"\begin{{aligned}}{tex}\end{{aligned}}"
     try:
-        return str(tex2mathml(tex, as_block=block))
+        found = str(tex2mathml(tex, as_block=block))
     except Exception as fault:  # docutils raises a type of its own for each kind of fault
         raise SphinxError(f"no MathML for {tex!r}: {fault}") from fault
+    # rows of a table are set small unless told otherwise
+    return found.replace('<mtable class="ams-align"', '<mtable displaystyle="true" class="ams-align"')
 
 
 def visit_inline(self: HTML5Translator, node: nodes.math) -> None:

@@ -28,5 +28,6 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.add_post_transform(dois.LinkDois)
     app.connect("builder-inited", law_pages.write)
     app.connect("autodoc-process-docstring", docstrings.process)
+    app.connect("autodoc-process-signature", api.signature)
     app.connect("missing-reference", api.resolve)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -57,7 +57,8 @@ def _entry(path: str, value: Any) -> list[str]:
     if inspect.ismodule(value):
         return [f"``{path}``: :doc:`contact`.", ""]
     if inspect.isclass(value):
-        return [f".. autoclass:: {path}", "   :members:", "   :show-inheritance:", ""]
+        bases = [base for base in value.__bases__ if base is not object]
+        return [f".. autoclass:: {path}", "   :members:", *(["   :show-inheritance:"] if bases else []), ""]
     if callable(value):
         return [f".. autofunction:: {path}", ""]
     return [f".. py:data:: {path}", "", f"   {DATA[path]}", ""]
@@ -92,6 +93,13 @@ class ContactNames(SphinxDirective):
                 if not inspect.ismodule(value) and not public:
                     lines += _entry(f"{module.__name__}.{name}", value)
         return self.parse_text_to_nodes("\n".join(lines), allow_section_headings=True)
+
+
+def signature(
+    _app: Sphinx, _what: str, _name: str, _obj: Any, _options: Any, given: str | None, back: str | None
+) -> tuple[str | None, str | None] | None:
+    """Write a default that a dataclass makes anew as an ellipsis, which Sphinx can read."""
+    return (given.replace("<factory>", "..."), back) if given and "<factory>" in given else None
 
 
 def _homes() -> dict[str, str]:

@@ -159,7 +159,7 @@ class Facts(Section):
                 for label, fixed in law.variants.items()
             ),
         ]
-        return ["", *table(("", ""), rows, (20, 80))]
+        return ["", *table((), rows, (20, 80))]
 
 
 def _source(source: str) -> str:

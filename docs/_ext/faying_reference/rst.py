@@ -33,12 +33,12 @@ def heading(text: str, line: str = "-") -> list[str]:
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]], widths: Sequence[int] = ()) -> list[str]:
-    """Return a table; cells are reStructuredText of one line."""
-    lines = [".. list-table::", "   :header-rows: 1"]
+    """Return a table, without a heading where `head` is empty; cells are reStructuredText of one line."""
+    lines = [".. list-table::", *(["   :header-rows: 1"] if head else [])]
     if widths:
         lines.append(f"   :widths: {' '.join(map(str, widths))}")
     lines.append("")
-    for row in (head, *rows):
+    for row in ([head] if head else []) + list(rows):
         lines += [f"   {'* -' if i == 0 else '  -'} {cell}".rstrip() for i, cell in enumerate(row)]
     return [*lines, ""]
 
