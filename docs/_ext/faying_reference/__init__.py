@@ -2,9 +2,10 @@
 
 from sphinx.application import Sphinx
 
-from faying_reference import api, commands, docstrings, dois, law_pages, tables
+from faying_reference import api, commands, docstrings, dois, law_pages, rst, tables
 
 DIRECTIVES = {
+    "cells": rst.Cells,
     "public-names": api.PublicNames,
     "contact-names": api.ContactNames,
     "commands": commands.Commands,
