@@ -2,7 +2,7 @@
 
 from sphinx.application import Sphinx
 
-from faying_reference import api, commands, docstrings, dois, law_pages, rst, tables
+from faying_reference import api, commands, docstrings, dois, law_pages, rst, tables, validation
 
 DIRECTIVES = {
     "cells": rst.Cells,
@@ -16,6 +16,7 @@ DIRECTIVES = {
     "catalogue": tables.Catalogue,
     "law-table": tables.LawTable,
     "notes": tables.Notes,
+    "validation": validation.Validation,
     "law-facts": law_pages.Facts,
     "law-parameters": law_pages.Parameters,
     "law-ratios": law_pages.Ratios,

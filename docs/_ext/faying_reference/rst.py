@@ -15,14 +15,16 @@ LITERAL = re.compile(r"(`[^`\n]+`)")
 
 def escape(text: str) -> str:
     """Return text that reStructuredText takes as it is; `code` stays code, and a DOI becomes a link."""
-    parts = []
+    out = ""
     for part in LITERAL.split(text):
-        if LITERAL.fullmatch(part):
-            parts.append(f"`{part}`")
-            continue
-        plain = re.sub(r"([\\*|`_<>])", r"\\\1", part)
-        parts.append(DOI.sub(_link, plain))
-    return re.sub(r"(\w)(``[^`]+``)", r"\1\\ \2", re.sub(r"(``[^`]+``)(\w)", r"\1\\ \2", "".join(parts)))
+        literal = LITERAL.fullmatch(part) is not None
+        ready = f"`{part}`" if literal else DOI.sub(_link, re.sub(r"([\\*|`_<>])", r"\\\1", part))
+        # code ends and begins where no word touches it
+        between = (
+            "\\ " if out and part and (out[-1] == "`" or literal) and (part[0].isalnum() or out[-1].isalnum()) else ""
+        )
+        out += between + ready
+    return out
 
 
 def _link(found: re.Match[str]) -> str:
