@@ -1,6 +1,7 @@
 """The site builds without a warning and without a network, and holds every name that it should."""
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -26,7 +27,9 @@ BROWSER = next((path for name in ("chromium", "chromium-browser", "google-chrome
 
 @pytest.fixture(scope="session")
 def site(tmp_path_factory):
-    """The folder of the site; the first worker of a run builds it, the others wait."""
+    """The folder of the site: FAYING_SITE, or built by the first worker of a run, while the others wait."""
+    if os.environ.get("FAYING_SITE"):
+        return Path(os.environ["FAYING_SITE"])
     shared = tmp_path_factory.getbasetemp()
     shared = shared.parent if shared.name.startswith("popen-") else shared
     out, log = shared / "site", shared / "site.log"
