@@ -12,17 +12,33 @@ author = "The Faying authors"
 project_copyright = "The Faying authors, MIT licence"
 version = release = installed("faying")
 
-extensions = ["sphinx.ext.autodoc", "myst_parser", "mathml", "sphinxcontrib.bibtex", "faying_reference"]
+extensions = ["sphinx.ext.autodoc", "myst_parser", "mathml", "sphinxcontrib.bibtex", "sphinx_gallery.gen_gallery"]
+extensions.append("faying_reference")
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
 python_maximum_signature_line_length = 80
-exclude_patterns = ["_ext"]
+exclude_patterns = ["_ext", "gallery"]
 nitpicky = True
 
 myst_enable_extensions = ["amsmath", "attrs_inline", "colon_fence", "deflist", "dollarmath", "fieldlist"]
 myst_heading_anchors = 4
 myst_dmath_double_inline = True
 html_math_renderer = "mathml"
+
+# executed at every build; `-D plot_gallery=0` leaves that out
+sphinx_gallery_conf = {
+    "examples_dirs": "gallery",
+    "gallery_dirs": "generated/gallery",
+    "filename_pattern": r"plot_",
+    "ignore_pattern": r"paper(_asperity)?\.py",
+    "copyfile_regex": "",
+    "show_memory": False,
+    "show_signature": False,
+    "abort_on_example_error": True,
+    "download_all_examples": False,
+    "write_computation_times": False,
+    "within_subsection_order": "FileNameSortKey",
+}
 
 bibtex_bibfiles = ["references.bib"]
 bibtex_default_style = "unsrt"

@@ -2,7 +2,9 @@
 
 import hashlib
 import json
+import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -135,3 +137,19 @@ def test_the_font_is_the_one_whose_licence_lies_beside_it():
     found = hashlib.sha256((fonts / "stix-two-math.woff").read_bytes()).hexdigest()
     assert found in (fonts / "README.txt").read_text()
     assert "SIL OPEN FONT LICENSE" in (fonts / "OFL.txt").read_text()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", sorted((DOCS / "gallery").glob("plot_*.py")), ids=lambda path: path.stem)
+def test_gallery_scripts_hold_what_they_say(path):
+    """Each ends in an assertion of its own."""
+    assert "\nassert " in path.read_text()
+    done = subprocess.run(
+        [sys.executable, str(path)],
+        cwd=path.parent,
+        env={**os.environ, "MPLBACKEND": "agg"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
