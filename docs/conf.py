@@ -30,7 +30,7 @@ sphinx_gallery_conf = {
     "examples_dirs": "gallery",
     "gallery_dirs": "generated/gallery",
     "filename_pattern": r"plot_",
-    "ignore_pattern": r"paper(_asperity)?\.py",
+    "ignore_pattern": r"(paper|paper_asperity|front_page)\.py",
     "copyfile_regex": "",
     "show_memory": False,
     "show_signature": False,

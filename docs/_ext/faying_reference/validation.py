@@ -35,10 +35,10 @@ def _title(source: str) -> str:
 
     entries = parse_file(str(ENTRIES.parent / "references.bib")).entries.values()
     for entry in entries:
-        if entry.fields.get("doi", "-").lower() in source.lower():
+        if f"doi:{entry.fields.get('doi')}".lower() in source.lower():
             names = [" ".join(person.last_names) for person in entry.persons["author"]]
             shown = names[0] if len(names) == 1 else " and ".join(names) if len(names) == 2 else f"{names[0]} et al."
-            rest = source.partition(", ")[2]
+            rest = source.partition(f"doi:{entry.fields['doi']}")[2].lstrip(", ")
             return f"{shown} {entry.fields['year']}" + (f": {rest}" if rest else "")
     return source
 
