@@ -45,7 +45,9 @@ def main():
     from faying.study import Study
     from faying.study.axes import Grid, axis_of
     from faying.study.case import checked_mesh, structure_of, surfaces_of
-    from faying.study.sweep import Recipe, _Trainer, evaluate
+    from faying.study.recipe import Recipe
+    from faying.study.sweep import evaluate
+    from faying.study.trainer import Trainer
 
     plan = Study.read(ROOT / "examples/t-specimen/study.toml")
     edge, at_joint = EDGES[given.size]
@@ -54,7 +56,7 @@ def main():
     pairs = tuple(tuple(plan.materials[plan.parts[mesh.face_part[f]]] for f in joint.faces) for joint in plan.joints)
     near, wide = (
         Recipe(
-            grid=Grid(study=plan, surfaces=surfaces, axes=tuple(axis_of(t.replace("'", "")) for t in texts)),
+            design=Grid(study=plan, surfaces=surfaces, axes=tuple(axis_of(t.replace("'", "")) for t in texts)),
             pairs=pairs,
         )
         for texts in (AXES, OUTSIDE)
@@ -64,13 +66,13 @@ def main():
 
     begin = clock()
     structure.vibrating, structure.loads, structure.rigid  # noqa: B018
-    laws, forces, _ = near.laws(near.grid.size // 2 + 5)
+    laws, forces, _ = near.laws(near.design.size // 2 + 5)
     full(structure, laws, forces, plan.modes.count)
     single = clock() - begin
     print(f"{mesh.unknowns:,} unknowns: one full solution {single:.1f} CPU s", flush=True)
 
     begin = clock()
-    model = _Trainer(plan, structure, near, 4e-6, lambda *_: None).model()
+    model = Trainer(plan, structure, near, 4e-6, lambda *_: None).model()
     training = clock() - begin
     print(
         f"bases of {len(model.static_stiffness)} and {len(model.dynamic_mass)} vectors: {training:.1f} CPU s, "
@@ -78,11 +80,11 @@ def main():
         flush=True,
     )
     begin = clock()
-    rows = evaluate(model, near, near.grid.winding())
+    rows = evaluate(model, near, near.design.winding())
     online = clock() - begin
     answered = np.isfinite(rows["frequencies"][:, 0]).sum()
     print(
-        f"{near.grid.size} evaluations: {online:.1f} CPU s, {online / single:.2f} of a full solution; {answered} "
+        f"{near.design.size} evaluations: {online:.1f} CPU s, {online / single:.2f} of a full solution; {answered} "
         f"answered",
         flush=True,
     )
@@ -91,10 +93,10 @@ def main():
     for where, recipe, share in (("inside", near, 2), ("outside", wide, 2)):
         differ = []
         while len(differ) < given.checks // share:
-            index = int(generator.integers(recipe.grid.size))
+            index = int(generator.integers(recipe.design.size))
             inner = [
                 0 < i < n - 1
-                for i, n in zip(np.unravel_index(index, recipe.grid.shape), recipe.grid.shape, strict=True)
+                for i, n in zip(np.unravel_index(index, recipe.design.shape), recipe.design.shape, strict=True)
             ]
             got = evaluate(model, recipe, [index])["frequencies"][0]
             if (where == "outside" and all(inner)) or not np.isfinite(got[0]):

@@ -32,6 +32,11 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
     return path
 
 
+def write_text(path: Path, text: str) -> Path:
+    """Write text in UTF-8 as `write_atomically` does."""
+    return write_atomically(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+
+
 def make_folder(folder: Path, remedy: str) -> Path:
     """Make a folder with those above it; InputError that ends in the remedy where that cannot be."""
     try:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import faying
-from faying.decks.nastran import number
+from faying.decks.bulk import number
 from faying.fe.elasticity import assemble
 from faying.fe.faces import face_centre
 from faying.fe.interface import join

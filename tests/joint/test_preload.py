@@ -5,6 +5,7 @@ import faying
 from faying.fe.faces import face_centre
 from faying.fe.interface import join
 from faying.joint.joint_law import JointLaw
+from faying.joint.loads import preload_index
 from faying.joint.structure import Joint, Structure
 from tests.helpers.boxes import stack
 from tests.helpers.loads import bolt_load, face_load
@@ -160,3 +161,12 @@ def test_per_area_springs_do_not_depend_on_the_mesh_and_per_node_springs_do():
     area, node = np.array(totals[False]), np.array(totals[True])
     assert np.abs(area / area[-1] - 1).max() < 0.01
     assert np.all(np.diff(node) > 0.3 * node[:-1])
+
+
+def test_a_preload_is_found_by_the_digits_that_messages_print():
+    loads = (1e3, 10e3 / 3, 12e3)
+    assert [preload_index(loads, float(f"{load:.4g}")) for load in loads] == [0, 1, 2]
+    assert preload_index(loads, 2e3) is None
+    assert preload_index(loads, -1e3) is None
+    assert preload_index((), 1e3) is None
+    assert preload_index((1e3, 1.0005e3), 1.0004e3) == 1

@@ -9,12 +9,14 @@ import xarray
 
 import faying
 from faying.joint.form import Form
+from faying.joint.reduce import Reduction
 from faying.study import Study, run
 from faying.study import sweep as module
 from faying.study.axes import Grid, axis_of
 from faying.study.case import surfaces_of
 from faying.study.keys.law import LawChoice
 from faying.study.keys.solution import ModesChoice
+from faying.study.recipe import Recipe
 from faying.study.sweep import sweep
 from tests.helpers.studies import write
 
@@ -86,7 +88,7 @@ def test_an_interrupted_sweep_goes_on_where_it_stopped(plan, done, tmp_path, mon
         sweep(plan, axes(), out)
     assert not out.exists()
     monkeypatch.setattr(module, "evaluate", lambda *given: calls.append(list(given[2])) or real(*given))
-    monkeypatch.setattr(module.Reduction, "of", None)  # the bases are not made again
+    monkeypatch.setattr(Reduction, "of", None)  # the bases are not made again
     again = sweep(plan, axes(), out)
     assert again.frequencies == pytest.approx(done.frequencies, rel=1e-6)
     assert again.found == 5
@@ -218,14 +220,14 @@ def test_the_path_through_the_grid_meets_every_point_once_and_steps_to_neighbour
 
 def test_a_sweep_whose_middle_has_no_answer(plan, tmp_path, monkeypatch):
     """The bases begin where there is an answer; the rest is NaN and told."""
-    made = module.Recipe.laws
+    made = Recipe.laws
 
     def some(recipe, index):
-        if recipe.grid.point(index).forces[0] > 3e3:
+        if recipe.design.point(index).forces[0] > 3e3:
             raise faying.InputError("no law here")
         return made(recipe, index)
 
-    monkeypatch.setattr(module.Recipe, "laws", some)
+    monkeypatch.setattr(Recipe, "laws", some)
     swept = sweep(plan, axes("bolt.preload=2 kN,4 kN"), tmp_path / "out.nc")
     assert np.all(np.isfinite(swept.frequencies[0]))
     assert np.all(np.isnan(swept.frequencies[1]))

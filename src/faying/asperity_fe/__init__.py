@@ -1,5 +1,6 @@
 """One asperity by finite elements: an elastic-plastic cap on its substrate under a smooth rigid plane."""
 
-from faying.asperity_fe.drive import AsperityResult, Field, History, solve_asperity
+from faying.asperity_fe.drive import solve_asperity
+from faying.asperity_fe.result import AsperityResult, Field, History
 
 __all__ = ["AsperityResult", "Field", "History", "solve_asperity"]

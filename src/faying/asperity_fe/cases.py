@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from faying import netcdf
-from faying.asperity_fe.drive import AsperityCase, AsperityResult
+from faying.asperity_fe.drive import AsperityCase
+from faying.asperity_fe.result import AsperityResult
 from faying.errors import FayingError, InputError
 from faying.netcdf import Variable
 from faying.typing import Array

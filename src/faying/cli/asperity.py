@@ -217,9 +217,8 @@ def table(document: list[dict[str, Any]]) -> str:
     """Format the outcome for the terminal: the greatest load and, where there is one, the residual displacement."""
     from faying.units import show
 
-    lines = [
-        f"{'R':>10}{'h_a':>10}{'displacement':>14}{'force':>12}{'area':>14}{'bounds':>26}{'pressure':>12}{'residual':>12}"
-    ]
+    columns = {"R": 10, "h_a": 10, "displacement": 14, "force": 12, "area": 14, "bounds": 26, "pressure": 12}
+    lines = ["".join(f"{name:>{width}}" for name, width in (columns | {"residual": 12}).items())]
     for entry in document:
         head = f"{show(entry['R'], 'm'):>10}{show(entry['h_a'], 'm'):>10}"
         if "error" in entry:

@@ -91,7 +91,7 @@ def command(
     from faying.contact.auto import pick
     from faying.contact.build import find
     from faying.errors import InputError
-    from faying.files import write_atomically
+    from faying.files import write_text
 
     on_scan = options["scan"] is not None
     if not on_scan and (stability or options["counter"] is not None):
@@ -119,7 +119,7 @@ def command(
         law = choice.law
         response = law.at_pressure(pressures)
     if csv_file:
-        write_atomically(Path(csv_file), lambda temporary: temporary.write_text(csv_text(law, response)))
+        write_text(Path(csv_file), csv_text(law, response))
     if plot:
         from faying.output.figures.law import curves
         from faying.output.figures.save import save

@@ -27,7 +27,7 @@ def show(
 ) -> None:
     """Compare the laws and print, write and draw the outcome."""
     from faying.contact.compare import compare, laws_of_surface
-    from faying.files import write_atomically
+    from faying.files import write_text
 
     inputs = surface.inputs
     with watched(surface) as rough:
@@ -36,7 +36,7 @@ def show(
             draw_contact(made, float(pressures[-1]), contact_map)
         comparison = compare(made, pressures, left_out)
     if csv_file:
-        write_atomically(Path(csv_file), lambda path: path.write_text(csv(comparison)))
+        write_text(Path(csv_file), csv(comparison))
     if plot:
         from faying.output.figures.law import curves
         from faying.output.figures.save import save

@@ -54,29 +54,12 @@ def command(study: Path, out: Path | None, as_json: bool, no_files: bool, uff: b
 def text(result: Any) -> str:
     """The tables and notes of a result for the terminal."""
     from faying.output import table
+    from faying.output.sections import sections
 
     head = (
         f"{result.title}: {result.unknowns:,} unknowns, {result.solver} ({result.factor_memory / 1e9:.2g} GB), "
         f"{result.damping} loss in the joints\n"
     )
-    at = "" if result.hammer is None else f" at {result.hammer.model.load / 1e3:g} kN"
-    tables = {
-        "modes": table.modes(result),
-        "range of the frequencies, from that of the stiffness": table.ranges(result),
-        "d f/d preload, if the faces are hollow or crowned by 3 um (flat faces are an assumption)": table.form(result),
-        "beyond the end of a law: stiffness held, and bonded": table.beyond(result),
-        f"laws beside each other at {result.loads[-1] / 1e3:g} kN: where they end, shares of the joint beyond their "
-        "end and outside their validity range, modes that differ most": table.laws(result),
-        "joints": table.joints(result),
-        f"bolts, tightened in the order {', '.join(result.tightening)}": table.bolts(result),
-        table.bolting_head(result): table.bolting(result),
-        f"force in the bolts per motion where a mode moves most, at {result.loads[-1] / 1e3:g} kN": table.modal_forces(
-            result
-        ),
-        "conductance of the joints (clean metal in vacuum)": table.conductance(result),
-        f"comparison with the {result.comparison.reference if result.comparison else 'test'}": table.comparison(result),
-        f"hammer test{at}": table.hammer(result),
-    }
-    parts = [head, *(f"{name}\n{table.text(rows)}\n" for name, rows in tables.items() if rows)]
+    tables = (f"{section.above}\n{table.text(section.rows)}\n" for section in sections(result))
     notes = (*result.warnings, *(() if result.hammer is None else result.hammer.notes))
-    return "\n".join([*parts, *(f"note: {line}" for line in notes)])
+    return "\n".join([head, *tables, *(f"note: {line}" for line in notes)])

@@ -8,7 +8,7 @@ from faying.decks.deck import CondensedDeck, JointDeck
 from faying.decks.programs import CONDENSED, module_of
 from faying.decks.programs import SOLVERS as SOLVERS
 from faying.errors import InputError
-from faying.files import together, write_atomically
+from faying.files import together, write_text
 
 
 def write(deck: JointDeck, solver: str, folder: Path) -> list[Path]:
@@ -41,7 +41,7 @@ def write_condensed(deck: CondensedDeck, solver: str, folder: Path) -> list[Path
 def _written(texts: dict[str, str], folder: Path) -> list[Path]:
     with together(folder, "give another with --out") as hidden:
         for name, text in texts.items():
-            write_atomically(hidden / name, lambda temporary, text=text: temporary.write_text(text, encoding="utf-8"))  # type: ignore[misc]
+            write_text(hidden / name, text)
     return [folder / name for name in texts]
 
 

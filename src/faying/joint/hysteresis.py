@@ -5,40 +5,15 @@ A slider is a spring of stiffness k_t whose end is dragged along when its stretc
 shear. A step that goes beyond the limit is returned radially (implicit return mapping in two directions).
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from faying.errors import InputError
+from faying.joint.sliders import Anchors, CycleMotion, MarchingSliders, Sliders, SliderState, in_time
 from faying.typing import Array, Index, Mask
 
 BLOCK = 4096  # sliders marched together, so that the work stays in the cache
-TINY = 1e-280
-TOUCHES = 1e-9  # relative: a slider that comes back to its limit has not slid
-
-
-@dataclass(frozen=True, kw_only=True)
-class Sliders:
-    """One-sided springs with sliders, s at each of q points; all arrays (q, s).
-
-    onset: approach at which each closes [m]; k_n, k_t [Pa/m]; reach: greatest stretch over the closing beyond the
-    onset [-].
-    """
-
-    onset: Array
-    k_n: Array
-    k_t: Array
-    reach: Array
-
-
-@dataclass(frozen=True, kw_only=True)
-class SliderState:
-    """Where the sliders are: tangential motion slip (q, 2) [m] and stretch (q, s, 2) [m]."""
-
-    slip: Array
-    stretch: Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,22 +31,6 @@ class Cycle:
     dissipated: Array
     slipping: Array
     open: Mask
-
-
-def fourier(harmonics: int, samples: int) -> tuple[Array, Array]:
-    """Matrices (samples, 1 + 2H) and (1 + 2H, samples) from coefficients to a cycle, and back."""
-    if samples < 2 * harmonics + 2:
-        raise InputError(
-            f"samples: {samples} cannot resolve {harmonics} harmonics; give at least {2 * harmonics + 2}, better 64"
-        )
-    phase = 2 * np.pi * np.arange(samples) / samples
-    waves = [np.ones(samples)]
-    for h in range(1, harmonics + 1):
-        waves += [np.cos(h * phase), np.sin(h * phase)]
-    to_time = np.stack(waves, axis=1)
-    back = to_time.T * (2 / samples)
-    back[0] /= 2
-    return to_time, back
 
 
 def advance(sliders: Sliders, state: SliderState, slip: Array, approach: Array) -> tuple[SliderState, Array, Array]:
@@ -110,24 +69,6 @@ def advance(sliders: Sliders, state: SliderState, slip: Array, approach: Array) 
     return SliderState(slip=slip, stretch=stretch), traction, tangent
 
 
-@dataclass(frozen=True)
-class _Motion:
-    """A cycle in time: slip (samples, q, 2), approach (samples, q), with the Fourier matrices."""
-
-    coefficients: Array
-    gap: Array
-    to_time: Array
-    back: Array
-    slip: tuple[Array, Array]
-    approach: Array
-
-
-def _in_time(coefficients: Array, gap: Array, samples: int) -> _Motion:
-    to_time, back = fourier((len(coefficients) - 1) // 2, samples)
-    opening, first, second = (to_time @ np.ascontiguousarray(coefficients[:, :, i]) for i in range(3))
-    return _Motion(coefficients, gap, to_time, back, (first, second), -(opening + gap))
-
-
 def steady(
     sliders: Sliders,
     start: SliderState,
@@ -152,7 +93,7 @@ def steady(
         samples: instants in the cycle; the error falls with their square.
         derivative: whether it is asked for.
     """
-    motion = _in_time(coefficients, gap, samples)
+    motion = in_time(coefficients, gap, samples)
     count, q, _ = coefficients.shape
     answer = _Answer(
         traction=np.zeros((count, q, 3)),
@@ -196,7 +137,7 @@ def _loop_area(motion: Array, traction: Array) -> Array:
     return area
 
 
-def _normal(sliders: Sliders, motion: _Motion, least: Array, greatest: Array, answer: _Answer) -> None:
+def _normal(sliders: Sliders, motion: CycleMotion, least: Array, greatest: Array, answer: _Answer) -> None:
     """Add the pressure: springs shut throughout in closed form, those that open and shut in time."""
     onset, k_n = sliders.onset, sliders.k_n
     shut = onset <= least[:, None]
@@ -222,7 +163,7 @@ def _normal(sliders: Sliders, motion: _Motion, least: Array, greatest: Array, an
             answer.derivative[owner, :, 0, :, 0] += found
 
 
-def _stuck(sliders: Sliders, start: SliderState, motion: _Motion, stays: Mask, answer: _Answer) -> None:
+def _stuck(sliders: Sliders, start: SliderState, motion: CycleMotion, stays: Mask, answer: _Answer) -> None:
     """Add the shear of sliders that never slip."""
     k = np.where(stays, sliders.k_t, 0.0)
     total = k.sum(axis=1)
@@ -242,11 +183,13 @@ def _blocks(counts: Index) -> Iterator[Index]:
         yield from np.split(points, np.flatnonzero(np.diff(group)) + 1)
 
 
-def _march(sliders: Sliders, start: SliderState, motion: _Motion, points: Index, active: Mask, answer: _Answer) -> None:
+def _march(
+    sliders: Sliders, start: SliderState, motion: CycleMotion, points: Index, active: Mask, answer: _Answer
+) -> None:
     """March the active sliders of some points, and add what they carry."""
     local, which = np.nonzero(active[points])
-    set_ = _Set.of(sliders, start, motion, points[local], which)
-    memory = _Memory.start(motion.to_time, set_, local) if answer.derivative is not None else None
+    set_ = MarchingSliders.of(sliders, start, motion, points[local], which)
+    memory = Anchors.start(motion.to_time, set_, local) if answer.derivative is not None else None
     slid = set_.turn(motion, first=True, memory=memory)
     # a slider that did not slide in the first turn never will: it is linear
     loose = np.flatnonzero(~slid)
@@ -271,210 +214,3 @@ def _march(sliders: Sliders, start: SliderState, motion: _Motion, points: Index,
     if memory is not None:
         assert answer.derivative is not None
         answer.derivative[points, :, 1:] += memory.coefficients(motion.back)
-
-
-@dataclass
-class _Set:
-    """Sliders that are marched together: n of them, sorted by point.
-
-    owner, which: point and spring of each; k, reach as in Sliders; depth, limit (samples, n): closing beyond the onset
-    and greatest stretch; step: move since the instant before, begin: since the start (2 directions); stretch: what is
-    left of both, instant by instant.
-    """
-
-    owner: Index
-    which: Index
-    k: Array
-    reach: Array
-    depth: Array
-    limit: Array
-    step: tuple[Array, Array]
-    begin: tuple[Array, Array]
-    stretch: tuple[Array, Array]
-
-    @classmethod
-    def of(cls, sliders: Sliders, start: SliderState, motion: _Motion, owner: Index, which: Index) -> "_Set":
-        """Sliders `which` of points `owner`, at their start."""
-        reach = sliders.reach[owner, which]
-        depth = motion.approach[:, owner]
-        depth -= sliders.onset[owner, which]
-        np.maximum(depth, 0.0, out=depth)
-        return cls(
-            owner=owner,
-            which=which,
-            k=sliders.k_t[owner, which],
-            reach=reach,
-            depth=depth,
-            limit=reach * depth,
-            step=_both(lambda i: np.diff(motion.slip[i], axis=0, prepend=motion.slip[i][-1:])[:, owner]),
-            begin=_both(lambda i: (motion.slip[i][0] - start.slip[:, i])[owner] + start.stretch[owner, which, i]),
-            stretch=_both(lambda _: np.empty(depth.shape)),
-        )
-
-    def only(self, kept: Index) -> "_Set":
-        """Some of the sliders, where they are."""
-
-        def part(pair: tuple[Array, Array]) -> tuple[Array, Array]:
-            return pair[0][..., kept], pair[1][..., kept]
-
-        return _Set(
-            owner=self.owner[kept],
-            which=self.which[kept],
-            k=self.k[kept],
-            reach=self.reach[kept],
-            depth=self.depth[:, kept],
-            limit=self.limit[:, kept],
-            step=part(self.step),
-            begin=part(self.begin),
-            stretch=part(self.stretch),
-        )
-
-    def turn(self, motion: _Motion, *, first: bool, memory: "_Memory | None") -> Mask:
-        """Take them round the cycle once, the first time from the start; return which slid."""
-        slid = np.zeros(len(self.k), dtype=bool)
-        for t in range(len(self.limit)):
-            one, two = self.stretch[0][t], self.stretch[1][t]
-            if first and t == 0:
-                one[:], two[:] = self.begin
-            else:
-                np.add(self.stretch[0][t - 1], self.step[0][t], out=one)
-                np.add(self.stretch[1][t - 1], self.step[1][t], out=two)
-            size = one * one
-            size += two * two
-            np.sqrt(size, out=size)
-            left = self.limit[t] / np.maximum(size, TINY)
-            slides = left < 1
-            if memory is not None and slides.any():
-                memory.slide(t, np.flatnonzero(slides), (one, two), size, left, self.depth[t])
-            slid |= left < 1 - TOUCHES
-            np.minimum(left, 1.0, out=left)
-            one *= left
-            two *= left
-            if memory is not None and not first:
-                memory.read(t)
-        return slid
-
-
-def _both(make: Callable[[int], Array]) -> tuple[Array, Array]:
-    """What is made for both directions of slip."""
-    return make(0), make(1)
-
-
-@dataclass
-class _Memory:
-    """Derivatives of the anchors by the coefficients of opening and of both slips.
-
-    A slider's stretch is slip minus anchor. The anchor moves only while it slides, so its derivative does. Along the
-    direction n of the last slide it depends on that instant alone: n times (reach, n1, n2) times the waves then. So
-    those parts are summed over the sliders of a point by instant, `held` (samples, 5, points). Across n it remembers
-    what was before: `across` (1+2H, 3, sliders), in single precision, with which Newton's method converges as fast.
-    """
-
-    to_time: Array
-    k: Array
-    reach: Array
-    local: Index
-    first: Index
-    along: Array  # (3, sliders): n1, n2 and reach at the last slide; 0 before the first
-    when: Index
-    across: NDArray[np.float32]
-    held: Array | None = None
-    history: Array | None = None
-
-    @classmethod
-    def start(cls, to_time: Array, sliders: _Set, local: Index) -> "_Memory":
-        """Return anchors that do not depend on the motion."""
-        n = len(sliders.k)
-        return cls(
-            to_time=to_time,
-            k=sliders.k,
-            reach=sliders.reach,
-            local=local,
-            first=np.zeros(0, dtype=np.int64),
-            along=np.zeros((3, n)),
-            when=np.zeros(n, dtype=np.int64),
-            across=np.zeros((to_time.shape[1], 3, n), dtype=np.float32),
-        )
-
-    def listening(self, kept: Index, sliders: _Set, local: Index, first: Index) -> "_Memory":
-        """Some of the sliders, of which the derivative of the forces that a point's anchors hold together is kept."""
-        samples, count = self.to_time.shape
-        found = _Memory(
-            to_time=self.to_time,
-            k=sliders.k,
-            reach=sliders.reach,
-            local=local,
-            first=first,
-            along=self.along[:, kept],
-            when=self.when[kept],
-            across=self.across[..., kept],
-            held=np.zeros((samples, 5, len(first))),
-            history=np.empty((samples, count, 2, 3, len(first))),
-        )
-        found._hold(np.arange(len(kept)), found.along, 1.0)
-        return found
-
-    def _hold(self, which: Index, along: Array, sign: float) -> None:
-        """Add or take away what sliders hold along their last slide: (n1 reach, n2 reach, n1 n1, n1 n2, n2 n2)."""
-        assert self.held is not None
-        n1, n2, reach = along
-        points = len(self.first)
-        place = self.when[which] * (5 * points) + self.local[which]
-        one, two = (sign * self.k[which] * n for n in (n1, n2))
-        for i, force in enumerate((one * reach, two * reach, one * n1, one * n2, two * n2)):
-            np.add.at(self.held.reshape(-1), place + i * points, force)
-
-    def slide(self, t: int, which: Index, trial: tuple[Array, Array], size: Array, left: Array, depth: Array) -> None:
-        """Sliders `which` are dragged along the trial stretch, of length `size`, of which `left` is left.
-
-        Along it the stretch is the limit, whatever was before; across it the trial stretch shrinks by `left`.
-        """
-        size, left = size[which], left[which]
-        old, new = self.along.take(which, axis=1), np.empty((3, len(which)))
-        moves = size > 0  # an open slider that does not move has no direction: any will do, for nothing is left
-        new[0], new[1] = (e[which] / np.where(moves, size, 1.0) for e in trial)
-        new[0, ~moves] = 1.0
-        new[2] = np.where(depth[which] > 0, self.reach[which], 0.0)
-        waves = self.to_time.astype(np.float32)
-        now, then = waves[t][:, None], waves.T.take(self.when[which], axis=1)
-        turn = left * (new[0] * old[1] - new[1] * old[0])
-        gone = 1 - left
-        across = self.across.take(which, axis=-1)
-        across *= _single(left * (new[0] * old[0] + new[1] * old[1]))
-        for i, by in enumerate((old[2], old[0], old[1])):
-            across[:, i] += _single(turn * by) * then
-        across[:, 1] -= _single(gone * new[1]) * now
-        across[:, 2] += _single(gone * new[0]) * now
-        self.across[..., which] = across
-        if self.held is not None:
-            self._hold(which, old, -1.0)
-        self.along[:, which] = new
-        self.when[which] = t
-        if self.held is not None:
-            self._hold(which, new, 1.0)
-
-    def read(self, t: int) -> None:
-        """Note the derivative at an instant."""
-        assert self.held is not None
-        assert self.history is not None
-        samples, count = self.to_time.shape
-        held = (self.to_time.T @ self.held.reshape(samples, -1)).reshape(count, 5, -1)
-        now = self.history[t]
-        now[:, 0], now[:, 1] = held[:, [0, 2, 3]], held[:, [1, 3, 4]]
-        now[:, 0] -= np.add.reduceat(self.across * _single(self.k * self.along[1]), self.first, axis=-1)
-        now[:, 1] += np.add.reduceat(self.across * _single(self.k * self.along[0]), self.first, axis=-1)
-
-    def coefficients(self, back: Array) -> Array:
-        """Derivative of the shear's coefficients (points, 1+2H, 2, 1+2H, 3) [Pa/m]."""
-        assert self.history is not None
-        samples, count = self.to_time.shape
-        found = -(back @ self.history.reshape(samples, -1)).reshape(count, count, 2, 3, -1)
-        stiffness = np.add.reduceat(self.k, self.first)
-        for a in range(count):
-            for i in range(2):
-                found[a, a, i, 1 + i] += stiffness
-        return found.transpose(4, 0, 2, 1, 3)
-
-
-def _single(values: Array) -> NDArray[np.float32]:
-    return values.astype(np.float32)

@@ -1,8 +1,8 @@
 """A contact law laid on a joint: pressure from approach, and stiffness and loss at every point from its pressure."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 
@@ -45,10 +45,17 @@ class JointLaw:
     points: int = 2000
     end: Literal["low", "high"] | None = None
     reason: str = ""
+    _unscaled: "JointLaw | None" = field(default=None, repr=False, compare=False)  # the same law, with tables to share
+
+    def scaled(self, factor: float) -> Self:
+        """The same law with both stiffnesses times a factor [-]; what has been tabulated is used again."""
+        return replace(self, scale=factor * self.scale, _unscaled=self)
 
     @cached_property
     def _defined(self) -> frozenset[str]:
         """The quantities that the law defines."""
+        if self._unscaled is not None:
+            return self._unscaled._defined
         return frozenset(self.model.at_pressure(self._grid[[-1]]).quantities())
 
     @property
@@ -83,6 +90,8 @@ class JointLaw:
     @cached_property
     def _grid(self) -> Array:
         """Pressures [Pa] of the table, from the least to where the law ends."""
+        if self._unscaled is not None:
+            return self._unscaled._grid
         p = np.geomspace(self.least_pressure, self.model.greatest_pressure, self.points)
         p[-1] = min(p[-1], self.model.greatest_pressure)
         return np.asarray(p)
@@ -90,6 +99,10 @@ class JointLaw:
     @cached_property
     def _samples(self) -> tuple[Array, tuple[Array, Array], tuple[Array, Array]]:
         """ln pressure, logarithms of k_n and k_t, and the two loss factors, on the grid."""
+        if self._unscaled is not None:
+            more = np.log(self.scale / self._unscaled.scale)
+            log_p, (log_n, log_t), losses = self._unscaled._samples
+            return log_p, (log_n + more, log_t + more), losses
         k_n, k_t = self._ask(self._grid)
         with np.errstate(divide="ignore"):  # a law may have no tangential stiffness at its least pressure
             stiffness = np.log(k_n), np.log(k_t)
@@ -98,6 +111,8 @@ class JointLaw:
     @cached_property
     def _loading(self) -> Array:
         """Slope of pressure over approach on loading [Pa/m] on the grid."""
+        if self._unscaled is not None:
+            return self.scale / self._unscaled.scale * self._unscaled._loading
         slope = self.model.at_pressure(self._grid).k_load
         return np.exp(self._samples[1][0]) if slope is None else self.scale * slope
 

@@ -13,9 +13,10 @@ from typing import Self
 import numpy as np
 
 from faying.errors import InputError
-from faying.joint.hysteresis import Cycle, Sliders, SliderState, advance, steady
+from faying.joint.hysteresis import Cycle, advance, steady
 from faying.joint.joint_law import JointLaw
 from faying.joint.pressure_curve import PressureCurve
+from faying.joint.sliders import Sliders, SliderState
 from faying.typing import Array
 
 FINEST = 3e-3  # of p/k_n at the preload: the least closing that has a spring of its own

@@ -20,6 +20,7 @@ from faying.fe.modes import lowest_modes
 from faying.fe.solve import Factorisation
 from faying.joint.equilibrium import PreloadState, StickSlip
 from faying.joint.joint_law import JointLaw
+from faying.joint.part_shares import PartShares, ReducedShares, Scales
 from faying.joint.reduced import ReducedModel, ReducedMotion, Variant
 from faying.joint.springs import Springs
 from faying.joint.structure import Structure
@@ -115,12 +116,13 @@ class Reduction:
         state: Array,
         shapes: Array,
         count: int,
+        shares: PartShares | None = None,
     ) -> None:
         """Start from a factorised reference.
 
         reference (n, n): stiffness + joints + shift x mass, of which `factor` is the factorisation; state (n,): a
         displacement in equilibrium; shapes (n, m): elastic modes at the reference, more than the `count` that is asked
-        for.
+        for; shares: of the parts whose stiffness and mass variants may scale.
         """
         from scipy.linalg import cholesky, solve_triangular
 
@@ -134,12 +136,18 @@ class Reduction:
             root = cholesky(rigid.T @ (mass @ rigid))
             rigid = solve_triangular(root, rigid.T, trans="T").T
         motions = {"rigid": rigid, "rigid_momentum": np.asarray(mass @ rigid)}
-        self.static = Basis(reference=reference, operators=(self.stiffness_static,), traces=self.traces, **motions)
+        self.shares, more = shares, (() if shares is None else shares.standing)
+        self.static = Basis(
+            reference=reference, operators=(self.stiffness_static, *more), traces=self.traces, **motions
+        )
         self.static.add(state[:, None])
         self.static.add(factor.solve(np.asfortranarray(loads)))
-        self.dynamic = Basis(reference=reference, operators=(self.stiffness, mass), traces=self.traces, **motions)
+        more = () if shares is None else (*shares.stiffness, *shares.mass)
+        self.dynamic = Basis(
+            reference=reference, operators=(self.stiffness, mass, *more), traces=self.traces, **motions
+        )
         self.dynamic.add(shapes)
-        self._seen: list[tuple[tuple[JointLaw, ...], tuple[Array, ...]]] = []
+        self._seen: list[tuple[tuple[JointLaw, ...], tuple[Array, ...], Scales | None]] = []
         self.model = ReducedModel(
             weights=[trace.weights for trace in self.traces],
             gaps=[trace.gap for trace in self.traces],
@@ -151,7 +159,26 @@ class Reduction:
             dynamic_relative=self.dynamic.relative,
             count=count,
             coarse=self.dynamic.vectors.shape[1],
+            shares=self._reduced_shares(),
         )
+
+    def _reduced_shares(self) -> ReducedShares | None:
+        """The shares of the parts in both bases."""
+        if self.shares is None:
+            return None
+        count, rigid = len(self.shares.parts), self.dynamic.rigid
+        pushed = [np.asarray(mass @ rigid) for mass in self.shares.mass]
+        return ReducedShares(
+            standing=np.stack(self.static.small[1:]),
+            stiffness=np.stack(self.dynamic.small[2 : 2 + count]),
+            mass=np.stack(self.dynamic.small[2 + count :]),
+            cross=np.stack([momentum.T @ self.dynamic.vectors for momentum in pushed]),
+            corner=np.stack([rigid.T @ momentum for momentum in pushed]),
+        )
+
+    def probe(self, rows: Any) -> tuple[Array, Array]:
+        """What sparse rows (k, n) see of the basis for vibration (k, d) and of the rigid motions (k, r)."""
+        return np.asarray(rows @ self.dynamic.vectors), np.asarray(rows @ self.dynamic.rigid)
 
     @classmethod
     def of(
@@ -163,11 +190,12 @@ class Reduction:
         count: int,
         shift_frequency: float | None = None,
         solver: str | None = None,
+        shares: PartShares | None = None,
     ) -> Self:
         """Solve one variant of a structure in full, its bolts pulled at once, and start from that.
 
-        laws: the law of each joint; forces [N] (bolts,); count: elastic modes wanted. Raises InputError where a part is
-        held by nothing.
+        laws: the law of each joint; forces [N] (bolts,); count: elastic modes wanted; shares: of the parts that
+        variants may scale, which this one does not. Raises InputError where a part is held by nothing.
         """
         joints = tuple(replace(joint, law=law) for joint, law in zip(structure.joints, laws, strict=True))
         structure = replace(structure, joints=joints)
@@ -185,6 +213,7 @@ class Reduction:
             state=found.displacement,
             shapes=modes.shapes[:, rigid_count:],
             count=count,
+            shares=shares,
         )
 
     def _refresh(self, coarse: int | None = None) -> None:
@@ -197,13 +226,23 @@ class Reduction:
             dynamic_mass=self.dynamic.small[1],
             dynamic_relative=self.dynamic.relative,
             coarse=self.model.coarse if coarse is None else coarse,
+            shares=self._reduced_shares(),
         )
+
+    def _scaled(self, matrix: Any, shares: Sequence[Any], kind: int, x: Any) -> Any:
+        """Product of a matrix of the structure with x, its parts scaled; kind: 0 for stiffness, 1 for mass."""
+        out = matrix @ x
+        for scales, share in zip(self.model.scales or (), shares, strict=False):
+            if scales[kind] != 1:
+                out = out + (scales[kind] - 1) * (share @ x)
+        return out
 
     def _static_residual(
         self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], found: PreloadState
     ) -> Array:
         u = self.static.vectors @ found.displacement
-        residual = self.loads @ forces - self.stiffness_static @ u
+        shares = () if self.shares is None else self.shares.standing
+        residual = self.loads @ forces - self._scaled(self.stiffness_static, shares, 0, u)
         for trace, law, limit, p, relative in zip(
             self.traces, laws, friction, found.pressures, self.static.relative, strict=True
         ):
@@ -258,13 +297,17 @@ class Reduction:
         solved = self.factor.solve(np.asfortranarray(both))
         split = len(values)
         energy = np.einsum("ij,ij->j", both, solved)
-        momentum = self.model.dynamic_mass @ vectors
+        momentum = self.model.matrices[2] @ vectors
         size = np.abs(values) * np.abs(np.einsum("ij,ij->j", vectors.conj(), momentum))
         return (energy[:split] + energy[split:]) / size, solved / np.sqrt(np.tile(size, 2))
 
     def _modal_residual(self, springs: Sequence[Springs[ReducedMotion]], values: Complex, vectors: Complex) -> Complex:
         x = self.dynamic.vectors @ vectors
-        residual = self.stiffness @ x - (self.mass @ x) * values
+        stiffness, mass = ((), ()) if self.shares is None else (self.shares.stiffness, self.shares.mass)
+        residual = self._scaled(self.stiffness, stiffness, 0, x)
+        if self.model.scales is not None and self.model.shares is not None:
+            x = x + self.dynamic.rigid @ (self.model.shares.motion(self.model.scales) @ vectors)
+        residual = residual - self._scaled(self.mass, mass, 1, x) * values
         for trace, relative, d in zip(self.traces, self.dynamic.relative, springs, strict=True):
             n, t = trace.weights * d.k_n * (1 + 1j * d.loss_n), trace.weights * d.k_t * (1 + 1j * d.loss_t)
             share = np.stack([n, t, t], axis=1).reshape(-1, 1)
@@ -295,16 +338,17 @@ class Reduction:
         tolerance: float,
         start: Array | None = None,
         gaps: Sequence[Array] | None = None,
+        scales: Scales | None = None,
     ) -> Array:
         """Make the bases fit one variant; tolerance: relative error of a frequency; start: see `ReducedModel.evaluate`.
 
-        gaps: of the joints before any load [m] (q,), those of the model where None; the model has them from then on.
-        Returns the coefficients from which a like variant may start.
+        gaps: of the joints before any load [m] (q,), those of the model where None; scales: of the parts. The model has
+        both from then on. Returns the coefficients from which a like variant may start.
         """
-        self.model = self.model.with_gaps(gaps)
+        self.model = self.model.with_gaps(gaps).with_scales(scales)
         found = self.train_static(laws, forces, friction, STATIC_SHARE * tolerance, start)
         self.train_dynamic(laws, found.pressures, 2 * tolerance)
-        self._seen.append((tuple(laws), found.pressures))
+        self._seen.append((tuple(laws), found.pressures, scales))
         return found.displacement
 
     @property
@@ -315,8 +359,9 @@ class Reduction:
     def compress(self, tolerance: float) -> None:
         """Keep of the basis for vibration what the modes of all variants trained on need, most needed first."""
         columns = []
-        for laws, pressures in self._seen:
-            _, vectors, _ = self.model.modes(self.model.springs(laws, pressures))
+        for laws, pressures, scales in self._seen:
+            model = self.model.with_scales(scales)
+            _, vectors, _ = model.modes(model.springs(laws, pressures))
             both = np.concatenate([vectors.real, vectors.imag], axis=1)
             columns.append(both / np.tile(np.linalg.norm(vectors, axis=0), 2))
         rotation, size, _ = np.linalg.svd(np.concatenate(columns, axis=1), full_matrices=False)

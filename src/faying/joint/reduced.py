@@ -5,6 +5,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from faying.errors import InputError, NotConverged
 from faying.fe.damped import followers
 from faying.joint.equilibrium import Equilibrium, PreloadState, StickSlip
 from faying.joint.joint_law import JointLaw
+from faying.joint.part_shares import ReducedShares, Scales
 from faying.joint.springs import Springs
 from faying.typing import Array, Complex
 
@@ -39,13 +41,15 @@ class Variant:
 
     frequencies [Hz], loss_factors [-] (m,), elastic modes; estimate (m,): what the frequencies change by, relatively,
     when the last part of the basis is left out; preload: the equilibrium, with coefficients in place of displacements;
-    its `displacement` is what a like variant may start from.
+    its `displacement` is what a like variant may start from; shapes (d, m): the modes in the basis for vibration,
+    complex where there is loss.
     """
 
     frequencies: Array
     loss_factors: Array
     estimate: Array
     preload: PreloadState
+    shapes: Complex
 
 
 def _complex_modes(real: Array, loss: Array, count: int, slight: float = SLIGHT) -> tuple[Complex, Complex]:
@@ -130,7 +134,8 @@ class ReducedModel:
 
     weights [m2], gaps [m]: (q,) of each joint; static_*: stiffness (s, s), loads (s, bolts) of 1 N each, relative
     motion at the points of each joint (3q, s); dynamic_*: stiffness, mass (d, d), relative motion (3q, d); count: modes
-    that are given; coarse: how many leading vectors of the dynamic basis make the coarser one of the estimate.
+    that are given; coarse: how many leading vectors of the dynamic basis make the coarser one of the estimate; shares:
+    of the parts that may be scaled; scales: of those parts, all 1 where None.
     """
 
     weights: Sequence[Array]
@@ -143,6 +148,21 @@ class ReducedModel:
     dynamic_relative: Sequence[Array]
     count: int
     coarse: int
+    shares: ReducedShares | None = None
+    scales: Scales | None = None
+
+    @cached_property
+    def matrices(self) -> tuple[Array, Array, Array]:
+        """Stiffness for equilibrium (s, s), stiffness and mass for vibration (d, d), parts scaled, joints left out."""
+        plain = self.static_stiffness, self.dynamic_stiffness, self.dynamic_mass
+        if self.scales is None:
+            return plain
+        assert self.shares is not None
+        return self.shares.add(self.scales, *plain)
+
+    def with_scales(self, scales: Scales | None) -> "ReducedModel":
+        """The same structure with the stiffness and the mass of each part in `shares` scaled; as drawn where None."""
+        return replace(self, scales=scales)
 
     def with_gaps(self, gaps: Sequence[Array] | None) -> "ReducedModel":
         """The same structure with other gaps [m] (q,) of its joints before any load; itself where None."""
@@ -164,11 +184,11 @@ class ReducedModel:
         if start is not None:
             padded = np.concatenate([start, np.zeros(len(load) - len(start))])
             try:
-                balance = ReducedEquilibrium(self.static_stiffness, joints, friction=friction)
+                balance = ReducedEquilibrium(self.matrices[0], joints, friction=friction)
                 return balance.solve(load, start=padded, tolerance=BALANCED)
             except NotConverged:
                 pass
-        balance = ReducedEquilibrium(self.static_stiffness, joints, friction=friction)
+        balance = ReducedEquilibrium(self.matrices[0], joints, friction=friction)
         return balance.solve(load, tolerance=BALANCED)
 
     def springs(self, laws: Sequence[JointLaw], pressures: Sequence[Array]) -> list[Springs[ReducedMotion]]:
@@ -185,12 +205,15 @@ class ReducedModel:
         """
         from scipy.linalg import eigh
 
-        K, M = self.dynamic_stiffness + sum(s.stiffness() for s in springs), self.dynamic_mass
-        loss = sum(s.loss() for s in springs)
+        _, K, M = self.matrices
+        K = K + sum(s.stiffness() for s in springs)
         real, shapes = eigh(K, M)
         cut = slice(0, self.coarse)
         rough = eigh(K[cut, cut], M[cut, cut], eigvals_only=True, subset_by_index=[0, self.count - 1])
         estimate = np.abs(rough / real[: self.count] - 1) / 2
+        if not any(np.any(s.loss_n) or np.any(s.loss_t) for s in springs):
+            return real[: self.count].astype(complex), shapes[:, : self.count].astype(complex), estimate
+        loss = sum(s.loss() for s in springs)
         values, inner = _complex_modes(real, shapes.T @ loss @ shapes, self.count, slight)
         return values, shapes @ inner, estimate
 
@@ -212,8 +235,9 @@ class ReducedModel:
         if np.shape(forces) != (self.static_loads.shape[1],):
             raise InputError(f"{np.size(forces)} bolt forces for {self.static_loads.shape[1]} bolts; give one for each")
         found = self.equilibrium(laws, np.asarray(forces, dtype=float), friction, start)
-        values, _, estimate = self.modes(self.springs(laws, found.pressures))
+        values, shapes, estimate = self.modes(self.springs(laws, found.pressures))
         return Variant(
+            shapes=shapes,
             frequencies=np.sqrt(values.real) / (2 * np.pi),
             loss_factors=values.imag / values.real,
             estimate=estimate,

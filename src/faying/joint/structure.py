@@ -165,6 +165,16 @@ class Structure:
         return self._frame.fitted_bolts
 
     @property
+    def pulls(self) -> Array:
+        """What a displacement adds to the force of each bolt (bolts, unknowns) [N/m]; 0 for a bolt without a shank."""
+        return np.array([bolt.pull for bolt in self.fitted_bolts]).reshape(-1, self.mesh.unknowns)
+
+    @property
+    def predicts_loss(self) -> bool:
+        """Whether the law of any joint gives a loss factor."""
+        return any(joint.law.predicts_loss for joint in self.joints)
+
+    @property
     def loads(self) -> Array:
         """Nodal forces [N] (unknowns, bolts) of 1 N in each bolt."""
         return self._frame.loads

@@ -21,7 +21,8 @@ def mac(a: Any, b: Any, mass: Any | None = None) -> Array:
         raise InputError(f"shapes at {a.shape[1]} and at {b.shape[1]} degrees of freedom; give both at the same ones")
     if mass is not None:
         momentum = (mass @ b.T).T
-        sizes = [np.einsum("md,md->m", x.conj(), (mass @ x.T).T).real for x in (a, b)]
+        moved = ((a, (mass @ a.T).T), (b, momentum))
+        sizes = [np.einsum("md,md->m", x.conj(), p).real for x, p in moved]
         product = np.outer(*(np.where(size > 0, size, np.inf) for size in sizes))
         return np.asarray(np.minimum(np.abs(a.conj() @ momentum.T) ** 2 / product, 1.0))
     a, b = _unit(a), _unit(b)

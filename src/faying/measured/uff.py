@@ -6,18 +6,16 @@ The formats: University of Cincinnati, Structural Dynamics Research Lab, https:/
 import re
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import InputError, ReadError
-from faying.measured.frf import FRF, Dof, Position
-from faying.measured.modes import ModeSet
-from faying.measured.uff_units import FileUnits, frf_scale
+from faying.measured.frf import Dof, Position
+from faying.measured.uff_units import FileUnits
+from faying.measured.universal import Function, UniversalFile
 from faying.typing import Array, Index
 from faying.units import scale
 
@@ -38,148 +36,6 @@ KINDS = {
     22: "impulse response",
 }
 DIRECTION_CODES = {0: "", 1: "x", 2: "y", 3: "z", 4: "rx", 5: "ry", 6: "rz"}
-
-
-@dataclass(frozen=True, kw_only=True)
-class Function:
-    """One function of a data set 58 as it stands in the file: kind, abscissa, values, places, label of its unit."""
-
-    kind: str
-    x: Array
-    values: NDArray[Any]
-    output: Dof
-    input: Dof
-    unit: str
-    header: Mapping[str, Any]
-    where: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class UniversalFile:
-    """What a universal file holds. positions [m]; lines: pairs of points to draw; kinds: numbers
-    of the data sets; warnings: sentences for the reader."""
-
-    source: str
-    title: str = ""
-    units: FileUnits | None = None
-    functions: tuple[Function, ...] = ()
-    shapes: tuple[Mapping[str, Any], ...] = ()
-    positions: Mapping[int, Position] = field(default_factory=dict)
-    rotations: Mapping[int, Array] = field(default_factory=dict)
-    lines: tuple[tuple[int, int], ...] = ()
-    kinds: tuple[int, ...] = ()
-    warnings: tuple[str, ...] = ()
-
-    def frf(self, *, quantity: str | None = None) -> FRF:
-        """All FRFs as one object in SI, with the coherence of the same pairs.
-
-        quantity: what was measured, where the file does not say it. Raises ReadError where there is no FRF, the
-        quantities or the spectral lines differ, or the directions of a point are turned against the axes.
-        """
-        found = [f for f in self.functions if f.kind == "FRF"]
-        if not found:
-            kinds = (
-                ", ".join(sorted({f.kind for f in self.functions})) or f"data sets {', '.join(map(str, self.kinds))}"
-            )
-            raise ReadError(f"{self.source}: no FRF (function type 4) in it, only {kinds}; export the FRFs of the test")
-        notes: list[str] = list(self.warnings)
-        nameless = len({(f.output, f.input) for f in found}) < len(found) and all(f.output.point == 0 for f in found)
-        if nameless:
-            notes.append(f"{self.source}: the FRFs name no points; they are numbered in their order")
-        pairs: dict[tuple[Dof, Dof], tuple[str, NDArray[Any]]] = {}
-        for n, f in enumerate(found):
-            kind, factor, note = frf_scale(dict(f.header), self.units, quantity, f.where)
-            if note and note.partition(": ")[2] not in {w.partition(": ")[2] for w in notes}:
-                notes.append(note)
-            pair = (Dof(n + 1, f.output.direction) if nameless else self._straight(f.output), self._straight(f.input))
-            if not np.array_equal(f.x, found[0].x):
-                raise ReadError(
-                    f"{f.where}: its spectral lines are not those of the first FRF; split the file into tests of one "
-                    "set of lines"
-                )
-            if pair in pairs:
-                notes.append(f"{f.where}: {pair[0]} / {pair[1]} stands twice; the first is taken")
-            else:
-                pairs[pair] = (kind, np.asarray(f.values, complex) * factor)
-        quantities = {kind for kind, _ in pairs.values()}
-        if len(quantities) > 1:
-            raise ReadError(
-                f"{self.source}: {' and '.join(sorted(quantities))} stand together; split the file, or convert them"
-            )
-        outputs = tuple(dict.fromkeys(o for o, _ in pairs))
-        inputs = tuple(dict.fromkeys(i for _, i in pairs))
-        values = np.full((len(outputs), len(inputs), len(found[0].x)), np.nan + 0j)
-        for (o, i), (_, data) in pairs.items():
-            values[outputs.index(o), inputs.index(i)] = data
-        return FRF(
-            frequency=found[0].x,
-            values=values,
-            outputs=outputs,
-            inputs=inputs,
-            quantity=quantities.pop(),
-            coherence=self._coherence(outputs, inputs, values.shape),
-            positions=self.positions,
-            source=self.source,
-            warnings=tuple(dict.fromkeys(notes)),
-        )
-
-    def _coherence(self, outputs: tuple[Dof, ...], inputs: tuple[Dof, ...], shape: tuple[int, ...]) -> Array | None:
-        out = np.full(shape, np.nan)
-        for f in self.functions:
-            if f.kind == "coherence" and f.output in outputs and f.input in inputs and f.values.size == shape[2]:
-                out[outputs.index(f.output), inputs.index(f.input)] = f.values.real
-        return None if np.isnan(out).all() else out
-
-    def _straight(self, dof: Dof) -> Dof:
-        """The degree of freedom in the file's own axes, which is possible where the point's axes are a permutation."""
-        turn = self.rotations.get(dof.point)
-        if turn is None or dof.direction == "" or dof.direction.startswith(("r", "-r")):
-            return dof
-        axis = dof.axis() @ turn
-        if np.abs(axis).max() < 1 - 1e-6:
-            raise ReadError(
-                f"{self.source}: the directions of point {dof.point} are turned against the axes of the file "
-                "(data set 2420); export the FRFs in global directions"
-            )
-        k = int(np.abs(axis).argmax())
-        return Dof(dof.point, ("-" if axis[k] < 0 else "") + "xyz"[k])
-
-    def modes(self) -> ModeSet:
-        """The mode shapes of data sets 55, at the degrees of freedom that move in at least one mode.
-
-        Real modes carry a viscous damping ratio (loss factor twice that) or a hysteretic one (taken as the loss
-        factor); complex modes their pole. Raises ReadError where there is no mode shape or the modes are known at
-        different points.
-        """
-        if not self.shapes:
-            raise ReadError(
-                f"{self.source}: no mode shape (data set 55) in it; identify the modes first: faying test {self.source}"
-            )
-        shapes = sorted(self.shapes, key=lambda s: float(s["frequency"]))
-        points = shapes[0]["points"]
-        if any(not np.array_equal(s["points"], points) for s in shapes):
-            raise ReadError(
-                f"{self.source}: its mode shapes are known at different points; export all modes at the same points"
-            )
-        values = np.stack([s["values"] for s in shapes])  # (m, p, 3)
-        for row, point in enumerate(points):
-            if int(point) in self.rotations:
-                values[:, row] = values[:, row] @ self.rotations[int(point)]
-        size = np.abs(values).max(axis=(1, 2), keepdims=True)
-        moves = np.argwhere((np.abs(values) > 1e-9 * size).any(axis=0))
-        if not len(moves):
-            raise ReadError(f"{self.source}: nothing moves in its mode shapes; export them again")
-        return ModeSet(
-            frequencies=np.array([s["frequency"] for s in shapes]),
-            loss_factors=np.array([s["loss"] for s in shapes]),
-            shapes=values[:, moves[:, 0], moves[:, 1]],
-            dofs=tuple(Dof(int(points[p]), "xyz"[k]) for p, k in moves),
-            frequency_interval=_spans(shapes, "frequency_interval"),
-            loss_interval=_spans(shapes, "loss_interval"),
-            lines=self.lines,
-            positions=self.positions,
-            source=self.source,
-        )
 
 
 def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFile:
@@ -351,12 +207,6 @@ def _shape(data: dict[str, Any], where: str) -> dict[str, Any]:
         "points": points,
         "values": np.stack(parts, axis=1),
     }
-
-
-def _spans(shapes: list[Mapping[str, Any]], name: str) -> Array | None:
-    """Intervals of all modes (m, 2), or None where one of them states none."""
-    spans = np.array([s[name] for s in shapes], float)
-    return spans if np.all(np.isfinite(spans)) else None
 
 
 def _span(found: re.Match[str] | None) -> tuple[float, float]:

@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from faying import __version__
-from faying.files import write_atomically
-from faying.output import page, report_measured, table
+from faying.files import write_text
+from faying.output import page, report_measured
 from faying.output.figures import response, structure
 from faying.output.figures.save import new_figure, save
+from faying.output.sections import sections
 from faying.result import Result
 
 
@@ -23,44 +24,14 @@ def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
     if result.warnings:
         parts.append("<h2>Read this first</h2>")
         parts += [f'<p class="flag">{escape(line)}</p>' for line in result.warnings]
-    parts += [
-        "<h2>Modes</h2>",
-        page.table(table.modes(result)),
-        f"<p>Loss factors come from complex modes with {result.damping} loss in the joints. Free: faces apart. Bonded: "
-        f"faces grown together.{_rigid(result)}</p>",
-    ]
-    if result.low is not None:
-        parts += ["<h2>Range of the frequencies, from that of the stiffness</h2>", page.table(table.ranges(result))]
-    if result.form_slopes is not None:
-        head = "Change with preload, if the faces are hollow or crowned"
-        parts += [f"<h2>{head}</h2>", page.table(table.form(result)), "<p>Flat faces are an assumption.</p>"]
-    if result.beyond_frequencies is not None:
-        parts += ["<h2>Beyond the end of a law: stiffness held, and bonded</h2>", page.table(table.beyond(result))]
-    if result.beside:
-        parts += [
-            f"<h2>Laws beside each other at {result.loads[-1] / 1e3:g} kN</h2>",
-            page.table(table.laws(result)),
-            "<p>Where each law ends, shares of the joints beyond that and outside its validity range, and the modes "
-            "that differ most between the laws.</p>",
-        ]
-    if result.comparison is not None:
-        parts += [
-            f"<h2>Comparison with the {result.comparison.reference}</h2>",
-            page.table(table.comparison(result)),
-            f"<p>{escape(result.comparison.source)}</p>",
-        ]
     drawn = drawn or figures(result)
-    if result.hammer is not None:
-        of_test = {name.removeprefix(TEST): figure for name, figure in drawn.items() if name.startswith(TEST)}
-        parts.append(report_measured.section(result.hammer, of_test))
-    parts += ["<h2>Joints</h2>", page.table(table.joints(result))]
-    if result.tightening:
-        parts += [
-            "<h2>Bolts</h2>",
-            page.table(table.bolts(result)),
-            f"<p>Tightened in the order {escape(', '.join(result.tightening))}.</p>",
-        ]
-    parts += _bolts(result)
+    for section in sections(result):
+        if section.name == "hammer" and result.hammer is not None:
+            of_test = {name.removeprefix(TEST): figure for name, figure in drawn.items() if name.startswith(TEST)}
+            parts.append(report_measured.section(result.hammer, of_test))
+        else:
+            parts += [f"<h2>{escape(section.title)}</h2>", page.table(section.rows)]
+            parts += [f"<p>{escape(section.below)}</p>"] if section.below else []
     parts.append("<h2>Figures</h2>")
     for name, figure in drawn.items():
         if not name.startswith(TEST):
@@ -70,26 +41,6 @@ def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
     parts += _contact(result)
     parts += ["<h2>Sources</h2>", "<ul>", *(f"<li>{escape(line)}</li>" for line in result.sources), "</ul>"]
     return page.document(result.title, "".join(parts))
-
-
-def _bolts(result: Result) -> list[str]:
-    """Tables of the bolts and of the conductances, where there are any."""
-    parts = []
-    if result.bolt_numbers is not None:
-        parts += ["<h2>Bolts and what they clamp</h2>", page.table(table.bolting(result)), f"<p>{table.EMBEDDING}</p>"]
-    forces = table.modal_forces(result)
-    if forces:
-        head = f"Force in the bolts per motion where a mode moves most, at {result.loads[-1] / 1e3:g} kN"
-        parts += [f"<h2>{head}</h2>", page.table(forces)]
-    flows = table.conductance(result)
-    if flows:
-        parts += ["<h2>Conductance of the joints</h2>", page.table(flows), f"<p>{table.CLEAN}</p>"]
-    return parts
-
-
-def _rigid(result: Result) -> str:
-    """The values of the rigid motions; nothing where supports leave none."""
-    return f" Rigid-body values: up to {result.rigid.max():.1e} Hz." if len(result.rigid) else ""
 
 
 def _contact(result: Result) -> list[str]:
@@ -175,7 +126,5 @@ def write(result: Result, folder: Path) -> list[Path]:
         if name.startswith(TEST):
             continue
         made.append(save(figure, folder / f"{name}.{'png' if name == 'modes' else 'svg'}"))
-    made.append(
-        write_atomically(folder / "report.html", lambda path: path.write_text(html(result, drawn), encoding="utf-8"))
-    )
+    made.append(write_text(folder / "report.html", html(result, drawn)))
     return made

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from faying import __version__
-from faying.files import write_atomically
+from faying.files import write_text
 from faying.measured.compare import ModalComparison
 from faying.output.figures.save import new_figure, save
 from faying.output.page import BITMAPS, document, picture, table
@@ -58,11 +58,7 @@ def section(comparison: ModalComparison, drawn: dict[str, Any] | None = None) ->
 
 def write_parts(comparison: ModalComparison, drawn: dict[str, Any], folder: Path, prefix: str = "") -> list[Path]:
     """Write comparison.csv and the figures as SVG (shapes as PNG), their names after `prefix`."""
-    made = [
-        write_atomically(
-            folder / "comparison.csv", lambda path: path.write_text(comparison.csv_text(), encoding="utf-8")
-        )
-    ]
+    made = [write_text(folder / "comparison.csv", comparison.csv_text())]
     for name, figure in drawn.items():
         made.append(save(figure, folder / f"{prefix}{name}.{'png' if name in BITMAPS else 'svg'}"))
     return made
@@ -74,5 +70,5 @@ def write(comparison: ModalComparison, folder: Path) -> list[Path]:
     made = write_parts(comparison, drawn, folder)
     title = escape(comparison.model.title)
     page = document("Hammer test", f"<h1>{title}</h1>{section(comparison, drawn)}<p>Faying {__version__}.</p>")
-    made.append(write_atomically(folder / "comparison.html", lambda path: path.write_text(page, encoding="utf-8")))
+    made.append(write_text(folder / "comparison.html", page))
     return made

@@ -2,16 +2,16 @@
 
 import csv
 import io
-from dataclasses import dataclass, field, fields
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
 
 from faying.errors import InputError
-from faying.files import write_atomically
+from faying.files import write_text
 from faying.notes import Note
-from faying.result.fields import Recorded, declared, listed, read_whole, variable, write_whole
+from faying.result.fields import Recorded, declared, in_units, listed, read_whole, variable, write_whole
 from faying.result.result import Provenance
 from faying.typing import Array, Index
 
@@ -164,14 +164,14 @@ class Backbone(Recorded):
         return self._between(self.acceleration, wanted)
 
     def _between(self, scale: Array, wanted: Array) -> tuple[Array, Array]:
-        slope = np.minimum(wanted / scale[0], 1.0)
         x, known = np.log(np.maximum(wanted, scale[0])), np.log(scale)
-        low = np.minimum(wanted / scale[0], 1.0)
-        f = np.interp(x, known, self.frequency)
-        z = np.interp(x, known, self.damping)
-        f = np.where(wanted < scale[0], self.linear_frequency + low * (self.frequency[0] - self.linear_frequency), f)
-        z = np.where(wanted < scale[0], self.rest_damping + slope * (self.damping[0] - self.rest_damping), z)
-        return f, z
+        share = np.minimum(wanted / scale[0], 1.0)
+
+        def along(values: Array, rest: float) -> Array:
+            near_rest = rest + share * (values[0] - rest)
+            return np.asarray(np.where(wanted < scale[0], near_rest, np.interp(x, known, values)))
+
+        return along(self.frequency, self.linear_frequency), along(self.damping, self.rest_damping)
 
     def ring_down(self, acceleration: float, time: float, *, points: int = DECAY) -> RingDown:
         """Free decay from an acceleration amplitude [m/s2] over a time [s].
@@ -257,17 +257,11 @@ class Backbone(Recorded):
             ("shape_at", "kg^-1/2"),
         ):
             out[name] = {"unit": unit, "values": getattr(self, name)}
-        for name, meta in declared(type(self)).items():
-            if "point" not in meta.dims:
-                out[name] = {"unit": meta.unit, "values": listed(getattr(self, name))}
+        out |= in_units(self, without=("point",))
         if self.witness is not None:
-            out["witness"] = {
-                name: {"unit": meta.unit, "values": listed(getattr(self.witness, name))}
-                for name, meta in declared(Witness).items()
-            }
-        out["bounds"] = {f.name: listed(getattr(self.bounds, f.name)) for f in fields(self.bounds)}
-        out["bounds"] = {name: None if value != value else value for name, value in out["bounds"].items()}
-        out["notes"] = [{f.name: getattr(note, f.name) for f in fields(note)} for note in self.notes]
+            out["witness"] = in_units(self.witness)
+        out["bounds"] = {name: listed(value) for name, value in asdict(self.bounds).items()}
+        out["notes"] = [asdict(note) for note in self.notes]
         return out
 
     def to_netcdf(self, path: str | Path) -> Path:
@@ -291,4 +285,4 @@ class Backbone(Recorded):
         rows.writerow([f"{name} [{'-' if units[name].unit == '1' else units[name].unit}]" for name in names])
         for k in range(len(self.acceleration)):
             rows.writerow([f"{float(getattr(self, name)[k]):.8g}" for name in names])
-        return write_atomically(Path(path), lambda temporary: temporary.write_text(out.getvalue(), encoding="utf-8"))
+        return write_text(Path(path), out.getvalue())

@@ -2,7 +2,7 @@
 
 import json
 import types
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import Any, TypeVar, Union, cast, get_args, get_origin, get_type_hints
@@ -78,6 +78,18 @@ def listed(values: Any) -> Any:
     plain = array.astype(object)
     plain[np.isnan(array)] = None
     return plain.tolist()
+
+
+def in_units(value: Any, *, without: Collection[str] = ()) -> dict[str, Any]:
+    """Return the array fields of a dataclass for JSON, {name: {"unit", "values"}}.
+
+    Left out are fields that are None and those with a dimension of `without`.
+    """
+    return {
+        name: {"unit": meta.unit, "values": listed(getattr(value, name))}
+        for name, meta in declared(type(value)).items()
+        if getattr(value, name) is not None and not set(without) & set(meta.dims)
+    }
 
 
 def to_group(value: Any) -> Group:

@@ -3,19 +3,20 @@
 import csv
 import io
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
 
 from faying.errors import InputError
-from faying.files import write_atomically
+from faying.files import write_text
+from faying.joint.loads import preload_index
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse, ModelModes
 from faying.notes import Note
 from faying.result.bolts import BoltNumbers
-from faying.result.fields import Recorded, declared, listed, read_whole, variable, write_whole
+from faying.result.fields import Recorded, in_units, read_whole, variable, write_whole
 from faying.typing import Array, Complex, Index
 
 Point = tuple[float, float, float]
@@ -275,8 +276,9 @@ class Result(Recorded):
 
         Raises InputError where there is no such load.
         """
-        index = len(self.loads) - 1 if load is None else int(np.argmin(np.abs(self.loads - load)))
-        if load is not None and abs(self.loads[index] - load) > 1e-3 * abs(self.loads[index]):
+        index = len(self.loads) - 1 if load is None else preload_index(self.loads, load)
+        if index is None:
+            assert load is not None
             raise InputError(
                 f"{source}: no preload of {load / 1e3:g} kN; it holds "
                 f"{', '.join(f'{v / 1e3:g} kN' for v in self.loads)}"
@@ -297,9 +299,7 @@ class Result(Recorded):
         """Return the numbers a reader wants, ready for JSON: {"unit", "values"} in SI; maps and shapes are left out."""
         out: dict[str, Any] = {"title": self.title, "unknowns": self.unknowns, "solver": self.solver}
         out["factor_memory"] = {"unit": "B", "values": self.factor_memory}
-        for name, meta in declared(type(self)).items():
-            if not set(MAPS) & set(meta.dims) and getattr(self, name) is not None:
-                out[name] = {"unit": meta.unit, "values": listed(getattr(self, name))}
+        out |= in_units(self, without=MAPS)
         out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
         out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
         out["beside"] = list(self.beside)
@@ -307,19 +307,14 @@ class Result(Recorded):
         out |= {"damping": self.damping, "surfaces": list(self.surfaces), "laws": list(self.laws)}
         if self.comparison is not None:
             c = self.comparison
-            names = [name for name in declared(Comparison) if getattr(c, name) is not None]
-            out["comparison"] = {"source": c.source, "published_name": c.published_name, "kind": c.kind} | {
-                name: {"unit": declared(Comparison)[name].unit, "values": listed(getattr(c, name))} for name in names
-            }
+            facts = {"source": c.source, "published_name": c.published_name, "kind": c.kind}
+            out["comparison"] = facts | in_units(c)
         if self.bolt_numbers is not None:
-            out["bolt_numbers"] = {
-                name: {"unit": meta.unit, "values": listed(getattr(self.bolt_numbers, name))}
-                for name, meta in declared(BoltNumbers).items()
-            }
+            out["bolt_numbers"] = in_units(self.bolt_numbers)
         if self.hammer is not None:
             out["hammer_test"] = self.hammer.to_dict()
         out["sources"] = list(self.sources)
-        out["notes"] = [{f.name: getattr(note, f.name) for f in fields(note)} for note in self.notes]
+        out["notes"] = [asdict(note) for note in self.notes]
         return out
 
     def to_netcdf(self, path: str | Path) -> Path:
@@ -350,7 +345,7 @@ class Result(Recorded):
 
     def to_csv(self, path: str | Path) -> Path:
         """Write one row for each load and mode, units in the heading; the file appears complete or not at all."""
-        return write_atomically(Path(path), lambda temporary: temporary.write_text(self.csv_text(), encoding="utf-8"))
+        return write_text(Path(path), self.csv_text())
 
     def csv_text(self) -> str:
         """Return the rows of to_csv as text."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from faying.decks.matrices import read_pair
-from faying.files import together, write_atomically
+from faying.files import together, write_atomically, write_text
 from faying.joint.support_check import checked_preload
 from faying.study.case import build
 from faying.study.study import Study
@@ -66,9 +66,7 @@ class Assembled:
 
                 out.append(write_atomically(hidden / f"{name}.npz", fill))
             text = "\n".join(f"{node}.{axis}" for node, axis in self.dofs) + "\n"
-            out.append(
-                write_atomically(hidden / "dofs.txt", lambda temporary: temporary.write_text(text, encoding="ascii"))
-            )
+            out.append(write_text(hidden / "dofs.txt", text))
         return [folder / file.name for file in out]
 
 

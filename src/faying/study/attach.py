@@ -16,6 +16,7 @@ from faying.fe.faces import face_centre
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.joint.joint_law import JointLaw
+from faying.joint.loads import preload_index
 from faying.joint.pairs import NodePairs, consistent, lumped
 from faying.materials import Material
 from faying.study.case import checked_mesh, joint_law, structure_of, surfaces_of
@@ -253,14 +254,14 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
     number = 0
     if preload is not None:
         wanted = units.parse(preload, "N", name="--preload")
-        near = [i for i, load in enumerate(loads) if abs(load - wanted) <= 1e-6 * abs(wanted)]
-        if not near:
+        found = preload_index(loads, wanted)
+        if found is None:
             raise InputError(f"--preload {preload}: the study has {_kilo(loads)}")
-        number = near[0]
+        number = found
     elif len(loads) > 1:
         raise InputError(f"the study has the preloads {_kilo(loads)}; say which with --preload")
     structure = structure_of(study, mesh, surfaces_of(study))
-    found = checked_preload(
+    settled = checked_preload(
         structure,
         structure.assembly(solver=study.modes.solver),
         study.forces(number),
@@ -269,7 +270,7 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
     place = next(i for i, joint in enumerate(structure.joints) if joint.faces == faces)
     return (
         structure.joints[place].law,
-        found.pressures[place],
+        settled.pressures[place],
         f"of the study's bolts at {units.show(loads[number], 'N')}",
     )
 

@@ -10,18 +10,21 @@ import numpy as np
 
 from faying.errors import FayingError, InputError
 from faying.fe.damped import damped_modes
-from faying.fe.modes import Modes, lowest_modes
+from faying.fe.interface import Interface
+from faying.fe.modes import Modes
 from faying.joint.attachments import nearest_node
 from faying.joint.epmc import EpmcCurve, EpmcPoint
+from faying.joint.loads import preload_index
 from faying.joint.microslip import Microslip
 from faying.joint.slip_basis import SlipBasis
-from faying.joint.structure import Structure
-from faying.joint.support_check import check_motions, checked_preload
+from faying.joint.springs import Springs
+from faying.joint.support_check import check_motions
 from faying.result.backbone import Backbone
 from faying.study.backbone_result import Curve, collected
 from faying.study.backbone_store import CurveStore, fingerprint
 from faying.study.case import Case
 from faying.study.keys.backbone import BackboneChoice, Point, check_friction
+from faying.study.modes import modes_of, settled
 from faying.study.study import Study
 from faying.typing import Array
 
@@ -138,8 +141,8 @@ def chosen(study: Study, friction: float | Sequence[float] | None, asked: dict[s
 
 def load_index(study: Study, load: float) -> int:
     """Index of a preload [N] of the study. Raises InputError where it has none such."""
-    index = int(np.argmin(np.abs(np.array(study.loads) - load)))
-    if abs(study.loads[index] - load) > 1e-3 * abs(load):
+    index = preload_index(study.loads, load)
+    if index is None:
         known = ", ".join(f"{value / 1e3:g} kN" for value in study.loads)
         raise InputError(f"no preload of {load / 1e3:g} kN in the study; it has {known}")
     return index
@@ -258,7 +261,7 @@ def _bases(case: Case, choice: BackboneChoice, indices: Sequence[int], progress:
     bases: list[SlipBasis] = []
     for index in indices:
         progress.stage(f"preload {study.loads[index] / 1e3:g} kN", 0.2)
-        preload = checked_preload(structure, problem, study.forces(index), order=study.order)
+        preload = settled(case, index, problem)
         springs = structure.springs(preload.pressures)
         for joint, own in zip(structure.joints, springs, strict=True):
             if not np.any(own.k_t > 0):
@@ -275,23 +278,18 @@ def _bases(case: Case, choice: BackboneChoice, indices: Sequence[int], progress:
                 structure=structure,
                 preload=preload,
                 springs=springs,
-                modes=_modes(case, structure, springs, choice.mode),
+                modes=_modes(case, springs, choice.mode),
                 mode=choice.mode,
             )
         )
     return bases
 
 
-def _modes(case: Case, structure: Structure, springs: Any, mode: int) -> Modes:
-    stiffness, _ = structure.joined(springs)
-    mass = structure.vibrating[1]
-    most = int(np.count_nonzero(mass.diagonal() > 0)) // 2
-    wanted = max(min(mode + EXTRA_MODES, most - structure.rigid_count), 1)
-    solver = case.study.modes.solver
-    modes = lowest_modes(
-        stiffness, mass, structure.rigid_count + wanted, shift_frequency=case.shift_frequency, solver=solver
-    )
-    check_motions(structure, modes)
+def _modes(case: Case, springs: Sequence[Springs[Interface]], mode: int) -> Modes:
+    most = int(np.count_nonzero(case.structure.vibrating[1].diagonal() > 0)) // 2
+    wanted = max(min(mode + EXTRA_MODES, most - case.rigid_count), 1)
+    modes, *_ = modes_of(case, springs, case.rigid_count + wanted)
+    check_motions(case.structure, modes)
     return modes
 
 
@@ -350,7 +348,7 @@ class _Prepared:
         """Ratio to critical [-] that is added."""
         if self.choice.rest_damping != "law":
             return float(self.choice.rest_damping)
-        if not any(joint.law.predicts_loss for joint in self.case.structure.joints):
+        if not self.case.structure.predicts_loss:
             raise InputError('rest_damping = "law": no law of this study predicts a loss; give a number such as 0.001')
         return self.law_damping()
 

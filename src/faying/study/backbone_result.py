@@ -113,8 +113,7 @@ def _along(curve: Curve, points: Sequence[EpmcPoint]) -> dict[str, Any]:
 
 def _bolt_forces(curve: Curve, points: Sequence[EpmcPoint]) -> Array:
     """Amplitude of each bolt's force [N] (points, bolts): half of its range in a cycle."""
-    bolts = curve.case.structure.fitted_bolts
-    rows = np.array([[bolt.tension(column) for column in curve.basis.basis.vectors.T] for bolt in bolts])
+    rows = curve.case.structure.pulls @ curve.basis.basis.vectors
     phase = np.linspace(0, 2 * np.pi, 64, endpoint=False)
     harmonics = range(1, curve.choice.harmonics + 1)
     waves = np.stack([wave(h * phase) for h in harmonics for wave in (np.cos, np.sin)])
@@ -207,7 +206,7 @@ def _notes(curve: Curve, bounds: ErrorBounds, witness: Witness | None) -> list[N
             "critical: its joints open and close rather than slip"
         )
         out.append(Note(code="backbone-no-slip", load=load, text=text))
-    if curve.rest_damping == 0 and any(joint.law.predicts_loss for joint in case.structure.joints):
+    if curve.rest_damping == 0 and case.structure.predicts_loss:
         text = (
             "the damping is that of slip alone; the laws predict a loss at rest, too, which is left out so that slip "
             'does not count twice: rest_damping = "law" adds it'

@@ -99,7 +99,7 @@ def beside_fields(besides: Sequence[Beside], loads: int, modes: int) -> dict[str
     }
     for beside in besides:
         joints, states = () if beside.case is None else beside.case.structure.joints, beside.states
-        lossless = not any(joint.law.predicts_loss for joint in joints)
+        lossless = beside.case is None or not beside.case.structure.predicts_loss
         found = [
             np.stack([s.damped.frequencies for s in states]) if states else nothing,
             nothing if lossless else np.stack([s.damped.loss_factors for s in states]),

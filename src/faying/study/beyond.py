@@ -10,11 +10,11 @@ from faying.contact.half_space import HalfSpace
 from faying.errors import FayingError
 from faying.fe.damped import DampedModes, damped_modes
 from faying.fe.interface import Interface
-from faying.fe.modes import lowest_modes
 from faying.joint.springs import Springs
 from faying.joint.structure import Joint, Structure
 from faying.notes import Note
 from faying.study.case import Case, materials_at
+from faying.study.modes import modes_of
 from faying.typing import Array, Mask
 
 STIFF = 1e3  # times the stiffness of the parts over their size: what counts as bonded
@@ -43,13 +43,15 @@ def bonded_beyond(case: Case, load: float, springs: Sequence[Springs[Interface]]
         return None
     parts = stiff_as_bonded(structure)
     bonded = [_bonded(s, mask, parts) for s, mask in zip(springs, past, strict=True)]
-    stiffness, loss = structure.joined(bonded, viscous=study.modes.damping == "viscous")
-    mass = structure.vibrating[1]
-    modes = lowest_modes(
-        stiffness, mass, case.mode_count, shift_frequency=case.shift_frequency, solver=study.modes.solver
-    )
+    modes, stiffness, loss = modes_of(case, bonded)
     found = damped_modes(
-        modes, stiffness, mass, loss, rigid=case.rigid_count, count=study.modes.count, kind=study.modes.damping
+        modes,
+        stiffness,
+        structure.vibrating[1],
+        loss,
+        rigid=case.rigid_count,
+        count=study.modes.count,
+        kind=study.modes.damping,
     )
     notes = _notes(case, load, springs, past, found.frequencies / held.frequencies - 1)
     return Beyond(frequencies=found.frequencies, loss_factors=found.loss_factors, notes=notes)

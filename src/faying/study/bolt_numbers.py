@@ -24,10 +24,11 @@ NAN = float("nan")
 CARRIES = 0.01  # of a bolt's force: a joint that carries less of it plays no part in its embedding
 
 
-def bolt_numbers(case: Case, states: Sequence[State]) -> BoltNumbers | None:
+def bolt_numbers(case: Case, states: Sequence[State], shapes: Sequence[Array]) -> BoltNumbers | None:
     """Find the numbers of the bolts of a case under each load; None where it has no bolts.
 
-    Raises NotConverged where what a bolt clamps has no stiffness against its force.
+    shapes: of the modes (m, nodes, 3), mass-normalised, under each load. Raises NotConverged where what a bolt clamps
+    has no stiffness against its force.
     """
     structure = case.structure
     bolts = structure.fitted_bolts
@@ -37,7 +38,7 @@ def bolt_numbers(case: Case, states: Sequence[State]) -> BoltNumbers | None:
     found = [_clamped(structure, state) for state in states]
     bolt, members = (np.stack([getattr(c, name) for c in found]) for name in ("bolt", "members"))
     forces = np.array([s.preload.bolt_forces for s in states])
-    motion = np.stack([_modal_forces(structure, state) for state in states])
+    motion = np.stack([_modal_forces(structure, one) for one in shapes])
     omega = 2 * np.pi * np.stack([s.damped.frequencies for s in states])
     embedding = np.stack([_embedding(structure, c, s) for c, s in zip(found, states, strict=True)], axis=1)
     guide = np.array([_guide(case, stack) for stack in stacks])
@@ -63,12 +64,12 @@ def _clamped(structure: Structure, state: State) -> Clamping:
     return clamping(structure, stiffness, state.modes, state.springs)
 
 
-def _modal_forces(structure: Structure, state: State) -> Array:
-    """Force [N/m] in each bolt (m, b) while the point that moves most in a mode moves by 1 m."""
-    shapes = state.damped.real_shapes(structure.vibrating[1])
-    most = np.linalg.norm(shapes.reshape(-1, 3, shapes.shape[1]), axis=1).max(axis=0)
-    pull = np.stack([b.pull if b.rigidity else np.full(len(b.pull), NAN) for b in structure.fitted_bolts])
-    return np.asarray((pull @ shapes).T / most[:, None])
+def _modal_forces(structure: Structure, shapes: Array) -> Array:
+    """Force [N/m] in each bolt (m, b) while the point that moves most in a mode (m, nodes, 3) moves by 1 m."""
+    most = np.linalg.norm(shapes, axis=2).max(axis=1)
+    forces = shapes.reshape(len(shapes), -1) @ structure.pulls.T
+    rigid = [bool(bolt.rigidity) for bolt in structure.fitted_bolts]
+    return np.asarray(np.where(rigid, forces, NAN) / most[:, None])
 
 
 def _least_area(structure: Structure, index: int) -> float:

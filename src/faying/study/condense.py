@@ -11,10 +11,11 @@ from faying.decks.deck import CondensedDeck
 from faying.decks.system import System
 from faying.errors import InputError
 from faying.joint.condensed import CondensedJoint, condensed_modes
+from faying.joint.loads import preload_index
 from faying.joint.support_check import check_motions
 from faying.measured.mac import mac
 from faying.study.case import Case, Progress, Report
-from faying.study.solve import modes_of, settled
+from faying.study.modes import modes_of, settled
 from faying.study.study import Study
 from faying.typing import Array
 
@@ -146,13 +147,7 @@ def condense(
         InputError, ReadError: what the study gives cannot be used, no such joint or preload, an open joint.
         NotConverged: an iteration stops short.
     """
-    names = [one.name for one in study.joints]
-    if joint is None and len(names) > 1:
-        raise InputError(f"the study has the joints {', '.join(map(repr, names))}; say which with --joint NAME")
-    if joint is not None and joint not in names:
-        raise InputError(f"no joint {joint!r}; the study has {', '.join(map(repr, names))}")
-    number = 0 if joint is None else names.index(joint)
-    index = _load(study, preload)
+    number, index = _joint(study, joint), _load(study, preload)
     progress = Progress(STAGES + index, report)
     case = Case.of(study, progress)
     structure = case.structure
@@ -168,38 +163,47 @@ def condense(
     elastic = slice(case.rigid_count, case.rigid_count + study.modes.count)
     shapes, frequencies = modes.shapes[:, elastic], modes.frequencies[elastic]
     lost = np.einsum("im,im->m", shapes, springs[number].loss() @ shapes)
-    found: dict[str, tuple[Array, Array]] = {}
-    ties: tuple[Literal["mean"], Literal["rigid"]] = ("mean", "rigid")
-    for tie in ties:
+
+    def tied(tie: Literal["mean", "rigid"]) -> tuple[Array, Array]:
+        """Frequencies and loss factors of these modes with the joint condensed; NaN where none is like them."""
         progress.begin(f"modes with {tie} ties")
         other = condensed_modes(structure, springs, number, elastic.stop + COUNTED, tie=tie, solver=study.modes.solver)
         at = _partners(shapes, other.shapes, structure.vibrating[1])
-        missing = at < 0
-        found[tie] = (
-            np.where(missing, np.nan, other.frequencies[at]),
-            np.where(missing, np.nan, other.loss_factors[at]),
-        )
+        found, loss = (np.where(at < 0, np.nan, values[at]) for values in (other.frequencies, other.loss_factors))
+        return found, loss
+
+    mean, mean_loss = tied("mean")
+    rigid, _ = tied("rigid")
     return Condensed(
         study=study.title,
-        name=names[number],
+        name=study.joints[number].name,
         load=study.loads[index],
         joint=made,
         points=np.stack([made.point if p is None else p for p in points]),
         frequencies=frequencies,
         loss=lost / (2 * np.pi * frequencies) ** 2,
-        mean=found["mean"][0],
-        rigid=found["rigid"][0],
-        mean_loss=found["mean"][1],
+        mean=mean,
+        rigid=rigid,
+        mean_loss=mean_loss,
         lossless=not structure.joints[number].law.predicts_loss,
     )
+
+
+def _joint(study: Study, name: str | None) -> int:
+    names = [one.name for one in study.joints]
+    if name is None and len(names) > 1:
+        raise InputError(f"the study has the joints {', '.join(map(repr, names))}; say which with --joint NAME")
+    if name is not None and name not in names:
+        raise InputError(f"no joint {name!r}; the study has {', '.join(map(repr, names))}")
+    return 0 if name is None else names.index(name)
 
 
 def _load(study: Study, preload: str | None) -> int:
     if preload is None:
         return len(study.loads) - 1
     wanted = units.parse(preload, "N", name="--preload")
-    index = int(np.argmin(np.abs(np.array(study.loads) - wanted)))
-    if abs(study.loads[index] - wanted) > 1e-6 * wanted:
+    index = preload_index(study.loads, wanted)
+    if index is None:
         loads = ", ".join(f"{load / 1e3:g} kN" for load in study.loads)
         raise InputError(f"--preload {preload}: the study has {loads}")
     return index

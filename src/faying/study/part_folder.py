@@ -10,7 +10,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from faying.errors import InputError
-from faying.files import write_atomically
+from faying.files import write_atomically, write_text
 
 
 class PartFolder:
@@ -41,7 +41,7 @@ class PartFolder:
                 raise InputError(f"cannot make {self.path}: {fault.strerror}; choose another output") from None
             self._lock = locked(self.path, what)
             text = json.dumps({"fingerprint": fingerprint, **(facts or {})})
-            write_atomically(label, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+            write_text(label, text)
             return
         self._lock = locked(self.path, what)
         try:

@@ -55,10 +55,8 @@ class LoadedStructure:
             )
             for side in (choice.inputs, choice.outputs)
         )
-        pulls = np.zeros((mesh.unknowns, 0))
-        if self.structure.fitted_bolts:
-            pulls = np.stack([bolt.pull for bolt in self.structure.fitted_bolts], axis=1)
-        found = self._at(np.linspace(choice.first, choice.last, choice.points), outputs, inputs, pulls)
+        lines = np.linspace(choice.first, choice.last, choice.points)
+        found = self._at(lines, outputs, inputs, self.structure.pulls.T)
         count = len(outputs[0])
         answer = ResponseAtLoad(
             frequencies=found.frequencies,

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +12,10 @@ import numpy as np
 
 from faying.errors import NotConverged
 from faying.fe.constraint import constrain
-from faying.fe.modes import Modes, lowest_modes
+from faying.fe.modes import Modes
 from faying.fe.solve import chosen
-from faying.joint.structure import bond
+from faying.joint.structure import Structure, bond
 from faying.joint.support_check import RIGID_BELOW
-from faying.measured.mac import mac
-from faying.measured.pairing import by_track, changes, follow, pair_frequencies
 from faying.notes import Note
 from faying.result import BoltNumbers, Comparison, Provenance, Receptance, Result
 from faying.study.beside import Beside, beside_fields, solve_beside
@@ -27,9 +24,11 @@ from faying.study.bolt_numbers import bolt_numbers, conductances
 from faying.study.case import Case, Progress, Report
 from faying.study.findings import against_exact_contact, falling
 from faying.study.form_band import form_band
+from faying.study.modes import modes_with
 from faying.study.solve import State, solve
 from faying.study.study import Study
-from faying.typing import Array, Index
+from faying.study.tracks import compared, encounters, from_load_to_load, shapes_of, with_first
+from faying.typing import Array
 
 VERSIONS = ("faying", "numpy", "scipy", "netgen-mesher", "pypardiso", "mkl")
 NOT_ZERO = 1e-2  # Hz: a rigid motion above it is noted
@@ -75,22 +74,20 @@ def stage_count(study: Study) -> int:
 
 def bounds(case: Case) -> tuple[Array, Array, list[Note]]:
     """Frequencies [Hz] of the elastic modes with the faces of every joint apart, and with them bonded; notes."""
-    structure, shift, solver = case.structure, case.shift_frequency, case.study.modes.solver
-    K, M = structure.vibrating
-    free = lowest_modes(K, M, case.mode_count, shift_frequency=shift, solver=solver)
+    free = modes_with(case, *case.structure.vibrating)
     bonded, notes = _bonded(case)
     elastic = slice(case.rigid_count, case.rigid_count + case.study.modes.count)
-    still = np.where(free.frequencies < RIGID_BELOW * shift, 0.0, free.frequencies)
+    still = np.where(free.frequencies < RIGID_BELOW * case.shift_frequency, 0.0, free.frequencies)
     return still[elastic], bonded.frequencies[elastic], notes
 
 
 def _bonded(case: Case) -> tuple[Modes, list[Note]]:
-    structure, shift, solver = case.structure, case.shift_frequency, case.study.modes.solver
+    structure = case.structure
     K, M = structure.vibrating
     merge = structure.bonded()
     if merge is not None and not len(structure.fixed):
         K, M = ((merge.T @ matrix @ merge).tocsr() for matrix in (K, M))
-        return lowest_modes(K, M, case.mode_count, shift_frequency=shift, solver=solver), []
+        return modes_with(case, K, M), []
     apart = [joint.name for joint in structure.joints if bond(structure.mesh, [joint.faces]) is None]
     why = f"the faces of {', '.join(apart)} do not match node for node" if apart else "supports hold some of the nodes"
     text = f"{why}: the bonded modes use springs a thousand times as stiff as the parts in place of bonded faces"
@@ -98,8 +95,7 @@ def _bonded(case: Case) -> tuple[Modes, list[Note]]:
     for joint in structure.joints:
         springs = joint.interface.springs(*2 * (np.full(len(joint.interface.weights), stiff),))
         K = K + constrain(springs, structure.fixed, 0.0)
-    modes = lowest_modes(K, M, case.mode_count, shift_frequency=shift, solver=solver)
-    return modes, [Note(code="bonded-by-springs", text=text)]
+    return modes_with(case, K, M), [Note(code="bonded-by-springs", text=text)]
 
 
 def collect(
@@ -118,41 +114,30 @@ def collect(
         besides: the same under other laws.
     """
     study, structure = case.study, case.structure
-    nodes, triangles = structure.outline()
-    shapes = _shapes(case, states)
-    comparison, more = _compare(case, states, shapes)
+    shapes = shapes_of(case, states)
+    steps = from_load_to_load(case, states)
+    comparison, more = compared(case, states, shapes, steps)
     if comparison is not None and besides:
         comparison = replace(comparison, beside=np.stack([_predicted(b, comparison) for b in besides]))
-    lossless = not any(joint.law.predicts_loss for joint in structure.joints)
+    lossless = not structure.predicts_loss
     rigid = np.max([s.modes.frequencies[: case.rigid_count] for s in states], axis=0)
     every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more]
-    every += _encounters(case, states)
+    every += encounters(states, steps)
     every += [*(note for b in besides for note in b.notes), *_closing_notes(study, rigid)]
-    bolts, more = _bolts(case, states)
+    bolts, more = _bolts(case, states, shapes)
     every += more
     result = Result(
         title=study.title,
         loads=case.loads,
-        frequencies=np.stack([s.damped.frequencies for s in states]),
-        loss_factors=np.stack([np.where(lossless, np.nan, s.damped.loss_factors) for s in states]),
-        loss_error=np.stack([s.damped.error for s in states]),
         free=bounds[0],
         bonded=bounds[1],
-        low=_stacked([s.low for s in states]),
-        high=_stacked([s.high for s in states]),
-        **_bonded_beyond(states, lossless),
-        outside_share=np.array([s.outside_share for s in states]),
-        beyond_share=np.array([s.beyond_share for s in states]),
-        **beside_fields(besides, len(states), len(bounds[0])),
         rigid=rigid,
-        mac=_macs(case, states),
+        mac=with_first(case, states, steps),
+        **_at_loads(states, lossless),
+        **_bonded_beyond(states, lossless),
         **_at_points(states),
-        bolt_forces=np.array([s.preload.bolt_forces for s in states]),
-        imbalance=np.array([s.preload.imbalance for s in states]),
-        newton_steps=np.array([s.preload.newton_steps for s in states]),
-        outline=structure.mesh.points[nodes],
-        triangles=triangles,
-        shapes=np.stack([shape[:, nodes] for shape in shapes]),
+        **_outline(structure, shapes),
+        **beside_fields(besides, len(states), len(bounds[0])),
         joints=tuple(j.name for j in structure.joints),
         bolts=tuple(bolt.name for bolt in study.bolts),
         unknowns=structure.mesh.unknowns,
@@ -176,9 +161,9 @@ def collect(
     return replace(result, hammer=case.hammer.beside(result, full))
 
 
-def _bolts(case: Case, states: Sequence[State]) -> tuple[BoltNumbers | None, list[Note]]:
+def _bolts(case: Case, states: Sequence[State], shapes: Sequence[Array]) -> tuple[BoltNumbers | None, list[Note]]:
     try:
-        return bolt_numbers(case, states), []
+        return bolt_numbers(case, states, shapes), []
     except NotConverged as fault:
         return None, [Note(code="bolt-numbers", text=f"no compliance and load factor of the bolts: {fault}")]
 
@@ -191,10 +176,37 @@ def _stacked(rows: Sequence[Array | None]) -> Array | None:
 def _predicted(beside: Beside, comparison: Comparison) -> Array:
     """Frequencies [Hz] that another law predicts of the test's modes; NaN where it has no answer."""
     if beside.case is not None:
-        found, _ = _compare(beside.case, beside.states, _shapes(beside.case, beside.states))
+        case, states = beside.case, beside.states
+        found, _ = compared(case, states, shapes_of(case, states), from_load_to_load(case, states))
         if found is not None:
             return found.predicted
     return np.full(comparison.frequencies.shape, np.nan)
+
+
+def _at_loads(states: Sequence[State], lossless: bool) -> dict[str, Any]:
+    """Fields of the result that have a value or a row for each load."""
+    return {
+        "frequencies": np.stack([s.damped.frequencies for s in states]),
+        "loss_factors": np.stack([np.where(lossless, np.nan, s.damped.loss_factors) for s in states]),
+        "loss_error": np.stack([s.damped.error for s in states]),
+        "low": _stacked([s.low for s in states]),
+        "high": _stacked([s.high for s in states]),
+        "outside_share": np.array([s.outside_share for s in states]),
+        "beyond_share": np.array([s.beyond_share for s in states]),
+        "bolt_forces": np.array([s.preload.bolt_forces for s in states]),
+        "imbalance": np.array([s.preload.imbalance for s in states]),
+        "newton_steps": np.array([s.preload.newton_steps for s in states]),
+    }
+
+
+def _outline(structure: Structure, shapes: Sequence[Array]) -> dict[str, Any]:
+    """Fields of the result on the outer surface."""
+    nodes, triangles = structure.outline()
+    return {
+        "outline": structure.mesh.points[nodes],
+        "triangles": triangles,
+        "shapes": np.stack([shape[:, nodes] for shape in shapes]),
+    }
 
 
 def _at_points(states: Sequence[State]) -> dict[str, Any]:
@@ -243,18 +255,6 @@ def _response(study: Study, states: Sequence[State]) -> Receptance | None:
     )
 
 
-def _macs(case: Case, states: Sequence[State]) -> Array:
-    """MAC (load, m, m), weighted by mass, of the modes at the first load with those at each."""
-    mass = case.structure.vibrating[1]
-    return np.stack([mac(states[0].damped.shapes.T, s.damped.shapes.T, mass) for s in states])
-
-
-def _shapes(case: Case, states: Sequence[State]) -> list[Array]:
-    """Shapes (m, nodes, 3) at each load: those of the complex modes, for real modes that lie close mix."""
-    mass = case.structure.vibrating[1]
-    return [s.damped.real_shapes(mass).T.reshape(len(s.damped.frequencies), -1, 3) for s in states]
-
-
 def _closing_notes(study: Study, rigid: Array) -> list[Note]:
     out = []
     if len(rigid) and rigid.max() > NOT_ZERO:
@@ -266,73 +266,6 @@ def _closing_notes(study: Study, rigid: Array) -> list[Note]:
             "root of the number of points, so loss factors depend on the mesh"
         )
         out.append(Note(code="viscous", text=text))
-    return out
-
-
-def _compare(case: Case, states: Sequence[State], shapes: Sequence[Array]) -> tuple[Comparison | None, list[Note]]:
-    """Pair the test's frequencies with the computed modes, followed over the loads; see `pair_frequencies`."""
-    test = case.study.test
-    if test is None:
-        return None, []
-    measured = np.array(test.frequencies)
-    axis = np.array(test.direction) / np.linalg.norm(test.direction)
-    points = case.structure.mesh.points
-    here = [int(np.argmin(np.linalg.norm(points - np.array(p), axis=1))) for p in test.points]
-    tracks = follow(_successive(case, states)) if len(states) > 1 else np.arange(len(shapes[0]))[None]
-    motion = np.array([np.abs(found[:, here] @ axis).max(axis=1) for found in shapes])
-    visibility = by_track(tracks, motion / motion.max(axis=1, keepdims=True))
-    frequencies = by_track(tracks, np.stack([s.damped.frequencies for s in states]))
-    found = pair_frequencies(measured, frequencies, visibility, threshold=test.threshold)
-    none = found < 0
-    comparison = Comparison(
-        source=test.source,
-        frequencies=measured,
-        predicted=np.where(none, np.nan, frequencies[:, found]),
-        modes=np.where(none, -1, tracks[:, found]),
-        published=None if test.published is None else np.array(test.published),
-        published_name=test.published_name,
-        kind=test.kind,
-    )
-    return comparison, _unmatched(found, measured, frequencies, visibility, test.threshold)
-
-
-def _unmatched(found: Index, measured: Array, frequencies: Array, visibility: Array, threshold: float) -> list[Note]:
-    """Say which modes of the test, and which visible ones of the model among them, have no partner."""
-    out = []
-    lost = np.flatnonzero(found < 0)
-    if len(lost):
-        which = ", ".join(f"{k + 1} ({measured[0, k]:.1f} Hz)" for k in lost)
-        text = (
-            f"test mode {which}: no computed mode that moves at the points of the test lies within 30 % of it; it is "
-            "left out. Raise modes.count, or look whether the test has a mode of something else"
-        )
-        out.append(Note(code="test-modes", text=text))
-    inside = (frequencies[0] > 0.97 * measured.min()) & (frequencies[0] < 1.03 * measured.max())
-    rest = [k for k in np.flatnonzero(inside & (visibility.max(axis=0) >= threshold)) if k not in found]
-    if rest:
-        which = ", ".join(f"{k + 1} ({frequencies[0, k]:.1f} Hz)" for k in rest)
-        text = f"computed mode {which} moves at the points of the test, which lists none for it"
-        out.append(Note(code="model-modes", text=text))
-    return out
-
-
-def _successive(case: Case, states: Sequence[State]) -> list[Array]:
-    """MAC, weighted by mass, of the modes at each load with those at the next."""
-    mass = case.structure.vibrating[1]
-    return [mac(a.damped.shapes.T, b.damped.shapes.T, mass) for a, b in pairwise(states)]
-
-
-def _encounters(case: Case, states: Sequence[State]) -> list[Note]:
-    """Say which modes cross and which couple from one load to the next."""
-    out = []
-    for code, word, found in zip(
-        ("modes-cross", "modes-couple"), ("cross", "couple"), changes(_successive(case, states)), strict=True
-    ):
-        for step in sorted({k for k, _, _ in found}):
-            pairs = ", ".join(f"{i + 1} and {j + 1}" for k, i, j in found if k == step)
-            before, after = (f"{states[step + k].load / 1e3:g} kN" for k in (0, 1))
-            text = f"modes {pairs} {word} between {before} and {after} (MAC weighted by mass)"
-            out.append(Note(code=code, load=states[step + 1].load, text=text))
     return out
 
 

@@ -2,21 +2,22 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Literal
 
 from faying.fe.damped import DampedModes, damped_modes
 from faying.fe.interface import Interface
-from faying.fe.modes import Modes, lowest_modes
+from faying.fe.modes import Modes
 from faying.fe.nearby import nearby_modes
 from faying.joint.equilibrium import PreloadState
 from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
 from faying.joint.structure import Structure
-from faying.joint.support_check import check_motions, checked_preload, open_joints
+from faying.joint.support_check import check_motions, open_joints
 from faying.measured.model import FullResponse
 from faying.notes import Note
 from faying.study.beyond import Beyond, bonded_beyond, past_end
 from faying.study.case import Case, Progress
+from faying.study.modes import modes_of, settled
 from faying.study.response import LoadedStructure, ResponseAtLoad
 from faying.study.strength import pressure_notes
 from faying.typing import Array, Mask
@@ -89,17 +90,7 @@ def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress, 
     loaded = LoadedStructure(
         study=study, structure=structure, modes=modes, damped=damped, stiffness=stiffness, mass=mass, loss=loss
     )
-    response = test_response = None
-    notes: list[Note] = []
-    if study.response is not None:
-        progress.begin(f"frequency response at {load / 1e3:g} kN")
-        response, more = loaded.response(study.response)
-        notes += more
-    hammer = case.hammer
-    if hammer is not None and case.test_points is not None and number == hammer.choice.load and hammer.has_frf:
-        progress.begin("frequency response at the points of the test")
-        test_response, more = hammer.response(loaded, case.test_points)
-        notes += more
+    response, test_response, notes = _responses(case, number, loaded, progress)
     beyond = bonded_beyond(case, load, springs, damped)
     return State(
         load=load,
@@ -125,23 +116,22 @@ def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress, 
     )
 
 
-def settled(case: Case, number: int, problem: PreloadProblem) -> PreloadState:
-    """The preload of a case at one of its loads, counted from 0."""
-    return checked_preload(case.structure, problem, case.study.forces(number), order=case.study.order)
-
-
-def modes_of(case: Case, springs: tuple[Springs[Interface], ...]) -> tuple[Modes, Any, Any]:
-    """Real modes of a case with springs on its joints, and the stiffness and loss that they belong to."""
-    structure, study = case.structure, case.study
-    stiffness, loss = structure.joined(springs, viscous=study.modes.damping == "viscous")
-    modes = lowest_modes(
-        stiffness,
-        structure.vibrating[1],
-        case.mode_count,
-        shift_frequency=case.shift_frequency,
-        solver=study.modes.solver,
-    )
-    return modes, stiffness, loss
+def _responses(
+    case: Case, number: int, loaded: LoadedStructure, progress: Progress
+) -> tuple[ResponseAtLoad | None, FullResponse | None, list[Note]]:
+    """What [response] asks for and what the points of a hammer test need, at one of the loads, with notes."""
+    study, hammer = case.study, case.hammer
+    response = test_response = None
+    notes: list[Note] = []
+    if study.response is not None:
+        progress.begin(f"frequency response at {study.loads[number] / 1e3:g} kN")
+        response, more = loaded.response(study.response)
+        notes += more
+    if hammer is not None and case.test_points is not None and number == hammer.choice.load and hammer.has_frf:
+        progress.begin("frequency response at the points of the test")
+        test_response, more = hammer.response(loaded, case.test_points)
+        notes += more
+    return response, test_response, notes
 
 
 def _share(springs: Sequence[Springs[Interface]], masks: Sequence[Mask]) -> float:

@@ -22,6 +22,7 @@ from faying.study.keys.solution import ModesChoice, ResponseChoice, read_order
 from faying.study.keys.support import read_mass, read_support
 from faying.study.keys.surface import SurfaceChoice
 from faying.study.keys.test import HammerChoice, TestChoice, read_test
+from faying.study.keys.uncertain import Known, UncertainChoice, lifted, read_uncertain
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,6 +36,7 @@ class Study:
         geometry, surface, law, joints, bolts, supports, masses, modes, response, test, hammer: the tables of the file.
         backbone: which curve over amplitude is asked for; None where the file does not say.
         beside: other laws and surfaces whose modes stand beside those of the study.
+        uncertain: which numbers scatter; None where the file does not say.
         order: the order of tightening as indices of bolts, pass after pass; None where all are pulled at once.
     """
 
@@ -56,6 +58,7 @@ class Study:
     hammer: HammerChoice | None = None
     backbone: BackboneChoice | None = None
     beside: tuple[BesideChoice, ...] = ()
+    uncertain: UncertainChoice | None = None
     text: str = field(default="", repr=False)
     files: tuple[Path, ...] = ()
 
@@ -94,6 +97,7 @@ class Study:
     def from_dict(cls, data: dict[str, Any], *, folder: Path, where: str = "study", text: str = "") -> Self:
         """Check a study given as nested dictionaries (as TOML gives them); file names are relative to `folder`."""
         faults = Faults(folder=folder)
+        data, inside = lifted(data)
         top = Table(data, "", faults)
         title = top.text("title", "untitled")
         materials = read_materials(top)
@@ -124,6 +128,15 @@ class Study:
         response = ResponseChoice.of(top.table("response"))
         backbone = BackboneChoice.of(top.table("backbone"))
         test, hammer = read_test(top, max((b.preload for b in bolts if b.preload), key=len, default=()))
+        known = Known(
+            joints=joints,
+            bolts=[bolt.name for bolt in bolts],
+            loads=max(counts, default=1),
+            materials=materials,
+            parts=parts,
+        )
+        scatter = top.table("uncertain")
+        uncertain = read_uncertain(None if scatter is None else scatter.data, inside, known, faults)
         top.close()
         faults.raise_if_any(where)
         return cls(
@@ -145,6 +158,7 @@ class Study:
             hammer=hammer,
             backbone=backbone,
             beside=beside,
+            uncertain=uncertain,
             text=text,
             files=tuple(dict.fromkeys(faults.files)),
         )

@@ -6,7 +6,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from faying.errors import FayingError, InputError
-from faying.files import write_atomically
+from faying.files import write_atomically, write_text
 from faying.surface.scan import Scan
 
 TEXT = """# A Faying study. Quantities are text with a unit; plain numbers have no dimension.
@@ -168,7 +168,7 @@ def write(study: Path, *, force: bool = False) -> list[Path]:
     return [
         step if kept else write_atomically(step, blocks),
         scan if measured else write_atomically(scan, surface),
-        write_atomically(study, lambda path: path.write_text(text, encoding="utf-8")),
+        write_text(study, text),
     ]
 
 

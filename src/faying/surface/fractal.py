@@ -7,7 +7,7 @@ import numpy as np
 
 from faying.errors import FayingError, InputError
 from faying.surface.convention import NAMES, check_dimension, cut_factor, implied_Rq, prefactor
-from faying.surface.estimators.base import Estimate
+from faying.surface.estimators.base import Estimate, Scatter
 from faying.surface.estimators.table import ESTIMATORS, METHODS
 from faying.surface.form import Prepared, prepared
 from faying.surface.roughness import roughness
@@ -36,6 +36,7 @@ class FractalFit:
         spikes: spikes that were filled in.
         bias: what a self-test took off D [-], None without one.
         warnings: what the user ought to know.
+        scatter: of D and G together, where the estimator states their covariance.
     """
 
     method: str
@@ -54,6 +55,7 @@ class FractalFit:
     spikes: int
     bias: float | None = None
     warnings: tuple[str, ...] = ()
+    scatter: Scatter | None = None
 
     @property
     def implied_Ra(self) -> float:
@@ -200,6 +202,7 @@ def result(
         spikes=facts.spikes,
         bias=bias,
         warnings=tuple(words),
+        scatter=e.scatter,
     )
 
 

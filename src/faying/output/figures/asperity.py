@@ -4,7 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from faying.asperity_fe.drive import AsperityCase, AsperityResult
+from faying.asperity_fe.drive import AsperityCase
+from faying.asperity_fe.result import AsperityResult
 from faying.materials import RIGID, ContactPair
 from faying.output.figures.law import figure
 

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from faying.errors import InputError
+from faying.joint.loads import preload_index
 from faying.study.keys.reader import Table, direction, point, quantity
 
 QUANTITIES = ("receptance", "mobility", "accelerance")
@@ -98,11 +99,11 @@ def _listed(table: Table, loads: int) -> TestChoice:
 def _file(table: Table, loads: tuple[float, ...]) -> HammerChoice:
     def load(value: Any, name: str) -> int:
         wanted = quantity(value, "N", name)
-        near = [i for i, known in enumerate(loads) if abs(known - wanted) <= 1e-3 * known]
-        if not near:
+        index = preload_index(loads, wanted)
+        if index is None:
             known = ", ".join(f"{v / 1e3:g} kN" for v in loads)
             raise InputError(f"{name} = {wanted / 1e3:g} kN is no preload of the study; its first bolt has {known}")
-        return near[0]
+        return index
 
     def share(value: Any, name: str, most: float) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= most:

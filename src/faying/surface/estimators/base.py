@@ -7,13 +7,39 @@ from typing import final
 
 import numpy as np
 
-from faying.surface.convention import G_from_density
+from faying.surface.convention import G_from_density, density
 from faying.surface.form import Prepared
 from faying.surface.scan import Profile, Scan
 from faying.typing import Array
 
 Z95 = 1.959963984540054  # two-sided 95 % point of the normal distribution
 Limits = tuple[float, float] | None
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class Scatter:
+    """How far D and the level of the spectrum may be off together.
+
+    D and G are strongly correlated: what the heights fix is the level of the spectrum S in the middle of the band.
+
+    Args:
+        pivot: Frequency [1/m] at which the level is taken.
+        covariance: Of (ln S(pivot), D), (2, 2).
+        c: Prefactor of the convention [-].
+    """
+
+    pivot: float
+    covariance: tuple[tuple[float, float], tuple[float, float]]
+    c: float
+
+    def level(self, D: float, G: float) -> float:
+        """ln S(pivot) [ln m3] of D and G [m]."""
+        return log(density(D, G, self.c)) - (7 - 2 * D) * log(self.pivot)
+
+    def G(self, D: float, level: float) -> float:
+        """G [m] of D and ln S(pivot); no linearisation, since ln G is steep near D = 2."""
+        return G_from_density(D, level + (7 - 2 * D) * log(self.pivot), self.c)
 
 
 @final
@@ -29,6 +55,7 @@ class Estimate:
     noise: float = 0.0
     misfit: float = 1.0
     notes: tuple[str, ...] = ()
+    scatter: Scatter | None = None
 
 
 @final
@@ -60,18 +87,17 @@ def with_intervals(
     draws = (root[0] * np.sqrt(root[1])) @ rng.standard_normal((2, 4000))
     ds, levels = D + draws[1], log_level + draws[0]
 
-    def G_of(d: float, level: float) -> float:
-        # B = S(pivot) pivot^(7-2D)
-        return G_from_density(d, level + (7 - 2 * d) * log(pivot), c) if d > 2 else 0.0
-
-    many = np.array([G_of(d, v) for d, v in zip(ds, levels, strict=True)])
+    (ll, ld), (_, dd) = covariance.tolist()
+    scatter = Scatter(pivot=pivot, covariance=((ll, ld), (ld, dd)), c=c)
+    many = np.array([scatter.G(d, v) if d > 2 else 0.0 for d, v in zip(ds, levels, strict=True)])
     low, high = np.quantile(many, [0.025, 0.975], method="nearest")
     return Estimate(
         D=D,
-        G=G_of(D, log_level),
+        G=scatter.G(D, log_level) if D > 2 else 0.0,
         D_interval=(D - Z95 * sigma, D + Z95 * sigma),
         G_interval=(float(low), float(high)),
         band=band,
+        scatter=scatter,
         **rest,  # type: ignore[arg-type]
     )
 

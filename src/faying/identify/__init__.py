@@ -1,0 +1,1 @@
+"""What scatters, and what a test can tell of it."""

@@ -1,0 +1,220 @@
+"""Evaluates samples of a study in its small bases: modes at every load, and which of them are those of the test."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from faying.errors import FayingError
+from faying.joint.reduced import ReducedModel, Variant
+from faying.joint.structure import Structure
+from faying.measured.mac import mac
+from faying.measured.pairing import by_track, follow, pair_frequencies
+from faying.study.keys.test import TestChoice
+from faying.study.parallel import Rows, each
+from faying.study.recipe import Recipe
+from faying.study.trainer import FAR, Trainer
+from faying.typing import Array
+
+from .ensemble import Ensemble
+
+TOLERANCE = 2e-5  # relative error of a frequency that the bases are made for; scatter is a hundred times as much
+CHUNK = 32  # samples evaluated in one go
+ROUNDS = 6  # of training at samples that the bases do not fit
+WORST = 4  # samples trained on in each round
+Report = Callable[[str, int], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Evaluator:
+    """Evaluates samples, here or in another process.
+
+    Args:
+        model: The bases.
+        recipe: Makes laws, forces, gaps and scales; its design is the ensemble.
+        seen: What the points of the test see of the basis (k, d) and of the rigid motions (k, r) along its direction.
+        test: The test; None where the study has none.
+    """
+
+    model: ReducedModel
+    recipe: Recipe
+    seen: tuple[Array, Array] | None = None
+    test: TestChoice | None = None
+
+    @property
+    def ensemble(self) -> Ensemble:
+        """The samples."""
+        assert isinstance(self.recipe.design, Ensemble)
+        return self.recipe.design
+
+    def rows(self, samples: Sequence[int]) -> Rows:
+        """Rows of some samples, counted without those for training; NaN where there is no answer, and `reasons`."""
+        ensemble, count = self.ensemble, self.model.count
+        modes = ensemble.loads, count
+        tested = ensemble.loads, 0 if self.test is None else len(self.test.frequencies[0])
+        rows: dict[str, list[Any]] = {}
+        for sample in samples:
+            row: dict[str, Any] = {
+                "frequencies": np.full(modes, np.nan),
+                "loss_factors": np.full(modes, np.nan),
+                "paired": np.full(tested, np.nan),
+                "estimate": np.nan,
+                "open_share": np.full(ensemble.loads, np.nan),
+                "beyond_share": np.full(ensemble.loads, np.nan),
+                "reasons": "",
+            }
+            try:
+                row |= self._one(sample)
+            except FayingError as fault:
+                row["reasons"] = str(fault)
+            for name, value in row.items():
+                rows.setdefault(name, []).append(value)
+        return {name: np.array(values) for name, values in rows.items()}
+
+    def _one(self, sample: int) -> dict[str, Any]:
+        ensemble, recipe = self.ensemble, self.recipe
+        first = (ensemble.training + sample) * ensemble.loads
+        model = self.model.with_gaps(recipe.gaps(first)).with_scales(recipe.scales(first))
+        found: list[Variant] = []
+        shares: list[tuple[float, float]] = []
+        weights = np.concatenate(model.weights)
+        for index in range(first, first + ensemble.loads):
+            laws, forces, friction = recipe.laws(index)
+            start = found[-1].preload.displacement if found else None
+            found.append(model.evaluate(laws, forces, friction, start))
+            pressures = found[-1].preload.pressures
+            p = np.concatenate(pressures)
+            ends = np.concatenate(
+                [np.full(len(q), law.model.greatest_pressure) for q, law in zip(pressures, laws, strict=True)]
+            )
+            touching = float(weights @ (p > 0))
+            shares.append((1 - touching / float(weights.sum()), float(weights @ (p > ends)) / max(touching, 1e-300)))
+        lossless = not any(law.predicts_loss for law in laws)
+        nothing = np.full((ensemble.loads, model.count), np.nan)
+        return {
+            "frequencies": np.stack([one.frequencies for one in found]),
+            "loss_factors": nothing if lossless else np.stack([one.loss_factors for one in found]),
+            "paired": self._paired(model, found),
+            "estimate": max(float(one.estimate.max()) for one in found),
+            "open_share": np.array([share for share, _ in shares]),
+            "beyond_share": np.array([share for _, share in shares]),
+        }
+
+    def _paired(self, model: ReducedModel, found: Sequence[Variant]) -> Array:
+        """Frequencies [Hz] (load, t) of the modes that are the test's, NaN where a mode has no partner."""
+        if self.test is None or self.seen is None:
+            return np.zeros((len(found), 0))
+        mass = model.matrices[2]
+        shapes = [one.shapes for one in found]
+        tracks = follow([mac(a.T, b.T, mass) for a, b in pairwise(shapes)])
+        if len(found) == 1:
+            tracks = np.arange(model.count)[None]
+        rows = self.seen[0]
+        if model.scales is not None and model.shares is not None:
+            rows = rows + self.seen[1] @ model.shares.motion(model.scales)
+        motion = np.stack([np.abs(rows @ _real(shape, mass)).max(axis=0) for shape in shapes])
+        visibility = by_track(tracks, motion / motion.max(axis=1, keepdims=True))
+        frequencies = by_track(tracks, np.stack([one.frequencies for one in found]))
+        test = np.array(self.test.frequencies)
+        pairs = pair_frequencies(test, frequencies, visibility, threshold=self.test.threshold)
+        return np.where(pairs < 0, np.nan, frequencies[:, pairs])
+
+
+def _real(shapes: Any, mass: Array) -> Array:
+    """Real shapes (d, m) of the motion at its greatest, mass-normalised, from complex ones."""
+    turned = shapes / np.sqrt(np.einsum("im,im->m", shapes, mass @ shapes))
+    real = turned.real
+    return np.asarray(real / np.sqrt(np.einsum("im,im->m", real, mass @ real)))
+
+
+def probe(structure: Structure, test: TestChoice) -> Any:
+    """Sparse rows (points, unknowns) of the motion at the points of a test along its direction."""
+    from scipy.sparse import csr_array
+
+    axis = np.array(test.direction) / np.linalg.norm(test.direction)
+    places = structure.mesh.points
+    nodes = np.array([int(np.argmin(np.linalg.norm(places - np.array(p), axis=1))) for p in test.points])
+    where = np.repeat(np.arange(len(nodes)), 3), (3 * nodes[:, None] + np.arange(3)).ravel()
+    return csr_array((np.tile(axis, len(nodes)), where), shape=(len(nodes), structure.mesh.unknowns))
+
+
+class Reduced:
+    """A study that scatters, in bases that are made when first needed and grow where samples need it.
+
+    Args:
+        ensemble: The samples.
+        jobs, dask: Processes on this machine, or the address of a Dask scheduler.
+        report: Called with a stage and the number of samples just done.
+        tolerance: Relative error of a frequency that the bases are made for.
+    """
+
+    def __init__(
+        self,
+        ensemble: Ensemble,
+        *,
+        jobs: int = 1,
+        dask: str | None = None,
+        report: Report | None = None,
+        tolerance: float = TOLERANCE,
+    ) -> None:
+        self.jobs, self.dask = jobs, dask
+        self.report: Report = report or (lambda _stage, _done: None)
+        self.report("mesh", 0)
+        self.trainer = Trainer.of(ensemble.study, ensemble, tolerance, self.report)
+        self.model = self.trainer.model()
+
+    def rows(self, ensemble: Ensemble, keep: Callable[[Sequence[int], Rows], None] | None = None) -> Rows:
+        """Rows of all samples of an ensemble that has the same training; those that the bases do not fit, anew.
+
+        keep: called with every chunk as it is done.
+        """
+        out: Rows = {}
+        self._fill(out, ensemble, range(ensemble.count), keep)
+        for _ in range(ROUNDS):
+            far = np.flatnonzero(out["estimate"] > FAR * self.trainer.tolerance)
+            if not len(far):
+                break
+            worst = far[np.argsort(-out["estimate"][far])][:WORST]
+            self.report(f"enrichment: {len(far)} samples", 0)
+            points = [int(ensemble.training + k) * ensemble.loads + ensemble.loads - 1 for k in worst]
+            before = out["estimate"][far].copy()
+            self.trainer.recipe = replace(self.trainer.recipe, design=ensemble)
+            self.model = self.trainer.model(points)
+            self._fill(out, ensemble, far.tolist(), keep)
+            if not np.any(out["estimate"][far] < before):
+                break
+        return out
+
+    def _fill(
+        self,
+        out: Rows,
+        ensemble: Ensemble,
+        samples: Sequence[int],
+        keep: Callable[[Sequence[int], Rows], None] | None,
+    ) -> None:
+        test = ensemble.study.test
+        seen = None
+        if test is not None:
+            assert self.trainer.reduction is not None
+            seen = self.trainer.reduction.probe(probe(self.trainer.structure, test))
+        recipe = replace(self.trainer.recipe, design=ensemble)
+        work = Evaluator(model=self.model, recipe=recipe, seen=seen, test=test)
+        chunks = [list(samples[i : i + CHUNK]) for i in range(0, len(samples), CHUNK)]
+        for indices, rows in each(partial(_rows, work), chunks, self.jobs, self.dask):
+            for name, values in rows.items():
+                if name not in out:
+                    kind = object if name == "reasons" else float
+                    out[name] = np.full(
+                        (ensemble.count, *values.shape[1:]), "" if kind is object else np.nan, dtype=kind
+                    )
+                out[name][list(indices)] = values
+            if keep is not None:
+                keep(indices, rows)
+            self.report("evaluations", len(indices))
+
+
+def _rows(work: Evaluator, samples: Sequence[int]) -> Rows:
+    return work.rows(samples)

@@ -1,0 +1,290 @@
+"""What scatter makes of the frequencies of a study: samples, quantiles, shares of the variance."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.identify.ensemble import Inputs
+from faying.identify.shares import Shares, shares
+from faying.identify.surrogate import Surrogate
+from faying.notes import Note
+from faying.result.fields import Recorded, declared, listed, read_whole, variable, write_whole
+from faying.result.result import Provenance, preload_slope
+from faying.typing import Array
+
+LEVELS = (0.05, 0.5, 0.95)
+POINTS = 4096  # at which the shares of variance are taken
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quantiles:
+    """Quantiles over the samples that have an answer, one row for each level.
+
+    Args:
+        levels: Shares of the samples below (q,) [-].
+        frequencies: (q, load, mode) [Hz], of elastic modes in rising order.
+        loss_factors: (q, load, mode) [-]; NaN where no law predicts loss.
+        slopes: Change with preload (q, mode) [Hz/N], by a line through all loads; NaN for a single load.
+        paired: Frequencies of the test's modes (q, load, test mode) [Hz]; None where the study has no test.
+    """
+
+    levels: tuple[float, ...]
+    frequencies: Array
+    loss_factors: Array
+    slopes: Array
+    paired: Array | None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Prediction(Recorded):
+    """A study under the scatter of its numbers.
+
+    Args:
+        title: Of the study.
+        inputs: What scatters.
+        seed: Of the samples.
+        tolerance: Relative error of a frequency that the bases were made for.
+        basis: Sizes of the bases for equilibrium and vibration.
+        reasons: Why samples have no answer, and how many.
+        notes: What there is to say.
+        frequencies_of_test, test_source: The test, where the study has one.
+    """
+
+    title: str
+    inputs: Inputs
+    seed: int
+    tolerance: float
+    basis: tuple[int, int]
+    loads: Array = variable("load", unit="N", long_name="preload of the first bolt")
+    values: Array = variable("sample", "input", unit="", long_name="values drawn, in the unit of each input")
+    frequencies: Array = variable(
+        "sample", "load", "mode", unit="Hz", long_name="frequencies of elastic modes", gaps=True
+    )
+    loss_factors: Array = variable("sample", "load", "mode", unit="1", long_name="modal loss factors", gaps=True)
+    open_share: Array = variable("sample", "load", unit="1", long_name="share of the joints that is open", gaps=True)
+    beyond_share: Array = variable(
+        "sample", "load", unit="1", long_name="share of the contact beyond the end of the law", gaps=True
+    )
+    paired: Array | None = variable(
+        "sample", "load", "test_mode", unit="Hz", long_name="frequencies of the test's modes", gaps=True, default=None
+    )
+    test: Array | None = variable(
+        "load", "test_mode", unit="Hz", long_name="measured frequencies", gaps=True, default=None
+    )
+    test_source: str = ""
+    reasons: dict[str, int] = field(default_factory=dict)
+    notes: tuple[Note, ...] = ()
+    provenance: Provenance | None = None
+
+    def __repr__(self) -> str:
+        return f"Prediction({self.title!r}, {self.answered} of {len(self.values)} samples, {', '.join(self.names)})"
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What scatters."""
+        return self.inputs.names
+
+    @property
+    def sound(self) -> Any:
+        """Which samples have an answer (n,)."""
+        return np.isfinite(self.frequencies[:, 0, 0])
+
+    @property
+    def answered(self) -> int:
+        """How many samples have an answer."""
+        return int(np.count_nonzero(self.sound))
+
+    def quantiles(self, levels: Sequence[float] = LEVELS) -> Quantiles:
+        """Quantiles of frequencies, loss factors and slopes.
+
+        Args:
+            levels: Shares from 0 to 1 of the samples that lie below.
+
+        Raises:
+            InputError: A level outside 0 to 1, or no sample with an answer.
+        """
+        if not len(levels) or not all(0 <= level <= 1 for level in levels):
+            raise InputError(f"levels {tuple(levels)} should be shares from 0 to 1, for example (.05, .5, .95)")
+        return self._quantiles(tuple(map(float, levels)), self.sound)
+
+    def _quantiles(self, levels: tuple[float, ...], which: Any) -> Quantiles:
+        if not np.any(which):
+            raise InputError(f"no sample has an answer: {'; '.join(self.reasons)}")
+        paired = None
+        if self.paired is not None:
+            paired = _levels(self.paired[which], levels)
+        return Quantiles(
+            levels=levels,
+            frequencies=_levels(self.frequencies[which], levels),
+            loss_factors=_levels(self.loss_factors[which], levels),
+            slopes=_levels(self.slopes[which], levels),
+            paired=paired,
+        )
+
+    @cached_property
+    def slopes(self) -> Array:
+        """Change of each mode's frequency with preload (sample, mode) [Hz/N], by a line; NaN for a single load."""
+        return np.stack([preload_slope(one, self.loads) for one in self.frequencies])
+
+    @cached_property
+    def convergence(self) -> float:
+        """What the 5 and 95 % of the frequencies move by when half of the samples are left out, over their distance.
+
+        The greatest over modes and loads [-]; NaN with fewer than 16 samples.
+        """
+        if self.answered < 16:
+            return float("nan")
+        half = self.sound & (np.arange(len(self.values)) < len(self.values) // 2)
+        if not np.any(half):
+            return float("nan")
+        whole, part = (self._quantiles((0.05, 0.95), which).frequencies for which in (self.sound, half))
+        width = np.maximum(whole[1] - whole[0], 1e-9 * whole[1])
+        return float((np.abs(part - whole) / width).max())
+
+    @property
+    def observed(self) -> tuple[Array, Array]:
+        """Frequencies (sample, load, k) and their test (load, k): the test's modes; all modes where there is none."""
+        if self.paired is None or self.test is None:
+            return self.frequencies, np.full(self.frequencies.shape[1:], np.nan)
+        return self.paired, self.test
+
+    @property
+    def covered(self) -> tuple[int, int]:
+        """How many of the measured frequencies lie between the 5 and the 95 %, and how many there are."""
+        if self.paired is None or self.test is None:
+            return 0, 0
+        low, high = self.quantiles((0.05, 0.95)).paired  # type: ignore[misc]
+        inside = (self.test >= low) & (self.test <= high)
+        return int(inside.sum()), int(np.isfinite(self.test).sum())
+
+    def shares(self, *, seed: int = 0) -> tuple[Shares, Array]:
+        """Shares of the variance of the frequencies at the last load that each input has.
+
+        They are those of a polynomial through the samples, in the scores of the inputs; one for each law.
+
+        Args:
+            seed: Of the points at which the polynomial is taken.
+
+        Returns:
+            The shares of each mode: of the test's modes, or of all where there is no test; and the polynomial's
+            leave-one-out error (mode,), over the standard deviation of the frequency [-].
+
+        Raises:
+            InputError: Too few samples with an answer.
+        """
+        seen = self.observed[0][:, -1]
+        full = self.sound & np.all(np.isfinite(seen), axis=1)
+        spread = seen[full].std(axis=0)
+        inputs = self.inputs
+        numeric = len(inputs.columns) - bool(inputs.models)
+        if np.count_nonzero(full) < 2 * (numeric + 1):
+            raise InputError(f"{np.count_nonzero(full)} samples are too few for shares of {len(inputs.columns)} inputs")
+        scores = np.stack([prior.score(x) for prior, x in zip(inputs.priors, self.values.T, strict=True)], axis=1)
+        laws = self._laws(self.values)
+        fits = {}
+        squared = np.zeros(seen.shape[1])
+        for law in np.unique(laws[full]):
+            here = full & (laws == law)
+            fits[law] = Surrogate.fit(scores[here, :numeric], seen[here])
+            squared = squared + fits[law].error ** 2 * np.count_nonzero(here)
+
+        def function(values: Array) -> Array:
+            z = np.stack([prior.score(x) for prior, x in zip(inputs.priors, values.T, strict=True)], axis=1)
+            out = np.empty((len(values), seen.shape[1]))
+            which = self._laws(values)
+            for law in np.unique(which):
+                # a law without any answer has no part in the variance of the answers
+                fit = fits.get(law, next(iter(fits.values())))
+                out[which == law] = fit.predict(z[which == law, :numeric])
+            return out
+
+        error = np.sqrt(squared / np.count_nonzero(full)) / np.where(spread > 0, spread, np.inf)
+        return shares(function, inputs.priors, count=POINTS, seed=seed), error
+
+    def _laws(self, values: Array) -> Any:
+        """Place of the law of each sample (n,); 0 where the law is certain."""
+        if not self.inputs.models:
+            return np.zeros(len(values), dtype=int)
+        names = [name for name, _ in self.inputs.models]
+        return np.array([names.index(self.inputs.model(share)) for share in values[:, -1]])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return a summary ready for JSON, in SI units; the samples are in the file."""
+        found = self.quantiles(LEVELS)
+        out: dict[str, Any] = {
+            "title": self.title,
+            "samples": len(self.values),
+            "answered": self.answered,
+            "without_answer": self.reasons,
+            "loads": {"unit": "N", "values": listed(self.loads)},
+            "inputs": [{"key": c.key, "distribution": c.distribution.text(c.unit)} for c in self.inputs.columns],
+            "laws": dict(self.inputs.models),
+            "quantiles": {
+                "levels": list(LEVELS),
+                "frequencies": {"unit": "Hz", "values": listed(found.frequencies)},
+                "loss_factors": {"unit": "1", "values": listed(found.loss_factors)},
+                "slopes": {"unit": "Hz/N", "values": listed(found.slopes)},
+            },
+            "convergence": listed(self.convergence),
+            "notes": [{"code": note.code, "text": note.text} for note in self.notes],
+        }
+        if found.paired is not None and self.test is not None:
+            inside, count = self.covered
+            out["test"] = {
+                "source": self.test_source,
+                "frequencies": {"unit": "Hz", "values": listed(self.test)},
+                "predicted": {"unit": "Hz", "values": listed(found.paired)},
+                "covered": {"between 5 and 95 %": inside, "of": count},
+            }
+        found_shares, error = self.shares()
+        out["shares"] = {
+            "inputs": list(self.names),
+            "first": listed(found_shares.first),
+            "total": listed(found_shares.total),
+            "surrogate_error": listed(error),
+        }
+        return out
+
+    def save(self, path: str | Path) -> Path:
+        """Write as NetCDF-4 that xarray opens, whole or not at all; `load` gives an equal Prediction."""
+        labels: dict[str, Any] = {
+            "mode": np.arange(1, self.frequencies.shape[2] + 1),
+            "input": self.names,
+        }
+        if self.test is not None:
+            labels["test_mode"] = np.arange(1, self.test.shape[1] + 1)
+        return write_whole(self, path, labels)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """Read what `save` wrote. Raises ReadError where it cannot be read."""
+        return read_whole(cls, path, what="prediction", command="faying predict STUDY.toml")
+
+    def to_xarray(self) -> Any:
+        """The declared arrays as an xarray Dataset with named dimensions and units."""
+        import xarray
+
+        data = {
+            name: (meta.dims, getattr(self, name), {"units": meta.unit, "long_name": meta.long_name})
+            for name, meta in declared(type(self)).items()
+            if getattr(self, name) is not None
+        }
+        return xarray.Dataset(data, coords={"input": list(self.names), "loads": ("load", self.loads)})
+
+    def with_notes(self, notes: Sequence[Note]) -> Self:
+        """The same with more to say."""
+        return replace(self, notes=(*self.notes, *notes))
+
+
+def _levels(values: Array, levels: tuple[float, ...]) -> Array:
+    """Quantiles (q, ...) over the first axis, NaN left out; NaN where nothing is left."""
+    import warnings
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # all-NaN columns, such as losses where none is predicted
+        return np.asarray(np.nanquantile(values, levels, axis=0))

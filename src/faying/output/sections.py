@@ -1,0 +1,134 @@
+"""The tables of a result in the order in which report and terminal show them, each with its title."""
+
+from dataclasses import dataclass
+
+from faying.output import table
+from faying.output.table import Rows
+from faying.result import Result
+
+
+@dataclass(frozen=True, kw_only=True)
+class Section:
+    """One table of a result.
+
+    Args:
+        name: what code calls it.
+        rows: the table.
+        title: its heading in the report.
+        line: what stands above it in a terminal; the title in small letters where left out.
+        below: what the report says below it.
+    """
+
+    name: str
+    rows: Rows
+    title: str
+    line: str = ""
+    below: str = ""
+
+    @property
+    def above(self) -> str:
+        """The line above the table in a terminal."""
+        return self.line or self.title[:1].lower() + self.title[1:]
+
+
+def sections(result: Result) -> list[Section]:
+    """Return the tables that a result has."""
+    every = (*_modes(result), *_joints(result), *_tests(result))
+    return [section for section in every if section.rows]
+
+
+def _last(result: Result) -> str:
+    return f"at {result.loads[-1] / 1e3:g} kN"
+
+
+def _modes(result: Result) -> tuple[Section, ...]:
+    """The modes under the study's laws, and under what could stand in place of them."""
+    rigid = f" Rigid-body values: up to {result.rigid.max():.1e} Hz." if len(result.rigid) else ""
+    laws = f"Laws beside each other {_last(result)}"
+    return (
+        Section(
+            name="modes",
+            rows=table.modes(result),
+            title="Modes",
+            below=f"Loss factors come from complex modes with {result.damping} loss in the joints. Free: faces apart. "
+            f"Bonded: faces grown together.{rigid}",
+        ),
+        Section(
+            name="ranges",
+            rows=table.ranges(result),
+            title="Range of the frequencies, from that of the stiffness",
+        ),
+        Section(
+            name="form",
+            rows=table.form(result),
+            title="Change with preload, if the faces are hollow or crowned",
+            line="d f/d preload, if the faces are hollow or crowned by 3 um (flat faces are an assumption)",
+            below="Flat faces are an assumption.",
+        ),
+        Section(
+            name="beyond",
+            rows=table.beyond(result),
+            title="Beyond the end of a law: stiffness held, and bonded",
+        ),
+        Section(
+            name="laws",
+            rows=table.laws(result),
+            title=laws,
+            line=f"l{laws[1:]}: where they end, shares of the joint beyond their end and outside their validity range, "
+            "modes that differ most",
+            below="Where each law ends, shares of the joints beyond that and outside its validity range, and the modes "
+            "that differ most between the laws.",
+        ),
+    )
+
+
+def _joints(result: Result) -> tuple[Section, ...]:
+    """Joints and bolts."""
+    order = ", ".join(result.tightening)
+    return (
+        Section(name="joints", rows=table.joints(result), title="Joints"),
+        Section(
+            name="bolts",
+            rows=table.bolts(result),
+            title="Bolts",
+            line=f"bolts, tightened in the order {order}",
+            below=f"Tightened in the order {order}.",
+        ),
+        Section(
+            name="bolting",
+            rows=table.bolting(result),
+            title="Bolts and what they clamp",
+            line=table.bolting_head(result),
+            below=table.EMBEDDING,
+        ),
+        Section(
+            name="modal forces",
+            rows=table.modal_forces(result),
+            title=f"Force in the bolts per motion where a mode moves most, {_last(result)}",
+        ),
+        Section(
+            name="conductance",
+            rows=table.conductance(result),
+            title="Conductance of the joints",
+            line="conductance of the joints (clean metal in vacuum)",
+            below=table.CLEAN,
+        ),
+    )
+
+
+def _tests(result: Result) -> tuple[Section, ...]:
+    """What was measured, or somebody else's model, beside the study."""
+    c, hammer = result.comparison, result.hammer
+    return (
+        Section(
+            name="comparison",
+            rows=table.comparison(result),
+            title=f"Comparison with the {c.reference if c else 'test'}",
+            below=c.source if c else "",
+        ),
+        Section(
+            name="hammer",
+            rows=table.hammer(result),
+            title=f"Hammer test at {hammer.model.load / 1e3:g} kN" if hammer else "Hammer test",
+        ),
+    )

@@ -1,0 +1,333 @@
+"""[uncertain]: which numbers of a study scatter, and how; a text such as "0.1 to 0.6" may also stand in their place."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import inf
+from pathlib import Path
+from typing import Any
+
+from faying import units
+from faying.contact.build import find
+from faying.contact.parameter import Parameter
+from faying.distribution import Distribution, uncertain_text
+from faying.errors import InputError
+from faying.joint.form import PARAMETERS as SHAPES
+from faying.joint.tightening import tightening
+from faying.materials import Material
+from faying.study.keys.joint import JointChoice
+from faying.study.keys.reader import Faults, quantity
+from faying.study.keys.varied import swept
+
+# short keys, and what they stand for
+SHORT = {"friction": "joint.friction", "stiffness": "joint.stiffness", "flatness": "joint.form.flatness"}
+OF_MATERIAL = {
+    "E": Parameter("Pa", "Young's modulus of the parts of a material", 0),
+    "density": Parameter("kg/m^3", "density of the parts of a material", 0),
+}
+OWN = ("preload", "test", "discrepancy", "surface.fit", "surface.scans", "law.model")  # that are no plain distribution
+# standard deviations of the shapes of a joint over the flatness tolerance of its faces: the second-degree part of the
+# random form of `faying.joint.form`, whose mean flatness over one face is two thirds of the tolerance
+SHAPE_SD = {"crown_along": 0.41, "crown_across": 0.41, "twist": 0.36}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Input:
+    """One number that scatters.
+
+    Args:
+        key: What it is, as a sweep calls it.
+        distribution: Of its value in SI units.
+        unit: SI unit, "" for a plain number.
+        cut: Share of probability that was cut since the number cannot lie there [-].
+        within: Whether it stood in the place of the number.
+    """
+
+    key: str
+    distribution: Distribution
+    unit: str
+    cut: float = 0.0
+    within: bool = False
+
+    def read(self) -> str:
+        """What it is, for people."""
+        return f"{self.key}: {self.distribution.text(self.unit)}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class UncertainChoice:
+    """What scatters in a study.
+
+    Args:
+        inputs: The numbers.
+        models: Laws and their weights, which sum to 1; empty where the law is certain.
+        fit: Whether D and G scatter as the fit of the scan says; scans: others of the same surface.
+        test, discrepancy: Standard deviation of a test frequency over its value, and of the model's own error in a mode
+            [-]; None for the defaults of an identification.
+    """
+
+    inputs: tuple[Input, ...] = ()
+    models: tuple[tuple[str, float], ...] = ()
+    fit: bool = False
+    scans: tuple[Path, ...] = ()
+    test: Distribution | None = None
+    discrepancy: Distribution | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Known:
+    """What the keys of [uncertain] may name: the joints, names of bolts, materials, and the material of each part."""
+
+    joints: Sequence[JointChoice]
+    bolts: Sequence[str]
+    loads: int
+    materials: Mapping[str, Material]
+    parts: Mapping[str, str]
+
+
+def lifted(data: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
+    """Take texts that scatter out of the places of numbers: the study with their medians, and key -> text.
+
+    A text that its number cannot have is left where it is, for the reader to refuse.
+    """
+    data = dict(data)
+    found: dict[str, str] = {}
+
+    def lift(table: Any, room: str, parameters: Mapping[str, Parameter]) -> Any:
+        if not isinstance(table, Mapping):
+            return table
+        out = dict(table)
+        for name, parameter in parameters.items():
+            if uncertain_text(out.get(name)):
+                try:
+                    median = Distribution.read(out[name], parameter.unit).median
+                except InputError:
+                    continue
+                found[f"{room}.{name}"] = out[name]
+                out[name] = f"{median!r} {parameter.unit}" if parameter.unit else median
+        return out
+
+    if isinstance(data.get("material"), Mapping):
+        data["material"] = {k: lift(t, f"material.{k}", OF_MATERIAL) for k, t in data["material"].items()}
+    joints = data.get("joint")
+    joints = [joints] if isinstance(joints, Mapping) else joints
+    if isinstance(joints, list):
+        out = []
+        for index, joint in enumerate(joints):
+            name = joint.get("name", f"joint {index + 1}") if isinstance(joint, Mapping) else ""
+            joint = lift(joint, f"joint.{name}", {"friction": _parameter("joint.friction")})
+            if isinstance(joint, dict) and "form" in joint:
+                shapes = {key: parameter for key, parameter in SHAPES.items() if not parameter.whole}
+                joint["form"] = lift(joint["form"], f"joint.{name}.form", shapes)
+            out.append(joint)
+        data["joint"] = out
+    for room in ("law", "surface"):
+        if isinstance(data.get(room), Mapping):
+            parameters = {name: p for name in data[room] if (p := _declared(f"{room}.{name}")) is not None}
+            data[room] = lift(data[room], room, parameters)
+    return data, found
+
+
+def _declared(key: str) -> Parameter | None:
+    """What a key of a number declares; None where there is no such key, or it is no number."""
+    parts = key.split(".")
+    if parts[0] == "material":
+        return OF_MATERIAL.get(parts[-1]) if len(parts) == 3 else None
+    parameter = swept(key)
+    return parameter if parameter is not None and parameter.is_number and not parameter.whole else None
+
+
+def _parameter(key: str) -> Parameter:
+    found = _declared(key)
+    assert found is not None
+    return found
+
+
+def read_uncertain(
+    table: Mapping[str, Any] | None, inside: Mapping[str, str], known: Known, faults: Faults
+) -> UncertainChoice | None:
+    """Read [uncertain] and the texts that were lifted out of their places; every fault is noted.
+
+    Args:
+        table: The table; None where there is none.
+        inside: Texts by key, from `lifted`.
+        known: What the keys may name.
+        faults: Where faults go, and the files that are read.
+    """
+    if table is None and not inside:
+        return None
+    reader = _Reader(known, faults)
+    for key, value in _flat(table or {}):
+        try:
+            reader.take(key, value)
+        except InputError as fault:
+            faults.add(str(fault))
+    for key, value in inside.items():
+        try:
+            reader.add(key, value, key, within=True)
+        except InputError as fault:
+            faults.add(str(fault))
+    return reader.choice()
+
+
+def _flat(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+    """Keys with dots, and their values: text, a list, a number, or a table that says what it is."""
+    for name, value in table.items():
+        key = f"{before}{name}"
+        whole = {"distribution", "tightening", "scatter"}
+        if isinstance(value, Mapping) and not whole & set(value) and key != "law.model":
+            yield from _flat(value, f"{key}.")
+        else:
+            yield key, value
+
+
+class _Reader:
+    """Collects the inputs, key by key."""
+
+    def __init__(self, known: Known, faults: Faults) -> None:
+        self.known, self.faults = known, faults
+        self.inputs: dict[str, Input] = {}
+        self.rest: dict[str, Any] = {}
+
+    def choice(self) -> UncertainChoice:
+        return UncertainChoice(inputs=tuple(self.inputs.values()), **self.rest)
+
+    def take(self, key: str, value: Any) -> None:
+        """Take one key of the table."""
+        where = f"uncertain.{key}"
+        key = SHORT.get(key, key)
+        parts = key.split(".")
+        if key == "preload":
+            self._preload(value, where)
+        elif key in ("test", "discrepancy"):
+            self.rest[key] = _share(value, where)
+        elif key == "surface.fit":
+            if not isinstance(value, bool):
+                raise InputError(f"{where} = {value!r} should be true or false")
+            self.rest["fit"] = value
+        elif key == "surface.scans":
+            self.rest |= {"fit": True, "scans": self._files(value, where)}
+        elif key == "law.model":
+            self.rest["models"] = _weights(value, where)
+        elif key in OF_MATERIAL:
+            self._of_material(key, value, where)
+        elif parts[-2:] == ["form", "flatness"]:
+            self._flatness(parts, value, where)
+        else:
+            self.add(key, value, where)
+
+    def add(self, key: str, value: Any, where: str, *, within: bool = False) -> None:
+        """Take the distribution of one number."""
+        parameter = _declared(key)
+        if parameter is None:
+            raise InputError(
+                f"{where} is nothing that can scatter; known are {', '.join((*SHORT, *OF_MATERIAL, *OWN))}, "
+                "material.NAME.E, material.NAME.density, part.NAME.stiffness, part.NAME.mass, bolt.preload, "
+                "bolt.NAME.preload, bolt.NAME.factor, joint.NAME.friction, joint.NAME.stiffness, "
+                "joint.NAME.form.SHAPE, surface.D, surface.G, law.NAME"
+            )
+        self._check(key, where)
+        if not isinstance(value, str | Mapping):
+            raise InputError(f'{where} = {value!r} is no distribution; write for example "0.1 to 0.6" or "2 +- 0.1"')
+        self._add(key, Distribution.read(value, parameter.unit, where), parameter, where, within)
+
+    def _add(self, key: str, found: Distribution, parameter: Parameter, where: str, within: bool = False) -> None:
+        if key in self.inputs:
+            raise InputError(f"{where}: {key} scatters already by another line; leave one of them out")
+        try:
+            found, cut = found.within(parameter.least, parameter.greatest, parameter.ends)
+        except InputError as fault:
+            raise InputError(f"{where}: {fault}") from None
+        self.inputs[key] = Input(key=key, distribution=found, unit=parameter.unit, cut=cut, within=within)
+
+    def _check(self, key: str, where: str) -> None:
+        """Raise InputError where a key names nothing that the study has."""
+        parts = key.split(".")
+        names = {
+            "joint": [joint.name for joint in self.known.joints],
+            "bolt": list(self.known.bolts),
+            "part": list(self.known.parts),
+            "material": sorted(set(self.known.parts.values())),
+        }.get(parts[0])
+        named = len(parts) == 4 or (len(parts) == 3 and parts[1] != "form")
+        if names is not None and named and parts[1] not in names:
+            raise InputError(f"{where}: no {parts[0]} is called {parts[1]!r}; there are {', '.join(names)}")
+        if parts[0] == "bolt" and parts[-1] == "preload" and self.known.loads > 1:
+            raise InputError(
+                f"{where}: the study has {self.known.loads} preloads; let a factor on all of them scatter, for example "
+                'preload = {tightening = "torque wrench, friction estimated"} or bolt.factor = "1 +- 0.1"'
+            )
+
+    def _preload(self, value: Any, where: str) -> None:
+        """A way of tightening, or its scatter, as a factor on the preload of each bolt; bolts scatter apart."""
+        form = '{tightening = "torque wrench, friction estimated"} or {scatter = "25 %"}'
+        if not isinstance(value, Mapping) or len(value) != 1 or not {"tightening", "scatter"} & set(value):
+            raise InputError(f"{where} = {value!r} should be {form}")
+        if "tightening" in value:
+            found = tightening(value["tightening"], f"{where}.tightening").distribution
+        else:
+            scatter = _percent(value["scatter"], f"{where}.scatter")
+            found = Distribution(kind="normal", centre=1.0, spread=scatter / 2)
+        for name in self.known.bolts:
+            self._add(f"bolt.{name}.factor", found, _parameter("bolt.factor"), where)
+
+    def _of_material(self, key: str, value: Any, where: str) -> None:
+        """E or density of the one material that the parts have."""
+        used = sorted(set(self.known.parts.values()))
+        if len(used) > 1:
+            each = ", ".join(f'material."{name}".{key}' for name in used)
+            raise InputError(f"{where}: the parts have {len(used)} materials; say which, as {each}")
+        for name in used:
+            self.add(f"material.{name}.{key}", value, where)
+
+    def _flatness(self, parts: list[str], value: Any, where: str) -> None:
+        """Crowns and twist of the faces of each joint, or of one, from a flatness tolerance of each face."""
+        tolerance = quantity(value, "m", where)
+        self._check(".".join(parts), where)
+        for joint in self.known.joints:
+            if len(parts) == 4 and joint.name != parts[1]:
+                continue
+            for shape, sd in SHAPE_SD.items():
+                centre = 0.0 if joint.form is None else float(getattr(joint.form, shape))
+                found = Distribution(kind="normal", centre=centre, spread=sd * tolerance)
+                self._add(f"joint.{joint.name}.form.{shape}", found, SHAPES[shape], where)
+
+    def _files(self, value: Any, where: str) -> tuple[Path, ...]:
+        if not isinstance(value, list) or not value or not all(isinstance(one, str) for one in value):
+            raise InputError(f'{where} = {value!r} should be a list of files, for example ["second.x3p"]')
+        found = tuple(self.faults.folder / one for one in value)
+        for file in found:
+            if not file.is_file():
+                raise InputError(f"{where}: no file {file}")
+        self.faults.files += found
+        return found
+
+
+def _percent(value: Any, where: str) -> float:
+    """A share such as "25 %", positive."""
+    share = units.parse(value, "", name=where) if isinstance(value, str) else None
+    if share is None or not 0 < share < 1:
+        raise InputError(f'{where} = {value!r} should be per cent of the mean, for example "25 %"')
+    return share
+
+
+def _share(value: Any, where: str) -> Distribution:
+    """A relative standard deviation that is known only roughly: its median "0.3 %", or a distribution."""
+    if isinstance(value, str) and not uncertain_text(value):
+        return Distribution(kind="lognormal", centre=_percent(value, where), spread=0.5)
+    return Distribution.read(value, "", where).within(0.0, inf, "()")[0]
+
+
+def _weights(value: Any, where: str) -> tuple[tuple[str, float], ...]:
+    """Laws with weights, from a list of names or a table; they come out with the sum 1."""
+    if isinstance(value, list):
+        value = dict.fromkeys(map(str, value), 1)
+    if not isinstance(value, Mapping) or len(value) < 2:
+        raise InputError(f'{where} = {value!r} should name two laws or more, ["jk", "gw-ke"] or {{jk = 1, gw-ke = 2}}')
+    for name, weight in value.items():
+        if isinstance(weight, bool) or not isinstance(weight, int | float) or not 0 < weight < inf:
+            raise InputError(f"{where}.{name} = {weight!r}; a weight is a positive number")
+    total = float(sum(value.values()))
+    labels = [find(name).label for name in value]
+    if len(set(labels)) < len(labels):
+        raise InputError(f"{where}: {', '.join(labels)} name one law twice")
+    return tuple((label, weight / total) for label, weight in zip(labels, value.values(), strict=True))

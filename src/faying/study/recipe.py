@@ -1,0 +1,122 @@
+"""What makes the laws, forces, gaps and scales of one point of a sweep or of an ensemble."""
+
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from faying.joint.face_axes import FaceAxes
+from faying.joint.form import Form
+from faying.joint.joint_law import JointLaw
+from faying.joint.part_shares import Scales
+from faying.joint.structure import Structure
+from faying.materials import Material
+from faying.study.case import joint_law
+from faying.study.keys.surface import Surface
+from faying.study.study import Study
+from faying.study.variation import Point
+from faying.typing import Array
+
+LATELY = 32  # laws kept with their tables
+
+
+class Design(Protocol):
+    """Points at which a study is evaluated, by their index."""
+
+    @property
+    def study(self) -> Study:
+        """The study that they vary."""
+
+    @property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """The surface of each joint."""
+
+    @property
+    def size(self) -> int:
+        """Number of points."""
+
+    @property
+    def middle(self) -> int:
+        """A point in the middle of all."""
+
+    @property
+    def varies_form(self) -> bool:
+        """Whether the form of the faces varies."""
+
+    @property
+    def varied_parts(self) -> tuple[str, ...]:
+        """Parts whose stiffness or mass varies."""
+
+    def corners(self, most: int) -> list[int]:
+        """At most so many of the points that lie farthest out."""
+
+    def point(self, index: int) -> Point:
+        """The study at one point."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """Where a joint lies: its points (q, 3) [m], the gap of its geometry there (q,) [m], and the face's own axes."""
+
+    positions: Array
+    geometry: Array
+    axes: FaceAxes
+
+    @classmethod
+    def all(cls, structure: Structure, design: Design) -> "tuple[Place, ...]":
+        """The place of each joint; none where no form varies."""
+        if not design.varies_form:
+            return ()
+        out = []
+        for joint, choice in zip(structure.joints, design.study.joints, strict=True):
+            interface, form = joint.interface, choice.form
+            axes = FaceAxes.of(structure.mesh, joint.faces, interface, None if form is None else form.along)
+            laid = 0.0 if form is None else form.at(interface.positions, axes)
+            out.append(cls(positions=interface.positions, geometry=interface.gap - laid, axes=axes))
+        return tuple(out)
+
+    def gap(self, form: Form | None) -> Array:
+        """Gap [m] (q,) before any load with a form on the geometry."""
+        return self.geometry if form is None else self.geometry + form.at(self.positions, self.axes)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recipe:
+    """All that makes the laws and forces of a point: the design, and the materials that meet at each joint."""
+
+    design: Design
+    pairs: tuple[tuple[Material, Material], ...]
+    places: tuple["Place", ...] = ()  # of each joint, where its form varies; empty where none does
+    # laws made lately, with their tables: along an axis of preload they stay the same
+    _lately: dict[tuple[Any, ...], JointLaw] = field(default_factory=dict, repr=False, compare=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"design": self.design, "pairs": self.pairs, "places": self.places, "_lately": {}}
+
+    def gaps(self, index: int) -> list[Array] | None:
+        """Gap [m] (q,) of each joint at one point; None where no form varies."""
+        if not self.places:
+            return None
+        joints = self.design.point(index).study.joints
+        return [place.gap(joint.form) for place, joint in zip(self.places, joints, strict=True)]
+
+    def laws(self, index: int) -> tuple[list[JointLaw], Array, list[float | None]]:
+        """Law of each joint, force of each bolt [N] and friction of each joint at one point."""
+        point = self.design.point(index)
+        laws = []
+        for number, (joint, surface) in enumerate(zip(point.study.joints, point.surfaces, strict=True)):
+            choice = point.study.law_of(joint)
+            key = (number, repr(choice), repr(surface.rough and surface.rough.inputs))
+            if key not in self._lately:
+                if len(self._lately) >= LATELY:
+                    self._lately.pop(next(iter(self._lately)))
+                self._lately[key] = joint_law(joint, choice, surface, *self.pairs[number])
+            law, factor = self._lately[key], point.stiffness.get(joint.name, 1.0)
+            laws.append(law if factor == 1 else law.scaled(factor))
+        return laws, point.forces, [joint.friction for joint in point.study.joints]
+
+    def scales(self, index: int) -> Scales | None:
+        """Factors on the stiffness and the mass of each part that varies; None where none does."""
+        parts = self.design.varied_parts
+        if not parts:
+            return None
+        found = self.design.point(index).scales
+        return [found.get(part, (1.0, 1.0)) for part in parts]

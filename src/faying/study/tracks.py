@@ -1,0 +1,99 @@
+"""The modes of a case over its loads: their shapes, how alike they are, where they cross, which are those of a test."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from faying.measured.mac import mac
+from faying.measured.pairing import by_track, changes, follow, pair_frequencies
+from faying.notes import Note
+from faying.result import Comparison
+from faying.study.case import Case
+from faying.study.solve import State
+from faying.typing import Array, Index
+
+
+def shapes_of(case: Case, states: Sequence[State]) -> list[Array]:
+    """Shapes (m, nodes, 3) at each load: those of the complex modes, for real modes that lie close mix."""
+    mass = case.structure.vibrating[1]
+    return [s.damped.real_shapes(mass).T.reshape(len(s.damped.frequencies), -1, 3) for s in states]
+
+
+def from_load_to_load(case: Case, states: Sequence[State]) -> list[Array]:
+    """MAC (m, m), weighted by mass, of the modes at each load with those at the next."""
+    return [_mac(case, a, b) for a, b in pairwise(states)]
+
+
+def with_first(case: Case, states: Sequence[State], steps: Sequence[Array]) -> Array:
+    """MAC (load, m, m), weighted by mass, of the modes at the first load with those at each; steps: load to load."""
+    first = states[0]
+    return np.stack([_mac(case, first, first), *steps[:1], *(_mac(case, first, s) for s in states[2:])])
+
+
+def _mac(case: Case, first: State, second: State) -> Array:
+    return mac(first.damped.shapes.T, second.damped.shapes.T, case.structure.vibrating[1])
+
+
+def encounters(states: Sequence[State], steps: Sequence[Array]) -> list[Note]:
+    """Say which modes cross and which couple from one load to the next; steps: MAC from load to load."""
+    out = []
+    for code, word, found in zip(("modes-cross", "modes-couple"), ("cross", "couple"), changes(steps), strict=True):
+        for step in sorted({k for k, _, _ in found}):
+            pairs = ", ".join(f"{i + 1} and {j + 1}" for k, i, j in found if k == step)
+            before, after = (f"{states[step + k].load / 1e3:g} kN" for k in (0, 1))
+            text = f"modes {pairs} {word} between {before} and {after} (MAC weighted by mass)"
+            out.append(Note(code=code, load=states[step + 1].load, text=text))
+    return out
+
+
+def compared(
+    case: Case, states: Sequence[State], shapes: Sequence[Array], steps: Sequence[Array]
+) -> tuple[Comparison | None, list[Note]]:
+    """Pair the test's frequencies with the computed modes, followed over the loads; see `pair_frequencies`.
+
+    shapes: (m, nodes, 3) at each load; steps: MAC from load to load.
+    """
+    test = case.study.test
+    if test is None:
+        return None, []
+    measured = np.array(test.frequencies)
+    axis = np.array(test.direction) / np.linalg.norm(test.direction)
+    points = case.structure.mesh.points
+    here = [int(np.argmin(np.linalg.norm(points - np.array(p), axis=1))) for p in test.points]
+    tracks = follow(steps) if len(states) > 1 else np.arange(len(shapes[0]))[None]
+    motion = np.array([np.abs(found[:, here] @ axis).max(axis=1) for found in shapes])
+    visibility = by_track(tracks, motion / motion.max(axis=1, keepdims=True))
+    frequencies = by_track(tracks, np.stack([s.damped.frequencies for s in states]))
+    found = pair_frequencies(measured, frequencies, visibility, threshold=test.threshold)
+    none = found < 0
+    comparison = Comparison(
+        source=test.source,
+        frequencies=measured,
+        predicted=np.where(none, np.nan, frequencies[:, found]),
+        modes=np.where(none, -1, tracks[:, found]),
+        published=None if test.published is None else np.array(test.published),
+        published_name=test.published_name,
+        kind=test.kind,
+    )
+    return comparison, _unmatched(found, measured, frequencies, visibility, test.threshold)
+
+
+def _unmatched(found: Index, measured: Array, frequencies: Array, visibility: Array, threshold: float) -> list[Note]:
+    """Say which modes of the test, and which visible ones of the model among them, have no partner."""
+    out = []
+    lost = np.flatnonzero(found < 0)
+    if len(lost):
+        which = ", ".join(f"{k + 1} ({measured[0, k]:.1f} Hz)" for k in lost)
+        text = (
+            f"test mode {which}: no computed mode that moves at the points of the test lies within 30 % of it; it is "
+            "left out. Raise modes.count, or look whether the test has a mode of something else"
+        )
+        out.append(Note(code="test-modes", text=text))
+    inside = (frequencies[0] > 0.97 * measured.min()) & (frequencies[0] < 1.03 * measured.max())
+    rest = [k for k in np.flatnonzero(inside & (visibility.max(axis=0) >= threshold)) if k not in found]
+    if rest:
+        which = ", ".join(f"{k + 1} ({frequencies[0, k]:.1f} Hz)" for k in rest)
+        text = f"computed mode {which} moves at the points of the test, which lists none for it"
+        out.append(Note(code="model-modes", text=text))
+    return out
