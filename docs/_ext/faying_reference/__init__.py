@@ -11,6 +11,7 @@ DIRECTIVES = {
     "commands": commands.Commands,
     "study-keys": tables.StudyKeys,
     "result-variables": tables.ResultVariables,
+    "sweep-axes": tables.Axes,
     "estimators": tables.Estimators,
     "programs": tables.Programs,
     "catalogue": tables.Catalogue,

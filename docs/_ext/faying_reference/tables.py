@@ -12,7 +12,9 @@ from sphinx.util.docutils import SphinxDirective
 
 import faying
 from faying.contact.build import kinds
+from faying.contact.parameter import Parameter
 from faying.decks.programs import PROGRAMS
+from faying.joint.form import PARAMETERS as FORM
 from faying.materials import CATALOGUE
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse
@@ -20,6 +22,7 @@ from faying.result.backbone import Backbone, Witness
 from faying.result.bolts import BoltNumbers
 from faying.result.fields import declared
 from faying.result.result import Comparison, Receptance, Result
+from faying.study.keys import uncertain, varied
 from faying.surface.estimators.table import ESTIMATORS
 from faying.units import EXAMPLES
 from faying_reference.docstrings import rendered
@@ -97,6 +100,35 @@ def _keys(keys: list[Key], words: Mapping[str, str]) -> list[str]:
 def _example(key: Key) -> str:
     unit = key.kind[len("quantity [") : -1]
     return f', such as ``"{EXAMPLES[unit]}"``' if unit in EXAMPLES else ""
+
+
+class Axes(Section):
+    """What a sweep varies, and what may scatter."""
+
+    def lines(self) -> list[str]:
+        """Return two tables."""
+        axes = {
+            **varied.OWN,
+            **{f"part.NAME.{name}": one for name, one in varied.OF_PART.items()},
+            **{f"joint.form.{name}": one for name, one in FORM.items()},
+        }
+        head = ("name", "value", "meaning")
+        out = table(head, [_axis(name, one) for name, one in axes.items()], (26, 30, 44))
+        out += [
+            "Besides ``law.NAME`` for every number that the study's law takes (:doc:`../theory/laws`), and",
+            "``law.model``. A bolt, a joint or a part is named in the middle: ``bolt.NAME.preload``.",
+            "",
+            "Under ``[uncertain]`` there are also, for each material:",
+            "",
+        ]
+        return out + table(
+            head, [_axis(f"material.NAME.{name}", one) for name, one in uncertain.OF_MATERIAL.items()], (26, 30, 44)
+        )
+
+
+def _axis(name: str, one: Parameter) -> tuple[str, str, str]:
+    kind = f"quantity [{one.unit}]" if one.is_number and one.unit else "number" if one.is_number else one.unit
+    return f"``{name}``", escape(f"{kind}, {one.allowed}" if one.allowed else kind), escape(one.meaning)
 
 
 class ResultVariables(Section):
