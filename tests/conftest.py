@@ -5,7 +5,10 @@ import os
 import shutil
 import tempfile
 
+import pytest
 from hypothesis import settings
+
+from tests.helpers.published import Published
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
@@ -14,6 +17,13 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 if "FAYING_CACHE" not in os.environ:
     os.environ["FAYING_CACHE"] = tempfile.mkdtemp(prefix="faying-tests-")
     atexit.register(shutil.rmtree, os.environ["FAYING_CACHE"], ignore_errors=True)
+
+
+@pytest.fixture
+def published(request):
+    """Compare with a published number, and put it into the site's table where that is asked for."""
+    return Published(request.node.nodeid)
+
 
 settings.register_profile("ci", derandomize=True, print_blob=True)
 if os.environ.get("CI"):

@@ -11,12 +11,21 @@ from faying.errors import InputError
 class Material:
     """One isotropic material.
 
-    Parameters (SI): name; E Young's modulus [Pa]; nu Poisson's ratio [-]; density [kg/m3]; yield_strength [Pa];
-    hardness [Pa], 2.8 times the yield strength where not given (Tabor 1951); friction, static coefficient [-];
-    conductivity, of heat [W/(m K)]; resistivity, electrical [ohm m]; bearing_limit, the pressure [Pa] that it bears
-    under the head of a bolt (p_G of VDI 2230).
+    Args:
+        name: what messages and tables call it.
+        E: Young's modulus [Pa].
+        nu: Poisson's ratio [-].
+        density: [kg/m3].
+        yield_strength: [Pa].
+        hardness: [Pa]; 2.8 times the yield strength where not given (Tabor 1951).
+        friction: static coefficient of friction [-].
+        conductivity: of heat [W/(m K)].
+        resistivity: electrical [ohm m].
+        bearing_limit: pressure [Pa] that it bears under the head of a bolt (p_G of VDI 2230).
+        source: where the numbers come from.
 
-    Raises InputError for values that no isotropic material can have.
+    Raises:
+        InputError: for values that no isotropic material can have.
     """
 
     name: str
@@ -61,7 +70,14 @@ RIGID = Material(name="rigid", E=inf, nu=0.0)
 
 @dataclass(frozen=True)
 class ContactPair:
-    """The two materials that meet. Either may be RIGID, not both; hardness is that of the softer one."""
+    """The two materials that meet; hardness is that of the softer one.
+
+    Args:
+        first, second: the materials; either may be RIGID, not both.
+
+    Raises:
+        InputError: for two rigid bodies.
+    """
 
     first: Material
     second: Material

@@ -37,9 +37,20 @@ def test_modes_lie_between_free_and_bonded(outcome):
     assert max(data["rigid"]["values"]) < 1e-2
 
 
-def test_the_rows_used_for_identification_fit_and_the_third_is_near(outcome):
+def test_the_rows_used_for_identification_fit_and_the_third_is_near(outcome, published):
     """Dimensions and form were found on 4 and 8 kN, 12 kN is a prediction. Bound: the worst of the paper, 4.3 %."""
     c = outcome[0]["comparison"]
+    rows = zip(c["frequencies"]["values"][2], c["predicted"]["values"][2], strict=True)
+    for number, (measured, ours) in enumerate(rows, start=1):
+        published(
+            f"T-specimen at 12 kN, predicted: mode {number}",
+            measured,
+            ours,
+            unit="Hz",
+            rel=0.043 if number == 3 else 0.01,
+            source="doi:10.3390/fractalfract8100611, Table 3, hammer test",
+            why="dimensions and form were identified at 4 and 8 kN; mode 3 hangs on dimensions that nobody gives",
+        )
     error = np.array(c["predicted"]["values"]) / np.array(c["frequencies"]["values"]) - 1
     assert np.abs(error).max() < 0.043
     assert np.abs(error[2, [0, 1, 3, 4]]).max() < 0.01  # mode 3 hangs on the dimensions

@@ -29,24 +29,35 @@ RESOLVED = 0.25  # greatest change of ln k_n on half the points each way
 class HalfSpace(ContactLaw):
     """The numerical contact of a scan with a flat, both bodies as one elastic half-space; limited to hardness.
 
-    scan of the rough face (levelled, without missing points; anything with heights [m] and spacing (dx, dy) [m]);
-    where both faces are rough, the scan of their sum. pair of materials. elastic=True leaves
-    out the hardness; a pair that does not yield has none.
-    stiffness: "unloading", k_n against a small fall of the load, which is what a vibration sees: elastic, energy_n the
-    strain energy; or "loading", k_n against its growth, loss_n the plastic work of first loading over 2 pi times the
-    strain energy, energy_n their sum. area: "corrected" for the size of the points, or as "counted". shear_ratio X
-    = T/(mu F): above 0, k_t is that of the points that still stick and loss_t follows from their slip (needs the
-    pair's friction); at 0 no loss is predicted. periodic as in `solve_half_space`. points: rungs of the ladder, spaced
-    evenly in ln(pressure) from lowest to highest pressure [Pa]; between them each quantity is a monotone cubic in
-    logarithms. Large maps are solved on fewer of them (`ladder`). tol as in `solve_half_space`.
-    progress: called with (solutions done, solutions in all) while the ladder is climbed, on first use. cache: folder
-    that keeps solved ladders by the hash of all that they depend on; None keeps nothing.
-
     Closure variable: the pressure [Pa]. k_n_low and k_n_high: the range in which k_n of a scan with four times as many
     points each way is looked for, from what k_n changed by on half and a quarter of the points, and from what it
     differs by between the quarters of the window. Flagged where fewer than 30 points touch, and where k_n changes by
     more than 25 % on half the points. The law ends where every point touches.
-    Raises InputError for parameters out of range and whatever `solve_half_space` does not accept.
+
+    Args:
+        scan: of the rough face (levelled, without missing points; anything with heights [m] and spacing (dx, dy)
+            [m]); where both faces are rough, the scan of their sum.
+        pair: the materials that meet.
+        elastic: leave out the hardness; a pair that does not yield has none.
+        stiffness: "unloading", k_n against a small fall of the load, which is what a vibration sees: elastic, energy_n
+            the strain energy; or "loading", k_n against its growth, loss_n the plastic work of first loading over 2 pi
+            times the strain energy, energy_n their sum.
+        area: "corrected" for the size of the points, or as "counted".
+        shear_ratio: X = T/(mu F); above 0, k_t is that of the points that still stick and loss_t follows from their
+            slip (needs the pair's friction); at 0 no loss is predicted.
+        periodic: as in `solve_half_space`.
+        points: pressures at which the contact is solved, spaced evenly in ln(pressure); between them each quantity is a
+            monotone cubic in logarithms. Large maps are solved on fewer of them.
+        lowest, highest: the first and the last of these pressures [Pa].
+        tol: as in `solve_half_space`.
+        progress: called with (solutions done, solutions in all) while they are solved, on first use.
+        cache: folder that keeps solved contacts by the hash of all that they depend on; None keeps nothing.
+
+    Raises:
+        InputError: for parameters out of range and whatever `solve_half_space` does not accept.
+
+    Source:
+        Polonsky and Keer 1999, doi:10.1016/S0043-1648(99)00113-1.
     """
 
     scan: HeightMap

@@ -120,18 +120,35 @@ def slip_share(X: ArrayLike) -> Array:
 @final
 @dataclass(frozen=True, kw_only=True)
 class JK(ContactLaw):
-    """Contact of a fractal surface over its small, meso and large stage. doi:10.3390/fractalfract8100611.
+    """Contact of a fractal surface over its small, meso and large stage.
 
-    D surface dimension, 2 < D < 3; G fractal roughness [m]; pair of materials; scan_area A0, the area that the scan
-    covers and to which al' belongs [m2]; gamma frequency index; alpha elastic-plastic load index, 0 to 1; closure,
-    loss and cutoff as in the module's text; substrate the share lam of the deformation that the asperity takes (a
-    constant), "exact" for eq. (1) at every asperity, or "computed" for the effective modulus found by finite elements,
-    both with modulus_ratio E_asperity/E_substrate and the asperity's E in the pair; shear_ratio X = T/(mu F),
-    0 <= X < 1, or in its place shear_stress tau [Pa]; psi the domain extension (solved where None).
+    Closure variable: the largest truncated area al' [m2]. Valid while real area <= 0.3, k_n below that of the bulk,
+    al' <= al3', al1' < al2' < al3', 2.1 <= D <= 2.9; with substrate="computed" also modulus_ratio 1 to 4 and h_a/R up
+    to 0.075.
 
-    Closure variable: the largest truncated area al' [m2]. Raises InputError for parameters out of these ranges.
-    Valid while real area <= 0.3, k_n below that of the bulk, al' <= al3', al1' < al2' < al3', 2.1 <= D <= 2.9; with
-    substrate="computed" also modulus_ratio 1 to 4 and h_a/R up to 0.075.
+    Args:
+        D: surface dimension, 2 < D < 3.
+        G: fractal roughness [m].
+        pair: the materials that meet.
+        scan_area: A0, the area that the scan covers and to which al' belongs [m2].
+        gamma: frequency index, above 1.
+        alpha: elastic-plastic load index, 0 to 1.
+        closure: "consistent" takes exponents that make the law continuous, "printed" those of the paper.
+        substrate: share lam of the deformation that the asperity takes (a constant), "exact" for eq. (1) at every
+            asperity, or "computed" for the effective modulus found by finite elements; the last two with
+            modulus_ratio and the asperity's E in the pair.
+        cutoff: least area that adds stiffness, over the smaller of a1c' and al'.
+        loss: "held" keeps the loss factor that the small stage ends with, "literal" evaluates eqs. (49) to (53).
+        shear_ratio: X = T/(mu F), 0 <= X < 1.
+        psi: domain extension; solved where None.
+        modulus_ratio: E_asperity/E_substrate.
+        shear_stress: tau [Pa] on the real area, in place of shear_ratio.
+
+    Raises:
+        InputError: for parameters out of these ranges.
+
+    Source:
+        Zhang, Wu, Liu and Jiang 2024, doi:10.3390/fractalfract8100611.
     """
 
     D: float

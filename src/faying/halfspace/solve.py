@@ -62,7 +62,7 @@ def solve_half_space(
 
     Source:
         Polonsky and Keer 1999, doi:10.1016/S0043-1648(99)00113-1; Almqvist et al. 2007,
-        doi:10.1016/j.jtribo.2007.01.014.
+        doi:10.1016/j.triboint.2005.11.008.
     """
     h, (dx, dy) = _checked_map(heights, spacing)
     _check_numbers(E_star, nu, hardness, tol)

@@ -18,7 +18,17 @@ MOST = 150  # places kept along each side of a scan: roughness is the law's, and
 
 @dataclass(frozen=True, kw_only=True)
 class GapMap:
-    """Gaps [m] (n,) at places (n, 2) [m] of a plane through origin (3,) [m] with axes x, y (3,). NaN are left out."""
+    """Measured gaps between two faces, before any load.
+
+    Args:
+        places: (n, 2) [m], in the plane of the map.
+        gaps: (n,) [m]; NaN are left out.
+        origin: (3,) [m], where x = y = 0 lies in the structure.
+        x_axis, y_axis: directions (3,) of the map's axes.
+
+    Raises:
+        InputError: for fewer than four points with numbers, and for points on one line.
+    """
 
     places: Array
     gaps: Array

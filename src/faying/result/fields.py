@@ -216,7 +216,7 @@ def _rebuilt(hint: Any, value: Any) -> Any:
     if origin is tuple:
         kinds = [inner[0]] * len(value) if len(inner) == 2 and inner[1] is Ellipsis else inner
         return tuple(_rebuilt(kind, part) for kind, part in zip(kinds, value, strict=True))
-    if origin is not None and issubclass(origin, Mapping):
+    if isinstance(origin, type) and issubclass(origin, Mapping):
         return {_key(inner[0], key): _rebuilt(inner[1], part) for key, part in value.items()}
     return float(value) if hint is float else value
 

@@ -1,0 +1,267 @@
+"""Tables of study keys, result variables, estimators, programs, laws and materials, from what the code declares."""
+
+import ast
+import inspect
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from sphinx.util.docutils import SphinxDirective
+
+import faying
+from faying.contact.build import kinds
+from faying.contact.parameter import Parameter
+from faying.decks.programs import PROGRAMS
+from faying.joint.form import PARAMETERS as FORM
+from faying.materials import CATALOGUE
+from faying.measured.compare import ModalComparison
+from faying.measured.model import FullResponse
+from faying.result.backbone import Backbone, Witness
+from faying.result.bolts import BoltNumbers
+from faying.result.fields import declared
+from faying.result.result import Comparison, Receptance, Result
+from faying.study.keys import uncertain, varied
+from faying.surface.estimators.table import ESTIMATORS
+from faying.units import EXAMPLES
+from faying_reference.docstrings import rendered
+from faying_reference.rst import escape, heading, table
+from faying_reference.study_keys import Key, meanings, recorded
+
+GROUPS = {
+    "result.nc": Result,
+    "response": Receptance,
+    "comparison": Comparison,
+    "hammer": ModalComparison,
+    "full response": FullResponse,
+    "bolt_numbers": BoltNumbers,
+    "A backbone": Backbone,
+    "witness of a backbone": Witness,
+}
+MEANINGS = Path(__file__).parents[2] / "reference" / "keys.toml"
+
+
+class Section(SphinxDirective):
+    """A directive whose content is made as text."""
+
+    def lines(self) -> list[str]:
+        """Return the text."""
+        raise NotImplementedError
+
+    def run(self) -> list[nodes.Node]:
+        """Return the sections."""
+        return self.parse_text_to_nodes("\n".join(self.lines()), allow_section_headings=True)
+
+
+class StudyKeys(Section):
+    """Every key of a study, a section for each table."""
+
+    def lines(self) -> list[str]:
+        """Return the sections."""
+        self.env.note_dependency(str(MEANINGS))
+        words, found = meanings(MEANINGS), recorded()
+        lacking = sorted({key.path for key in found.values() if not key.meaning} - set(words))
+        extra = sorted(set(words) - {key.path for key in found.values()})
+        if lacking or extra:
+            raise self.error(f"{MEANINGS.name}: no words for {lacking}; no key for {extra}")
+        places: dict[str, list[Key]] = {}
+        for key in found.values():
+            places.setdefault(key.table, []).append(key)
+        lists = {key.path for key in found.values() if key.kind == "list of tables"}
+        out: list[str] = []
+        for place, keys in places.items():
+            title = "Top level" if not place else f"[[{place}]]" if place in lists else f"[{place}]"
+            out += [f".. _table-{place or 'top'}:", "", *heading(title)]
+            if place in words:
+                out += [escape(words[place]), ""]
+            own = [key for key in keys if not key.model]
+            out += _keys(own, words)
+            for model in dict.fromkeys(key.model for key in keys if key.model):
+                named = [key for key in keys if key.model == model]
+                out += [f'With ``model = "{model.lower()}"`` also:', "", *_keys(named, words)]
+        return out
+
+
+def _keys(keys: list[Key], words: Mapping[str, str]) -> list[str]:
+    head = ("key", "value", "default", "meaning")
+    rows = [
+        (
+            f"``{key.name}``",
+            escape(f"{key.kind}, {key.allowed}" if key.allowed else key.kind) + _example(key),
+            f"``{key.default}``" if key.default and key.default != "required" else key.default,
+            escape(key.meaning or words[key.path]),
+        )
+        for key in keys
+    ]
+    return table(head, rows, (18, 30, 14, 38))
+
+
+def _example(key: Key) -> str:
+    unit = key.kind[len("quantity [") : -1]
+    return f', such as ``"{EXAMPLES[unit]}"``' if unit in EXAMPLES else ""
+
+
+class Axes(Section):
+    """What a sweep varies, and what may scatter."""
+
+    def lines(self) -> list[str]:
+        """Return two tables."""
+        axes = {
+            **varied.OWN,
+            **{f"part.NAME.{name}": one for name, one in varied.OF_PART.items()},
+            **{f"joint.form.{name}": one for name, one in FORM.items()},
+        }
+        head = ("name", "value", "meaning")
+        out = table(head, [_axis(name, one) for name, one in axes.items()], (26, 30, 44))
+        out += [
+            "Besides ``law.NAME`` for every number that the study's law takes (:doc:`../theory/laws`), and",
+            "``law.model``. A bolt, a joint or a part is named in the middle: ``bolt.NAME.preload``.",
+            "",
+            "Under ``[uncertain]`` there are also, for each material:",
+            "",
+        ]
+        return out + table(
+            head, [_axis(f"material.NAME.{name}", one) for name, one in uncertain.OF_MATERIAL.items()], (26, 30, 44)
+        )
+
+
+def _axis(name: str, one: Parameter) -> tuple[str, str, str]:
+    kind = f"quantity [{one.unit}]" if one.is_number and one.unit else "number" if one.is_number else one.unit
+    return f"``{name}``", escape(f"{kind}, {one.allowed}" if one.allowed else kind), escape(one.meaning)
+
+
+class ResultVariables(Section):
+    """Every variable of a result and of a backbone."""
+
+    def lines(self) -> list[str]:
+        """Return the sections."""
+        out: list[str] = []
+        for name, kind in GROUPS.items():
+            out += [*heading(name), *rendered((inspect.getdoc(kind) or "").splitlines()), ""]
+            rows = [
+                (
+                    f"``{meta.name or field}``" + (f" (in Python ``{field}``)" if meta.name else ""),
+                    escape(", ".join(meta.dims)),
+                    escape(meta.unit),
+                    escape(meta.long_name) + ("; NaN where not known" if meta.gaps else ""),
+                )
+                for field, meta in declared(kind).items()
+            ]
+            if rows:
+                out += table(("variable", "dimensions", "unit", "meaning"), rows, (24, 22, 12, 42))
+            others = [f.name for f in fields(kind) if f.name not in declared(kind) and not f.name.startswith("_")]
+            if others:
+                out += ["Besides: " + ", ".join(f"``{other}``" for other in others) + ".", ""]
+        return out
+
+
+class Estimators(Section):
+    """The estimators of D and G."""
+
+    def lines(self) -> list[str]:
+        """Return a table."""
+        rows = [(f"``{one.name}``", escape(one.needs), escape(one.bias)) for one in ESTIMATORS.values()]
+        return table(("name", "needs", "known bias"), rows, (16, 34, 50))
+
+
+class Programs(Section):
+    """What is read from other programs, and written for them."""
+
+    def lines(self) -> list[str]:
+        """Return a table."""
+        head = ("program", "meshes read", "matrices read", "joints: attach --to", "one 6 x 6: condense --to")
+        rows = [
+            (
+                f"``{name}``",
+                ", ".join(one.meshes),
+                ", ".join(one.matrices),
+                "yes" if one.joints else "",
+                "yes" if one.condensed else "",
+            )
+            for name, one in PROGRAMS.items()
+        ]
+        return table(head, rows)
+
+
+class Catalogue(Section):
+    """The materials that need not be written."""
+
+    def lines(self) -> list[str]:
+        """Return a table."""
+        head = ("material", "E [GPa]", "nu", "density [kg/m3]", "yield strength [MPa]", "hardness [MPa]", "source")
+        rows = [
+            (
+                escape(name),
+                f"{one.E / 1e9:g}",
+                f"{one.nu:g}",
+                f"{one.density:g}" if one.density else "",
+                f"{one.yield_strength / 1e6:g}" if one.yield_strength else "",
+                f"{one.hardness / 1e6:g}" if one.hardness else "",
+                escape(one.source),
+            )
+            for name, one in CATALOGUE.items()
+        ]
+        return table(head, rows)
+
+
+class LawTable(Section):
+    """The contact laws with what they take, each linked to its page."""
+
+    def lines(self) -> list[str]:
+        """Return a table."""
+        rows = [
+            (
+                f":ref:`{kind.label} <law-{slug(kind.label)}>`",
+                f"``{kind.label.lower()}``",
+                escape(kind.law.takes()),
+                escape(kind.law.validity),
+            )
+            for kind in kinds().values()
+            if kind.label != "auto"
+        ]
+        return table(("law", "model =", "takes", "holds"), rows, (16, 16, 16, 52))
+
+
+def slug(label: str) -> str:
+    """A label as the name of a page."""
+    return label.lower().replace(" ", "-")
+
+
+class Notes(Section):
+    """The codes of notes, and how their sentences read."""
+
+    def lines(self) -> list[str]:
+        """Return a table."""
+        rows = [(f"``{code}``", " / ".join(escape(text) for text in texts)) for code, texts in note_codes().items()]
+        return table(("code", "sentence (… stands for names and numbers)"), rows, (22, 78))
+
+
+def note_codes() -> dict[str, list[str]]:
+    """Every code of a note that the sources make, with its sentences as far as they are written there."""
+    found: dict[str, list[str]] = {}
+    for path in sorted(Path(faying.__file__).parent.rglob("*.py")):
+        for code, text in _notes(ast.parse(path.read_text(encoding="utf-8"))):
+            texts = found.setdefault(code, [])
+            if text and text not in texts:
+                texts.append(text)
+    return dict(sorted(found.items()))
+
+
+def _notes(tree: ast.AST) -> Iterator[tuple[str, str]]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and getattr(node.func, "id", getattr(node.func, "attr", "")) == "Note":
+            given: dict[str | None, Any] = {one.arg: one.value for one in node.keywords}
+            for one in ast.walk(given["code"]) if "code" in given else ():
+                if isinstance(one, ast.Constant):
+                    yield str(one.value), _sentence(given.get("text"))
+
+
+def _sentence(node: ast.AST | None) -> str:
+    if isinstance(node, ast.Constant):
+        return str(node.value)
+    if isinstance(node, ast.JoinedStr):
+        return "".join(str(part.value) if isinstance(part, ast.Constant) else "…" for part in node.values)
+    if isinstance(node, ast.BinOp):
+        return _sentence(node.left) + _sentence(node.right)
+    return "…"

@@ -1,0 +1,155 @@
+"""What the site is made from: keys and their words, sources, prepared curves, validation, the font, the README."""
+
+import hashlib
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from faying.contact.build import kinds, laws
+from faying.contact.compare import laws_of_surface
+from tests.helpers.published import KEYS
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+sys.path.append(str(DOCS / "_ext"))
+
+
+@pytest.fixture(scope="module")
+def reference():
+    pytest.importorskip("sphinx", reason="the site needs the group docs")
+    import faying_reference
+
+    return faying_reference
+
+
+def test_the_readers_are_seen_to_ask_for_every_key_of_the_template(reference, tmp_path):
+    """`faying init` writes keys by hand: each is one that the recording found."""
+    import tomllib
+
+    from faying_reference.study_keys import NAME, recorded
+
+    from faying.study.template import TEXT
+
+    found = {key.path for key in recorded().values()}
+    data = tomllib.loads(TEXT)
+
+    def walk(table, where):
+        for name, value in table.items():
+            path = f"{where}.{name}" if where else name
+            path = path if path in found else f"{where}.{NAME}"
+            assert path in found or path.startswith("joint.surface"), path
+            for inner in value if isinstance(value, list) else [value]:
+                if isinstance(inner, dict):
+                    walk(inner, path)
+
+    walk(data, "")
+
+
+def test_every_key_has_a_sentence_and_every_sentence_a_key(reference):
+    from faying_reference.study_keys import meanings, recorded
+
+    found = recorded()
+    words = meanings(DOCS / "reference" / "keys.toml")
+    assert {key.path for key in found.values() if not key.meaning} - set(words) == set()
+    assert set(words) - {key.path for key in found.values()} == set()
+    assert all(text.endswith(".") for text in words.values())
+
+
+def test_keys_carry_what_the_readers_ask(reference):
+    from faying_reference.study_keys import recorded
+
+    found = recorded()
+    assert found["bolt.diameter"].kind == "quantity [m]"
+    assert found["modes.count"].default == "10"
+    assert found["geometry.step"].default == "required"
+    assert found["joint.springs"].allowed == '"per-area" or "per-node"'
+    assert found["law.cutoff JK"].default == "0.01"
+    assert found["law.file Table"].kind == "file"
+    assert "joint.law.model" not in found
+
+
+DOI = re.compile(r"10\.\d{4,}/[^\s,;\"'`\]}]+")
+
+
+def dois(text):
+    """Each without the signs that follow it: a full stop, brackets that were opened before it."""
+    for name in DOI.findall(text):
+        while name[-1] in ".:" or (name[-1] == ")" and name.count(")") > name.count("(")):
+            name = name[:-1]
+        yield name.lower()
+
+
+def test_the_sources_of_theory_and_laws_are_those_of_the_bibliography():
+    listed = set(dois((DOCS / "references.bib").read_text()))
+    cited = {name for path in DOCS.rglob("*.md") if "generated" not in path.parts for name in dois(path.read_text())}
+    cited |= {name for law in laws().values() for name in dois(law.source)}
+    assert cited - listed == set()
+
+
+def test_every_law_has_its_equations_on_a_theory_page(reference):
+    from faying_reference.law_pages import equations
+
+    assert set(equations()) == {kind.law.name for kind in kinds().values() if kind.label != "auto"}
+
+
+def test_the_curves_of_the_law_pages_are_those_of_the_laws(reference):
+    """Of the laws that are quick: the half-space solution of this scan is compared by other tests."""
+    from faying_reference.law_pages import curves
+
+    from faying.contact.two_faces import faces_of
+    from faying.materials import CATALOGUE, ContactPair
+    from faying.surface.read import read_scan
+
+    faces = faces_of(read_scan(ROOT / "examples" / "t-specimen" / "milled.x3p"), "same")
+    steel = CATALOGUE["45 steel"]
+    found = curves()
+    names = [name for name in found if name != "half-space"]
+    made, _ = laws_of_surface(faces.rough, ContactPair(steel, steel), names=names)
+    assert set(names) <= set(made)
+    for name in names:
+        pressure = found[name]["pressure [Pa]"][::6]
+        covered = pressure <= made[name].greatest_pressure
+        response = made[name].at_pressure(pressure[covered])
+        for column, value in (("area [-]", response.area), ("k_n [Pa/m]", response.k_n)):
+            if value is not None:
+                np.testing.assert_allclose(found[name][column][::6][covered], value, rtol=1e-4)
+
+
+def test_the_table_of_published_numbers_is_whole():
+    entries = json.loads((DOCS / "validation.json").read_text())
+    assert len(entries) > 30
+    for entry in entries:
+        assert tuple(entry) == KEYS
+        off = abs(entry["ours"] - entry["published"])
+        assert off <= entry["tolerance"] * (abs(entry["published"]) if entry["relative"] else 1) * (1 + 1e-5) + 1e-15
+        path, _, name = entry["test"].partition("::")
+        assert f"def {name.partition('[')[0]}(" in (ROOT / path).read_text(), entry["test"]
+
+
+def test_the_font_is_the_one_whose_licence_lies_beside_it():
+    fonts = DOCS / "_static" / "fonts"
+    found = hashlib.sha256((fonts / "stix-two-math.woff").read_bytes()).hexdigest()
+    assert found in (fonts / "README.txt").read_text()
+    assert "SIL OPEN FONT LICENSE" in (fonts / "OFL.txt").read_text()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", sorted((DOCS / "gallery").glob("plot_*.py")), ids=lambda path: path.stem)
+def test_gallery_scripts_hold_what_they_say(path):
+    """Each ends in an assertion of its own."""
+    assert "\nassert " in path.read_text()
+    done = subprocess.run(
+        [sys.executable, str(path)],
+        cwd=path.parent,
+        env={**os.environ, "MPLBACKEND": "agg"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
