@@ -10,6 +10,8 @@ from .distribution import Distribution
 from .errors import FayingError, InputError, NotConverged, ReadError
 from .fe.mesh import Mesh
 from .halfspace import solve_half_space
+from .identify.identification import Identification
+from .identify.of_study import identify
 from .identify.predict import predict
 from .identify.prediction import Prediction
 from .joint.bolt import Bolt, Washer

@@ -16,6 +16,7 @@ COMMANDS = {
     "compare": ("compare", "Set a hammer test beside the result of a study: MAC, pairs, FRFs."),
     "condense": ("condense", "One joint as a 6 x 6 stiffness and loss between two points, with its error."),
     "form": ("form", "Flatness, crowns and twist of a measured face or gap."),
+    "identify": ("identify", "What a test tells of the numbers that scatter in a study."),
     "init": ("init", "Write a commented study file to start from."),
     "law": ("law", "Curves of a contact law: area, stiffness and loss against pressure."),
     "models": ("models", "List the contact models with their sources, inputs and ranges."),

@@ -1,7 +1,7 @@
 """What a test tells of the parameters of a model: the posterior, with what follows from it, in memory and on disk."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Self, final
@@ -19,6 +19,19 @@ from faying.typing import Array, Mask
 from faying.units import show
 
 LEVELS = (0.05, 0.5, 0.95)
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class LawEvidence:
+    """What a test says of one law: ln evidence and its sd, and the probability of the law among those compared [-]."""
+
+    name: str
+    log_evidence: float
+    log_evidence_sd: float
+    weight: float
+
+
 OWN = "faying"  # the group of the file that holds everything
 
 
@@ -29,8 +42,10 @@ class Identification(Recorded):
 
     names, units, priors: of the parameters; the last two are the relative sd of the test's scatter and of the model's
     discrepancy. log_evidence: ln of the probability density of the test's ln f under this model; a difference between
-    two models on one test is the logarithm of their odds. evaluations: of the model; answered: those with an answer;
-    calls: of the likelihood; rounds: how often the surrogate was drawn closer to the posterior.
+    two models on one test is the logarithm of their odds. laws: that were compared, where several were; the parameters
+    are then those of the likeliest, and the predicted frequencies are drawn from all. evaluations: of the model;
+    answered: those with an answer; calls: of the likelihood; rounds: how often the surrogate was drawn closer to the
+    posterior.
     """
 
     names: tuple[str, ...]
@@ -61,6 +76,7 @@ class Identification(Recorded):
     fit: Fit
     singular: Seen
     notes: tuple[Note, ...] = ()
+    laws: tuple[LawEvidence, ...] = ()
 
     def __repr__(self) -> str:
         return self.table()
@@ -136,6 +152,11 @@ class Identification(Recorded):
 
         sentences = [
             f"ln evidence {self.log_evidence:.2f} +- {self.log_evidence_sd:.2f}.",
+            *(
+                f"Law {law.name}: ln evidence {law.log_evidence:.2f} +- {law.log_evidence_sd:.2f}, "
+                f"probability {law.weight:.1%} among those compared."
+                for law in self.laws
+            ),
             f"Least squares: {self.fit.misfit:.2%} rms; {self.fit.agreeing} of {self.fit.starts} starts end there.",
             self.singular.text,
             *(note.text for note in self.notes),
@@ -161,6 +182,7 @@ class Identification(Recorded):
             "correlation": listed(self.correlation),
             "log_evidence": self.log_evidence,
             "log_evidence_sd": self.log_evidence_sd,
+            "laws": [{f.name: getattr(law, f.name) for f in fields(law)} for law in self.laws],
             "loads": {"unit": "N", "values": listed(self.loads)},
             "left_out": listed(self.left_out),
             "test": {"unit": "Hz", "values": listed(self.test)},
@@ -247,6 +269,38 @@ class Identification(Recorded):
             tree = xarray.open_datatree(self.save(Path(folder) / "identification.nc"), engine="h5netcdf")
             with tree:
                 return tree.load().drop_nodes(OWN)
+
+
+def mixed(found: Mapping[str, Identification], prior: Mapping[str, float], *, seed: int = 0) -> Identification:
+    """One identification out of those of several laws on one test.
+
+    Args:
+        found: by the name of the law.
+        prior: probability of each law before the test.
+        seed: of the draws.
+
+    Returns:
+        That of the likeliest law, with the evidence of all, its predicted frequencies drawn from all by their weights.
+    """
+    names = list(found)
+    logs = [found[name].log_evidence + np.log(prior[name]) for name in names]
+    weights = weights_of(logs)
+    best = found[names[int(np.argmax(weights))]]
+    rng = np.random.default_rng([seed, 3])
+    count = len(best.samples)
+    which = rng.choice(len(names), count, p=weights)
+    rows = rng.integers(count, size=count)
+    predictive = np.stack([found[names[k]].predictive[row] for k, row in zip(which, rows, strict=True)])
+    laws = tuple(
+        LawEvidence(
+            name=name,
+            log_evidence=found[name].log_evidence,
+            log_evidence_sd=found[name].log_evidence_sd,
+            weight=float(weight),
+        )
+        for name, weight in zip(names, weights, strict=True)
+    )
+    return replace(best, predictive=predictive, laws=laws)
 
 
 def weights_of(log_evidences: Sequence[float]) -> Array:

@@ -19,11 +19,15 @@ class Store:
 
     def __init__(self, out: Path | None, *, fingerprint: str = "", what: str = "prediction") -> None:
         self._part = None if out is None else PartFolder(out, fingerprint, what=what)
+        self.folder = None if self._part is None else self._part.path
 
-    @property
-    def folder(self) -> Path | None:
-        """Where things are kept."""
-        return None if self._part is None else self._part.path
+    def within(self, number: int) -> "Store":
+        """A folder in this one, for a part of the work with bases of its own."""
+        inner = Store(None)
+        if self.folder is not None:
+            inner.folder = self.folder / f"{number:03d}"
+            inner.folder.mkdir(exist_ok=True)
+        return inner
 
     def close(self) -> None:
         """Let other processes have the folder."""
@@ -37,7 +41,7 @@ class Store:
 
     def forget(self) -> None:
         """Remove the folder where nothing has been kept in it, so that it bars no other work."""
-        if self._part is not None and not any(self._part.path.glob("*.npz")):
+        if self._part is not None and not any(self._part.path.rglob("*.npz")):
             self._part.remove()
 
     def model(self) -> Kept | None:
