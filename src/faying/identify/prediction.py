@@ -274,7 +274,7 @@ class Prediction(Recorded):
             for name, meta in declared(type(self)).items()
             if getattr(self, name) is not None
         }
-        return xarray.Dataset(data, coords={"input": list(self.names), "loads": ("load", self.loads)})
+        return xarray.Dataset(data, coords={"input": list(self.names)}).set_coords("loads")
 
     def with_notes(self, notes: Sequence[Note]) -> Self:
         """The same with more to say."""

@@ -1,11 +1,14 @@
 """The tables of a prediction, for the terminal and for files."""
 
+import textwrap
+
 import numpy as np
 
 from faying.identify.prediction import LEVELS, Prediction
 from faying.output.table import Rows
 from faying.output.table import text as aligned
 
+WIDTH = 80  # columns of a terminal
 SHOWN = 0.03  # share of the variance from which an input is named
 POOR = 0.3  # leave-one-out error of the polynomial, over the scatter, from which shares of the variance say little
 
@@ -78,7 +81,7 @@ def blame(found: Prediction) -> tuple[Rows, str]:
         rows.append([str(mode + 1), words or "-"])
     worst = float(np.max(error))
     text = (
-        "A total share counts what an input does together with others, too. The shares are those of a polynomial\n"
+        "A total share counts what an input does together with others, too. The shares are those of a polynomial "
         f"through the samples; its leave-one-out error is at most {worst:.0%} of the scatter."
     )
     return rows, text
@@ -94,8 +97,11 @@ def text(found: Prediction) -> str:
     rows, words = blame(found)
     inside, count = found.covered
     parts = [
-        f"{found.title}: {found.answered} of {len(found.values)} samples have an answer; bases of {found.basis[0]} and "
-        f"{found.basis[1]} vectors",
+        textwrap.fill(
+            f"{found.title}: {found.answered} of {len(found.values)} samples have an answer; bases of "
+            f"{found.basis[0]} and {found.basis[1]} vectors",
+            WIDTH,
+        ),
         "\nwhat scatters\n" + _wrapped(scatter(found)),
         "\nfrequencies, 5 % .. median .. 95 %\n" + _narrow(intervals(found)),
     ]
@@ -104,13 +110,14 @@ def text(found: Prediction) -> str:
     if lines := slopes(found):
         parts.append("\nchange with preload, 5 % .. median .. 95 %\n" + aligned(lines))
     if lines := beside_test(found):
-        parts.append(f"\nbeside the test ({found.test_source}): {inside} of {count} inside\n" + aligned(lines))
+        head = textwrap.fill(f"beside the test ({found.test_source}): {inside} of {count} inside", WIDTH)
+        parts.append(f"\n{head}\n" + aligned(lines))
     last = f"{found.loads[-1] / 1e3:g} kN"
-    parts.append(f"\nwhat makes the scatter at {last}\n" + _wrapped(rows) + f"\n{words}\n")
-    return "\n".join([*parts, *(f"note: {note.text}" for note in found.notes)])
+    parts.append(f"\nwhat makes the scatter at {last}\n" + _wrapped(rows) + "\n\n" + textwrap.fill(words, WIDTH) + "\n")
+    return "\n".join([*parts, *(textwrap.fill(f"note: {note.text}", WIDTH) for note in found.notes)])
 
 
-def _narrow(rows: Rows, width: int = 80) -> str:
+def _narrow(rows: Rows, width: int = WIDTH) -> str:
     """Columns in blocks that fit the width, the first column in each."""
     widths = [max(len(row[k]) for row in rows) + 2 for k in range(len(rows[0]))]
     blocks: list[list[int]] = [[]]
@@ -121,10 +128,8 @@ def _narrow(rows: Rows, width: int = 80) -> str:
     return "\n\n".join(aligned([[row[i] for i in (0, *block)] for row in rows]) for block in blocks)
 
 
-def _wrapped(rows: Rows, width: int = 80) -> str:
+def _wrapped(rows: Rows, width: int = WIDTH) -> str:
     """Two columns, the second wrapped to the width."""
-    import textwrap
-
     first = max(len(row[0]) for row in rows) + 2
     lines = []
     for head, words in rows:

@@ -41,7 +41,7 @@ def figure(found: Identification) -> Any:
     upper.set_xlabel("5 to 95 % of the prior = 0 to 1; in brackets, sd after over sd before", fontsize=8)
     upper.invert_yaxis()
     upper.grid(axis="x", alpha=0.3)
-    upper.legend(fontsize=8)
+    upper.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize=8, frameon=False)
     low, middle, high = found.predicted
     for k, load in enumerate(loads):
         place = np.arange(modes) + (k - (len(loads) - 1) / 2) * 0.7 / len(loads)
@@ -55,5 +55,5 @@ def figure(found: Identification) -> Any:
     lower.set_xlabel("difference from the predicted median [%]; bars from 5 to 95 %, dots measured", fontsize=8)
     lower.invert_yaxis()
     lower.grid(axis="x", alpha=0.3)
-    lower.legend(fontsize=8)
+    lower.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4, fontsize=8, frameon=False)
     return fig

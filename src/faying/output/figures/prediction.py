@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from faying.identify.prediction import Prediction
-from faying.output.figures.save import new_figure, plain
+from faying.output.figures.save import new_figure, plain, prefixed
 
 MOST_INPUTS = 6  # of the scatter matrix
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#999999", "#f0e442")  # Okabe and Ito
@@ -16,7 +16,7 @@ def intervals(found: Prediction) -> Any:
     values, test = found.observed
     full = values[found.sound]
     low, middle, high = (np.nanquantile(full, level, axis=0) for level in (0.05, 0.5, 0.95))
-    fig = new_figure(6.3, 0.9 + 0.32 * middle.shape[1] * len(found.loads) ** 0.5)
+    fig = new_figure(6.3, 1.2 + 0.32 * middle.shape[1] * len(found.loads) ** 0.5)
     ax = fig.subplots()
     count = len(found.loads)
     for load in range(count):
@@ -33,7 +33,7 @@ def intervals(found: Prediction) -> Any:
     ax.set_xlabel("difference from the median [%]; bars from 5 to 95 %")
     ax.set_ylabel("mode and its median")
     ax.grid(axis="x", alpha=0.3)
-    ax.legend(fontsize=8)
+    fig.legend(loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     ax.set_title(plain(found.title), fontsize=10)
     return fig
 
@@ -81,11 +81,11 @@ def scatter_matrix(found: Prediction) -> Any:
     for row, mode in enumerate(modes):
         for column, k in enumerate(order):
             ax = axes[row, column]
-            ax.plot(found.values[:, k], frequencies[:, mode], ".", ms=2, color=COLOURS[0], alpha=0.5)
+            factor, unit = prefixed(found.values[:, k], found.inputs.columns[k].unit)
+            ax.plot(found.values[:, k] / factor, frequencies[:, mode], ".", ms=2, color=COLOURS[0], alpha=0.5)
             ax.tick_params(labelsize=7)
             ax.locator_params(nbins=4)
             if row == len(modes) - 1:
-                unit = found.inputs.columns[k].unit
                 ax.set_xlabel(plain(found.names[k]) + (f"\n[{unit}]" if unit else ""), fontsize=7)
         axes[row, 0].set_ylabel(f"mode {mode + 1} [Hz]", fontsize=8)
     return fig

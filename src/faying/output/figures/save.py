@@ -6,6 +6,8 @@ from typing import Any
 from faying.errors import InputError
 from faying.files import write_atomically
 
+_PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"))
+
 RESOLUTION = 150  # dots per inch of what is no line
 
 
@@ -19,6 +21,16 @@ def new_figure(width: float, height: float) -> Any:
 def plain(text: str) -> str:
     """A name as it stands: without this, matplotlib reads what is between dollar signs as mathematics."""
     return text.replace("$", r"\$")
+
+
+def prefixed(values: Any, unit: str) -> tuple[float, str]:
+    """By what to divide SI values for the labels of an axis, and the unit with its prefix."""
+    import numpy as np
+
+    if not unit or any(mark in unit for mark in "^*"):
+        return 1.0, unit.replace("^2", "²").replace("^3", "³")
+    factor, prefix = next(((f, p) for f, p in _PREFIXES if np.abs(values).max() >= f * (1 - 1e-12)), _PREFIXES[-1])
+    return factor, prefix + unit
 
 
 def check_ending(path: Path) -> None:

@@ -6,12 +6,11 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.output.figures.save import check_figure, new_figure
+from faying.output.figures.save import check_figure, new_figure, prefixed
 from faying.study.axes import Axis
 from faying.study.sweep_files import Sweep
 
 MAPS = 4
-_PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"))
 
 
 def check(path: str | Path, axes: int) -> None:
@@ -28,10 +27,7 @@ def _scale(axis: Axis) -> tuple[Any, str, bool]:
     if not axis.numeric:
         return np.arange(len(axis.values), dtype=float), axis.key, False
     values = np.array(axis.values, dtype=float)
-    factor, unit = 1.0, axis.unit.replace("^2", "²")
-    if unit and not any(mark in axis.unit for mark in "^*"):
-        factor, prefix = next(((f, p) for f, p in _PREFIXES if np.abs(values).max() >= f * (1 - 1e-12)), _PREFIXES[-1])
-        unit = prefix + unit
+    factor, unit = prefixed(values, axis.unit)
     spaced = len(values) > 2 and values.min() > 0
     log = bool(spaced and np.ptp(np.diff(np.log(values))) < 1e-6 * abs(np.log(values[-1] / values[0])))
     return values / factor, f"{axis.key} [{unit or '-'}]", log

@@ -1,0 +1,119 @@
+"""Identification of a study: a twin whose truth is known, made with another mesh, and what is said of bad questions."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import faying
+from faying.errors import InputError
+from faying.identify.identification import Identification
+from faying.identify.of_study import left_out
+from faying.study.keys import test as keys
+from tests.identify.test_predict import study_of
+
+SCATTER = """
+[uncertain]
+E = "200 GPa +- 4 GPa"
+stiffness = {distribution = "lognormal", median = 1, sd_ln = 0.6}
+joint.form.twist = "0 um to 2 um"
+"""
+TRUTH = {"E": 203e9, "stiffness": 0.6}
+
+
+def twin(folder):
+    """The study, and as its test the frequencies of a finer mesh with other E and stiffness, and noise of .1 %."""
+    plan = study_of(folder, SCATTER)
+    corners = plan_points(plan)
+    steel = replace(plan.materials["45 steel"], E=TRUTH["E"])
+    finer = {name: 0.75 * size for name, size in plan.geometry.face_size.items()}
+    other = replace(
+        plan,
+        geometry=replace(plan.geometry, size=0.75 * plan.geometry.size, face_size=finer),
+        materials={**plan.materials, "45 steel": steel},
+        uncertain=None,
+        test=None,
+    )
+    from faying.study.case import Case, Progress
+    from faying.study.solve import solve
+
+    case = Case.of(other)
+    joints = tuple(replace(j, law=replace(j.law, scale=TRUTH["stiffness"])) for j in case.structure.joints)
+    case = replace(case, structure=replace(case.structure, joints=joints))
+    problem = case.structure.assembly()
+    states = [solve(case, k, problem, Progress(0)) for k in range(len(plan.loads))]
+    truth = np.stack([s.damped.frequencies for s in states])
+    noise = np.random.default_rng(3).normal(0, 1e-3, truth.shape)
+    measured = truth * np.exp(noise)
+    rows = tuple(tuple(row) for row in measured.tolist())
+    test = keys.TestChoice(
+        frequencies=rows,
+        points=corners,
+        direction=(1.0, 0.7, 0.4),
+        threshold=1e-3,
+        source="twin",
+        published=None,
+        published_name="",
+        kind="model",
+    )
+    return replace(plan, test=test), measured
+
+
+def plan_points(plan):
+    from faying.study.case import checked_mesh
+
+    points = checked_mesh(plan).points
+    directions = np.array([[1, 1, 1], [-1, 1, -1], [1, -1, -1]])
+    return tuple(tuple(map(float, points[int(np.argmax(points @ d))])) for d in directions)
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    study, measured = twin(tmp_path_factory.mktemp("twin"))
+    return study, measured, faying.identify(study, leave_out=study.loads[-1], seed=2)
+
+
+def test_the_truth_of_a_twin_lies_in_the_intervals(found):
+    _, _, result = found
+    low, _, high = dict(zip(result.names, result.quantiles((0.01, 0.5, 0.99)).T, strict=True))["joint.stiffness"]
+    assert low < TRUTH["stiffness"] < high
+    low, _, high = dict(zip(result.names, result.quantiles((0.01, 0.5, 0.99)).T, strict=True))["material.45 steel.E"]
+    assert low < TRUTH["E"] < high
+
+
+def test_what_the_test_sees_is_told_from_what_it_does_not(found):
+    _, _, result = found
+    told = dict(zip(result.names, result.told, strict=True))
+    assert told["joint.stiffness"] < 0.6
+
+
+def test_the_load_that_was_left_out_is_predicted(found):
+    _, measured, result = found
+    low, _, high = result.predicted
+    inside = (measured[-1] > low[-1]) & (measured[-1] < high[-1])
+    assert inside.sum() >= len(inside) - 1
+    assert result.left_out.tolist() == [False] * (len(measured) - 1) + [True]
+
+
+def test_it_is_written_and_read(found, tmp_path):
+    _, _, result = found
+    assert Identification.load(result.save(tmp_path / "i.nc")) == result
+    assert "joint.stiffness" in result.table()
+
+
+@pytest.mark.parametrize(("given", "expected"), [(None, ()), ("1 kN", (0,)), (["1 kN"], (0,)), (3000.0, (1,))])
+def test_preloads_are_left_out_by_their_value(tmp_path, given, expected):
+    plan = study_of(tmp_path)
+    loads = plan.loads
+    assert loads == (1e3, 3e3)
+    assert left_out(plan, given) == expected
+
+
+def test_questions_without_an_answer_are_refused(tmp_path):
+    plan = study_of(tmp_path)
+    with pytest.raises(InputError, match="no preload of 7 kN in the study; it has 1 kN, 3 kN"):
+        left_out(plan, "7 kN")
+    with pytest.raises(InputError, match="names every preload"):
+        left_out(plan, ["1 kN", "3 kN"])
+    with pytest.raises(InputError, match="an identification needs a test"):
+        faying.identify(replace(plan, test=None))
