@@ -68,6 +68,7 @@ PUBLIC = "public function of Python users, who name its options"
 EXCEPTIONS = {
     "asperity_fe/drive.py:solve_asperity": PUBLIC,
     "halfspace/solve.py:solve_half_space": PUBLIC,
+    "identify/identify.py:identify_model": PUBLIC,
     "measured/records.py:frf_from_records": PUBLIC,
     "study/attach.py:attach": PUBLIC,
     "study/backbone.py:backbone": PUBLIC,

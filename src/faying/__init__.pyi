@@ -6,9 +6,14 @@ from .contact.half_space import HalfSpace
 from .contact.jk import JK
 from .decks.matrices import read_matrices
 from .decks.meshfile import read_mesh
+from .distribution import Distribution
 from .errors import FayingError, InputError, NotConverged, ReadError
 from .fe.mesh import Mesh
 from .halfspace import solve_half_space
+from .identify.identification import Identification
+from .identify.of_study import identify
+from .identify.predict import predict
+from .identify.prediction import Prediction
 from .joint.bolt import Bolt, Washer
 from .joint.flatness import minimum_zone
 from .joint.form import Form

@@ -4,6 +4,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from functools import cached_property
 from math import exp, inf, isfinite, log, nan, nextafter, sqrt
 from typing import Any, Literal, Self, final
 
@@ -42,7 +43,7 @@ class Distribution:
             left between `low` and `high`.
     """
 
-    kind: Literal["normal", "lognormal", "uniform"]
+    kind: str
     centre: float
     spread: float
     low: float = -inf
@@ -81,7 +82,7 @@ class Distribution:
         whole = self.centre * np.exp(shifted) if self.kind == "lognormal" else self.centre + shifted
         return np.clip(whole, *self.support)
 
-    @property
+    @cached_property
     def _scores(self) -> tuple[float, float]:
         """Where the density begins and ends on that scale."""
         first, last = float(self.standardised(self.low)), float(self.standardised(self.high))
@@ -117,6 +118,13 @@ class Distribution:
     @property
     def _is_cut(self) -> bool:
         return self._scores != (-inf, inf)
+
+    @property
+    def sd_standardised(self) -> float:
+        """The standard deviation on that scale; 1 but for what is uniform or cut."""
+        if self.kind == "lognormal":
+            return Distribution(kind="normal", centre=0, spread=1, low=self._scores[0], high=self._scores[1]).sd
+        return self.sd / self.spread
 
     # -- what it is
 

@@ -84,10 +84,10 @@ def test_the_evidence_is_that_of_nested_sampling(likelihood, priors):
         lambda x: float(likelihood(x[None, :])[0]),
         transform,
         len(priors),
-        nlive=500,
+        nlive=350,
         rstate=np.random.default_rng(1),
     )
-    nested.run_nested(print_progress=False, dlogz=0.05)
+    nested.run_nested(print_progress=False, dlogz=0.1)
     found = temper(likelihood, priors, count=3000)
     assert found.log_evidence == pytest.approx(nested.results.logz[-1], abs=0.3)
     if likelihood is bimodal:

@@ -4,6 +4,7 @@ import pytest
 import faying
 from faying.fe.faces import face_centre
 from faying.fe.interface import join
+from faying.fe.modes import lowest_modes
 from faying.joint.joint_law import JointLaw
 from faying.joint.loads import preload_index
 from faying.joint.structure import Joint, Structure
@@ -170,3 +171,21 @@ def test_a_preload_is_found_by_the_digits_that_messages_print():
     assert preload_index(loads, -1e3) is None
     assert preload_index((), 1e3) is None
     assert preload_index((1e3, 1.0005e3), 1.0004e3) == 1
+
+
+def test_the_factorisation_of_the_last_modes_serves_the_next_load():
+    """The same equilibrium in fewer steps; one that was shifted further is not taken."""
+    structure = bars(material=STEEL)
+    shift = structure.shift_frequency
+    alone, helped = structure.assembly(), structure.assembly()
+    start = alone.solve(squeeze(structure, 1e3))
+    helped.solve(squeeze(structure, 1e3))
+    stiffness, _ = structure.joined(structure.springs(start.pressures))
+    modes = lowest_modes(stiffness, structure.vibrating[1], 8, shift_frequency=shift)
+    helped.take(modes.factorisation, 2 * shift)
+    assert helped.factor is not modes.factorisation
+    helped.take(modes.factorisation, shift)
+    found, wanted = (problem.solve(squeeze(structure, 3e3)) for problem in (helped, alone))
+    assert found.pressures[0] == pytest.approx(wanted.pressures[0], rel=1e-8)
+    assert found.inner_steps < wanted.inner_steps
+    assert found.factorisations == wanted.factorisations == 1

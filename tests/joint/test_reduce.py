@@ -12,6 +12,7 @@ from faying.fe.modes import lowest_modes
 from faying.joint.attachments import Support
 from faying.joint.bolt import Bolt
 from faying.joint.joint_law import JointLaw
+from faying.joint.part_shares import PartShares
 from faying.joint.reduce import Reduction
 from faying.joint.structure import Joint, Structure
 from tests.helpers.boxes import stack
@@ -144,3 +145,38 @@ def test_a_part_that_is_held_by_nothing_is_named():
     structure = three(50e-6, supports=(Support(face="p0.left"),))
     with pytest.raises(faying.InputError, match="part 'p2' is free to move"):
         Reduction.of(structure, [joint.law for joint in structure.joints], np.array([2e3]), count=COUNT)
+
+
+SCALES = (1.06, 0.93), (0.97, 1.05)  # of stiffness and mass of the two parts
+
+
+@pytest.mark.parametrize("held", ["free", "clamped"])
+@pytest.mark.parametrize("lossy", [True, False])
+def test_parts_may_be_scaled_each_by_itself(held, lossy):
+    """Against the full structure of two materials; the rigid motions go along with a mass that shifts."""
+    structure = beam(supports=(Support(face="p0.left"),) if held == "clamped" else ())
+    base = law() if lossy else JointLaw(model=faying.contact.PowerLaw(C=5e-10, m=0.5), tangential="mindlin")
+    shares = PartShares.of(structure, ("p0", "p1"))
+    reduction = Reduction.of(structure, [base], np.array([1000.0]), count=COUNT, shares=shares)
+    for scales in (((1.1, 0.9), (0.9, 1.1)), ((0.9, 1.1), (1.1, 1.1))):
+        reduction.train([base], np.array([1000.0]), [None], tolerance=TOLERANCE, scales=scales)
+    reduction.compress(TOLERANCE)
+    materials = {
+        part: replace(STEEL, E=k * STEEL.E, density=m * STEEL.density)
+        for part, (k, m) in zip(("p0", "p1"), SCALES, strict=True)
+    }
+    _, damped = full(replace(structure, materials=materials), base, 1000.0)
+    variant = reduction.model.with_scales(SCALES).evaluate([base], np.array([1000.0]), [None])
+    assert variant.frequencies == pytest.approx(damped.frequencies, rel=1e-5)
+    plain = reduction.model.with_scales(None).evaluate([base], np.array([1000.0]), [None])
+    assert np.abs(plain.frequencies / damped.frequencies - 1).max() > 1e-3
+
+
+def test_a_scaled_law_is_the_law_with_that_scale():
+    one, other = law().scaled(1.7), replace(law(), scale=1.7)
+    p = np.geomspace(1e3, 5e8, 300)
+    for a, b in zip(one.stiffness(p), other.stiffness(p), strict=True):
+        assert a == pytest.approx(b, rel=1e-9)
+    w = one.approach(1e6)
+    assert w == pytest.approx(law().approach(1e6) / 1.7, rel=1e-9)
+    assert one.pressure(np.array([w]))[0] == pytest.approx([1e6], rel=1e-6)

@@ -44,10 +44,10 @@ def done(plan, tmp_path_factory):
     return sweep(plan, axes(), tmp_path_factory.mktemp("sweep") / "out.nc")
 
 
-SLOW = pytest.mark.slow
-
-
-@pytest.mark.parametrize("place", [(0, 0), pytest.param((1, 1), marks=SLOW), (3, 2), pytest.param((2, 0), marks=SLOW)])
+@pytest.mark.parametrize(
+    "place",
+    [(0, 0), pytest.param((1, 1), marks=pytest.mark.slow), (3, 2), pytest.param((2, 0), marks=pytest.mark.slow)],
+)
 def test_points_are_those_of_full_runs(plan, done, place):
     D, force = (axis.values[i] for axis, i in zip(done.axes, place, strict=True))
     full = run(
@@ -184,7 +184,7 @@ def test_values_of_an_axis():
     ("text", "message"),
     [
         ("surface.D", "give key=first:last:count"),
-        ("part.upper=1:2:3", "a sweep varies what acts on the joints alone"),
+        ("part.upper=1:2:3", "a sweep varies what acts on the joints"),
         ("bolt.preload=1:20:30", "give the unit|unit"),
         ("surface.D=2.2:2.6:1", "whole number from 2 to"),
         ("surface.D=2.2:2.2:3", "ends must differ"),

@@ -38,13 +38,13 @@ def command(study: Path, **options: Any) -> None:
     from faying.files import new_folder
     from faying.measured.ring_down import MeasuredBackbone
     from faying.output.figures import backbone as drawing
-    from faying.output.figures.save import save
+    from faying.output.figures.save import check_figure, save
     from faying.study import Study
     from faying.study.backbone import backbones, names
 
     plot, out = options["plot"], options["out"]
     if plot:
-        drawing.check(plot)
+        check_figure(plot)
     measured = [MeasuredBackbone.read(path) for path in options["measured"]]
     plan = Study.read(study)
     choice, loads = asked(plan, options)

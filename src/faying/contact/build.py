@@ -30,6 +30,11 @@ class LawKind:
         known = {*given, *self.fixed, *(surface.supplies(self.law.parameters) if surface is not None else ())}
         return tuple(name for name in self.law.required() if name not in known)
 
+    def takes(self, numbers: Collection[str], given: Collection[str]) -> bool:
+        """Whether it takes any of these numbers from a surface, where these entries are given."""
+        open_ = [p for name, p in self.law.parameters.items() if name not in given and name not in self.fixed]
+        return any(parameter.surface in numbers for parameter in open_)
+
     def describe_missing(self, names: Collection[str], *, with_scan: bool) -> str:
         """Say what is missing and where it can come from; with_scan: whether a scan is there already."""
         entries = self.law.entries()

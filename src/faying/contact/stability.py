@@ -21,6 +21,7 @@ from faying.surface.scan import Scan
 UNSTABLE = 0.25  # a greater relative change of k_n is told
 CUTS = {"half window": 0.5, "quarter window": 0.25}
 WHOLE, COARSE = "full scan", "half the points"
+FITTED = ("D", "G", "G_majumdar_bhushan")  # numbers of a surface that take a fit
 CASES = (WHOLE, *CUTS, COARSE)
 
 
@@ -88,15 +89,17 @@ def stability(
     given = dict(given or {})
     parts = {name: (cropped(scan, share), cropped(counter, share)) for name, share in CUTS.items()}
     parts |= {WHOLE: (scan, counter), COARSE: (_halved(scan), _halved(counter))}
-    law = pick(kind, given, faces_of(scan, counter, method=method).rough, pair).law
+    fitted = kind.takes(FITTED, given)
+    law = pick(kind, given, faces_of(scan, counter, method=method, fitted=fitted).rough, pair).law
     kind = label_of(law)
+    fitted = kind.takes(FITTED, given)
     values = {WHOLE: stiffness_at(law, pressure)}
     for name in CASES[1:]:
         one, other = parts[name]
         try:
             if not isinstance(one, Scan) or other is None:
                 raise InputError("too few points")
-            surface = faces_of(one, other, method=method).rough
+            surface = faces_of(one, other, method=method, fitted=fitted).rough
             values[name] = stiffness_at(pick(kind, given, surface, pair).law, pressure)
         except FayingError:
             values[name] = np.nan

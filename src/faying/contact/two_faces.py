@@ -50,6 +50,7 @@ def faces_of(
     G: float | None = None,
     scan_area: float | None = None,
     cache: Path | None = None,
+    fitted: bool = True,
 ) -> Faces:
     """Return the rough surface of two faces.
 
@@ -60,6 +61,7 @@ def faces_of(
         D, G: of both faces together [-], [m], in place of those that are fitted.
         scan_area: [m2], in place of that of the scan; needed for a line scan.
         cache: folder that keeps solved contacts of the surface.
+        fitted: whether D and G are fitted; they are NaN where neither fitted nor given.
 
     Returns:
         Faces. The heights are those of the sum: of the two scans, laid face to face, or of the scan and its mirror
@@ -75,7 +77,7 @@ def faces_of(
     if isinstance(counter, Scan) and not isinstance(scan, Scan):
         raise InputError(f"{scan.source} is a line scan; two faces need two areal scans")
     words = f"the other face is {Path(counter.source).name}" if isinstance(counter, Scan) else MEANING[counter]
-    fit, unfitted = _fit(scan, counter, method)
+    fit, unfitted = _fit(scan, counter, method) if fitted else (None, "")
     factor = 2.0 if counter == "same" else 1.0
     area = scan_area or (scan.size[0] * scan.size[1] if isinstance(scan, Scan) else 0.0)
     dimension, roughness = D or (fit.D if fit else nan), G or nan

@@ -6,6 +6,7 @@ equations, sent through the factorisation that the real modes have left, is both
 next enrichment of the span.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -13,6 +14,7 @@ import numpy as np
 
 from faying.errors import NotConverged
 from faying.fe.modes import Modes
+from faying.fe.span import Span, without
 from faying.typing import Array, Complex, Index
 
 ROUNDS = 25  # enrichments after which the loss must be so great that nothing here applies
@@ -63,34 +65,39 @@ def damped_modes(
     elastic = modes.shapes[:, rigid:]
     count = elastic.shape[1] if count is None else min(count, elastic.shape[1])
     rigid_shapes = modes.shapes[:, :rigid]
-    momentum = mass @ rigid_shapes
-    span = _Span(stiffness, mass, loss, elastic)
-    answer = modes.factorisation.solve(np.asfortranarray(loss @ elastic))
-    span.add(answer - rigid_shapes @ (momentum.T @ answer), least=0.0)
+    rigid_momentum = np.asarray(mass @ rigid_shapes)
+
+    def answered(forces: Array) -> Array:
+        """What the factorisation answers to forces (n, k), less rigid motions."""
+        found = modes.factorisation.solve(np.asfortranarray(forces))
+        return np.asarray(found - rigid_shapes @ (rigid_momentum.T @ found))
+
+    span = Span(mass, stiffness, elastic, others=[loss])
+    lossless = not loss.count_nonzero()
+    if not lossless:
+        _enrich(span, answered(loss @ elastic), least=0.0)
     error = np.full(count, np.inf)
     for _ in range(ROUNDS):
-        squared, root, inner = span.eigen(count, kind)
-        vectors = span.vectors @ inner
-        image = loss @ vectors
+        squared, root, inner = _eigen(span.small, count, kind)
+        vectors, moved = _times(span.vectors, inner), _times(span.momentum, inner)
+        lost = loss @ vectors.real + 1j * (loss @ vectors.imag)
         if kind == "hysteretic":
-            miss = stiffness @ vectors + 1j * image - (mass @ vectors) * squared
+            miss = _times(span.force, inner) + 1j * lost - moved * squared
         else:
-            miss = stiffness @ vectors + image * root + (mass @ vectors) * root**2
-        both = np.concatenate([miss.real, miss.imag], axis=1)
-        solved = modes.factorisation.solve(np.asfortranarray(both))
-        solved = solved - rigid_shapes @ (momentum.T @ solved)
-        energy = np.einsum("ij,ij->j", both, solved)
-        size = np.abs(squared) * np.einsum("im,im->m", vectors.conj(), mass @ vectors).real
-        error = np.abs(energy[:count] + energy[count:]) / size
+            miss = _times(span.force, inner) + lost * root + moved * root**2
+        parts = miss.real if lossless else np.concatenate([miss.real, miss.imag], axis=1)
+        solved = answered(parts)
+        energy = np.einsum("ij,ij->j", parts, solved).reshape(-1, count).sum(axis=0)
+        size = np.abs(squared) * np.einsum("im,im->m", vectors.conj(), moved).real
+        error = np.abs(energy) / size
         if error.max() < tolerance:
-            norm = np.sqrt(np.einsum("im,im->m", vectors, mass @ vectors))
             return DampedModes(
                 frequencies=_frequency(squared, root, kind),
                 loss_factors=_loss_factor(squared, root, kind),
                 error=error,
-                shapes=vectors / norm,
+                shapes=vectors / np.sqrt(np.einsum("im,im->m", vectors, moved)),
             )
-        if not span.add(solved / np.sqrt(np.tile(size, 2)), least=0.01 * tolerance):
+        if not _enrich(span, solved / np.sqrt(np.tile(size, solved.shape[1] // count)), least=0.01 * tolerance):
             break
     raise NotConverged(
         f"complex modes: the estimated error stays at {error.max():.1e} (tolerance {tolerance:.0e}); the loss "
@@ -122,54 +129,41 @@ def followers(overlap: Complex) -> Index:
     return np.array(picked, dtype=np.int64)
 
 
-class _Span:
-    """A growing basis, orthonormal with the mass, and the matrices projected on it."""
+def _times(vectors: Array, inner: Complex) -> Complex:
+    """Real vectors times complex coefficients, without a complex copy of the vectors."""
+    return np.asarray(vectors @ inner.real + 1j * (vectors @ inner.imag))
 
-    def __init__(self, stiffness: Any, mass: Any, loss: Any, first: Array) -> None:
-        self.operators = (stiffness, loss)
-        self.mass = mass
-        self.vectors = first
-        self.leading = first.shape[1]
-        self.small = [first.T @ (operator @ first) for operator in self.operators]
 
-    def add(self, new: Array, *, least: float) -> int:
-        """Add columns; directions whose share of the stiffness energy is below `least` are left out."""
-        scale = np.einsum("ij,ij->j", new, self.operators[0] @ new).max()
-        for _ in range(2):
-            new = new - self.vectors @ (self.vectors.T @ (self.mass @ new))
-        gram = new.T @ (self.operators[0] @ new)
-        values, rotation = np.linalg.eigh((gram + gram.T) / 2)
-        new = new @ rotation[:, values > max(least, 1e-12 * scale)]
-        if not new.shape[1]:
-            return 0
-        new = new / np.linalg.norm(new, axis=0)
-        values, rotation = np.linalg.eigh(new.T @ (self.mass @ new))
-        keep = values > 1e-13 * values.max()
-        new = new @ (rotation[:, keep] / np.sqrt(values[keep]))
-        new = new - self.vectors @ (self.vectors.T @ (self.mass @ new))
-        for i, operator in enumerate(self.operators):
-            image = operator @ new
-            side = self.vectors.T @ image
-            self.small[i] = np.block([[self.small[i], side], [side.T, new.T @ image]])
-        self.vectors = np.concatenate([self.vectors, new], axis=1)
-        return int(new.shape[1])
+def _enrich(span: Span, new: Array, *, least: float) -> int:
+    """Add columns; directions whose share of the stiffness energy is below `least` are left out."""
+    stiffness = span.operators[0]
+    scale = np.einsum("ij,ij->j", new, stiffness @ new).max()
+    new = without(new, span.vectors, span.momentum)
+    gram = new.T @ (stiffness @ new)
+    values, rotation = np.linalg.eigh((gram + gram.T) / 2)
+    new = new @ rotation[:, values > max(least, 1e-12 * scale)]
+    return span.add(new / np.linalg.norm(new, axis=0)) if new.shape[1] else 0
 
-    def eigen(self, count: int, kind: str) -> tuple[Complex, Complex, Complex]:
-        """Squares w^2 (1 + i eta), roots lambda and coefficients (size, count) of modes that follow the real ones."""
-        from scipy.linalg import eig
 
-        K, C = self.small
-        if kind == "hysteretic":
-            values, vectors = eig(K + 1j * C)
-            squared, root = values, 1j * np.sqrt(values)
-        else:
-            n = len(K)
-            companion = np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]])
-            root, both = eig(companion)
-            above = root.imag > 0
-            root, vectors = root[above], both[:n, above]
-            vectors = vectors / np.linalg.norm(vectors, axis=0)
-            squared = -(root**2)
-        order = followers(vectors[:count])
-        order = order[np.argsort(_frequency(squared[order], root[order], kind))]
-        return squared[order], root[order], vectors[:, order]
+def _eigen(small: Sequence[Array], count: int, kind: str) -> tuple[Complex, Complex, Complex]:
+    """Squares w^2 (1 + i eta), roots lambda and coefficients (size, count) of modes that follow the real ones.
+
+    small: stiffness and loss on a basis that is orthonormal with the mass.
+    """
+    from scipy.linalg import eig
+
+    K, C = small
+    if kind == "hysteretic":
+        values, vectors = eig(K + 1j * C)
+        squared, root = values, 1j * np.sqrt(values)
+    else:
+        n = len(K)
+        companion = np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]])
+        root, both = eig(companion)
+        above = root.imag > 0
+        root, vectors = root[above], both[:n, above]
+        vectors = vectors / np.linalg.norm(vectors, axis=0)
+        squared = -(root**2)
+    order = followers(vectors[:count])
+    order = order[np.argsort(_frequency(squared[order], root[order], kind))]
+    return squared[order], root[order], vectors[:, order]

@@ -133,7 +133,7 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[A
     generator = np.random.default_rng(SEED)
     last = factor.solve(mass @ generator.standard_normal((n, width)))
     last, momentum, _ = _orthonormal(last, mass)
-    before, rows = np.zeros((n, 0)), np.zeros((last.shape[1], 0))
+    before, before_momentum, rows = np.zeros((n, 0)), np.zeros((n, 0)), np.zeros((last.shape[1], 0))
     basis, projected = last, np.zeros((0, 0))
     for _ in range(MOST_STEPS // width):
         image = factor.solve(momentum)
@@ -143,18 +143,22 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[A
         edge = np.zeros((last.shape[1], old))
         edge[:, old - before.shape[1] :] = rows
         projected = np.block([[projected, edge.T], [edge, corner]])
-        size = float(np.sqrt(np.einsum("ij,ij->j", image, mass @ image).max()))
+        moved = mass @ image
+        size = float(np.sqrt(np.einsum("ij,ij->j", image, moved).max()))
         image -= last @ corner + before @ rows.T
-        image -= basis @ (basis.T @ (mass @ image))
-        before = last
+        moved -= momentum @ corner + before_momentum @ rows.T
+        image -= basis @ (basis.T @ moved)
+        before, before_momentum = last, momentum
         last, momentum, rows = _orthonormal(image, mass, nothing=NOTHING * size)
         values, vectors = np.linalg.eigh(projected)
         values, vectors = values[::-1][:count], vectors[:, ::-1][:, :count]
         converged = np.linalg.norm(rows @ vectors[old:], axis=0) <= TOLERANCE * values
-        if (len(values) == count and np.all(converged)) or not last.shape[1]:
-            often = max(int(np.count_nonzero(np.abs(values / value - 1) < SAME)) for value in values)
-            if width <= often < count and width < n:
-                return _krylov(factor, mass, count, 2 * width)
+        whole = not last.shape[1]
+        found = values if whole else values[converged]
+        often = max((int(np.count_nonzero(np.abs(found / value - 1) < SAME)) for value in found), default=0)
+        if width <= often < count and width < n:
+            return _krylov(factor, mass, count, 2 * width)
+        if whole or (len(values) == count and np.all(converged)):
             return values, np.asarray(basis @ vectors)
         basis = np.concatenate([basis, last], axis=1)
     raise NotConverged(

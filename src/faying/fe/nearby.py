@@ -6,6 +6,7 @@ import numpy as np
 
 from faying.errors import NotConverged
 from faying.fe.modes import Modes
+from faying.fe.span import Span
 from faying.typing import Array
 
 ROUNDS = 40  # enrichments of the basis
@@ -36,32 +37,20 @@ def nearby_modes(
     """
     from scipy.linalg import eigh
 
-    basis = modes.shapes
-    small = basis.T @ (stiffness @ basis)
-    moved = np.asarray(mass @ basis)
+    span = Span(mass, stiffness, modes.shapes)
     for _ in range(ROUNDS):
-        values, inner = eigh((small + small.T) / 2)
+        values, inner = eigh(span.small[0])
         order = np.argsort(np.abs(values))[rigid : rigid + count]
-        squared, shapes = values[order], basis @ inner[:, order]
-        left = stiffness @ shapes - (mass @ shapes) * squared
+        squared, inner = values[order], inner[:, order]
+        left = span.force @ inner - (span.momentum @ inner) * squared
         solved = modes.factorisation.solve(np.asfortranarray(left))
         error = np.abs(np.einsum("ij,ij->j", left, solved)) / np.abs(squared)
         if error.max() < tolerance:
-            return np.sqrt(np.abs(squared)) / (2 * np.pi), shapes
+            return np.sqrt(np.abs(squared)) / (2 * np.pi), span.vectors @ inner
         new = solved[:, error > tolerance / 10]
         new = new / np.sqrt(np.einsum("ij,ij->j", new, mass @ new))
-        for _ in range(2):
-            new = new - basis @ (moved.T @ new)
-        weights, rotation = np.linalg.eigh(new.T @ (mass @ new))
-        kept = weights > LEAST
-        if not kept.any():
+        if not span.add(new, least=LEAST):
             break
-        new = new @ (rotation[:, kept] / np.sqrt(weights[kept]))
-        image = stiffness @ new
-        side = basis.T @ image
-        small = np.block([[small, side], [side.T, new.T @ image]])
-        basis = np.concatenate([basis, new], axis=1)
-        moved = np.concatenate([moved, mass @ new], axis=1)
     raise NotConverged(
         f"modes under changed springs: the estimated error stays at {error.max():.1e} (tolerance {tolerance:.0e})"
     )

@@ -20,8 +20,8 @@ from faying.surface.estimators.base import Scatter
 from faying.typing import Array
 
 LEVEL = "surface.level"  # of the spectrum in the middle of its band, at a given D
-FAR = 2.326  # standard normal score of the shares of 1 and 99 %, to which the bases are trained in each input
-PAIRS = 6  # samples far out in all inputs at once that the bases are trained on
+FAR = 1.645  # standard normal score of the shares of 5 and 95 %, to which the bases are trained in each input
+PAIRS = 4  # samples far out in all inputs at once that the bases are trained on
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,6 +1,6 @@
 """Evaluates samples of a study in its small bases: modes at every load, and which of them are those of the test."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from faying.errors import FayingError
+from faying.identify.ensemble import Ensemble
+from faying.identify.store import Store
 from faying.joint.reduced import ReducedModel, Variant
 from faying.joint.structure import Structure
 from faying.measured.mac import mac
@@ -19,9 +21,7 @@ from faying.study.recipe import Recipe
 from faying.study.trainer import FAR, Trainer
 from faying.typing import Array
 
-from .ensemble import Ensemble
-
-TOLERANCE = 2e-5  # relative error of a frequency that the bases are made for; scatter is a hundred times as much
+TOLERANCE = 1e-4  # relative error of a frequency that the bases are made for: far below the scatter of any test
 CHUNK = 32  # samples evaluated in one go
 ROUNDS = 6  # of training at samples that the bases do not fit
 WORST = 4  # samples trained on in each round
@@ -149,6 +149,7 @@ class Reduced:
         jobs, dask: Processes on this machine, or the address of a Dask scheduler.
         report: Called with a stage and the number of samples just done.
         tolerance: Relative error of a frequency that the bases are made for.
+        store: Keeps bases and samples on disk, so that interrupted work goes on; None keeps nothing.
     """
 
     def __init__(
@@ -159,20 +160,46 @@ class Reduced:
         dask: str | None = None,
         report: Report | None = None,
         tolerance: float = TOLERANCE,
+        store: Store | None = None,
     ) -> None:
         self.jobs, self.dask = jobs, dask
         self.report: Report = report or (lambda _stage, _done: None)
         self.report("mesh", 0)
         self.trainer = Trainer.of(ensemble.study, ensemble, tolerance, self.report)
-        self.model = self.trainer.model()
+        self.store = store or Store(None)
+        self.seen: tuple[Array, Array] | None = None
+        kept = self.store.model()
+        if kept is None:
+            self._train()
+        else:
+            self.model, self.seen = kept
 
-    def rows(self, ensemble: Ensemble, keep: Callable[[Sequence[int], Rows], None] | None = None) -> Rows:
+    def _train(self, points: Sequence[int] = ()) -> None:
+        """Make or enrich the bases, and what the points of the test see of them."""
+        self.model = self.trainer.model(points)
+        test, reduction = self.trainer.study.test, self.trainer.reduction
+        if test is not None and reduction is not None:
+            self.seen = reduction.probe(probe(self.trainer.structure, test))
+        self.store.keep_model(self.model, self.seen)
+
+    def rows(self, ensemble: Ensemble, what: str = "samples") -> Rows:
         """Rows of all samples of an ensemble that has the same training; those that the bases do not fit, anew.
 
-        keep: called with every chunk as it is done.
+        what: the name under which they are kept on disk.
         """
         out: Rows = {}
-        self._fill(out, ensemble, range(ensemble.count), keep)
+        chunks = [list(range(i, min(i + CHUNK, ensemble.count))) for i in range(0, ensemble.count, CHUNK)]
+        left = []
+        for number, chunk in enumerate(chunks):
+            found = self.store.rows(what, number)
+            if found is None:
+                left.append(chunk)
+            else:
+                _put(out, ensemble.count, chunk, found)
+                self.report("evaluations", len(chunk))
+        for indices, rows in self._evaluated(ensemble, left):
+            _put(out, ensemble.count, indices, rows)
+            self.store.keep_rows(what, indices[0] // CHUNK, rows)
         for _ in range(ROUNDS):
             far = np.flatnonzero(out["estimate"] > FAR * self.trainer.tolerance)
             if not len(far):
@@ -182,38 +209,29 @@ class Reduced:
             points = [int(ensemble.training + k) * ensemble.loads + ensemble.loads - 1 for k in worst]
             before = out["estimate"][far].copy()
             self.trainer.recipe = replace(self.trainer.recipe, design=ensemble)
-            self.model = self.trainer.model(points)
-            self._fill(out, ensemble, far.tolist(), keep)
+            self._train(points)
+            for indices, rows in self._evaluated(ensemble, [far.tolist()]):
+                _put(out, ensemble.count, indices, rows)
             if not np.any(out["estimate"][far] < before):
                 break
         return out
 
-    def _fill(
-        self,
-        out: Rows,
-        ensemble: Ensemble,
-        samples: Sequence[int],
-        keep: Callable[[Sequence[int], Rows], None] | None,
-    ) -> None:
-        test = ensemble.study.test
-        seen = None
-        if test is not None:
-            assert self.trainer.reduction is not None
-            seen = self.trainer.reduction.probe(probe(self.trainer.structure, test))
+    def _evaluated(self, ensemble: Ensemble, chunks: Sequence[Sequence[int]]) -> Iterable[tuple[Sequence[int], Rows]]:
+        """Evaluate chunk by chunk, as they come."""
         recipe = replace(self.trainer.recipe, design=ensemble)
-        work = Evaluator(model=self.model, recipe=recipe, seen=seen, test=test)
-        chunks = [list(samples[i : i + CHUNK]) for i in range(0, len(samples), CHUNK)]
+        work = Evaluator(model=self.model, recipe=recipe, seen=self.seen, test=ensemble.study.test)
         for indices, rows in each(partial(_rows, work), chunks, self.jobs, self.dask):
-            for name, values in rows.items():
-                if name not in out:
-                    kind = object if name == "reasons" else float
-                    out[name] = np.full(
-                        (ensemble.count, *values.shape[1:]), "" if kind is object else np.nan, dtype=kind
-                    )
-                out[name][list(indices)] = values
-            if keep is not None:
-                keep(indices, rows)
             self.report("evaluations", len(indices))
+            yield indices, rows
+
+
+def _put(out: Rows, count: int, indices: Sequence[int], rows: Rows) -> None:
+    """Put the rows of some samples among those of all."""
+    for name, values in rows.items():
+        if name not in out:
+            empty = np.full((count, *values.shape[1:]), np.nan)
+            out[name] = np.full(count, "", dtype=object) if name == "reasons" else empty
+        out[name][list(indices)] = values
 
 
 def _rows(work: Evaluator, samples: Sequence[int]) -> Rows:

@@ -25,7 +25,7 @@ from faying.joint.reduced import ReducedModel, ReducedMotion, Variant
 from faying.joint.springs import Springs
 from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions, checked_preload
-from faying.typing import Array, Complex
+from faying.typing import Array
 
 FEW_STEPS = 60  # enrichments of one variant after which something else must be wrong
 EXTRA_MODES = 25  # real modes of the reference beyond those wanted: they speed the enrichment of the highest ones
@@ -43,6 +43,11 @@ def _pressed(traces: Sequence[Any], laws: Sequence[JointLaw], found: PreloadStat
         k_n = np.where(p > 0, law.stiffness(p)[0], 1.0)
         total += float(trace.weights @ (p**2 / k_n))
     return float(np.sqrt(total))
+
+
+def _parts(values: Any) -> list[Array]:
+    """Real and imaginary part; the real one alone where the other is zero."""
+    return [values.real, values.imag] if np.any(values.imag) else [np.asarray(values.real)]
 
 
 @dataclass
@@ -285,23 +290,29 @@ class Reduction:
             f"reduction: {FEW_STEPS} enrichments leave the preload wrong by {error:.1e}; raise the tolerance"
         )
 
-    def modal_error(self, laws: Sequence[JointLaw], pressures: Sequence[Array]) -> tuple[Array, Array]:
-        """Estimated relative error of the complex eigenvalues (m,) of a variant, and what would mend it (n, 2m).
+    def modal_error(
+        self, laws: Sequence[JointLaw], pressures: Sequence[Array], tolerance: float = 0.0
+    ) -> tuple[Array, Array]:
+        """Estimated relative error of the complex eigenvalues (m,) of a variant, and what would mend it (n, k).
 
-        The square of the residual in the energy norm: eigenvalues err by the square of their vectors.
+        The square of the residual in the energy norm: eigenvalues err by the square of their vectors. What would mend
+        it is for the modes whose error exceeds the tolerance, real and imaginary parts where there is loss.
         """
         springs = self.model.springs(laws, pressures)
         values, vectors, _ = self.model.modes(springs, slight=0.0)  # no basis mends what first order leaves
-        residual = self._modal_residual(springs, values, vectors)
-        both = np.concatenate([residual.real, residual.imag], axis=1)
-        solved = self.factor.solve(np.asfortranarray(both))
-        split = len(values)
-        energy = np.einsum("ij,ij->j", both, solved)
         momentum = self.model.matrices[2] @ vectors
         size = np.abs(values) * np.abs(np.einsum("ij,ij->j", vectors.conj(), momentum))
-        return (energy[:split] + energy[split:]) / size, solved / np.sqrt(np.tile(size, 2))
+        parts = _parts(self._modal_residual(springs, values, vectors))
+        solved = [self.factor.solve(np.asfortranarray(part)) for part in parts]
+        energy = sum(np.einsum("ij,ij->j", part, answer) for part, answer in zip(parts, solved, strict=True))
+        error = np.asarray(energy / size)
+        poor = error > tolerance
+        return error, np.concatenate([answer[:, poor] / np.sqrt(size[poor]) for answer in solved], axis=1)
 
-    def _modal_residual(self, springs: Sequence[Springs[ReducedMotion]], values: Complex, vectors: Complex) -> Complex:
+    def _modal_residual(self, springs: Sequence[Springs[ReducedMotion]], values: Any, vectors: Any) -> Any:
+        lossy = any(np.any(d.loss_n) or np.any(d.loss_t) for d in springs)
+        if not lossy:
+            values, vectors = values.real, vectors.real
         x = self.dynamic.vectors @ vectors
         stiffness, mass = ((), ()) if self.shares is None else (self.shares.stiffness, self.shares.mass)
         residual = self._scaled(self.stiffness, stiffness, 0, x)
@@ -309,7 +320,9 @@ class Reduction:
             x = x + self.dynamic.rigid @ (self.model.shares.motion(self.model.scales) @ vectors)
         residual = residual - self._scaled(self.mass, mass, 1, x) * values
         for trace, relative, d in zip(self.traces, self.dynamic.relative, springs, strict=True):
-            n, t = trace.weights * d.k_n * (1 + 1j * d.loss_n), trace.weights * d.k_t * (1 + 1j * d.loss_t)
+            n, t = trace.weights * d.k_n, trace.weights * d.k_t
+            if lossy:
+                n, t = n * (1 + 1j * d.loss_n), t * (1 + 1j * d.loss_t)
             share = np.stack([n, t, t], axis=1).reshape(-1, 1)
             residual = residual + trace.relative.T @ (share * (relative @ vectors))
         residual[self.fixed] = 0.0
@@ -318,8 +331,8 @@ class Reduction:
     def train_dynamic(self, laws: Sequence[JointLaw], pressures: Sequence[Array], tolerance: float) -> None:
         """Enrich until all modes of a variant are right; tolerance: of the complex eigenvalues."""
         for _ in range(FEW_STEPS):
-            error, mend = self.modal_error(laws, pressures)
-            if error.max() < tolerance:
+            error, mend = self.modal_error(laws, pressures, tolerance)
+            if error.max() <= tolerance:
                 return
             new = self.dynamic.add(mend, least=0.02 * tolerance)
             self._refresh()
@@ -362,8 +375,7 @@ class Reduction:
         for laws, pressures, scales in self._seen:
             model = self.model.with_scales(scales)
             _, vectors, _ = model.modes(model.springs(laws, pressures))
-            both = np.concatenate([vectors.real, vectors.imag], axis=1)
-            columns.append(both / np.tile(np.linalg.norm(vectors, axis=0), 2))
+            columns += _parts(vectors / np.linalg.norm(vectors, axis=0))
         rotation, size, _ = np.linalg.svd(np.concatenate(columns, axis=1), full_matrices=False)
         share = size**2
         self.dynamic.turn(rotation[:, share > 0.3 * tolerance])

@@ -3,9 +3,10 @@
 `reduce` makes it from a structure; it has no matrix of the structure's size and can be sent to other processes.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from faying.joint.part_shares import ReducedShares, Scales
 from faying.joint.springs import Springs
 from faying.typing import Array, Complex
 
+_SINGLE = ("static_stiffness", "static_loads", "dynamic_stiffness", "dynamic_mass", "count", "coarse")
+_OF_JOINTS = ("weights", "gaps", "static_relative", "dynamic_relative")
 BALANCED = 1e-8  # imbalance at which the pressure is right to far more digits than a sweep gives
 BLOCK = 36  # real modes beyond those wanted that meet them exactly under the loss
 SLIGHT = 1e-6  # relative error of an eigenvalue up to which first order is enough for the higher modes
@@ -150,6 +153,26 @@ class ReducedModel:
     coarse: int
     shares: ReducedShares | None = None
     scales: Scales | None = None
+
+    def arrays(self) -> dict[str, Array]:
+        """All of it by name, to be kept in a file; `from_arrays` gives it back, without scales."""
+        out = {name: np.asarray(getattr(self, name)) for name in _SINGLE}
+        for i in range(len(self.weights)):
+            out |= {f"{name}_{i}": getattr(self, name)[i] for name in _OF_JOINTS}
+        if self.shares is not None:
+            out |= {f"shares_{f.name}": getattr(self.shares, f.name) for f in fields(self.shares)}
+        return out
+
+    @classmethod
+    def from_arrays(cls, data: Mapping[str, Array]) -> "ReducedModel":
+        """What `arrays` gave. Raises KeyError where something is missing."""
+        joints = sum(name.startswith("weights_") for name in data)
+        given: dict[str, Any] = {name: [data[f"{name}_{i}"] for i in range(joints)] for name in _OF_JOINTS}
+        given |= {name: data[name] for name in _SINGLE}
+        given |= {name: int(data[name]) for name in ("count", "coarse")}
+        if "shares_mass" in data:
+            given["shares"] = ReducedShares(**{f.name: data[f"shares_{f.name}"] for f in fields(ReducedShares)})
+        return cls(**given)
 
     @cached_property
     def matrices(self) -> tuple[Array, Array, Array]:

@@ -2,8 +2,11 @@
 
 from html import escape
 from io import BytesIO, StringIO
+from pathlib import Path
 from typing import Any
 
+from faying.files import write_text
+from faying.output.figures.save import RESOLUTION, save
 from faying.output.table import Rows
 
 STYLE = """
@@ -26,9 +29,27 @@ def picture(name: str, figure: Any) -> str:
         buffer = BytesIO()
         figure.savefig(buffer, format="png", dpi=130)
         return f'<img alt="{name}" src="data:image/png;base64,{b64encode(buffer.getvalue()).decode()}">'
+    return _inline(_svg(figure))
+
+
+def saved(name: str, figure: Any, file: Path) -> tuple[Path, str]:
+    """Write a figure into a file and return it with the text that a page shows; what both have is drawn once."""
+    if name in BITMAPS:
+        save(figure, file)
+        figure.set_layout_engine("none")  # it has found its layout
+        return file, picture(name, figure)
+    svg = _svg(figure)
+    return write_text(file, svg), _inline(svg)
+
+
+def _svg(figure: Any) -> str:
     text = StringIO()
-    figure.savefig(text, format="svg", metadata={"Date": None})
-    svg = text.getvalue()
+    figure.savefig(text, format="svg", dpi=RESOLUTION, metadata={"Date": None})
+    return text.getvalue()
+
+
+def _inline(svg: str) -> str:
+    """An SVG file as it stands in a page."""
     return svg[svg.index("<svg") :]
 
 

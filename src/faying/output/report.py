@@ -10,13 +10,13 @@ from faying import __version__
 from faying.files import write_text
 from faying.output import page, report_measured
 from faying.output.figures import response, structure
-from faying.output.figures.save import new_figure, save
+from faying.output.figures.save import new_figure
 from faying.output.sections import sections
 from faying.result import Result
 
 
-def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
-    """Return the report as HTML text with its figures inside, those of `drawn` where they exist already."""
+def html(result: Result, pictures: dict[str, str] | None = None) -> str:
+    """Return the report as HTML text with its figures inside; pictures: those that are drawn already, as HTML."""
     parts = [
         f"<h1>{escape(result.title)}</h1>",
         f"<p>{result.unknowns:,} unknowns, factorised by {escape(result.solver)}; Faying {__version__}.</p>",
@@ -24,20 +24,19 @@ def html(result: Result, drawn: dict[str, Any] | None = None) -> str:
     if result.warnings:
         parts.append("<h2>Read this first</h2>")
         parts += [f'<p class="flag">{escape(line)}</p>' for line in result.warnings]
-    drawn = drawn or figures(result)
+    if pictures is None:
+        pictures = {name: page.picture(name.removeprefix(TEST), figure) for name, figure in figures(result).items()}
     for section in sections(result):
         if section.name == "hammer" and result.hammer is not None:
-            of_test = {name.removeprefix(TEST): figure for name, figure in drawn.items() if name.startswith(TEST)}
+            of_test = {name.removeprefix(TEST): text for name, text in pictures.items() if name.startswith(TEST)}
             parts.append(report_measured.section(result.hammer, of_test))
         else:
             parts += [f"<h2>{escape(section.title)}</h2>", page.table(section.rows)]
             parts += [f"<p>{escape(section.below)}</p>"] if section.below else []
     parts.append("<h2>Figures</h2>")
-    for name, figure in drawn.items():
+    for name, picture in pictures.items():
         if not name.startswith(TEST):
-            parts.append(
-                f"<figure>{page.picture(name, figure)}<figcaption>{FIGURES[name].caption}</figcaption></figure>"
-            )
+            parts.append(f"<figure>{picture}<figcaption>{FIGURES[name].caption}</figcaption></figure>")
     parts += _contact(result)
     parts += ["<h2>Sources</h2>", "<ul>", *(f"<li>{escape(line)}</li>" for line in result.sources), "</ul>"]
     return page.document(result.title, "".join(parts))
@@ -53,6 +52,7 @@ def _contact(result: Result) -> list[str]:
 
 
 TEST = "test_"  # the figures of the hammer test begin with it
+BITMAP_FILES = ("modes", "shapes")  # figures whose files are bitmaps, too
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,11 +120,11 @@ def write(result: Result, folder: Path) -> list[Path]:
     made = [result.to_netcdf(folder / "result.nc"), result.to_csv(folder / "modes.csv")]
     drawn = figures(result)
     if result.hammer is not None:
-        of_test = {name.removeprefix(TEST): figure for name, figure in drawn.items() if name.startswith(TEST)}
-        made += report_measured.write_parts(result.hammer, of_test, folder, TEST)
+        made.append(write_text(folder / "comparison.csv", result.hammer.csv_text()))
+    pictures = {}
     for name, figure in drawn.items():
-        if name.startswith(TEST):
-            continue
-        made.append(save(figure, folder / f"{name}.{'png' if name == 'modes' else 'svg'}"))
-    made.append(write_text(folder / "report.html", html(result, drawn)))
+        kind = name.removeprefix(TEST)
+        file, pictures[name] = page.saved(kind, figure, folder / f"{name}.{'png' if kind in BITMAP_FILES else 'svg'}")
+        made.append(file)
+    made.append(write_text(folder / "report.html", html(result, pictures)))
     return made

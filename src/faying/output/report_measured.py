@@ -7,8 +7,8 @@ from typing import Any
 from faying import __version__
 from faying.files import write_text
 from faying.measured.compare import ModalComparison
-from faying.output.figures.save import new_figure, save
-from faying.output.page import BITMAPS, document, picture, table
+from faying.output.figures.save import new_figure
+from faying.output.page import BITMAPS, document, saved, table
 
 CAPTIONS = {
     "mac": "MAC of the modes of the test against those of the model, at the points of the test. Pairs are framed.",
@@ -36,8 +36,8 @@ def figures(comparison: ModalComparison) -> dict[str, Any]:
     return out
 
 
-def section(comparison: ModalComparison, drawn: dict[str, Any] | None = None) -> str:
-    """Return the section as HTML, its figures inside, to stand in any report."""
+def section(comparison: ModalComparison, pictures: dict[str, str]) -> str:
+    """Return the section as HTML, its figures (by name, as HTML) inside, to stand in any report."""
     points = comparison.point_map
     worst = max(points.distance.values())
     parts = [
@@ -51,24 +51,19 @@ def section(comparison: ModalComparison, drawn: dict[str, Any] | None = None) ->
         table(comparison.rows()),
         "<p>Difference: model over test. Intervals of the test's loss factors: 95 %.</p>",
     ]
-    for name, figure in (drawn or figures(comparison)).items():
-        parts.append(f"<figure>{picture(name, figure)}<figcaption>{CAPTIONS[name]}</figcaption></figure>")
+    for name, picture in pictures.items():
+        parts.append(f"<figure>{picture}<figcaption>{CAPTIONS[name]}</figcaption></figure>")
     return "".join(parts)
-
-
-def write_parts(comparison: ModalComparison, drawn: dict[str, Any], folder: Path, prefix: str = "") -> list[Path]:
-    """Write comparison.csv and the figures as SVG (shapes as PNG), their names after `prefix`."""
-    made = [write_text(folder / "comparison.csv", comparison.csv_text())]
-    for name, figure in drawn.items():
-        made.append(save(figure, folder / f"{prefix}{name}.{'png' if name in BITMAPS else 'svg'}"))
-    return made
 
 
 def write(comparison: ModalComparison, folder: Path) -> list[Path]:
     """Write comparison.csv, the figures as SVG (shapes as PNG) and comparison.html into a folder that exists."""
-    drawn = figures(comparison)
-    made = write_parts(comparison, drawn, folder)
+    made = [write_text(folder / "comparison.csv", comparison.csv_text())]
+    pictures = {}
+    for name, figure in figures(comparison).items():
+        file, pictures[name] = saved(name, figure, folder / f"{name}.{'png' if name in BITMAPS else 'svg'}")
+        made.append(file)
     title = escape(comparison.model.title)
-    page = document("Hammer test", f"<h1>{title}</h1>{section(comparison, drawn)}<p>Faying {__version__}.</p>")
+    page = document("Hammer test", f"<h1>{title}</h1>{section(comparison, pictures)}<p>Faying {__version__}.</p>")
     made.append(write_text(folder / "comparison.html", page))
     return made

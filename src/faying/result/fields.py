@@ -168,7 +168,7 @@ def from_group(kind: type[Whole], group: Group) -> Whole:
         meta: Declared | None = f.metadata.get(KEY)
         name = meta.name or f.name if meta is not None else f.name
         hint = _without_none(hints[f.name])
-        if name in group.variables:
+        if name in group.variables and (meta is not None or name not in group.attributes):  # else labels of its name
             values = group.variables[name].values
             given[f.name] = values.astype(meta.dtype) if meta is not None else _as_hinted(values, hint)
         elif f"{f.name}.0" in group.variables:
@@ -216,7 +216,7 @@ def _rebuilt(hint: Any, value: Any) -> Any:
     if origin is tuple:
         kinds = [inner[0]] * len(value) if len(inner) == 2 and inner[1] is Ellipsis else inner
         return tuple(_rebuilt(kind, part) for kind, part in zip(kinds, value, strict=True))
-    if origin is not None and issubclass(origin, Mapping):
+    if isinstance(origin, type) and issubclass(origin, Mapping):
         return {_key(inner[0], key): _rebuilt(inner[1], part) for key, part in value.items()}
     return float(value) if hint is float else value
 

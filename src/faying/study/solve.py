@@ -78,6 +78,7 @@ def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress, 
     mass = structure.vibrating[1]
     modes, stiffness, loss = modes_of(case, springs)
     check_motions(structure, modes)
+    problem.take(modes.factorisation, case.shift_frequency)
     damped = damped_modes(
         modes,
         stiffness,

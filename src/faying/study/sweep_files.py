@@ -125,32 +125,11 @@ class Store:
 
     def keep_model(self, model: ReducedModel) -> None:
         """Write the reduced model."""
-        arrays: dict[str, Any] = {
-            name: getattr(model, name)
-            for name in ("static_stiffness", "static_loads", "dynamic_stiffness", "dynamic_mass", "count", "coarse")
-        }
-        for i in range(len(model.weights)):
-            for name in ("weights", "gaps", "static_relative", "dynamic_relative"):
-                arrays[f"{name}_{i}"] = getattr(model, name)[i]
-        save_arrays(self.folder / "model.npz", arrays)
+        save_arrays(self.folder / "model.npz", model.arrays())
 
     def model(self) -> ReducedModel | None:
         """Return the reduced model that an interrupted sweep left, if it came that far."""
-        file = self.folder / "model.npz"
-        data = load_arrays(file)
-        if data is None:
-            return None
-        joints = sum(name.startswith("weights_") for name in data)
-        try:
-            lists = {
-                name: [data[f"{name}_{i}"] for i in range(joints)]
-                for name in ("weights", "gaps", "static_relative", "dynamic_relative")
-            }
-            single = ("static_stiffness", "static_loads", "dynamic_stiffness", "dynamic_mass")
-            arrays: dict[str, Any] = lists | {name: data[name] for name in single}
-            return ReducedModel(count=int(data["count"]), coarse=int(data["coarse"]), **arrays)
-        except KeyError:
-            return None
+        return kept_model(self.folder / "model.npz")
 
     def finish(self, grid: Grid, *, title: str, tolerance: float, unknowns: int, model: ReducedModel) -> Sweep:
         """Write the NetCDF file and remove what was kept on the way."""
@@ -170,6 +149,15 @@ class Store:
         _netcdf(done)
         self._part.remove()
         return done
+
+
+def kept_model(file: Path) -> ReducedModel | None:
+    """The reduced model of a file; None where it is missing or damaged."""
+    data = load_arrays(file)
+    try:
+        return None if data is None else ReducedModel.from_arrays(data)
+    except KeyError:
+        return None
 
 
 UNITS = {"frequencies": "Hz", "greatest_pressure": "Pa"}

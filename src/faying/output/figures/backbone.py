@@ -6,18 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from faying.errors import InputError
 from faying.measured.ring_down import MeasuredBackbone
-from faying.output.figures.save import check_ending, new_figure, plain
+from faying.output.figures.save import new_figure, plain
 from faying.result.backbone import Backbone
-
-
-def check(path: str | Path) -> None:
-    """Raise InputError, before anything is computed, for a figure that cannot be written."""
-    file = Path(path)
-    check_ending(file)
-    if not file.parent.is_dir():
-        raise InputError(f"no folder {file.parent} to write {file.name} in; make it first")
 
 
 def label(curve: Backbone, curves: Sequence[Backbone]) -> str:

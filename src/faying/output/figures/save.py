@@ -6,6 +6,8 @@ from typing import Any
 from faying.errors import InputError
 from faying.files import write_atomically
 
+RESOLUTION = 150  # dots per inch of what is no line
+
 
 def new_figure(width: float, height: float) -> Any:
     """Return an empty figure [inches] that needs no display."""
@@ -26,6 +28,14 @@ def check_ending(path: Path) -> None:
         raise InputError(f"{path}: figures can be written as {', '.join(sorted(kinds))}; end the name in one of them")
 
 
+def check_figure(path: str | Path) -> None:
+    """Raise InputError, before anything is computed, for a figure that cannot be written."""
+    file = Path(path)
+    check_ending(file)
+    if not file.parent.is_dir():
+        raise InputError(f"no folder {file.parent} to write {file.name} in; make it first")
+
+
 def save(figure: Any, path: str | Path) -> Path:
     """Write a figure in the format of the ending of `path`; the file appears complete or not at all.
 
@@ -33,4 +43,6 @@ def save(figure: Any, path: str | Path) -> Path:
     """
     file = Path(path)
     check_ending(file)
-    return write_atomically(file, lambda temporary: figure.savefig(temporary, format=file.suffix[1:].lower(), dpi=150))
+    return write_atomically(
+        file, lambda temporary: figure.savefig(temporary, format=file.suffix[1:].lower(), dpi=RESOLUTION)
+    )

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.output.figures.save import check_ending, new_figure
+from faying.output.figures.save import check_figure, new_figure
 from faying.study.axes import Axis
 from faying.study.sweep_files import Sweep
 
@@ -16,10 +16,7 @@ _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, 
 
 def check(path: str | Path, axes: int) -> None:
     """Raise InputError, before anything is computed, for a figure that cannot be drawn or written."""
-    file = Path(path)
-    check_ending(file)
-    if not file.parent.is_dir():
-        raise InputError(f"no folder {file.parent} to write {file.name} in; make it first")
+    check_figure(path)
     if axes > 2:
         raise InputError(
             f"a figure shows one or two axes and the sweep has {axes}; leave out --plot, or hold some axes fixed"

@@ -1,0 +1,86 @@
+"""faying identify STUDY.toml"""
+
+import json
+import os
+import sys
+import time
+from pathlib import Path
+
+import click
+
+
+@click.command()
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option("--leave-out", multiple=True, metavar="PRELOAD", help='Predicted and not used, for example "12 kN".')
+@click.option("--seed", type=int, default=0, show_default=True, help="Of all random numbers.")
+@click.option("--count", type=int, default=1000, show_default=True, help="Samples of the posterior.")
+@click.option("--jobs", type=click.IntRange(1), help="Processes on this machine [one for each core].")
+@click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="NetCDF file (default: results/identification.nc beside the study)."
+)
+@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw priors, posteriors, frequencies.")
+@click.option("--json", "as_json", is_flag=True, help="Print what was found as JSON.")
+def command(
+    study: Path,
+    leave_out: tuple[str, ...],
+    seed: int,
+    count: int,
+    jobs: int | None,
+    dask: str | None,
+    out: Path | None,
+    plot: Path | None,
+    as_json: bool,
+) -> None:
+    """What the test of STUDY tells of the numbers that its [uncertain] lists, and what it cannot tell.
+
+    What is done is kept beside the output; the same command goes on after an interruption.
+    """
+    from faying.files import new_folder
+    from faying.identify.of_study import identify
+    from faying.output.figures import identification as drawing
+    from faying.output.figures.save import check_figure, save
+    from faying.study import Study
+
+    if plot:
+        check_figure(plot)
+    plan = Study.read(study)
+    out = out or plan.folder / "results" / "identification.nc"
+    with new_folder(out.parent, "give another file with --out"):
+        found = identify(
+            plan,
+            leave_out or None,
+            seed=seed,
+            count=count,
+            jobs=jobs or os.cpu_count() or 1,
+            dask=dask,
+            out=out,
+            report=_Progress(),
+        )
+    sys.stderr.write("\n")
+    files = [out] + ([save(drawing.figure(found), plot)] if plot else [])
+    if as_json:
+        click.echo(json.dumps(found.to_dict() | {"files": [str(file) for file in files]}, indent=2))
+        return
+    click.echo(f"{plan.title}: {plan.test.source if plan.test else ''}\n\n{found.table()}")
+    click.echo(f"\nwritten to {', '.join(map(str, files))}")
+
+
+class _Progress:
+    """One line on stderr: the stage, how much of it is done, and the time that it will still take."""
+
+    def __init__(self) -> None:
+        self.stage, self.began = "", 0.0
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        now = time.monotonic()
+        if stage != self.stage:
+            self.stage, self.began = stage, now
+        line = f"identify: {stage}"
+        if total:
+            line += f" {done} of {total}"
+            if done:
+                line += f", {(now - self.began) * (total - done) / done:.0f} s left"
+        if sys.stderr.isatty():
+            sys.stderr.write(f"\r{line:<78.78}")
+            sys.stderr.flush()

@@ -1,0 +1,70 @@
+"""faying predict STUDY.toml"""
+
+import json
+import os
+import sys
+from pathlib import Path
+
+import click
+
+
+@click.command()
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option("--samples", type=int, default=1024, show_default=True, help="Points of Sobol's sequence.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Of the points.")
+@click.option("--jobs", type=click.IntRange(1), help="Processes on this machine [one for each core].")
+@click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="NetCDF file (default: results/prediction.nc beside the study)."
+)
+@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw the intervals (svg, png, pdf).")
+@click.option("--tornado", type=click.Path(dir_okay=False, path_type=Path), help="Draw the shares of the variance.")
+@click.option("--scatter", type=click.Path(dir_okay=False, path_type=Path), help="Draw inputs against frequencies.")
+@click.option("--json", "as_json", is_flag=True, help="Print the quantiles and shares as JSON.")
+def command(
+    study: Path,
+    samples: int,
+    seed: int,
+    jobs: int | None,
+    dask: str | None,
+    out: Path | None,
+    plot: Path | None,
+    tornado: Path | None,
+    scatter: Path | None,
+    as_json: bool,
+) -> None:
+    """Intervals of the frequencies of STUDY under the scatter that its [uncertain] states, and what causes them.
+
+    What is done is kept beside the output; the same command goes on after an interruption.
+    """
+    from faying.files import new_folder
+    from faying.identify.predict import check, predict
+    from faying.output.figures import prediction as drawing
+    from faying.output.figures.save import check_figure, save
+    from faying.output.prediction import text
+    from faying.study import Study
+
+    figures = {drawing.intervals: plot, drawing.tornado: tornado, drawing.scatter_matrix: scatter}
+    for file in figures.values():
+        if file:
+            check_figure(file)
+    plan = Study.read(study)
+    check(plan, samples, seed)
+    out = out or plan.folder / "results" / "prediction.nc"
+    bar = click.progressbar(length=samples, file=sys.stderr, label="predict", item_show_func=lambda s: s or "")
+    with new_folder(out.parent, "give another file with --out"), bar:
+        found = predict(
+            plan,
+            samples,
+            seed,
+            jobs=jobs or os.cpu_count() or 1,
+            dask=dask,
+            out=out,
+            report=lambda stage, done: bar.update(done, stage),
+        )
+    files = [out, *(save(draw(found), file) for draw, file in figures.items() if file)]
+    if as_json:
+        click.echo(json.dumps(found.to_dict() | {"files": [str(file) for file in files]}, indent=2))
+        return
+    click.echo(text(found))
+    click.echo(f"\nwritten to {', '.join(map(str, files))}")

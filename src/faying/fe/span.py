@@ -1,0 +1,69 @@
+"""A basis that grows, orthonormal with the mass, and what operators make of it."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from faying.typing import Array
+
+ROUNDING = 1e-13  # of the largest: squares of directions below it are rounding
+
+
+def extension(new: Array, basis: Array, image: Array, operator: Any, *, least: float = 0.0) -> tuple[Array, Array]:
+    """Directions that columns add to a basis.
+
+    Args:
+        new: columns (n, k).
+        basis: vectors (n, m), orthonormal in the operator.
+        image: operator @ basis (n, m).
+        operator: symmetric and positive (n, n), sparse: the mass, or a stiffness whose energy measures.
+        least: square, in the operator, of what is new in a column below which a direction is left out; what is
+            rounding beside the largest is left out anyhow.
+
+    Returns:
+        Columns (n, r), orthonormal in the operator with each other and with the basis, the largest share of what is new
+        last, and operator @ columns.
+    """
+    new = without(new, basis, image)
+    gram = new.T @ (operator @ new)
+    squares, turn = np.linalg.eigh((gram + gram.T) / 2)
+    keep = squares > max(least, ROUNDING * squares.max(initial=0.0))
+    new = new @ (turn[:, keep] / np.sqrt(squares[keep]))
+    new = new - basis @ (image.T @ new)
+    return new, np.asarray(operator @ new)
+
+
+def without(new: Array, basis: Array, image: Array) -> Array:
+    """Columns (n, k) less what a basis (n, m), orthonormal in an operator, has of them; image: operator @ basis."""
+    for _ in range(2):  # what rounding leaves of the first pass, the second takes
+        new = new - basis @ (image.T @ new)
+    return new
+
+
+class Span:
+    """Vectors (n, m), orthonormal with the mass, the images of the mass and the stiffness, and operators projected.
+
+    Args:
+        mass, stiffness: sparse (n, n).
+        first: the vectors to begin with.
+        others: further operators, whose projections alone are kept.
+    """
+
+    def __init__(self, mass: Any, stiffness: Any, first: Array, others: Sequence[Any] = ()) -> None:
+        self.mass, self.operators = mass, (stiffness, *others)
+        self.vectors, self.momentum, self.force = first, np.asarray(mass @ first), np.asarray(stiffness @ first)
+        self.small = [first.T @ self.force, *(first.T @ (operator @ first) for operator in others)]
+
+    def add(self, new: Array, *, least: float = 0.0) -> int:
+        """Add what is new in columns (n, k), as `extension` does; return how many vectors that makes."""
+        new, momentum = extension(new, self.vectors, self.momentum, self.mass, least=least)
+        force = np.asarray(self.operators[0] @ new)
+        for i, operator in enumerate(self.operators):
+            image = force if i == 0 else operator @ new
+            corner, side = new.T @ image, self.vectors.T @ image
+            self.small[i] = np.block([[self.small[i], side], [side.T, (corner + corner.T) / 2]])
+        self.vectors = np.concatenate([self.vectors, new], axis=1)
+        self.momentum = np.concatenate([self.momentum, momentum], axis=1)
+        self.force = np.concatenate([self.force, force], axis=1)
+        return int(new.shape[1])

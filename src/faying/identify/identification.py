@@ -1,0 +1,310 @@
+"""What a test tells of the parameters of a model: the posterior, with what follows from it, in memory and on disk."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Self, final
+
+import numpy as np
+
+from faying import netcdf
+from faying.distribution import Distribution
+from faying.errors import ReadError
+from faying.identify.fit import Fit, Seen
+from faying.netcdf import Group, Variable
+from faying.notes import Note
+from faying.result.fields import Recorded, from_group, listed, to_group, variable
+from faying.typing import Array, Mask
+from faying.units import show
+
+LEVELS = (0.05, 0.5, 0.95)
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class LawEvidence:
+    """What a test says of one law: ln evidence and its sd, and the probability of the law among those compared [-]."""
+
+    name: str
+    log_evidence: float
+    log_evidence_sd: float
+    weight: float
+
+
+OWN = "faying"  # the group of the file that holds everything
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Identification(Recorded):
+    """The posterior of a model's parameters, and what it predicts.
+
+    names, units, priors: of the parameters; the last two are the relative sd of the test's scatter and of the model's
+    discrepancy. log_evidence: ln of the probability density of the test's ln f under this model; a difference between
+    two models on one test is the logarithm of their odds. laws: that were compared, where several were; the parameters
+    are then those of the likeliest, and the predicted frequencies are drawn from all. evaluations: of the model;
+    answered: those with an answer; calls: of the likelihood; rounds: how often the surrogate was drawn closer to the
+    posterior.
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    priors: tuple[Distribution, ...]
+    log_evidence: float
+    log_evidence_sd: float
+    evaluations: int
+    answered: int
+    rounds: int
+    steps: int
+    calls: int
+    samples: Array = variable("draw", "parameter", unit="SI", long_name="samples of the posterior, of one weight")
+    log_likelihood: Array = variable("draw", "mode", unit="1", long_name="ln likelihood of each mode's frequencies")
+    loads: Array = variable("load", unit="N", long_name="preload")
+    test: Array = variable("load", "mode", unit="Hz", long_name="frequencies of the test", gaps=True)
+    used: Mask = variable("load", "mode", unit="1", long_name="whether a frequency was used", dtype="bool")
+    left_out: Mask = variable("load", unit="1", long_name="whether a load was left out", dtype="bool")
+    predictive: Array = variable("draw", "load", "mode", unit="Hz", long_name="frequencies as measured", gaps=True)
+    offset_mean: Array = variable("mode", unit="1", long_name="offset of ln test from ln model: posterior mean")
+    offset_sd: Array = variable("mode", unit="1", long_name="offset of ln test from ln model: posterior sd")
+    surrogate_error: Array = variable(
+        "load", "mode", unit="1", long_name="leave-one-out error of the surrogate about the posterior", gaps=True
+    )
+    checked: Array = variable(
+        "load", "mode", unit="1", long_name="surrogate less model at points of the posterior, rms", gaps=True
+    )
+    fit: Fit
+    singular: Seen
+    notes: tuple[Note, ...] = ()
+    laws: tuple[LawEvidence, ...] = ()
+
+    def __repr__(self) -> str:
+        return self.table()
+
+    # -- the posterior
+
+    @property
+    def mean(self) -> Array:
+        """Posterior means (d,), SI."""
+        return np.asarray(self.samples.mean(axis=0))
+
+    @property
+    def sd(self) -> Array:
+        """Posterior standard deviations (d,), SI."""
+        return np.asarray(self.samples.std(axis=0, ddof=1))
+
+    @property
+    def told(self) -> Array:
+        """Posterior over prior standard deviation (d,): near 1 where the test says nothing."""
+        return np.asarray(self.sd / np.array([prior.sd for prior in self.priors]))
+
+    def quantiles(self, levels: Sequence[float] = LEVELS) -> Array:
+        """Posterior quantiles (level, d), SI."""
+        return np.asarray(np.quantile(self.samples, levels, axis=0))
+
+    @property
+    def correlation(self) -> Array:
+        """Correlation of the parameters in the posterior (d, d)."""
+        return np.asarray(np.corrcoef(self.samples.T))
+
+    @property
+    def offsets(self) -> Array:
+        """Offset b of ln test from ln model by mode: posterior mean and standard deviation (2, mode)."""
+        return np.stack([self.offset_mean, self.offset_sd])
+
+    @cached_property
+    def predicted(self) -> Array:
+        """5, 50 and 95 % of every frequency as a test would measure it (3, load, mode) [Hz]; left-out loads too."""
+        return np.asarray(np.quantile(self.predictive, LEVELS, axis=0))
+
+    # -- for people and programs
+
+    def table(self) -> str:
+        """What was found, for a terminal of 80 columns."""
+        return "\n".join([*self._parameter_lines(), "", *self._frequency_lines(), "", *self._closing_lines()])
+
+    def _parameter_lines(self) -> list[str]:
+        lines = [f"{'parameter':<26}{'5 %':>13}{'50 %':>13}{'95 %':>13}  sd/prior"]
+        for name, unit, row, told in zip(self.names, self.units, self.quantiles().T, self.told, strict=True):
+            cells = "".join(f"{show(v, unit) if unit else f'{v:.4g}':>13}" for v in row)
+            lines.append(f"{name if len(name) <= 25 else f'{name[:24]}~':<26}{cells}{told:>10.2f}")
+        return lines
+
+    def _frequency_lines(self) -> list[str]:
+        lines = [f"{'load':<10}{'mode':>4}{'test [Hz]':>12}{'5 %':>11}{'50 %':>11}{'95 %':>11}"]
+        for i, load in enumerate(self.loads):
+            for j in range(self.test.shape[1]):
+                low, middle, high = self.predicted[:, i, j]
+                if np.isnan(middle):
+                    continue
+                test = self.test[i, j]
+                outside = np.isfinite(test) and not low <= test <= high
+                mark = ["  left out"] * bool(self.left_out[i]) + ["  outside"] * bool(outside)
+                measured = "-" if np.isnan(test) else f"{test:.2f}"
+                lines.append(
+                    f"{show(load, 'N'):<10}{j + 1:>4}{measured:>12}{low:>11.2f}{middle:>11.2f}{high:>11.2f}"
+                    + ",".join(mark)
+                )
+        return lines
+
+    def _closing_lines(self) -> list[str]:
+        from textwrap import wrap
+
+        sentences = [
+            f"ln evidence {self.log_evidence:.2f} +- {self.log_evidence_sd:.2f}.",
+            *(
+                f"Law {law.name}: ln evidence {law.log_evidence:.2f} +- {law.log_evidence_sd:.2f}, "
+                f"probability {law.weight:.1%} among those compared."
+                for law in self.laws
+            ),
+            f"Least squares: {self.fit.misfit:.2%} rms; {self.fit.agreeing} of {self.fit.starts} starts end there.",
+            self.singular.text,
+            *(note.text for note in self.notes),
+        ]
+        return [line for sentence in sentences for line in wrap(sentence, 80)]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The numbers a reader wants, ready for JSON, in SI; samples are left out."""
+        parameters = {
+            name: {
+                "unit": unit or "1",
+                "prior": prior.text(unit),
+                "mean": float(self.mean[k]),
+                "sd": float(self.sd[k]),
+                "told": float(self.told[k]),
+                "quantiles": dict(zip(map(str, LEVELS), self.quantiles()[:, k].tolist(), strict=True)),
+            }
+            for k, (name, unit, prior) in enumerate(zip(self.names, self.units, self.priors, strict=True))
+        }
+        quantiles = zip(map(str, LEVELS), self.predicted, strict=True)
+        return {
+            "parameters": parameters,
+            "correlation": listed(self.correlation),
+            "log_evidence": self.log_evidence,
+            "log_evidence_sd": self.log_evidence_sd,
+            "laws": [{f.name: getattr(law, f.name) for f in fields(law)} for law in self.laws],
+            "loads": {"unit": "N", "values": listed(self.loads)},
+            "left_out": listed(self.left_out),
+            "test": {"unit": "Hz", "values": listed(self.test)},
+            "used": listed(self.used),
+            "predicted": {"unit": "Hz", "quantiles": {level: listed(values) for level, values in quantiles}},
+            "offsets": {"mean": listed(self.offset_mean), "sd": listed(self.offset_sd)},
+            "surrogate_error": listed(self.surrogate_error),
+            "checked": listed(self.checked),
+            "fit": {
+                "values": dict(zip(self.names, self.fit.values.tolist(), strict=False)),
+                "misfit": listed(np.array(self.fit.misfit)),
+                "frequencies": {"unit": "Hz", "values": listed(self.fit.frequencies)},
+                "starts": self.fit.starts,
+                "agreeing": self.fit.agreeing,
+            },
+            "singular": {
+                "values": listed(self.singular.values),
+                "vectors": listed(self.singular.vectors),
+                "told": listed(self.singular.told),
+                "text": self.singular.text,
+            },
+            "evaluations": self.evaluations,
+            "answered": self.answered,
+            "notes": [{f.name: getattr(note, f.name) for f in fields(note)} for note in self.notes],
+        }
+
+    # -- on disk
+
+    def _tree(self) -> Group:
+        """Groups with ArviZ's names and dimensions, and one with everything."""
+        chain = Variable(dims=("chain",), values=np.arange(1))
+        draw = Variable(dims=("draw",), values=np.arange(len(self.samples)))
+        load = Variable(dims=("load",), values=self.loads, unit="N", long_name="preload")
+        mode = Variable(dims=("mode",), values=np.arange(1, self.test.shape[1] + 1))
+
+        def drawn(values: Array, *dims: str, unit: str = "", long_name: str = "") -> Variable:
+            return Variable(dims=("chain", "draw", *dims), values=values[None], unit=unit, long_name=long_name)
+
+        posterior = {
+            name.replace("/", "_"): drawn(column, unit=unit, long_name=name)
+            for name, unit, column in zip(self.names, self.units, self.samples.T, strict=True)
+        }
+        sampled = {"chain": chain, "draw": draw}
+        predictive = {"frequency": drawn(self.predictive, "load", "mode", unit="Hz")}
+        observed = {"frequency": Variable(dims=("load", "mode"), values=self.test, unit="Hz")}
+        groups = {
+            "posterior": {**sampled, **posterior},
+            "posterior_predictive": {**sampled, "load": load, "mode": mode, **predictive},
+            "observed_data": {"load": load, "mode": mode, **observed},
+            "log_likelihood": {**sampled, "mode": mode, "frequency": drawn(self.log_likelihood, "mode")},
+        }
+        return Group(
+            attributes={"Conventions": "CF-1.11", "inference_library": "faying"},
+            groups={**{name: Group(variables=held) for name, held in groups.items()}, OWN: to_group(self)},
+        )
+
+    def save(self, path: str | Path) -> Path:
+        """Write everything as NetCDF-4 that ArviZ opens; the file appears complete or not at all.
+
+        Groups: posterior (a variable for each parameter), posterior_predictive, observed_data, log_likelihood (by
+        mode), with the dimensions chain and draw; and `faying`, from which `load` reads.
+        """
+        return netcdf.write(Path(path), self._tree())
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """Read what `save` wrote; it equals the one that was written.
+
+        Raises ReadError where the file is missing, damaged or no identification of Faying.
+        """
+        command = "write one with: faying identify STUDY.toml"
+        try:
+            return from_group(cls, netcdf.read(Path(path)).groups[OWN])
+        except (ReadError, TypeError, KeyError, ValueError, AttributeError) as fault:
+            raise ReadError(f"{path}: no identification of Faying, or damaged ({fault}); {command}") from None
+
+    def to_xarray(self) -> Any:
+        """The groups that ArviZ knows as an xarray.DataTree, as xarray.open_datatree reads them from the file."""
+        import tempfile
+
+        import xarray
+
+        with tempfile.TemporaryDirectory() as folder:
+            tree = xarray.open_datatree(self.save(Path(folder) / "identification.nc"), engine="h5netcdf")
+            with tree:
+                return tree.load().drop_nodes(OWN)
+
+
+def mixed(found: Mapping[str, Identification], prior: Mapping[str, float], *, seed: int = 0) -> Identification:
+    """One identification out of those of several laws on one test.
+
+    Args:
+        found: by the name of the law.
+        prior: probability of each law before the test.
+        seed: of the draws.
+
+    Returns:
+        That of the likeliest law, with the evidence of all, its predicted frequencies drawn from all by their weights.
+    """
+    names = list(found)
+    logs = [found[name].log_evidence + np.log(prior[name]) for name in names]
+    weights = weights_of(logs)
+    best = found[names[int(np.argmax(weights))]]
+    rng = np.random.default_rng([seed, 3])
+    count = len(best.samples)
+    which = rng.choice(len(names), count, p=weights)
+    rows = rng.integers(count, size=count)
+    predictive = np.stack([found[names[k]].predictive[row] for k, row in zip(which, rows, strict=True)])
+    laws = tuple(
+        LawEvidence(
+            name=name,
+            log_evidence=found[name].log_evidence,
+            log_evidence_sd=found[name].log_evidence_sd,
+            weight=float(weight),
+        )
+        for name, weight in zip(names, weights, strict=True)
+    )
+    return replace(best, predictive=predictive, laws=laws)
+
+
+def weights_of(log_evidences: Sequence[float]) -> Array:
+    """Probabilities of models that explain one test, equally likely before it, from their ln evidences."""
+    logs = np.asarray(log_evidences, dtype=float)
+    odds = np.exp(logs - logs.max())
+    return np.asarray(odds / odds.sum())

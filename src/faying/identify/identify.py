@@ -1,0 +1,337 @@
+"""From a model with priors and a test to the posterior: surrogate, sampling, check, prediction."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil, log2
+
+import numpy as np
+
+from faying.distribution import Distribution
+from faying.errors import InputError
+from faying.identify import remarks
+from faying.identify.emulator import Emulator
+from faying.identify.fit import Fit, least_squares_ends, what_is_seen
+from faying.identify.identification import Identification
+from faying.identify.model import Model, Report
+from faying.identify.noise import DISCREPANCY, DISCREPANCY_SD, SCATTER, TEST_SD, Offsets, offsets
+from faying.identify.tempering import Tempered, temper
+from faying.typing import Array, Mask
+
+FEWEST, MOST = 256, 1024  # evaluations over the priors, where not given
+CHECKS = 50  # points of the posterior at which the surrogate is compared with the model
+ROUNDS = 3  # most times that the surrogate is drawn closer
+WORSE = 2.0  # over the leave-one-out error: a surrogate that is rough
+IDLE, BLUNT = 0.1, 0.5  # errors over the scatter of the test that do not matter, and that blur the posterior
+AGREE = 0.1  # of the scatter: misfits so near to the best are as good
+WIDENED = 1.6  # points about the posterior, over its own spread
+
+
+def identify_model(
+    model: Model,
+    test: Array,
+    loads: Array,
+    *,
+    leave_out: Sequence[int] = (),
+    count: int = 1000,
+    seed: int = 0,
+    test_sd: Distribution = TEST_SD,
+    discrepancy: Distribution = DISCREPANCY_SD,
+    evaluations: int | None = None,
+    report: Report | None = None,
+) -> Identification:
+    """Identify the parameters of a model from measured frequencies.
+
+    ln test = ln model + b + e: e is the scatter of each frequency, b the model's own bias, one offset for each mode at
+    all loads. The sd of both are identified with the rest. The model is evaluated over its priors and replaced by
+    polynomials of ln f, whose leave-one-out error counts as scatter; where the polynomials miss the model at points of
+    the posterior, points there are added and the surrogate is drawn closer.
+
+    Args:
+        model: with its parameters and their priors.
+        test: measured frequencies [Hz] (load, mode), NaN where there is none.
+        loads: preloads of the test [N] (load,).
+        leave_out: which loads (from 0) are not used, and predicted.
+        count: samples of the posterior.
+        seed: of all random numbers.
+        test_sd: prior of the relative sd of the scatter.
+        discrepancy: prior of the relative sd of the offsets.
+        evaluations: of the model over its priors; a power of 2 of at least 256 where not given, more for many
+            parameters.
+        report: told what is done, how much of it, and of how much.
+
+    Raises:
+        InputError: shapes that do not fit, a test without frequencies, a model without answers.
+
+    Source: Kennedy and O'Hagan 2001, doi:10.1111/1467-9868.00294 (discrepancy as part of the noise).
+    """
+    test, loads = np.asarray(test, dtype=float), np.asarray(loads, dtype=float)
+    wanted, left_out = _what_counts(test, loads, leave_out)
+    size = len(model.names)
+    chosen = _spread(model.priors, evaluations or _evaluations(size), seed)
+    points = _Points.at(model, chosen, test.shape, report)
+    answered = int(np.isfinite(points.frequencies).any(axis=(1, 2)).sum())
+    if answered < 2 * (size + 1):
+        reasons = "".join(note.text for note in remarks.of_answers(points.reasons, "of the priors", ""))
+        raise InputError(
+            f"the model has an answer at {answered} of {len(chosen)} points of the priors; an identification of "
+            f"{size} parameters needs {2 * (size + 1)}: change the priors. {reasons}".rstrip()
+        )
+    emulator = Emulator.fit(model.priors, points.values, points.frequencies)
+    question = _Question(
+        model=model,
+        test=test,
+        loads=loads,
+        wanted=wanted,
+        used=wanted & emulator.known,
+        left_out=left_out,
+        priors=(*model.priors, test_sd, discrepancy),
+        count=count,
+        seed=seed,
+        report=report,
+    )
+    if not question.used.any():
+        raise InputError("no frequency of the test has a partner in the model over most of the priors")
+    return _identification(question, _sampled(question, emulator, points))
+
+
+def _what_counts(test: Array, loads: Array, leave_out: Sequence[int]) -> tuple[Mask, Mask]:
+    """Which frequencies are wanted (load, mode), and which loads are left out; InputError for a test that is none."""
+    if test.ndim != 2 or loads.shape != test.shape[:1]:
+        raise InputError(f"test of shape {test.shape} for loads of shape {loads.shape}; it must be (load, mode)")
+    beyond = [k for k in leave_out if not 0 <= k < len(loads)]
+    if beyond:
+        raise InputError(f"leave_out = {beyond[0]}; the test has {len(loads)} loads, counted from 0")
+    known = np.isfinite(test)
+    if np.any(test[known] <= 0):
+        raise InputError(f"the test has a frequency of {test[known].min():g} Hz; frequencies are positive")
+    left_out = np.isin(np.arange(len(loads)), list(leave_out))
+    wanted = known & ~left_out[:, None]
+    if not wanted.any():
+        rest = " beside the loads that are left out" if left_out.any() else ""
+        raise InputError(f"the test has no frequency{rest}; an identification needs at least one")
+    return wanted, left_out
+
+
+def _evaluations(size: int) -> int:
+    """A power of 2 that has four points for each coefficient of a quadratic."""
+    return int(min(max(FEWEST, 2 ** ceil(log2(2 * (size + 1) * (size + 2)))), MOST))
+
+
+def _spread(priors: Sequence[Distribution], count: int, seed: int) -> Array:
+    """Sobol points of the priors (n, d)."""
+    from scipy.stats import qmc
+
+    doubled = qmc.Sobol(len(priors), rng=np.random.default_rng(seed)).random_base2(ceil(log2(count)))
+    return np.column_stack([prior.quantile(u) for prior, u in zip(priors, doubled[:count].T, strict=True)])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Points:
+    """Points at which the model was evaluated (n, d), its frequencies there (n, load, mode), and why there are none."""
+
+    values: Array
+    frequencies: Array
+    reasons: tuple[str, ...]
+
+    @classmethod
+    def at(cls, model: Model, values: Array, shape: tuple[int, ...], report: Report | None) -> "_Points":
+        frequencies, reasons = model.frequencies(values, report)
+        frequencies = np.array(frequencies, dtype=float)
+        if frequencies.shape != (len(values), *shape):
+            raise InputError(
+                f"the model gives frequencies of shape {frequencies.shape}; {(len(values), *shape)} is needed: "
+                "(sample, load, mode) of the test"
+            )
+        frequencies[[bool(reason) for reason in reasons]] = np.nan
+        return cls(values=values, frequencies=frequencies, reasons=tuple(reasons))
+
+    def __add__(self, other: "_Points") -> "_Points":
+        return _Points(
+            values=np.concatenate([self.values, other.values]),
+            frequencies=np.concatenate([self.frequencies, other.frequencies]),
+            reasons=self.reasons + other.reasons,
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Question:
+    """What is asked: the test, what of it counts, and the priors with those of the noise."""
+
+    model: Model
+    test: Array
+    loads: Array
+    wanted: Mask
+    used: Mask
+    left_out: Mask
+    priors: tuple[Distribution, ...]
+    count: int
+    seed: int
+    report: Report | None
+
+    def offsets(self, emulator: Emulator, values: Array) -> Offsets:
+        """What the test says at values of all parameters (n, d + 2)."""
+        logs, error = emulator.predict_known(values[:, :-2])
+        chosen = self.used[emulator.known]
+        variance = values[:, -2, None] ** 2 + error[:, chosen] ** 2
+        residual = np.log(self.test[self.used]) - logs[:, chosen]
+        return offsets(residual, variance, values[:, -1], np.nonzero(self.used)[1], self.test.shape[1])
+
+    def sample(self, emulator: Emulator) -> Tempered:
+        """Sample the posterior with a surrogate in place of the model."""
+
+        def log_likelihood(values: Array) -> Array:
+            return np.asarray(self.offsets(emulator, values).log_likelihood.sum(axis=1))
+
+        return temper(log_likelihood, self.priors, count=self.count, seed=self.seed, report=self.report)
+
+    def evaluate(self, values: Array) -> _Points:
+        return _Points.at(self.model, values, self.test.shape, self.report)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Check:
+    """The surrogate beside the model at points of the posterior.
+
+    difference: rms of ln f (load, mode); error: what the surrogate says of itself there; rough: whether it misses by
+    far more than that; blunt: whether its own error blurs the posterior.
+    """
+
+    points: _Points
+    difference: Array
+    error: Array
+    missed: float
+    claimed: float
+    rough: bool
+    blunt: bool
+
+    @classmethod
+    def of(cls, question: _Question, emulator: Emulator, posterior: Tempered, rng: np.random.Generator) -> "_Check":
+        chosen = posterior.samples[rng.choice(len(posterior.samples), min(CHECKS, len(posterior.samples)), False)]
+        points = question.evaluate(chosen[:, :-2])
+        logs, errors = emulator.predict(chosen[:, :-2])
+        apart = np.log(points.frequencies) - logs
+        count = np.isfinite(apart).sum(axis=0)
+        square = np.where(np.isfinite(apart), apart, 0.0) ** 2
+        difference = np.sqrt(np.where(count > 0, square.sum(axis=0) / np.maximum(count, 1), np.nan))
+        error = np.sqrt((errors**2).mean(axis=0))
+        scatter = float(np.median(posterior.samples[:, -2]))
+        used = question.used
+        seen, said = difference[used & (count > 0)], error[used & (count > 0)]
+        claimed = float(np.sqrt(np.mean(error[used] ** 2)))
+        return cls(
+            points=points,
+            difference=difference,
+            error=error,
+            missed=float(np.sqrt(np.mean(seen**2))) if len(seen) else float("nan"),
+            claimed=claimed,
+            rough=bool(np.any(seen > np.maximum(WORSE * said, IDLE * scatter))),
+            blunt=claimed > BLUNT * scatter,
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Answer:
+    """The posterior, the surrogate that it was sampled on, all points of the model, the last check, the rounds."""
+
+    posterior: Tempered
+    emulator: Emulator
+    points: _Points
+    check: _Check
+    rounds: int
+
+
+def _sampled(question: _Question, emulator: Emulator, points: _Points) -> _Answer:
+    """Sample, check, and draw the surrogate closer until it holds, at most three times."""
+    rng = np.random.default_rng([question.seed, 1])
+    for rounds in range(ROUNDS + 1):
+        surrogate = emulator
+        posterior = question.sample(surrogate)
+        check = _Check.of(question, surrogate, posterior, rng)
+        if rounds == ROUNDS or not (check.rough or check.blunt):
+            break
+        about = _about(question.model.priors, posterior.samples[:, :-2], rng)
+        points = points + check.points + question.evaluate(about)
+        emulator = surrogate.closer(points.values, points.frequencies, posterior.samples[:, :-2])
+    return _Answer(posterior=posterior, emulator=surrogate, points=points + check.points, check=check, rounds=rounds)
+
+
+def _about(priors: Sequence[Distribution], samples: Array, rng: np.random.Generator) -> Array:
+    """Points of the posterior moved outwards, as many as two for each coefficient of a quadratic, or 50."""
+    size = len(priors)
+    chosen = samples[rng.choice(len(samples), min(max(CHECKS, (size + 1) * (size + 2)), len(samples)), False)]
+    columns = []
+    for prior, values, whole in zip(priors, chosen.T, samples.T, strict=True):
+        x, centre = prior.standardised(values), float(np.mean(prior.standardised(whole)))
+        columns.append(prior.from_standard(centre + WIDENED * (x - centre)))
+    return np.column_stack(columns)
+
+
+def _identification(question: _Question, answer: _Answer) -> Identification:
+    model, posterior, check = question.model, answer.posterior, answer.check
+    samples, size = posterior.samples, len(model.names)
+    names = (*model.names, SCATTER, DISCREPANCY)
+    scatter, discrepancy = (float(v) for v in np.median(samples[:, size:], axis=0))
+    found = question.offsets(answer.emulator, samples)
+    density = [prior.log_density(x) for prior, x in zip(question.priors, samples.T, strict=True)]
+    peak = samples[int(np.argmax(posterior.log_likelihood + np.sum(density, axis=0))), :size]
+    notes = (
+        *remarks.of_data(size, question.wanted, question.used, question.loads),
+        *remarks.of_answers(answer.points.reasons, "that were evaluated", "no-answer"),
+        *remarks.of_answers(check.points.reasons, "of the posterior", "no-answer-in-posterior"),
+        *remarks.of_posterior(names, question.priors, samples),
+        *remarks.of_sampling(posterior.correlation),
+        *remarks.of_surrogate(check.missed, check.claimed, scatter, rough=check.rough),
+    )
+    return Identification(
+        names=names,
+        units=(*model.units, "", ""),
+        priors=question.priors,
+        log_evidence=posterior.log_evidence,
+        log_evidence_sd=posterior.log_evidence_sd,
+        evaluations=len(answer.points.values),
+        answered=sum(not reason for reason in answer.points.reasons),
+        rounds=answer.rounds,
+        steps=posterior.steps,
+        calls=posterior.calls,
+        samples=samples,
+        log_likelihood=found.log_likelihood,
+        loads=question.loads,
+        test=question.test,
+        used=question.used,
+        left_out=question.left_out,
+        predictive=_predictive(question, answer, found),
+        offset_mean=found.mean.mean(axis=0),
+        offset_sd=np.sqrt(found.variance.mean(axis=0) + found.mean.var(axis=0)),
+        surrogate_error=check.error,
+        checked=check.difference,
+        fit=_fit(question, answer.emulator, scatter, peak),
+        singular=what_is_seen(answer.emulator, peak, question.used, (scatter, discrepancy), model.names),
+        notes=notes,
+    )
+
+
+def _predictive(question: _Question, answer: _Answer, found: Offsets) -> Array:
+    """Frequencies as a test would measure them (draw, load, mode): with the offset of the mode, and scatter."""
+    rng = np.random.default_rng([question.seed, 2])
+    samples = answer.posterior.samples
+    logs, error = answer.emulator.predict(samples[:, :-2])
+    offset = found.mean + np.sqrt(found.variance) * rng.standard_normal(found.mean.shape)
+    scatter = np.sqrt(samples[:, -2, None, None] ** 2 + error**2)
+    return np.asarray(np.exp(logs + offset[:, None, :] + scatter * rng.standard_normal(logs.shape)))
+
+
+def _fit(question: _Question, emulator: Emulator, scatter: float, peak: Array) -> Fit:
+    """The least-squares fit: of all ends of the search, the one at which the model itself is nearest to the test."""
+    ends = least_squares_ends(emulator, question.test, question.used, scatter, peak, question.seed)
+    frequencies = question.evaluate(ends).frequencies
+    used = question.used
+    misfit = np.sqrt(np.mean(np.log(question.test[used] / frequencies[:, used]) ** 2, axis=1))
+    ranked = np.where(np.isnan(misfit), np.inf, misfit)
+    best = int(ranked.argmin())
+    return Fit(
+        values=ends[best],
+        frequencies=frequencies[best],
+        misfit=float(misfit[best]),
+        starts=len(ends),
+        agreeing=int((ranked <= ranked[best] + AGREE * scatter).sum()) if np.isfinite(ranked[best]) else 0,
+    )

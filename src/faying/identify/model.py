@@ -1,0 +1,44 @@
+"""What an identification asks of a model."""
+
+from collections.abc import Callable
+from typing import Protocol
+
+from faying.distribution import Distribution
+from faying.typing import Array
+
+Report = Callable[[str, int, int], None]
+
+
+class Model(Protocol):
+    """A model with parameters that scatter, evaluated at many of their values.
+
+    names, units, priors: of the d parameters, which are independent; units are SI, "" for plain numbers.
+    """
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the parameters."""
+        ...
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """SI units of the parameters."""
+        ...
+
+    @property
+    def priors(self) -> tuple[Distribution, ...]:
+        """Distributions of the parameters."""
+        ...
+
+    def frequencies(self, values: Array, report: Report | None = None) -> tuple[Array, list[str]]:
+        """The frequencies of the test's modes.
+
+        Args:
+            values: of the parameters (n, d), SI.
+            report: told what is done, how much of it, and of how much.
+
+        Returns:
+            Frequencies [Hz] (n, load, mode), NaN where a sample has no answer or a mode of the test no partner; and for
+            each sample the reason why it has no answer, "" where it has one.
+        """
+        ...

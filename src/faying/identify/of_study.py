@@ -1,0 +1,190 @@
+"""What the test in a study tells of the numbers that scatter in it."""
+
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from faying import units
+from faying.errors import FayingError, InputError
+from faying.identify.ensemble import Ensemble
+from faying.identify.evaluate import TOLERANCE, Reduced
+from faying.identify.identification import Identification, mixed
+from faying.identify.identify import identify_model
+from faying.identify.model import Report
+from faying.identify.noise import DISCREPANCY_SD, TEST_SD
+from faying.identify.predict import check, cut_notes
+from faying.identify.store import Store, fingerprint
+from faying.joint.loads import preload_index
+from faying.study.keys.uncertain import UncertainChoice
+from faying.study.study import Study
+from faying.typing import Array
+
+COUNT = 1000  # samples of the posterior
+
+
+class StudyModel:
+    """A study in its reduced bases, as an identification asks for it."""
+
+    def __init__(self, ensemble: Ensemble, reduced: Reduced, stage: "_Stage", label: str = "") -> None:
+        self.ensemble, self.reduced, self.stage, self.label = ensemble, reduced, stage, label
+        self.names, self.priors = ensemble.inputs.names, ensemble.inputs.priors
+        self.units = tuple(column.unit for column in ensemble.inputs.columns)
+        self.calls = 0
+
+    def frequencies(self, values: Array, report: Report | None = None) -> tuple[Array, list[str]]:
+        """Frequencies of the test's modes (n, load, mode) [Hz] at values (n, d), and why a sample has none."""
+        self.calls += 1
+        self.stage.begin(f"evaluations{self.label}", len(values), report)
+        rows = self.reduced.rows(self.ensemble.with_values(values), f"{self.calls:03d}")
+        return rows["paired"], [str(reason) for reason in rows["reasons"]]
+
+
+class _Stage:
+    """Turns the samples that the bases report into (stage, done, total)."""
+
+    def __init__(self, report: Report | None) -> None:
+        self.report, self.name, self.total, self.done = report, "bases", 0, 0
+
+    def begin(self, name: str, total: int, report: Report | None) -> None:
+        self.report, self.name, self.total, self.done = report or self.report, name, total, 0
+
+    def __call__(self, stage: str, done: int) -> None:
+        self.done += done
+        if self.report is not None:
+            name = self.name if stage == "evaluations" else stage
+            self.report(name, min(self.done, self.total), self.total)
+
+
+def identify(
+    study: Study | str | Path,
+    leave_out: str | float | Sequence[str | float] | None = None,
+    *,
+    seed: int = 0,
+    count: int = COUNT,
+    jobs: int = 1,
+    dask: str | None = None,
+    out: str | Path | None = None,
+    report: Report | None = None,
+) -> Identification:
+    """Identify the numbers that scatter in a study from the frequencies of its test.
+
+    What [uncertain] says are the priors. The model's own error in each mode, the same at all preloads, and the scatter
+    of the test are identified with the rest. Where [uncertain] lists laws, each is identified by itself; the evidence
+    weighs them, the parameters are those of the likeliest, and the predicted frequencies are drawn from all.
+
+    Args:
+        study: a Study or the path of its TOML file; it has [test] with frequencies, and [uncertain].
+        leave_out: preloads whose frequencies are predicted and not used, "12 kN" or newtons.
+        seed: of all random numbers, 0 or more.
+        count: samples of the posterior, 100 or more.
+        jobs: processes on this machine.
+        dask: address of a Dask scheduler, in place of processes.
+        out: file to write, ending in .nc; what is done is kept beside it, and the same call goes on where it stopped.
+        report: told what is done, how much of it, and of how much.
+
+    Returns:
+        The posterior, with what it predicts and what the test cannot tell.
+
+    Raises:
+        InputError: no test with frequencies, nothing that scatters, a preload that the study has not, no answer.
+
+    Source:
+        Kennedy and O'Hagan 2001, doi:10.1111/1467-9868.00294; Ching and Chen 2007,
+        doi:10.1061/(ASCE)0733-9399(2007)133:7(816), for the sampling.
+    """
+    study = Study.read(study)
+    check(study, 8, seed)
+    if isinstance(count, bool) or not isinstance(count, int) or count < 100:
+        raise InputError(f"count = {count!r} should be a whole number of 100 or more")
+    if study.test is None or not study.test.points:
+        raise InputError(
+            "an identification needs a test: give [test] frequencies, one list for each preload, and the points where "
+            "they were measured"
+        )
+    left = left_out(study, leave_out)
+    file = None if out is None else Path(out)
+    with closing(
+        Store(file, fingerprint=fingerprint(study, left, seed, count, TOLERANCE), what="identification")
+    ) as store:
+        try:
+            found = _identified(study, left, seed=seed, count=count, jobs=jobs, dask=dask, store=store, report=report)
+        except FayingError:
+            store.forget()
+            raise
+        if file is not None:
+            found.save(file)
+        store.finish()
+    return found
+
+
+def left_out(study: Study, wanted: str | float | Sequence[str | float] | None) -> tuple[int, ...]:
+    """Indices of preloads that are left out. Raises InputError for one that the study has not, and for all of them."""
+    given = [] if wanted is None else [wanted] if isinstance(wanted, str | float | int) else list(wanted)
+    out = []
+    for one in given:
+        load = units.parse(one, "N", name="leave_out") if isinstance(one, str) else float(one)
+        index = preload_index(study.loads, load)
+        if index is None:
+            known = ", ".join(f"{value / 1e3:g} kN" for value in study.loads)
+            raise InputError(f"leave_out: no preload of {load / 1e3:g} kN in the study; it has {known}")
+        out.append(index)
+    if len(set(out)) == len(study.loads):
+        raise InputError("leave_out names every preload of the study; keep one or more to identify from")
+    return tuple(sorted(set(out)))
+
+
+def _identified(
+    study: Study,
+    left: tuple[int, ...],
+    *,
+    seed: int,
+    count: int,
+    jobs: int,
+    dask: str | None,
+    store: Store,
+    report: Report | None,
+) -> Identification:
+    choice, test = study.uncertain, study.test
+    assert test is not None
+    if choice is None:
+        Ensemble.of(study, 8, seed)  # raises what a study without [uncertain] lacks
+    assert choice is not None
+    variants = _variants(study, choice)
+    found = []
+    for number, (name, variant) in enumerate(variants):
+        stage = _Stage(report)
+        label = f" of {name}" if name else ""
+        ensemble = Ensemble.of(variant, 8, seed)
+        reduced = Reduced(ensemble, jobs=jobs, dask=dask, report=stage, store=store.within(number))
+        model = StudyModel(ensemble, reduced, stage, label)
+        one = identify_model(
+            model,
+            np.array(test.frequencies),
+            np.array(study.loads),
+            leave_out=left,
+            count=count,
+            seed=seed,
+            test_sd=choice.test or TEST_SD,
+            discrepancy=choice.discrepancy or DISCREPANCY_SD,
+            report=report,
+        )
+        found.append(replace(one, notes=(*cut_notes(ensemble.inputs.columns), *one.notes)))
+    if not choice.models:
+        return found[0]
+    return mixed(dict(zip([name for name, _ in variants], found, strict=True)), dict(choice.models), seed=seed)
+
+
+def _variants(study: Study, choice: UncertainChoice) -> list[tuple[str, Study]]:
+    """The study under each of its laws; the study itself where its law is certain."""
+    if not choice.models:
+        return [("", study)]
+    alone = replace(choice, models=())
+    if not (alone.inputs or alone.fit):  # the law alone scatters: a factor that hardly does stands for the rest
+        raise InputError(
+            "uncertain lists laws and nothing else; add what scatters beside them, for example "
+            'stiffness = {distribution = "lognormal", median = 1, sd_ln = 0.6}'
+        )
+    return [(name, replace(study, law=replace(study.law, model=name), uncertain=alone)) for name, _ in choice.models]

@@ -1,0 +1,155 @@
+"""From a study whose numbers scatter to the quantiles of its frequencies."""
+
+from collections.abc import Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from faying.errors import FayingError, InputError
+from faying.identify.ensemble import Ensemble, by_reason
+from faying.identify.evaluate import TOLERANCE, Reduced, Report
+from faying.identify.prediction import Prediction
+from faying.identify.store import Store, fingerprint
+from faying.notes import Note
+from faying.study.parallel import Rows
+from faying.study.run import provenance
+from faying.study.study import Study
+
+FEWEST, MOST = 8, 1_000_000  # samples
+BEYOND = 0.1  # share of the contact beyond the end of the law from which a sample is told
+MOVED = 0.1  # of the distance from 5 to 95 % that half of the samples may move either by
+
+
+def predict(
+    study: Study | str | Path,
+    samples: int = 1024,
+    seed: int = 0,
+    *,
+    jobs: int = 1,
+    dask: str | None = None,
+    out: str | Path | None = None,
+    report: Report | None = None,
+) -> Prediction:
+    """Evaluate a study under the scatter of its numbers, as its [uncertain] says.
+
+    The parts are reduced once to small bases; every sample is evaluated in these, at each load of the study.
+
+    Args:
+        study: a Study or the path of its TOML file.
+        samples: points of Sobol's sequence, 8 to 1,000,000; powers of 2 fill the space most evenly.
+        seed: of the points, 0 or more.
+        jobs: processes on this machine.
+        dask: address of a Dask scheduler, in place of processes.
+        out: file to write, ending in .nc; what is done is kept beside it, and the same call goes on where it stopped.
+        report: called with a stage and the number of samples just done.
+
+    Returns:
+        The samples with their frequencies; `quantiles()` and `shares()` say what they come to.
+
+    Raises:
+        InputError: nothing in the study scatters, it does not fit, or no sample has an answer.
+
+    Source:
+        Sobol's sequence: Joe and Kuo 2008, doi:10.1137/070709359, as SciPy has it.
+    """
+    study = Study.read(study)
+    check(study, samples, seed)
+    ensemble = Ensemble.of(study, samples, seed)
+    file = None if out is None else Path(out)
+    with closing(Store(file, fingerprint=fingerprint(study, samples, seed, TOLERANCE))) as store:
+        try:
+            reduced = Reduced(ensemble, jobs=jobs, dask=dask, report=report, store=store)
+            found = predicted(study, ensemble, reduced, reduced.rows(ensemble), seed)
+        except FayingError:
+            store.forget()
+            raise
+        if file is not None:
+            found.save(file)
+        store.finish()
+    return found
+
+
+def check(study: Study, samples: int, seed: int) -> None:
+    """Raise InputError for counts that make no prediction, and for studies that bases cannot hold."""
+    if isinstance(samples, bool) or not isinstance(samples, int) or not FEWEST <= samples <= MOST:
+        raise InputError(f"samples = {samples!r} should be a whole number from {FEWEST} to {MOST:,}, for example 1024")
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise InputError(f"seed = {seed!r} should be a whole number of 0 or more")
+    if study.modes.damping == "viscous":
+        raise InputError("a prediction gives hysteretic loss; leave out modes.damping")
+    if any(joint.springs == "per-node" for joint in study.joints):
+        raise InputError('a prediction takes springs per area; leave out springs = "per-node"')
+
+
+def predicted(study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, seed: int) -> Prediction:
+    """Put the rows of all samples together, with what there is to say of them."""
+    reasons = [str(reason) for reason in rows["reasons"]]
+    if all(reasons):
+        raise InputError(f"none of {len(reasons)} samples has an answer; the first: {reasons[0]}")
+    test = study.test
+    tested: dict[str, Any] = {}
+    if test is not None:
+        tested = {"paired": rows["paired"], "test": np.array(test.frequencies), "test_source": test.source}
+    found = Prediction(
+        title=study.title,
+        inputs=ensemble.inputs,
+        seed=seed,
+        tolerance=reduced.trainer.tolerance,
+        basis=(len(reduced.model.static_stiffness), len(reduced.model.dynamic_mass)),
+        loads=np.array(study.loads),
+        values=ensemble.values[ensemble.training :],
+        frequencies=rows["frequencies"],
+        loss_factors=rows["loss_factors"],
+        open_share=rows["open_share"],
+        beyond_share=rows["beyond_share"],
+        reasons=dict(by_reason(reasons)),
+        provenance=provenance(study),
+        **tested,
+    )
+    return found.with_notes(_notes(study, found))
+
+
+def _notes(study: Study, found: Prediction) -> list[Note]:
+    """What a reader of the intervals ought to know."""
+    out = cut_notes(found.inputs.columns)
+    for reason, count in found.reasons.items():
+        out.append(Note(code="no-answer", text=f"{count} of {len(found.values)} samples have no answer: {reason}"))
+    if found.convergence > MOVED:
+        text = (
+            f"half of the samples give ends of the intervals that differ by up to {found.convergence:.0%} of their "
+            "width; take more samples"
+        )
+        out.append(Note(code="few-samples", text=text))
+    far = int(np.count_nonzero(np.nanmax(found.beyond_share[found.sound], axis=1) > BEYOND))
+    if far:
+        text = (
+            f"{far} of {found.answered} samples press more than a tenth of the contact beyond the end of the law, "
+            "where its stiffness is held; faying run bounds what that does to a frequency"
+        )
+        out.append(Note(code="beyond", text=text))
+    if found.paired is not None:
+        lost = np.isnan(found.paired[found.sound]).any(axis=1)
+        for mode in np.flatnonzero(lost.any(axis=0)):
+            text = (
+                f"test mode {mode + 1} has no partner in {int(lost[:, mode].sum())} of {found.answered} samples; its "
+                "interval is that of the others"
+            )
+            out.append(Note(code="test-modes", text=text))
+    if study.uncertain is not None and not study.uncertain.models:
+        text = "the interval holds what [uncertain] lists and nothing else: not the errors of the mesh or of the law"
+        out.append(Note(code="interval", text=text))
+    return out
+
+
+def cut_notes(columns: Sequence[Any]) -> list[Note]:
+    """Say what was cut of a distribution that reaches values which the number cannot have."""
+    return [
+        Note(
+            code="uncertain-cut",
+            text=f"{column.key}: {column.cut:.2g} of its probability lies where the number cannot be, and is left out",
+        )
+        for column in columns
+        if column.cut > 1e-6
+    ]

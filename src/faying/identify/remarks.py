@@ -1,0 +1,97 @@
+"""What a reader of an identification should know."""
+
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+
+from faying.distribution import Distribution
+from faying.identify.fit import UNSEEN
+from faying.identify.noise import DISCREPANCY, SCATTER
+from faying.notes import Note
+from faying.typing import Array, Mask
+from faying.units import show
+
+END, PRESSED = 0.05, 0.25  # share of the prior at an end, and of the posterior that makes it worth a note
+MIXED = 0.3  # correlation with the start of a stage above which the samples have not mixed
+SHOWN = 3  # reasons that are listed
+
+
+def of_data(parameters: int, wanted: Mask, used: Mask, loads: Array) -> list[Note]:
+    """Frequencies of the test that the model has no partner for; more parameters than frequencies."""
+    out = []
+    lost = [f"mode {j + 1} at {show(loads[i], 'N')}" for i, j in zip(*np.nonzero(wanted & ~used), strict=True)]
+    if lost:
+        text = f"Not used, since the model has no partner for them over most of the priors: {', '.join(lost)}."
+        out.append(Note(code="test-modes", text=text))
+    count = int(used.sum())
+    if parameters > count:
+        out.append(
+            Note(
+                code="more-parameters-than-data",
+                text=f"{parameters} parameters and {count} frequencies: some combinations of the parameters stay as "
+                "uncertain as their priors make them. More preloads or modes, or fewer parameters, tell more.",
+            )
+        )
+    return out
+
+
+def of_answers(reasons: Sequence[str], where: str, code: str) -> list[Note]:
+    """Samples without an answer, counted by reason."""
+    failed = Counter(reason for reason in reasons if reason)
+    count = sum(failed.values())
+    if not count:
+        return []
+    listed = [f"{reason} ({times})" for reason, times in failed.most_common(SHOWN)]
+    rest = f", and {len(failed) - SHOWN} other reasons" if len(failed) > SHOWN else ""
+    text = f"{count} of {len(reasons)} points {where} have no answer: {', '.join(listed)}{rest}."
+    return [Note(code=code, text=text)]
+
+
+def of_posterior(names: Sequence[str], priors: Sequence[Distribution], samples: Array) -> list[Note]:
+    """Parameters that the test does not tell, and those that press against an end of their prior."""
+    out = []
+    for name, prior, values in zip(names, priors, samples.T, strict=True):
+        of_noise = name in (SCATTER, DISCREPANCY)
+        told = float(values.std(ddof=1) / prior.sd)
+        if told > UNSEEN and not of_noise:
+            text = f"The test tells nothing of {name}: its posterior sd is {told:.0%} of its prior's."
+            out.append(Note(code="not-told", text=text))
+        ends = prior.quantile(np.array([END, 1 - END]))
+        for share, side in ((np.mean(values < ends[0]), "lower"), (np.mean(values > ends[1]), "upper")):
+            if share > PRESSED and not (of_noise and side == "lower"):  # little noise is no fault
+                text = (
+                    f"{name} presses against the {side} end of its prior: {share:.0%} of the posterior lies in the "
+                    f"outer {END:.0%} of it. The prior is too narrow, or the model lacks something."
+                )
+                out.append(Note(code="end-of-prior", text=text))
+    return out
+
+
+def of_sampling(correlation: float) -> list[Note]:
+    """Samples that did not mix."""
+    if correlation <= MIXED:
+        return []
+    text = (
+        f"The samples moved little in one stage (correlation {correlation:.2f} with its start): there may be several "
+        "separate solutions, whose weights are less certain than the intervals within each."
+    )
+    return [Note(code="not-mixed", text=text)]
+
+
+def of_surrogate(missed: float, claimed: float, scatter: float, *, rough: bool) -> list[Note]:
+    """A surrogate that is worse than it says, or worse than the test."""
+    out = []
+    if rough:
+        text = (
+            f"About the posterior the surrogate misses the model by {missed:.2%} rms, where its own error says "
+            f"{claimed:.2%}: the intervals may be too narrow or in the wrong place. Narrower priors help."
+        )
+        out.append(Note(code="surrogate-rough", text=text))
+    if claimed > scatter:
+        text = (
+            f"The surrogate's error, {claimed:.2%}, is greater than the scatter of the test, {scatter:.2%}: the "
+            "intervals are wider than the test would allow. More evaluations or narrower priors help."
+        )
+        out.append(Note(code="surrogate-wide", text=text))
+    return out

@@ -1,0 +1,91 @@
+"""Figures of a prediction: intervals beside the test, shares of the variance, the samples against each other."""
+
+from typing import Any
+
+import numpy as np
+
+from faying.identify.prediction import Prediction
+from faying.output.figures.save import new_figure, plain
+
+MOST_INPUTS = 6  # of the scatter matrix
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#999999", "#f0e442")  # Okabe and Ito
+
+
+def intervals(found: Prediction) -> Any:
+    """Return the figure of the 5 to 95 % of each frequency over its median, one column a preload, the test as dots."""
+    values, test = found.observed
+    full = values[found.sound]
+    low, middle, high = (np.nanquantile(full, level, axis=0) for level in (0.05, 0.5, 0.95))
+    fig = new_figure(6.3, 0.9 + 0.32 * middle.shape[1] * len(found.loads) ** 0.5)
+    ax = fig.subplots()
+    count = len(found.loads)
+    for load in range(count):
+        y = np.arange(middle.shape[1]) + (load - (count - 1) / 2) * 0.7 / count
+        colour = COLOURS[load % len(COLOURS)]
+        ends = [100 * (1 - low[load] / middle[load]), 100 * (high[load] / middle[load] - 1)]
+        label = f"{found.loads[load] / 1e3:g} kN"
+        ax.errorbar(np.zeros(len(y)), y, xerr=ends, fmt="|", color=colour, lw=2.2, ms=7, capsize=0, label=label)
+        ax.plot(100 * (test[load] / middle[load] - 1), y, "o", ms=5, mfc="white", mec=colour, mew=1.4)
+    if np.isfinite(test).any():
+        ax.plot([], [], "o", ms=5, mfc="white", mec="0.3", mew=1.4, label="test")
+    ax.set_yticks(range(middle.shape[1]), [f"{k + 1}: {middle[-1, k]:.0f} Hz" for k in range(middle.shape[1])])
+    ax.invert_yaxis()
+    ax.set_xlabel("difference from the median [%]; bars from 5 to 95 %")
+    ax.set_ylabel("mode and its median")
+    ax.grid(axis="x", alpha=0.3)
+    ax.legend(fontsize=8)
+    ax.set_title(plain(found.title), fontsize=10)
+    return fig
+
+
+def tornado(found: Prediction) -> Any:
+    """Return the figure of the shares of the variance of each mode at the last preload, first order and total."""
+    shares, _ = found.shares()
+    modes = len(shares.first)
+    order = np.argsort(np.nanmean(shares.total, axis=0))[::-1]
+    fig = new_figure(6.3, 1.2 + 0.28 * modes)
+    ax = fig.subplots()
+    left = np.zeros(modes)
+    for rank, k in enumerate(order):
+        width = np.clip(np.nan_to_num(shares.first[:, k]), 0, None)
+        ax.barh(
+            range(modes),
+            100 * width,
+            left=100 * left,
+            height=0.7,
+            color=COLOURS[rank % len(COLOURS)],
+            hatch="//" if rank >= len(COLOURS) else None,
+            label=plain(found.names[k]),
+        )
+        left += width
+    rest = np.clip(1 - left, 0, None)
+    ax.barh(range(modes), 100 * rest, left=100 * left, height=0.7, color="white", edgecolor="0.6", label="together")
+    ax.invert_yaxis()
+    ax.set_yticks(range(modes), [str(k + 1) for k in range(modes)])
+    ax.set(xlim=(0, 100), ylabel="mode" if found.paired is None else "test mode")
+    ax.set_xlabel(f"share of the variance at {found.loads[-1] / 1e3:g} kN [%]")
+    fig.legend(loc="outside lower center", ncols=2, fontsize=7.5, frameon=False)
+    ax.set_title(plain(found.title), fontsize=10)
+    return fig
+
+
+def scatter_matrix(found: Prediction) -> Any:
+    """Return the figure of the samples: the inputs that matter most against the frequencies at the last preload."""
+    shares, _ = found.shares()
+    values, _ = found.observed
+    frequencies = values[:, -1]
+    modes = np.arange(min(3, frequencies.shape[1]))
+    order = np.argsort(np.nanmean(shares.total[modes], axis=0))[::-1][:MOST_INPUTS]
+    fig = new_figure(1.6 * len(order) + 0.8, 1.5 * len(modes) + 0.6)
+    axes = fig.subplots(len(modes), len(order), sharex="col", sharey="row", squeeze=False)
+    for row, mode in enumerate(modes):
+        for column, k in enumerate(order):
+            ax = axes[row, column]
+            ax.plot(found.values[:, k], frequencies[:, mode], ".", ms=2, color=COLOURS[0], alpha=0.5)
+            ax.tick_params(labelsize=7)
+            ax.locator_params(nbins=4)
+            if row == len(modes) - 1:
+                unit = found.inputs.columns[k].unit
+                ax.set_xlabel(plain(found.names[k]) + (f"\n[{unit}]" if unit else ""), fontsize=7)
+        axes[row, 0].set_ylabel(f"mode {mode + 1} [Hz]", fontsize=8)
+    return fig

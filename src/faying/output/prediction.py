@@ -1,0 +1,134 @@
+"""The tables of a prediction, for the terminal and for files."""
+
+import numpy as np
+
+from faying.identify.prediction import LEVELS, Prediction
+from faying.output.table import Rows
+from faying.output.table import text as aligned
+
+SHOWN = 0.03  # share of the variance from which an input is named
+POOR = 0.3  # leave-one-out error of the polynomial, over the scatter, from which shares of the variance say little
+
+
+def scatter(found: Prediction) -> Rows:
+    """One row per input: what scatters, and how."""
+    rows: Rows = [["source", "distribution"]]
+    for column in found.inputs.columns:
+        if column.key != "law.model":
+            rows.append([column.key, column.distribution.text(column.unit)])
+    if found.inputs.models:
+        rows.append(["law.model", ", ".join(f"{name} {weight:.0%}" for name, weight in found.inputs.models)])
+    return rows
+
+
+def intervals(found: Prediction) -> Rows:
+    """One row per mode: 5 % .. median .. 95 % of the frequency at each preload."""
+    q = found.quantiles(LEVELS).frequencies
+    rows: Rows = [["mode", *(f"{load / 1e3:g} kN [Hz]" for load in found.loads)]]
+    for mode in range(q.shape[2]):
+        rows.append([str(mode + 1), *(_three(q[:, load, mode]) for load in range(q.shape[1]))])
+    return rows
+
+
+def slopes(found: Prediction) -> Rows:
+    """One row per mode: 5 % .. median .. 95 % of the change with preload; empty for a single load."""
+    if len(found.loads) < 2:
+        return []
+    q = 1e3 * found.quantiles(LEVELS).slopes
+    return [["mode", "[Hz/kN]"], *([str(k + 1), " .. ".join(f"{v:.3g}" for v in q[:, k])] for k in range(q.shape[1]))]
+
+
+def losses(found: Prediction) -> Rows:
+    """One row per mode: 5 % .. median .. 95 % of the loss factor at each preload; empty where none is predicted."""
+    q = found.quantiles(LEVELS).loss_factors
+    if not np.isfinite(q).any():
+        return []
+    rows: Rows = [["mode", *(f"{load / 1e3:g} kN (loss)" for load in found.loads)]]
+    for mode in range(q.shape[2]):
+        cells = [" .. ".join(f"{v:.1e}" for v in q[:, load, mode]) for load in range(q.shape[1])]
+        rows.append([str(mode + 1), *cells])
+    return rows
+
+
+def beside_test(found: Prediction) -> Rows:
+    """One row per mode of the test and preload: what was measured, the interval, and whether it holds it."""
+    paired = found.quantiles(LEVELS).paired
+    if paired is None or found.test is None:
+        return []
+    rows: Rows = [["test mode", "preload", "test [Hz]", "5 % .. median .. 95 % [Hz]", "inside"]]
+    for mode in range(found.test.shape[1]):
+        for load, preload in enumerate(found.loads):
+            low, _, high = paired[:, load, mode]
+            value = found.test[load, mode]
+            inside = "yes" if low <= value <= high else "no"
+            rows.append([str(mode + 1), f"{preload / 1e3:g} kN", f"{value:.1f}", _three(paired[:, load, mode]), inside])
+    return rows
+
+
+def blame(found: Prediction) -> tuple[Rows, str]:
+    """One row per mode: which inputs make its variance at the last preload, greatest first; and what to know of it."""
+    shares, error = found.shares()
+    name = "mode" if found.paired is None else "test mode"
+    rows: Rows = [[name, "total share of the variance"]]
+    for mode, row in enumerate(shares.total):
+        named = [k for k in np.argsort(-np.nan_to_num(row)) if row[k] >= SHOWN]
+        words = ", ".join(f"{found.names[k]} {row[k]:.0%}" for k in named)
+        if error[mode] > POOR:
+            words += f" (poor: the polynomial misses {error[mode]:.0%} of the scatter)"
+        rows.append([str(mode + 1), words or "-"])
+    worst = float(np.max(error))
+    text = (
+        "A total share counts what an input does together with others, too. The shares are those of a polynomial\n"
+        f"through the samples; its leave-one-out error is at most {worst:.0%} of the scatter."
+    )
+    return rows, text
+
+
+def _three(values: np.ndarray) -> str:
+    digits = 1 if np.nanmax(values) >= 100 else 2
+    return " .. ".join(f"{v:.{digits}f}" for v in values)
+
+
+def text(found: Prediction) -> str:
+    """All tables for the terminal."""
+    rows, words = blame(found)
+    inside, count = found.covered
+    parts = [
+        f"{found.title}: {found.answered} of {len(found.values)} samples have an answer; bases of {found.basis[0]} and "
+        f"{found.basis[1]} vectors",
+        "\nwhat scatters\n" + _wrapped(scatter(found)),
+        "\nfrequencies, 5 % .. median .. 95 %\n" + _narrow(intervals(found)),
+    ]
+    if lines := losses(found):
+        parts.append("\nloss factors, 5 % .. median .. 95 %\n" + _narrow(lines))
+    if lines := slopes(found):
+        parts.append("\nchange with preload, 5 % .. median .. 95 %\n" + aligned(lines))
+    if lines := beside_test(found):
+        parts.append(f"\nbeside the test ({found.test_source}): {inside} of {count} inside\n" + aligned(lines))
+    last = f"{found.loads[-1] / 1e3:g} kN"
+    parts.append(f"\nwhat makes the scatter at {last}\n" + _wrapped(rows) + f"\n{words}\n")
+    return "\n".join([*parts, *(f"note: {note.text}" for note in found.notes)])
+
+
+def _narrow(rows: Rows, width: int = 80) -> str:
+    """Columns in blocks that fit the width, the first column in each."""
+    widths = [max(len(row[k]) for row in rows) + 2 for k in range(len(rows[0]))]
+    blocks: list[list[int]] = [[]]
+    for k in range(1, len(rows[0])):
+        if blocks[-1] and widths[0] + sum(widths[i] for i in blocks[-1]) + widths[k] > width:
+            blocks.append([])
+        blocks[-1].append(k)
+    return "\n\n".join(aligned([[row[i] for i in (0, *block)] for row in rows]) for block in blocks)
+
+
+def _wrapped(rows: Rows, width: int = 80) -> str:
+    """Two columns, the second wrapped to the width."""
+    import textwrap
+
+    first = max(len(row[0]) for row in rows) + 2
+    lines = []
+    for head, words in rows:
+        parts = textwrap.wrap(words, max(width - first, 30)) or [""]
+        lines.append(head.ljust(first) + parts[0])
+        lines += [" " * first + part for part in parts[1:]]
+    return "\n".join(line.rstrip() for line in lines)

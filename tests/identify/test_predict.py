@@ -1,0 +1,188 @@
+"""Predictions of a small study: against full runs, against what the inputs are, and what is said where they fail."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray
+
+import faying
+from faying.distribution import Distribution
+from faying.errors import FayingError, InputError
+from faying.identify import predict as module
+from faying.identify.ensemble import Ensemble, Inputs
+from faying.identify.prediction import Prediction
+from faying.study import Study, run
+from faying.study.keys.solution import ModesChoice
+from tests.helpers.studies import write
+
+SCATTER = """
+[uncertain]
+E = "200 GPa +- 4 GPa"
+preload = {tightening = "torque wrench, friction estimated"}
+stiffness = {distribution = "lognormal", median = 1, sd_ln = 0.6}
+density = "7800 kg/m^3 +- 40 kg/m^3"
+"""
+
+
+def study_of(folder, more=SCATTER, **keys):
+    path = folder / "study.toml"
+    write(path)
+    path.write_text(path.read_text() + more)
+    study = Study.read(path)
+    sizes = {name: 1.6 * size for name, size in study.geometry.face_size.items()}
+    geometry = replace(study.geometry, size=1.6 * study.geometry.size, face_size=sizes)
+    return replace(study, geometry=geometry, modes=ModesChoice(count=5), **keys)
+
+
+@pytest.fixture(scope="module")
+def plan(tmp_path_factory):
+    return study_of(tmp_path_factory.mktemp("study"))
+
+
+@pytest.fixture(scope="module")
+def found(plan):
+    return faying.predict(plan, samples=128, seed=1)
+
+
+def test_scales_of_the_parts_scale_every_frequency_of_bonded_like_parts(tmp_path):
+    """With a joint a thousand times as stiff nothing but the parts is left: f goes with the root of E over density."""
+    more = SCATTER.replace("median = 1, sd_ln = 0.6", "median = 1000, sd_ln = 0.01")
+    found = faying.predict(study_of(tmp_path, more), samples=16, seed=3)
+    E = found.values[:, found.names.index("material.45 steel.E")]
+    density = found.values[:, found.names.index("material.45 steel.density")]
+    expected = np.sqrt((E / 200e9) / (density / 7800))
+    ratio = found.frequencies[:, -1] / found.frequencies[0, -1]
+    assert ratio == pytest.approx(np.broadcast_to((expected / expected[0])[:, None], ratio.shape), rel=2e-3)
+
+
+def test_the_medians_are_near_the_run_and_the_intervals_hold_it(plan, found):
+    low, middle, high = found.quantiles().frequencies
+    nominal = run(replace(plan, uncertain=None)).frequencies
+    assert middle == pytest.approx(nominal, rel=5e-3)
+    assert np.all(low < nominal)
+    assert np.all(nominal < high)
+
+
+def test_shares_of_stiff_modes_are_those_of_the_parts(found):
+    """A mode of the parts alone goes with the root of E and of 1/density: 2 % and .5 %, so 16 to 1 in variance."""
+    shares, error = found.shares()
+    assert np.all(error < 0.3)
+    total = dict(zip(found.names, shares.total.T, strict=True))
+    quiet = int(np.argmin(total["joint.stiffness"]))
+    assert total["material.45 steel.E"][quiet] == pytest.approx(16 * total["material.45 steel.density"][quiet], rel=0.4)
+
+
+def test_quantiles_are_those_of_the_samples(found):
+    q = found.quantiles((0.25, 0.75))
+    assert q.frequencies.shape == (2, len(found.loads), 5)
+    below = (found.frequencies < q.frequencies[1]).mean(axis=0)
+    assert below == pytest.approx(0.75, abs=0.01)
+    with pytest.raises(InputError, match="shares from 0 to 1"):
+        found.quantiles((5, 95))
+
+
+def test_a_prediction_is_written_and_read(found, tmp_path):
+    path = found.save(tmp_path / "prediction.nc")
+    assert Prediction.load(path) == found
+    with xarray.open_dataset(path) as data:
+        assert data.frequencies.dims == ("sample", "load", "mode")
+        assert list(data.input.values) == list(found.names)
+    assert found.to_xarray().frequencies.shape == found.frequencies.shape
+
+
+def test_the_same_seed_gives_the_same_samples(plan, found):
+    assert np.array_equal(Ensemble.of(plan, 128, 1).values[-128:], found.values)
+    assert not np.array_equal(Ensemble.of(plan, 128, 2).values[-128:], found.values)
+
+
+def test_an_interrupted_prediction_goes_on(plan, tmp_path, monkeypatch):
+    out = tmp_path / "p.nc"
+    calls = []
+
+    def stops(self, what, number, rows):
+        calls.append(number)
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        kept(self, what, number, rows)
+
+    kept = module.Store.keep_rows
+    monkeypatch.setattr(module.Store, "keep_rows", stops)
+    with pytest.raises(KeyboardInterrupt):
+        faying.predict(plan, samples=64, seed=1, out=out)
+    monkeypatch.setattr(module.Store, "keep_rows", kept)
+    monkeypatch.setattr(module.Reduced, "_train", None)  # the bases are not made again
+    found = faying.predict(plan, samples=64, seed=1, out=out)
+    assert found.answered == 64
+    assert Prediction.load(out) == found
+    assert not out.with_name("p.nc.part").exists()
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ("", "nothing in the study scatters"),
+        ('[uncertain]\nfrictoin = "0.1 to 0.6"', "frictoin is nothing that can scatter"),
+        ('[uncertain]\nE = "200 to 210"', "has no unit"),
+        ('[uncertain]\nfriction = "-3 to 0.1"', "lies for 97% outside"),
+        ('[uncertain]\npreload = "10 %"', "should be {tightening"),
+        ('[uncertain]\npreload = {tightening = "spanner"}', "is no way of tightening; known are"),
+        ('[uncertain]\njoint.none.friction = "0.1 to 0.2"', "no joint is called 'none'"),
+        ("[uncertain]\nsurface.fit = 3", "should be true or false"),
+        ('[uncertain]\nlaw.model = ["jk"]', "two laws or more"),
+        ("[uncertain]\nlaw.model = {jk = 1, gw = -1}", "a weight is a positive number"),
+        ('[uncertain]\nbolt.preload = "1 kN to 2 kN"', "the study has"),
+        ('[uncertain]\nflatness = "10 um"\njoint.form.twist = "1 um to 2 um"\njoint.form.flatness = "3 um"', "already"),
+    ],
+)
+def test_faults_of_the_table_are_named(tmp_path, more, words):
+    with pytest.raises(FayingError, match="(?s)" + words.replace("{", r"\{")):
+        faying.predict(study_of(tmp_path, "\n" + more), samples=16)
+
+
+def test_counts_that_make_no_prediction_are_refused(plan):
+    for samples in (4, 2.5, True):
+        with pytest.raises(InputError, match="whole number from 8"):
+            faying.predict(plan, samples=samples)
+    with pytest.raises(InputError, match="seed"):
+        faying.predict(plan, seed=-1)
+
+
+def test_texts_that_scatter_may_stand_in_the_place_of_the_number(tmp_path):
+    path = tmp_path / "study.toml"
+    write(path)
+    text = path.read_text()
+    assert "[[joint]]" in text
+    path.write_text(text.replace("[[joint]]", '[[joint]]\nfriction = "0.1 to 0.6"', 1))
+    study = Study.read(path)
+    assert study.joints[0].friction == pytest.approx(0.35)
+    (column,) = study.uncertain.inputs
+    assert column.key == f"joint.{study.joints[0].name}.friction"
+    assert column.within
+    assert column.distribution == Distribution.read("0.1 to 0.6", "")
+
+
+def test_what_was_cut_is_said(tmp_path):
+    study = study_of(tmp_path, '\n[uncertain]\nfriction = "0.2 +- 0.15"')
+    (column,) = study.uncertain.inputs
+    from scipy.stats import norm
+
+    assert column.cut == pytest.approx(norm.cdf(-0.2 / 0.15), rel=1e-6)
+    (note,) = module.cut_notes(Inputs(columns=(column,)).columns)
+    assert "left out" in note.text
+
+
+def test_the_second_degree_of_a_random_form_has_the_flatness_of_its_tolerance():
+    """The shapes of [uncertain] flatness: over one face, their mean flatness is two thirds of the tolerance."""
+    from faying.joint.flatness import minimum_zone
+    from faying.study.keys.uncertain import SHAPE_SD
+
+    generator = np.random.default_rng(5)
+    axis = np.linspace(-1, 1, 13)
+    grid = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
+    x, y = grid.T
+    sd = np.array([SHAPE_SD[name] for name in ("crown_along", "crown_across", "twist")]) / 2**0.5
+    zones = []
+    for a, b, t in sd * generator.standard_normal((400, 3)):
+        zones.append(minimum_zone(grid, a * x**2 + b * y**2 + t * x * y).flatness)
+    assert np.mean(zones) == pytest.approx(2 / 3, rel=0.08)
