@@ -39,7 +39,7 @@ class Published:
                 "source": source,
                 "quantity": quantity,
                 "unit": unit,
-                "published": published,
+                "published": float(f"{published:.6g}"),
                 "ours": float(f"{ours:.6g}"),
                 "tolerance": rel if rel is not None else tol,
                 "relative": rel is not None,

@@ -68,7 +68,7 @@ class Cells(SphinxDirective):
         if "header" in self.options:
             group += nodes.thead("", rows.pop(0))
         group += nodes.tbody("", *rows)
-        return [nodes.table("", group)]
+        return [nodes.table("", group, classes=["colwidths-given"] if "widths" in self.options else [])]
 
     def _row(self, line: str) -> nodes.row:
         row = nodes.row()

@@ -23,11 +23,15 @@ class Validation(Section):
             own = [entry for entry in entries if entry["source"] == source]
             out += heading(_title(source))
             out += [escape(f"{len(own)} numbers, {source}."), ""]
-            out += table(HEAD, [_row(entry) for entry in own], (28, 9, 9, 9, 10, 20, 15))
+            out += table(HEAD, [_row(entry) for entry in own], (44, 15, 15, 13, 13))
+            for why in dict.fromkeys(entry["why"] for entry in own if entry["why"]):
+                out += [escape(f"What explains the difference: {why}."), ""]
+            runs = dict.fromkeys(f"{entry['version']} on {entry['date']}" for entry in own)
+            out += [escape(f"Run with version {', '.join(runs)}."), ""]
         return out
 
 
-HEAD = ("quantity", "published", "Faying", "difference", "tolerance", "what explains it", "version, date")
+HEAD = ("quantity", "published", "Faying", "difference", "tolerance")
 
 
 def _title(source: str) -> str:
@@ -55,6 +59,4 @@ def _row(entry: Mapping[str, Any]) -> tuple[str, ...]:
         escape(f"{ours:.5g}{unit}"),
         escape(difference),
         escape(tolerance),
-        escape(entry["why"]),
-        escape(f"{entry['version']}, {entry['date']}"),
     )
