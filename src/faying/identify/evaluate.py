@@ -14,7 +14,7 @@ from faying.identify.store import Store
 from faying.joint.reduced import ReducedModel, Variant
 from faying.joint.structure import Structure
 from faying.measured.mac import mac
-from faying.measured.pairing import by_track, follow, pair_frequencies
+from faying.measured.pairing import pair_over_loads
 from faying.study.keys.test import TestChoice
 from faying.study.parallel import Rows, each
 from faying.study.recipe import Recipe
@@ -109,18 +109,16 @@ class Evaluator:
             return np.zeros((len(found), 0))
         mass = model.matrices[2]
         shapes = [one.shapes for one in found]
-        tracks = follow([mac(a.T, b.T, mass) for a, b in pairwise(shapes)])
-        if len(found) == 1:
-            tracks = np.arange(model.count)[None]
         rows = self.seen[0]
         if model.scales is not None and model.shares is not None:
             rows = rows + self.seen[1] @ model.shares.motion(model.scales)
-        motion = np.stack([np.abs(rows @ _real(shape, mass)).max(axis=0) for shape in shapes])
-        visibility = by_track(tracks, motion / motion.max(axis=1, keepdims=True))
-        frequencies = by_track(tracks, np.stack([one.frequencies for one in found]))
-        test = np.array(self.test.frequencies)
-        pairs = pair_frequencies(test, frequencies, visibility, threshold=self.test.threshold)
-        return np.where(pairs < 0, np.nan, frequencies[:, pairs])
+        return pair_over_loads(
+            np.array(self.test.frequencies),
+            [one.frequencies for one in found],
+            [np.abs(rows @ _real(shape, mass)).max(axis=0) for shape in shapes],
+            [mac(a.T, b.T, mass) for a, b in pairwise(shapes)],
+            threshold=self.test.threshold,
+        ).predicted
 
 
 def _real(shapes: Any, mass: Array) -> Array:
@@ -134,9 +132,7 @@ def probe(structure: Structure, test: TestChoice) -> Any:
     """Sparse rows (points, unknowns) of the motion at the points of a test along its direction."""
     from scipy.sparse import csr_array
 
-    axis = np.array(test.direction) / np.linalg.norm(test.direction)
-    places = structure.mesh.points
-    nodes = np.array([int(np.argmin(np.linalg.norm(places - np.array(p), axis=1))) for p in test.points])
+    nodes, axis = test.seen(structure.mesh.points)
     where = np.repeat(np.arange(len(nodes)), 3), (3 * nodes[:, None] + np.arange(3)).ravel()
     return csr_array((np.tile(axis, len(nodes)), where), shape=(len(nodes), structure.mesh.unknowns))
 

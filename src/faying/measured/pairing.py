@@ -1,6 +1,7 @@
 """Which mode of the test is which of the model, each once: by MAC and frequency, or by frequency and visibility."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -83,6 +84,44 @@ def pair_frequencies(test: Any, model: Any, visibility: Any, *, threshold: float
         if column < cost.shape[1]:
             out[row] = column
     return out.astype(np.int64)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Paired:
+    """Modes that are followed over the loads, and which of them are those of a test.
+
+    tracks (load, m): index at each load of the modes that are 0 to m-1 at the first; frequencies [Hz], visibility
+    (load, m): of each mode that is followed; modes (t,): which of these each mode of the test is, -1 for none.
+    """
+
+    tracks: Index
+    frequencies: Array
+    visibility: Array
+    modes: Index
+
+    @property
+    def predicted(self) -> Array:
+        """Frequencies (load, t) [Hz] of the test's modes, NaN where one has no partner."""
+        return np.where(self.modes < 0, np.nan, self.frequencies[:, self.modes])
+
+
+def pair_over_loads(
+    test: Array, frequencies: Sequence[Array], motion: Sequence[Array], steps: Sequence[Any], *, threshold: float
+) -> Paired:
+    """Follow modes over the loads and pair them with those of a test; see `follow` and `pair_frequencies`.
+
+    Args:
+        test: Frequencies [Hz] (load, t).
+        frequencies, motion: Of the modes at each load (m,); motion is the greatest at the points of the test.
+        steps: MAC (m, m) of the modes at each load with those at the next.
+        threshold: Least visibility, motion over the greatest of all modes at that load.
+    """
+    tracks = follow(steps) if len(steps) else np.arange(len(frequencies[0]))[None]
+    greatest = np.stack(motion)
+    visibility = by_track(tracks, greatest / greatest.max(axis=1, keepdims=True))
+    followed = by_track(tracks, np.stack(frequencies))
+    modes = pair_frequencies(test, followed, visibility, threshold=threshold)
+    return Paired(tracks=tracks, frequencies=followed, visibility=visibility, modes=modes)
 
 
 def by_track(tracks: Index, values: Array) -> Array:

@@ -128,15 +128,7 @@ class Study:
         response = ResponseChoice.of(top.table("response"))
         backbone = BackboneChoice.of(top.table("backbone"))
         test, hammer = read_test(top, max((b.preload for b in bolts if b.preload), key=len, default=()))
-        known = Known(
-            joints=joints,
-            bolts=[bolt.name for bolt in bolts],
-            loads=max(counts, default=1),
-            materials=materials,
-            parts=parts,
-        )
-        scatter = top.table("uncertain")
-        uncertain = read_uncertain(None if scatter is None else scatter.data, inside, known, faults)
+        uncertain = _uncertain(top, inside, joints, bolts, materials, parts)
         top.close()
         faults.raise_if_any(where)
         return cls(
@@ -162,6 +154,26 @@ class Study:
             text=text,
             files=tuple(dict.fromkeys(faults.files)),
         )
+
+
+def _uncertain(
+    top: Table,
+    inside: dict[str, str],
+    joints: tuple[JointChoice, ...],
+    bolts: tuple[Bolt | SolidBolt, ...],
+    materials: dict[str, Material],
+    parts: dict[str, str],
+) -> UncertainChoice | None:
+    """Read [uncertain], with the texts that stood in the places of numbers."""
+    table = top.table("uncertain")
+    known = Known(
+        joints=joints,
+        bolts=[bolt.name for bolt in bolts],
+        loads=max((len(bolt.preload) for bolt in bolts), default=1),
+        materials=materials,
+        parts=parts,
+    )
+    return read_uncertain(None if table is None else table.data, inside, known, top.faults)
 
 
 def _note_lacking(

@@ -6,12 +6,12 @@ from itertools import pairwise
 import numpy as np
 
 from faying.measured.mac import mac
-from faying.measured.pairing import by_track, changes, follow, pair_frequencies
+from faying.measured.pairing import Paired, changes, pair_over_loads
 from faying.notes import Note
 from faying.result import Comparison
 from faying.study.case import Case
 from faying.study.solve import State
-from faying.typing import Array, Index
+from faying.typing import Array
 
 
 def shapes_of(case: Case, states: Sequence[State]) -> list[Array]:
@@ -58,29 +58,24 @@ def compared(
     if test is None:
         return None, []
     measured = np.array(test.frequencies)
-    axis = np.array(test.direction) / np.linalg.norm(test.direction)
-    points = case.structure.mesh.points
-    here = [int(np.argmin(np.linalg.norm(points - np.array(p), axis=1))) for p in test.points]
-    tracks = follow(steps) if len(states) > 1 else np.arange(len(shapes[0]))[None]
-    motion = np.array([np.abs(found[:, here] @ axis).max(axis=1) for found in shapes])
-    visibility = by_track(tracks, motion / motion.max(axis=1, keepdims=True))
-    frequencies = by_track(tracks, np.stack([s.damped.frequencies for s in states]))
-    found = pair_frequencies(measured, frequencies, visibility, threshold=test.threshold)
-    none = found < 0
+    here, axis = test.seen(case.structure.mesh.points)
+    motion = [np.abs(found[:, here] @ axis).max(axis=1) for found in shapes]
+    pairs = pair_over_loads(measured, [s.damped.frequencies for s in states], motion, steps, threshold=test.threshold)
     comparison = Comparison(
         source=test.source,
         frequencies=measured,
-        predicted=np.where(none, np.nan, frequencies[:, found]),
-        modes=np.where(none, -1, tracks[:, found]),
+        predicted=pairs.predicted,
+        modes=np.where(pairs.modes < 0, -1, pairs.tracks[:, pairs.modes]),
         published=None if test.published is None else np.array(test.published),
         published_name=test.published_name,
         kind=test.kind,
     )
-    return comparison, _unmatched(found, measured, frequencies, visibility, test.threshold)
+    return comparison, _unmatched(pairs, measured, test.threshold)
 
 
-def _unmatched(found: Index, measured: Array, frequencies: Array, visibility: Array, threshold: float) -> list[Note]:
+def _unmatched(pairs: Paired, measured: Array, threshold: float) -> list[Note]:
     """Say which modes of the test, and which visible ones of the model among them, have no partner."""
+    found, frequencies, visibility = pairs.modes, pairs.frequencies, pairs.visibility
     out = []
     lost = np.flatnonzero(found < 0)
     if len(lost):

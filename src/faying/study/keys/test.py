@@ -4,9 +4,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
+import numpy as np
+
 from faying.errors import InputError
 from faying.joint.loads import preload_index
 from faying.study.keys.reader import Table, direction, point, quantity
+from faying.typing import Array, Index
 
 QUANTITIES = ("receptance", "mobility", "accelerance")
 
@@ -29,6 +32,12 @@ class TestChoice:
     direction: tuple[float, float, float]
     points: tuple[tuple[float, float, float], ...]
     threshold: float = 0.1
+
+    def seen(self, points: Array) -> tuple[Index, Array]:
+        """Of nodes (n, 3) [m] those nearest to the points of the test, and the unit vector of its direction."""
+        axis = np.array(self.direction)
+        near = [int(np.argmin(np.linalg.norm(points - np.array(p), axis=1))) for p in self.points]
+        return np.array(near, dtype=np.int64), axis / np.linalg.norm(axis)
 
 
 @dataclass(frozen=True, kw_only=True)
