@@ -1,6 +1,7 @@
 """Identification of a study: a twin whose truth is known, made with another mesh, and what is said of bad questions."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,9 +10,11 @@ import faying
 from faying.errors import InputError
 from faying.identify.identification import Identification
 from faying.identify.of_study import left_out
+from faying.study import Study
 from faying.study.keys import test as keys
 from tests.identify.test_predict import study_of
 
+EXAMPLE = Path(__file__).parents[2] / "examples" / "two-blocks" / "uncertain.toml"
 SCATTER = """
 [uncertain]
 E = "200 GPa +- 4 GPa"
@@ -73,6 +76,7 @@ def found(tmp_path_factory):
     return study, measured, faying.identify(study, leave_out=study.loads[-1], seed=2)
 
 
+@pytest.mark.slow
 def test_the_truth_of_a_twin_lies_in_the_intervals(found):
     _, _, result = found
     low, _, high = dict(zip(result.names, result.quantiles((0.01, 0.5, 0.99)).T, strict=True))["joint.stiffness"]
@@ -81,12 +85,14 @@ def test_the_truth_of_a_twin_lies_in_the_intervals(found):
     assert low < TRUTH["E"] < high
 
 
+@pytest.mark.slow
 def test_what_the_test_sees_is_told_from_what_it_does_not(found):
     _, _, result = found
     told = dict(zip(result.names, result.told, strict=True))
     assert told["joint.stiffness"] < 0.6
 
 
+@pytest.mark.slow
 def test_the_load_that_was_left_out_is_predicted(found):
     _, measured, result = found
     low, _, high = result.predicted
@@ -95,25 +101,63 @@ def test_the_load_that_was_left_out_is_predicted(found):
     assert result.left_out.tolist() == [False] * (len(measured) - 1) + [True]
 
 
+@pytest.mark.slow
 def test_it_is_written_and_read(found, tmp_path):
     _, _, result = found
     assert Identification.load(result.save(tmp_path / "i.nc")) == result
     assert "joint.stiffness" in result.table()
 
 
-@pytest.mark.parametrize(("given", "expected"), [(None, ()), ("1 kN", (0,)), (["1 kN"], (0,)), (3000.0, (1,))])
+@pytest.fixture(scope="module")
+def blocks(tmp_path_factory):
+    """The example of two blocks, whose "test" was made with a joint .7 times as stiff."""
+    out = tmp_path_factory.mktemp("blocks") / "identification.nc"
+    study = Study.read(EXAMPLE)
+    return out, faying.identify(study, leave_out="3 kN", seed=1, count=300, out=out)
+
+
+def test_the_example_gives_back_the_stiffness_that_it_was_made_with(blocks):
+    out, result = blocks
+    told = dict(zip(result.names, result.told, strict=True))
+    low, _, high = dict(zip(result.names, result.quantiles((0.02, 0.5, 0.98)).T, strict=True))["joint.stiffness"]
+    assert low < 0.7 < high
+    assert told["joint.stiffness"] < 0.4
+    assert told["bolt.bolt 1.factor"] > 0.85
+    assert "bolt.bolt 1.factor" in next(note.text for note in result.notes if note.code == "not-told")
+    assert result.left_out.tolist() == [False, True]
+    inside = (result.test[1] > result.predicted[0, 1]) & (result.test[1] < result.predicted[2, 1])
+    assert inside.sum() >= 4
+    assert Identification.load(out) == result
+    assert not out.with_name("identification.nc.part").exists()
+
+
+@pytest.mark.slow
+def test_laws_are_weighed_by_their_evidence(tmp_path):
+    """The law that made the test is the likelier one where the factor on its stiffness is known well."""
+    study = Study.read(EXAMPLE)
+    text = EXAMPLE.read_text().replace("median = 1, sd_ln = 0.6", "median = 0.7, sd_ln = 0.05")
+    path = tmp_path / "study.toml"
+    path.write_text(text.replace("[uncertain]", '[uncertain]\nlaw.model = ["jk", "mb"]'))
+    (tmp_path / "model.inp").write_bytes(study.geometry.file.read_bytes())
+    result = faying.identify(path, seed=1, count=300)
+    weights = {law.name: law.weight for law in result.laws}
+    assert weights["JK"] > 0.9
+    assert sum(weights.values()) == pytest.approx(1)
+
+
+@pytest.mark.parametrize(("given", "expected"), [(None, ()), ("2 kN", (0,)), (["2 kN"], (0,)), (6000.0, (1,))])
 def test_preloads_are_left_out_by_their_value(tmp_path, given, expected):
     plan = study_of(tmp_path)
     loads = plan.loads
-    assert loads == (1e3, 3e3)
+    assert loads == (2e3, 6e3)
     assert left_out(plan, given) == expected
 
 
 def test_questions_without_an_answer_are_refused(tmp_path):
     plan = study_of(tmp_path)
-    with pytest.raises(InputError, match="no preload of 7 kN in the study; it has 1 kN, 3 kN"):
+    with pytest.raises(InputError, match="no preload of 7 kN in the study; it has 2 kN, 6 kN"):
         left_out(plan, "7 kN")
     with pytest.raises(InputError, match="names every preload"):
-        left_out(plan, ["1 kN", "3 kN"])
+        left_out(plan, ["2 kN", "6 kN"])
     with pytest.raises(InputError, match="an identification needs a test"):
         faying.identify(replace(plan, test=None))

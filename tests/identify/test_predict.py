@@ -45,6 +45,7 @@ def found(plan):
     return faying.predict(plan, samples=128, seed=1)
 
 
+@pytest.mark.slow
 def test_scales_of_the_parts_scale_every_frequency_of_bonded_like_parts(tmp_path):
     """With a joint a thousand times as stiff nothing but the parts is left: f goes with the root of E over density."""
     more = SCATTER.replace("median = 1, sd_ln = 0.6", "median = 1000, sd_ln = 0.01")
@@ -96,6 +97,7 @@ def test_the_same_seed_gives_the_same_samples(plan, found):
     assert not np.array_equal(Ensemble.of(plan, 128, 2).values[-128:], found.values)
 
 
+@pytest.mark.slow
 def test_an_interrupted_prediction_goes_on(plan, tmp_path, monkeypatch):
     out = tmp_path / "p.nc"
     calls = []

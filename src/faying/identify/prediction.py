@@ -1,7 +1,7 @@
 """What scatter makes of the frequencies of a study: samples, quantiles, shares of the variance."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
@@ -178,33 +178,40 @@ class Prediction(Recorded):
             InputError: Too few samples with an answer.
         """
         seen = self.observed[0][:, -1]
-        full = self.sound & np.all(np.isfinite(seen), axis=1)
-        spread = seen[full].std(axis=0)
         inputs = self.inputs
         numeric = len(inputs.columns) - bool(inputs.models)
-        if np.count_nonzero(full) < 2 * (numeric + 1):
-            raise InputError(f"{np.count_nonzero(full)} samples are too few for shares of {len(inputs.columns)} inputs")
-        scores = np.stack([prior.score(x) for prior, x in zip(inputs.priors, self.values.T, strict=True)], axis=1)
+        needed = 2 * (numeric + 1)
+        answers = np.isfinite(seen[self.sound]).sum(axis=0)
+        modes = np.flatnonzero(answers >= needed)
+        if not len(modes):
+            raise InputError(
+                f"at most {answers.max(initial=0)} samples have an answer; shares of {numeric} inputs need {needed}"
+            )
         laws = self._laws(self.values)
-        fits = {}
-        squared = np.zeros(seen.shape[1])
-        for law in np.unique(laws[full]):
-            here = full & (laws == law)
-            fits[law] = Surrogate.fit(scores[here, :numeric], seen[here])
+        scores = self._scores(self.values)
+        fits, squared = {}, np.zeros(len(modes))
+        for law in np.unique(laws[self.sound]):
+            here = self.sound & (laws == law)
+            fits[law] = Surrogate.fit(scores[here, :numeric], seen[here][:, modes])
             squared = squared + fits[law].error ** 2 * np.count_nonzero(here)
 
         def function(values: Array) -> Array:
-            z = np.stack([prior.score(x) for prior, x in zip(inputs.priors, values.T, strict=True)], axis=1)
-            out = np.empty((len(values), seen.shape[1]))
-            which = self._laws(values)
+            out = np.empty((len(values), len(modes)))
+            which, at = self._laws(values), self._scores(values)[:, :numeric]
             for law in np.unique(which):
                 # a law without any answer has no part in the variance of the answers
-                fit = fits.get(law, next(iter(fits.values())))
-                out[which == law] = fit.predict(z[which == law, :numeric])
+                out[which == law] = fits.get(law, next(iter(fits.values()))).predict(at[which == law])
             return out
 
-        error = np.sqrt(squared / np.count_nonzero(full)) / np.where(spread > 0, spread, np.inf)
-        return shares(function, inputs.priors, count=POINTS, seed=seed), error
+        spread = np.nanstd(seen[self.sound][:, modes], axis=0)
+        error = np.full(seen.shape[1], np.nan)
+        error[modes] = np.sqrt(squared / self.answered) / np.where(spread > 0, spread, np.inf)
+        found = shares(function, inputs.priors, count=POINTS, seed=seed)
+        return _at_modes(found, modes, seen.shape[1]), error
+
+    def _scores(self, values: Array) -> Array:
+        """Standard normal scores (n, d) of values (n, d)."""
+        return np.stack([prior.score(x) for prior, x in zip(self.inputs.priors, values.T, strict=True)], axis=1)
 
     def _laws(self, values: Array) -> Any:
         """Place of the law of each sample (n,); 0 where the law is certain."""
@@ -241,7 +248,10 @@ class Prediction(Recorded):
                 "predicted": {"unit": "Hz", "values": listed(found.paired)},
                 "covered": {"between 5 and 95 %": inside, "of": count},
             }
-        found_shares, error = self.shares()
+        try:
+            found_shares, error = self.shares()
+        except InputError as fault:
+            return out | {"shares": {"none": str(fault)}}
         out["shares"] = {
             "inputs": list(self.names),
             "first": listed(found_shares.first),
@@ -279,6 +289,17 @@ class Prediction(Recorded):
     def with_notes(self, notes: Sequence[Note]) -> Self:
         """The same with more to say."""
         return replace(self, notes=(*self.notes, *notes))
+
+
+def _at_modes(found: Shares, modes: Any, count: int) -> Shares:
+    """Shares of some modes among all, NaN for the others."""
+
+    def spread(values: Array) -> Array:
+        out = np.full((*values.shape[:-2], count, values.shape[-1]), np.nan)
+        out[..., modes, :] = values
+        return out
+
+    return Shares(**{f.name: spread(getattr(found, f.name)) for f in fields(Shares)})
 
 
 def _levels(values: Array, levels: tuple[float, ...]) -> Array:

@@ -4,6 +4,7 @@ import textwrap
 
 import numpy as np
 
+from faying.errors import InputError
 from faying.identify.prediction import LEVELS, Prediction
 from faying.output.table import Rows
 from faying.output.table import text as aligned
@@ -70,16 +71,19 @@ def beside_test(found: Prediction) -> Rows:
 
 def blame(found: Prediction) -> tuple[Rows, str]:
     """One row per mode: which inputs make its variance at the last preload, greatest first; and what to know of it."""
-    shares, error = found.shares()
+    try:
+        shares, error = found.shares()
+    except InputError as fault:
+        return [], f"No shares of the variance: {fault}."
     name = "mode" if found.paired is None else "test mode"
     rows: Rows = [[name, "total share of the variance"]]
     for mode, row in enumerate(shares.total):
-        named = [k for k in np.argsort(-np.nan_to_num(row)) if row[k] >= SHOWN]
+        named = [k for k in np.argsort(-np.nan_to_num(row)) if row[k] >= SHOWN]  # NaN is not
         words = ", ".join(f"{found.names[k]} {row[k]:.0%}" for k in named)
         if error[mode] > POOR:
             words += f" (poor: the polynomial misses {error[mode]:.0%} of the scatter)"
         rows.append([str(mode + 1), words or "-"])
-    worst = float(np.max(error))
+    worst = float(np.nanmax(error))
     text = (
         "A total share counts what an input does together with others, too. The shares are those of a polynomial "
         f"through the samples; its leave-one-out error is at most {worst:.0%} of the scatter."
@@ -130,7 +134,7 @@ def _narrow(rows: Rows, width: int = WIDTH) -> str:
 
 def _wrapped(rows: Rows, width: int = WIDTH) -> str:
     """Two columns, the second wrapped to the width."""
-    first = max(len(row[0]) for row in rows) + 2
+    first = max((len(row[0]) for row in rows), default=0) + 2
     lines = []
     for head, words in rows:
         parts = textwrap.wrap(words, max(width - first, 30)) or [""]
