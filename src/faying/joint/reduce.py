@@ -18,6 +18,7 @@ from faying.errors import NotConverged
 from faying.fe.constraint import constrain
 from faying.fe.modes import lowest_modes
 from faying.fe.solve import Factorisation
+from faying.fe.span import ROUNDING, extension
 from faying.joint.equilibrium import PreloadState, StickSlip
 from faying.joint.joint_law import JointLaw
 from faying.joint.part_shares import PartShares, ReducedShares, Scales
@@ -60,12 +61,13 @@ class Basis:
     rigid: Array
     rigid_momentum: Array
     vectors: Array = field(init=False)
+    image: Array = field(init=False)  # reference @ vectors
     small: list[Array] = field(init=False)
     relative: list[Array] = field(init=False)
 
     def __post_init__(self) -> None:
         n = self.reference.shape[0]
-        self.vectors = np.zeros((n, 0))
+        self.vectors = self.image = np.zeros((n, 0))
         self.small = [np.zeros((0, 0)) for _ in self.operators]
         self.relative = [np.zeros((3 * len(trace.weights), 0)) for trace in self.traces]
 
@@ -77,21 +79,16 @@ class Basis:
         # what rounding leaves of rigid motions would grow with every solve, and come back as modes of no frequency
         new = new - self.rigid @ (self.rigid_momentum.T @ new)
         scale = float(np.einsum("ij,ij->j", new, self.reference @ new).max())
-        for _ in range(2):
-            new = new - self.vectors @ (self.vectors.T @ (self.reference @ new))
-        gram = new.T @ (self.reference @ new)
-        values, rotation = np.linalg.eigh((gram + gram.T) / 2)
-        keep = values > max(least, 1e-13 * scale)
-        if not np.any(keep):
-            return 0
-        new = new @ (rotation[:, keep] / np.sqrt(values[keep]))[:, ::-1]
-        new = new - self.vectors @ (self.vectors.T @ (self.reference @ new))
-        new /= np.sqrt(np.einsum("ij,ij->j", new, self.reference @ new))
-        self.append(new)
-        return int(new.shape[1])
+        found, image = extension(new, self.vectors, self.image, self.reference, least=max(least, ROUNDING * scale))
+        self.append(found[:, ::-1], image[:, ::-1])
+        return int(found.shape[1])
 
-    def append(self, new: Array) -> None:
-        """Take columns (n, k) as they are: orthonormal, with each other and with those that are here."""
+    def append(self, new: Array, image: Array | None = None) -> None:
+        """Take columns (n, k) as they are: orthonormal, with each other and with those that are here.
+
+        image: reference @ new, computed where None.
+        """
+        self.image = np.concatenate([self.image, self.reference @ new if image is None else image], axis=1)
         for i, operator in enumerate(self.operators):
             image = operator @ new
             corner, side = new.T @ image, self.vectors.T @ image
@@ -104,7 +101,7 @@ class Basis:
 
     def turn(self, rotation: Array) -> None:
         """Replace the vectors by combinations of them, the columns of `rotation` (size, k), orthonormal."""
-        self.vectors = self.vectors @ rotation
+        self.vectors, self.image = self.vectors @ rotation, self.image @ rotation
         self.small = [rotation.T @ matrix @ rotation for matrix in self.small]
         self.relative = [relative @ rotation for relative in self.relative]
 
