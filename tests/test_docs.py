@@ -39,7 +39,11 @@ def checkout(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(ROOT)))
+LONG = {"intervals.md"}  # a minute and more: tests/identify has the same in small
+COMMANDED = [pytest.param(p, marks=[pytest.mark.slow] * (p.name in LONG), id=str(p.relative_to(ROOT))) for p in PAGES]
+
+
+@pytest.mark.parametrize("page", COMMANDED)
 def test_commands(page, checkout):
     """They run, in one folder; what they write there lies where git does not see it."""
     before = {path for path in checkout.rglob("*") if path.is_file()}

@@ -148,9 +148,8 @@ def test_a_killed_computation_goes_on(study, curve, tmp_path, monkeypatch):
 
 def test_leftovers_of_another_curve_are_not_taken_up(study, tmp_path):
     out = tmp_path / "curve.nc"
-    store = backbone_store.CurveStore(out, "another")
-    store.keep_basis(np.zeros((3, 1)))
-    store.close()
+    with backbone_store.CurveStore(out, "another") as store:
+        store.keep_basis(np.zeros((3, 1)))
     with pytest.raises(InputError, match="another backbone has left"):
         faying.backbone(study, **LOW, out=out)
 

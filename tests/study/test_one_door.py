@@ -14,7 +14,7 @@ from faying.contact.build import AUTO, build, kinds
 from faying.study import Study
 from faying.study.case import Case
 from faying.study.keys.surface import SurfaceChoice
-from faying.study.sweep import fingerprint
+from faying.study.part_folder import fingerprint
 from tests.helpers.studies import write
 
 STEEL = faying.CATALOGUE["45 steel"]

@@ -99,6 +99,7 @@ def test_json_names_bolts_and_slip(result):
     assert found["slipping"]["values"] == result.slipping.tolist()
 
 
+@pytest.mark.slow
 def test_the_same_without_response_has_the_same_modes_and_a_heavier_one_lower(folder, result):
     given = data(folder)
     del given["response"]

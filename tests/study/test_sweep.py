@@ -244,6 +244,7 @@ def in_full(plan):
     return replace(plan, surface=None, joints=joints, law=LawChoice(model="gw-ke", given=options))
 
 
+@pytest.mark.slow
 def test_parameters_of_a_law_given_in_full(plan, tmp_path):
     given = in_full(plan)
     swept = sweep(given, axes("law.sigma=0.3 um:0.8 um:3", "bolt.preload=1 kN,3 kN"), tmp_path / "out.nc")

@@ -17,7 +17,7 @@ from faying.measured.mac import mac
 from faying.measured.pairing import pair_over_loads
 from faying.study.keys.test import TestChoice
 from faying.study.parallel import Rows, each
-from faying.study.recipe import Recipe
+from faying.study.recipe import Recipe, contact_shares
 from faying.study.trainer import FAR, Trainer
 from faying.typing import Array
 
@@ -85,13 +85,7 @@ class Evaluator:
             laws, forces, friction = recipe.laws(index)
             start = found[-1].preload.displacement if found else None
             found.append(model.evaluate(laws, forces, friction, start))
-            pressures = found[-1].preload.pressures
-            p = np.concatenate(pressures)
-            ends = np.concatenate(
-                [np.full(len(q), law.model.greatest_pressure) for q, law in zip(pressures, laws, strict=True)]
-            )
-            touching = float(weights @ (p > 0))
-            shares.append((1 - touching / float(weights.sum()), float(weights @ (p > ends)) / max(touching, 1e-300)))
+            shares.append(contact_shares(weights, laws, found[-1].preload.pressures))
         lossless = not any(law.predicts_loss for law in laws)
         nothing = np.full((ensemble.loads, model.count), np.nan)
         return {
@@ -162,7 +156,7 @@ class Reduced:
         self.report: Report = report or (lambda _stage, _done: None)
         self.report("mesh", 0)
         self.trainer = Trainer.of(ensemble.study, ensemble, tolerance, self.report)
-        self.store = store or Store(None)
+        self.store = store or Store(None, what="samples")
         self.seen: tuple[Array, Array] | None = None
         kept = self.store.model()
         if kept is None:

@@ -1,14 +1,13 @@
 """What the test in a study tells of the numbers that scatter in it."""
 
 from collections.abc import Sequence
-from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from faying import units
-from faying.errors import FayingError, InputError
+from faying.errors import InputError
 from faying.identify.ensemble import Ensemble
 from faying.identify.evaluate import TOLERANCE, Reduced
 from faying.identify.identification import Identification, mixed
@@ -16,9 +15,10 @@ from faying.identify.identify import identify_model
 from faying.identify.model import Report
 from faying.identify.noise import DISCREPANCY_SD, TEST_SD
 from faying.identify.predict import check, cut_notes
-from faying.identify.store import Store, fingerprint
+from faying.identify.store import Store
 from faying.joint.loads import preload_index
 from faying.study.keys.uncertain import UncertainChoice
+from faying.study.part_folder import fingerprint
 from faying.study.study import Study
 from faying.typing import Array
 
@@ -106,14 +106,9 @@ def identify(
         )
     left = left_out(study, leave_out)
     file = None if out is None else Path(out)
-    with closing(
-        Store(file, fingerprint=fingerprint(study, left, seed, count, TOLERANCE), what="identification")
-    ) as store:
-        try:
-            found = _identified(study, left, seed=seed, count=count, jobs=jobs, dask=dask, store=store, report=report)
-        except FayingError:
-            store.forget()
-            raise
+    mark = fingerprint(study, left, seed, count, TOLERANCE)
+    with Store(file, mark, what="identification") as store:
+        found = _identified(study, left, seed=seed, count=count, jobs=jobs, dask=dask, store=store, report=report)
         if file is not None:
             found.save(file)
         store.finish()

@@ -1,19 +1,19 @@
 """From a study whose numbers scatter to the quantiles of its frequencies."""
 
 from collections.abc import Sequence
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from faying.errors import FayingError, InputError
+from faying.errors import InputError
 from faying.identify.ensemble import Ensemble, by_reason
 from faying.identify.evaluate import TOLERANCE, Reduced, Report
 from faying.identify.prediction import Prediction
-from faying.identify.store import Store, fingerprint
+from faying.identify.store import Store
 from faying.notes import Note
 from faying.study.parallel import Rows
+from faying.study.part_folder import fingerprint
 from faying.study.run import provenance
 from faying.study.study import Study
 
@@ -58,13 +58,9 @@ def predict(
     check(study, samples, seed)
     ensemble = Ensemble.of(study, samples, seed)
     file = None if out is None else Path(out)
-    with closing(Store(file, fingerprint=fingerprint(study, samples, seed, TOLERANCE))) as store:
-        try:
-            reduced = Reduced(ensemble, jobs=jobs, dask=dask, report=report, store=store)
-            found = predicted(study, ensemble, reduced, reduced.rows(ensemble), seed)
-        except FayingError:
-            store.forget()
-            raise
+    with Store(file, fingerprint(study, samples, seed, TOLERANCE), what="prediction") as store:
+        reduced = Reduced(ensemble, jobs=jobs, dask=dask, report=report, store=store)
+        found = predicted(study, ensemble, reduced, reduced.rows(ensemble), seed)
         if file is not None:
             found.save(file)
         store.finish()

@@ -1,14 +1,13 @@
 """From a study to the frequency and damping of a mode against its amplitude."""
 
 from collections.abc import Callable, Sequence
-from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, overload
 
 import numpy as np
 
-from faying.errors import FayingError, InputError
+from faying.errors import InputError
 from faying.fe.damped import damped_modes
 from faying.fe.interface import Interface
 from faying.fe.modes import Modes
@@ -21,10 +20,11 @@ from faying.joint.springs import Springs
 from faying.joint.support_check import check_motions
 from faying.result.backbone import Backbone
 from faying.study.backbone_result import Curve, collected
-from faying.study.backbone_store import CurveStore, fingerprint
+from faying.study.backbone_store import CurveStore
 from faying.study.case import Case
 from faying.study.keys.backbone import BackboneChoice, Point, check_friction
 from faying.study.modes import modes_of, settled
+from faying.study.part_folder import fingerprint
 from faying.study.study import Study
 from faying.typing import Array
 
@@ -164,12 +164,8 @@ def backbones(
     frictions = friction_of(study, choice)
     progress = _Progress(report, len(indices) * len(frictions))
     file = None if out is None else Path(out)
-    with closing(CurveStore(file, fingerprint(study, (choice, indices)))) as store:
-        try:
-            made = _curves(study, choice, indices, frictions, store, progress)
-        except FayingError:
-            store.forget()
-            raise
+    with CurveStore(file, fingerprint(study, choice, indices)) as store:
+        made = _curves(study, choice, indices, frictions, store, progress)
         if file is not None:
             for path, curve in zip(names(file, len(made)), made, strict=True):
                 curve.to_netcdf(path)

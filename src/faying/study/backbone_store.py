@@ -1,54 +1,36 @@
 """What a backbone keeps on disk while it is computed: the basis, and every point as it is found."""
 
-import hashlib
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from faying import __version__
 from faying.joint.epmc import EpmcPoint
-from faying.study.part_folder import PartFolder, load_arrays, save_arrays
-from faying.study.study import Study
+from faying.study.part_folder import Kept, load_arrays, save_arrays
 from faying.typing import Array
 
 LISTS = ("sliding", "opening", "dissipated")  # one array for each joint
 
 
-class CurveStore:
+class CurveStore(Kept):
     """The folder OUT.part beside the output; without an output nothing is kept."""
 
     def __init__(self, out: Path | None, fingerprint: str) -> None:
-        self._part = None if out is None else PartFolder(out, fingerprint, what="backbone")
-
-    def close(self) -> None:
-        """Let other processes have the folder."""
-        if self._part is not None:
-            self._part.close()
-
-    def finish(self) -> None:
-        """Remove the folder: the curves are written."""
-        if self._part is not None:
-            self._part.remove()
-
-    def forget(self) -> None:
-        """Remove the folder where nothing has been kept in it, so that it bars no other work."""
-        if self._part is not None and not any(self._part.path.glob("*.npz")):
-            self._part.remove()
+        super().__init__(out, fingerprint, what="backbone")
 
     def basis(self) -> Array | None:
         """The vectors that were kept, None where there are none."""
-        found = None if self._part is None else load_arrays(self._part.path / "basis.npz")
+        found = None if self.folder is None else load_arrays(self.folder / "basis.npz")
         return None if found is None else found.get("vectors")
 
     def keep_basis(self, vectors: Array) -> None:
         """Keep the basis in which the points are."""
-        if self._part is not None:
-            save_arrays(self._part.path / "basis.npz", {"vectors": vectors})
+        if self.folder is not None:
+            save_arrays(self.folder / "basis.npz", {"vectors": vectors})
 
     def points(self, curve: int) -> list[EpmcPoint]:
         """The points of a curve that were kept, in rising amplitude, up to the first that is damaged."""
         out: list[EpmcPoint] = []
-        while self._part is not None:
+        while self.folder is not None:
             found = load_arrays(self._file(curve, len(out)))
             point = None if found is None else _point(found)
             if point is None:
@@ -58,7 +40,7 @@ class CurveStore:
 
     def keep(self, curve: int, number: int, point: EpmcPoint) -> None:
         """Keep one point of a curve."""
-        if self._part is None:
+        if self.folder is None:
             return
         arrays: dict[str, Any] = {}
         for f in fields(point):
@@ -70,8 +52,8 @@ class CurveStore:
         save_arrays(self._file(curve, number), arrays)
 
     def _file(self, curve: int, number: int) -> Path:
-        assert self._part is not None
-        return self._part.path / f"curve-{curve}-{number:04d}.npz"
+        assert self.folder is not None
+        return self.folder / f"curve-{curve}-{number:04d}.npz"
 
 
 def _point(found: dict[str, Any]) -> EpmcPoint | None:
@@ -86,11 +68,3 @@ def _point(found: dict[str, Any]) -> EpmcPoint | None:
     except KeyError:
         return None
     return EpmcPoint(**given)
-
-
-def fingerprint(study: Study, what: object) -> str:
-    """What tells one curve from another: Faying's version, the study, the bytes of its files, what is asked for."""
-    digest = hashlib.sha256(f"{__version__} {study!r} {what!r}".encode())
-    for file in study.files:
-        digest.update(hashlib.sha256(file.read_bytes()).digest())
-    return digest.hexdigest()

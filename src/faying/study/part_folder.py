@@ -1,16 +1,19 @@
 """The folder OUT.part that long work keeps beside its output, so that it goes on where it was stopped."""
 
+import hashlib
 import json
 import shutil
 import zlib
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, Self
 from zipfile import BadZipFile
 
 import numpy as np
 
-from faying.errors import InputError
+from faying import __version__
+from faying.errors import FayingError, InputError
 from faying.files import write_atomically, write_text
+from faying.study.study import Study
 
 
 class PartFolder:
@@ -20,13 +23,12 @@ class PartFolder:
         out: The output, ending in .nc.
         fingerprint: What tells this work from another.
         what: The name of such work in messages, and of the label.
-        facts: More for the label.
 
     Raises:
         InputError: The output is no .nc in a folder that exists, another process is at it, or other work has left it.
     """
 
-    def __init__(self, out: Path, fingerprint: str, *, what: str, facts: dict[str, Any] | None = None) -> None:
+    def __init__(self, out: Path, fingerprint: str, *, what: str) -> None:
         if out.suffix != ".nc":
             raise InputError(f"the output {out} should end in .nc: a {what} is written as NetCDF")
         if not out.parent.is_dir():
@@ -40,7 +42,7 @@ class PartFolder:
             except OSError as fault:
                 raise InputError(f"cannot make {self.path}: {fault.strerror}; choose another output") from None
             self._lock = locked(self.path, what)
-            text = json.dumps({"fingerprint": fingerprint, **(facts or {})})
+            text = json.dumps({"fingerprint": fingerprint})
             write_text(label, text)
             return
         self._lock = locked(self.path, what)
@@ -63,6 +65,46 @@ class PartFolder:
         """Remove it: the work is done, or has kept nothing."""
         self.close()
         shutil.rmtree(self.path, ignore_errors=True)
+
+
+class Kept:
+    """What long work keeps in OUT.part; without an output nothing is kept.
+
+    It is a context: at the end it lets go of the folder, and removes it where Faying has refused the work before
+    anything was kept, so that it bars no other.
+
+    Args:
+        out: The output, ending in .nc, or None.
+        fingerprint: What tells this work from another, from `fingerprint`.
+        what: The name of such work in messages.
+    """
+
+    def __init__(self, out: Path | None, fingerprint: str = "", *, what: str) -> None:
+        self._part = None if out is None else PartFolder(out, fingerprint, what=what)
+        self.folder = None if self._part is None else self._part.path
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: object, fault: BaseException | None, trace: object) -> None:
+        if self._part is None:
+            return
+        if isinstance(fault, FayingError) and not any(self._part.path.rglob("*.npz")):
+            self._part.remove()
+        self._part.close()
+
+    def finish(self) -> None:
+        """Remove the folder: the work is done."""
+        if self._part is not None:
+            self._part.remove()
+
+
+def fingerprint(study: Study, *facts: object) -> str:
+    """What tells one piece of work from another: Faying's version, the study, the bytes of its files, and facts."""
+    digest = hashlib.sha256(f"{__version__} {study!r} {facts!r}".encode())
+    for file in study.files:
+        digest.update(hashlib.sha256(file.read_bytes()).digest())
+    return digest.hexdigest()
 
 
 def locked(folder: Path, what: str) -> IO[str]:

@@ -1,7 +1,10 @@
 """What makes the laws, forces, gaps and scales of one point of a sweep or of an ensemble."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
+
+import numpy as np
 
 from faying.joint.face_axes import FaceAxes
 from faying.joint.form import Form
@@ -16,6 +19,19 @@ from faying.study.variation import Point
 from faying.typing import Array
 
 LATELY = 32  # laws kept with their tables
+
+
+def contact_shares(weights: Array, laws: Sequence[JointLaw], pressures: Sequence[Array]) -> tuple[float, float]:
+    """Shares [-] of the joints' area that are open, and of what touches that is pressed beyond the end of its law.
+
+    weights (q,): area of all points [m2]; pressures [Pa]: of each joint.
+    """
+    p = np.concatenate(pressures)
+    ends = np.concatenate(
+        [np.full(len(q), law.model.greatest_pressure) for q, law in zip(pressures, laws, strict=True)]
+    )
+    touching = float(weights @ (p > 0))
+    return 1 - touching / float(weights.sum()), float(weights @ (p > ends)) / touching if touching else 0.0
 
 
 class Design(Protocol):

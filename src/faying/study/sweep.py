@@ -1,22 +1,19 @@
 """Many laws and preloads on one structure: reduced once, then evaluated in milliseconds each."""
 
-import hashlib
-import json
 from collections.abc import Callable, Sequence
-from contextlib import closing
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from faying import __version__
 from faying.errors import FayingError, InputError
 from faying.joint.reduced import ReducedModel
 from faying.study.axes import Axis, Grid
 from faying.study.case import checked_laws, surfaces_of
 from faying.study.parallel import each
-from faying.study.recipe import Recipe
+from faying.study.part_folder import fingerprint
+from faying.study.recipe import Recipe, contact_shares
 from faying.study.study import Study
 from faying.study.sweep_files import Store, Sweep
 from faying.study.trainer import FAR, Trainer
@@ -47,17 +44,12 @@ def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dic
             varied = model.with_gaps(recipe.gaps(index)).with_scales(recipe.scales(index))
             found = varied.evaluate(laws, forces, friction, start)
             start = found.preload.displacement
-            p = np.concatenate(found.preload.pressures)
-            end = np.concatenate(
-                [np.full(len(q), s.model.greatest_pressure) for q, s in zip(found.preload.pressures, laws, strict=True)]
-            )
-            touching = float(weights @ (p > 0))
-            beyond = float(weights @ (p > end)) / touching if touching else 0.0
+            open_share, beyond = contact_shares(weights, laws, found.preload.pressures)
             row |= {
                 "estimate": found.estimate.max(),
-                "greatest_pressure": p.max(),
+                "greatest_pressure": np.concatenate(found.preload.pressures).max(),
                 "beyond_share": beyond,
-                "open_share": 1 - touching / weights.sum(),
+                "open_share": open_share,
             }
             lost = found.loss_factors if any(law.predicts_loss for law in laws) else nothing
             row |= {"frequencies": found.frequencies, "loss_factors": lost}
@@ -105,13 +97,10 @@ def sweep(
     report("surface", 0)
     grid = Grid(study=study, surfaces=surfaces_of(study), axes=tuple(axes))
     _check_laws(grid)
-    with closing(Store(Path(out), fingerprint(study, axes, tolerance), grid.size, study.modes.count)) as store:
+    mark = fingerprint(study, tuple(axes), tolerance)
+    with Store(Path(out), mark, grid.size, study.modes.count) as store:
         report("mesh", 0)
-        try:
-            trainer, model = _begun(study, grid, store, tolerance, report)
-        except FayingError:
-            store.forget()
-            raise
+        trainer, model = _begun(study, grid, store, tolerance, report)
         report("evaluations", store.found)
         # within a chunk each point starts from the last; chunks are the same after an interruption, so the answers are
         path = grid.winding()
@@ -122,7 +111,7 @@ def sweep(
             store.keep(indices, rows)
         model = _enriched(model, trainer, store, trainer.recipe)
         unknowns = trainer.structure.mesh.unknowns
-        return store.finish(grid, title=study.title, tolerance=tolerance, unknowns=unknowns, model=model)
+        return store.written(grid, title=study.title, tolerance=tolerance, unknowns=unknowns, model=model)
 
 
 def _begun(
@@ -182,12 +171,3 @@ def _enriched(model: ReducedModel, trainer: Trainer, store: Store, recipe: Recip
         if not np.any(store.rows["estimate"][far] < before):
             break
     return model
-
-
-def fingerprint(study: Study, axes: Sequence[Axis], tolerance: float) -> str:
-    """What tells one sweep from another: Faying's version, the study, the bytes of its files, axes and tolerance."""
-    digest = hashlib.sha256(f"{__version__} {study!r}".encode())
-    for file in study.files:
-        digest.update(hashlib.sha256(file.read_bytes()).digest())
-    digest.update(json.dumps([[a.key, list(a.values)] for a in axes] + [tolerance]).encode())
-    return digest.hexdigest()

@@ -11,7 +11,7 @@ from faying import netcdf
 from faying.joint.reduced import ReducedModel
 from faying.netcdf import Variable
 from faying.study.axes import Axis, Grid
-from faying.study.part_folder import PartFolder, load_arrays, save_arrays
+from faying.study.part_folder import Kept, load_arrays, save_arrays
 from faying.typing import Array
 
 BEYOND = 0.1  # share of the contact beyond the end of the law from which a point is told
@@ -65,7 +65,7 @@ class Sweep:
         }
 
 
-class Store:
+class Store(Kept):
     """The folder OUT.part beside the output: the reduced model and every chunk that is done."""
 
     COLUMNS: ClassVar[tuple[str, ...]] = (
@@ -78,8 +78,8 @@ class Store:
     )
 
     def __init__(self, out: Path, fingerprint: str, size: int, count: int) -> None:
-        self._part = PartFolder(out, fingerprint, what="sweep", facts={"points": size})
-        self.out, self.folder = out, self._part.path
+        super().__init__(out, fingerprint, what="sweep")
+        self.out, self.kept = out, out.with_name(out.name + ".part")
         self.rows: dict[str, Array] = {
             name: np.full((size, count) if name in ("frequencies", "loss_factors") else size, np.nan)
             for name in self.COLUMNS
@@ -91,7 +91,7 @@ class Store:
 
     def _take_up(self) -> None:
         """Take up what an interrupted sweep has left."""
-        chunks = sorted(self.folder.glob("chunk-*.npz"))
+        chunks = sorted(self.kept.glob("chunk-*.npz"))
         for file in chunks:
             rows = load_arrays(file)
             if rows is None or not {"indices", "reasons", *self.COLUMNS} <= rows.keys():
@@ -100,16 +100,6 @@ class Store:
             self._take(rows.pop("indices"), rows)
         self.found = int(self.done.sum())
         self.number = 1 + max((int(file.stem.rpartition("-")[2]) for file in chunks), default=-1)
-
-    def close(self) -> None:
-        """Let other processes have the folder."""
-        self._part.close()
-
-    def forget(self) -> None:
-        """Remove the folder where nothing has been kept in it, so that it bars no other sweep."""
-        self.close()
-        if not any(self.folder.glob("chunk-*.npz")) and self.model() is None:
-            self._part.remove()
 
     def _take(self, indices: Any, rows: dict[str, Array]) -> None:
         for name in self.COLUMNS:
@@ -120,18 +110,18 @@ class Store:
     def keep(self, indices: Sequence[int], rows: dict[str, Array]) -> None:
         """Note rows and write them, whole or not at all."""
         self._take(np.asarray(indices), rows)
-        save_arrays(self.folder / f"chunk-{self.number:06d}.npz", {"indices": np.asarray(indices), **rows})
+        save_arrays(self.kept / f"chunk-{self.number:06d}.npz", {"indices": np.asarray(indices), **rows})
         self.number += 1
 
     def keep_model(self, model: ReducedModel) -> None:
         """Write the reduced model."""
-        save_arrays(self.folder / "model.npz", model.arrays())
+        save_arrays(self.kept / "model.npz", model.arrays())
 
     def model(self) -> ReducedModel | None:
         """Return the reduced model that an interrupted sweep left, if it came that far."""
-        return kept_model(self.folder / "model.npz")
+        return kept_model(self.kept / "model.npz")
 
-    def finish(self, grid: Grid, *, title: str, tolerance: float, unknowns: int, model: ReducedModel) -> Sweep:
+    def written(self, grid: Grid, *, title: str, tolerance: float, unknowns: int, model: ReducedModel) -> Sweep:
         """Write the NetCDF file and remove what was kept on the way."""
         shaped = {name: self.rows[name].reshape(*grid.shape, *self.rows[name].shape[1:]) for name in self.COLUMNS}
         texts, counts = np.unique(self.reasons[self.reasons != ""].astype(str), return_counts=True)
@@ -147,7 +137,7 @@ class Store:
             **shaped,
         )
         _netcdf(done)
-        self._part.remove()
+        self.finish()
         return done
 
 
