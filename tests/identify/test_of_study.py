@@ -137,7 +137,7 @@ def test_laws_are_weighed_by_their_evidence(tmp_path):
     study = Study.read(EXAMPLE)
     text = EXAMPLE.read_text().replace("median = 1, sd_ln = 0.6", "median = 0.7, sd_ln = 0.05")
     path = tmp_path / "study.toml"
-    path.write_text(text.replace("[uncertain]", '[uncertain]\nlaw.model = ["jk", "mb"]'))
+    path.write_text(text.replace("[uncertain]", '[uncertain]\nlaw.model = ["jk", "me"]'))
     (tmp_path / "model.inp").write_bytes(study.geometry.file.read_bytes())
     result = faying.identify(path, seed=1, count=300)
     weights = {law.name: law.weight for law in result.laws}
