@@ -127,7 +127,7 @@ class Identification(Recorded):
         lines = [f"{'parameter':<26}{'5 %':>13}{'50 %':>13}{'95 %':>13}  sd/prior"]
         for name, unit, row, told in zip(self.names, self.units, self.quantiles().T, self.told, strict=True):
             cells = "".join(f"{show(v, unit) if unit else f'{v:.4g}':>13}" for v in row)
-            lines.append(f"{name if len(name) <= 25 else f'{name[:24]}~':<26}{cells}{told:>10.2f}")
+            lines.append(f"{name if len(name) <= 25 else f'~{name[-24:]}':<26}{cells}{told:>10.2f}")
         return lines
 
     def _frequency_lines(self) -> list[str]:
