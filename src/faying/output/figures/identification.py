@@ -52,7 +52,7 @@ def figure(found: Identification) -> Any:
         face = "white" if found.left_out[k] else colour
         lower.plot(100 * (found.test[k] / middle[k] - 1), place, "o", ms=4.5, mfc=face, mec=colour, mew=1.3)
     lower.set_yticks(range(modes), [f"{k + 1}: {middle[-1, k]:.0f} Hz" for k in range(modes)])
-    lower.set_xlabel("difference from the predicted median [%]; bars from 5 to 95 %, dots measured", fontsize=8)
+    lower.set_xlabel("difference from the median [%]; bars 5 to 95 %, dots measured", fontsize=8)
     lower.invert_yaxis()
     lower.grid(axis="x", alpha=0.3)
     lower.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4, fontsize=8, frameon=False)
