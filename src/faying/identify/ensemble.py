@@ -10,6 +10,7 @@ import numpy as np
 from faying.contact.build import kinds
 from faying.distribution import Distribution
 from faying.errors import FayingError, InputError
+from faying.identify.points import at_shares, sobol
 from faying.study.case import surfaces_of
 from faying.study.keys.surface import Surface
 from faying.study.keys.uncertain import Input, UncertainChoice
@@ -42,12 +43,7 @@ class Inputs:
     @classmethod
     def of(cls, study: Study, surfaces: Sequence[Surface]) -> Self:
         """What scatters in a study. Raises InputError where it has no [uncertain], or one that does not fit."""
-        choice = study.uncertain
-        if choice is None or not (choice.inputs or choice.models or choice.fit):
-            raise InputError(
-                "nothing in the study scatters; add for example\n[uncertain]\n"
-                'preload = {tightening = "torque wrench, friction estimated"}\nE = "200 GPa +- 4 GPa"'
-            )
+        choice = scattering(study)
         columns = list(choice.inputs)
         for column in columns:
             if column.key.split(".")[0] in ("surface", "law", "joint", "bolt"):
@@ -78,10 +74,6 @@ class Inputs:
         ends = np.cumsum([weight for _, weight in self.models])
         return self.models[min(int(np.searchsorted(ends, share, side="right")), len(ends) - 1)][0]
 
-    def drawn(self, shares: Array) -> Array:
-        """Values (n, d) in SI units at shares of probability (n, d)."""
-        return np.stack([prior.quantile(u) for prior, u in zip(self.priors, shares.T, strict=True)], axis=1)
-
     def put(self, point: Point, values: Array, original: Study) -> Point:
         """The point with values (d,) put in; the materials of `original` are those of the matrices."""
         named = dict(zip(self.names, values.tolist(), strict=True))
@@ -92,10 +84,11 @@ class Inputs:
             if key == MODEL:
                 point = point.with_value(key, self.model(value))
             elif room == "material":
-                material = key.split(".", 1)[1].rpartition(".")[0]
-                parts = [part for part, used in original.parts.items() if used == material]
+                material = _material_of(key)
                 ratio = value / getattr(original.materials[material], name)
-                point = point.with_scales(parts, **{"stiffness" if name == "E" else "mass": ratio})
+                point = point.with_scales(
+                    _parts_of(original, material), **{"stiffness" if name == "E" else "mass": ratio}
+                )
             else:
                 point = point.with_value(key, value)
         return point
@@ -108,9 +101,28 @@ class Inputs:
             if words[0] == "part":
                 out.append(words[1])
             elif words[0] == "material":
-                material = key.split(".", 1)[1].rpartition(".")[0]
-                out += [part for part, used in study.parts.items() if used == material]
+                out += _parts_of(study, _material_of(key))
         return tuple(dict.fromkeys(out))
+
+
+def _material_of(key: str) -> str:
+    """Name of the material of a key material.NAME.E; it may have dots of its own."""
+    return key.partition(".")[2].rpartition(".")[0]
+
+
+def _parts_of(study: Study, material: str) -> list[str]:
+    return [part for part, used in study.parts.items() if used == material]
+
+
+def scattering(study: Study) -> UncertainChoice:
+    """What a study says of scatter. Raises InputError where it says nothing."""
+    choice = study.uncertain
+    if choice is None or not (choice.inputs or choice.models or choice.fit):
+        raise InputError(
+            "nothing in the study scatters; add for example\n[uncertain]\n"
+            'preload = {tightening = "torque wrench, friction estimated"}\nE = "200 GPa +- 4 GPa"'
+        )
+    return choice
 
 
 def _uniform() -> Distribution:
@@ -194,9 +206,11 @@ class Ensemble:
         surfaces = surfaces_of(study)
         inputs = Inputs.of(study, surfaces)
         rows = cls._far(inputs, seed)
-        made = cls(study=study, surfaces=surfaces, inputs=inputs, values=inputs.drawn(rows), training=len(rows))
+        made = cls(
+            study=study, surfaces=surfaces, inputs=inputs, values=at_shares(inputs.priors, rows), training=len(rows)
+        )
         made.point(0)
-        return made.with_values(inputs.drawn(_sobol(len(inputs.columns), count, seed)))
+        return made.with_values(at_shares(inputs.priors, sobol(len(inputs.columns), count, seed)))
 
     @staticmethod
     def _far(inputs: Inputs, seed: int) -> Array:
@@ -264,15 +278,6 @@ class Ensemble:
             return self.inputs.put(point, self.values[sample], self.study)
         except FayingError as fault:
             raise InputError(f"a sample of the study cannot be: {fault}") from None
-
-
-def _sobol(size: int, count: int, seed: int) -> Array:
-    """Scrambled Sobol points (count, size), none of them at 0 or 1."""
-    from scipy.stats import qmc
-
-    power = max(int(np.ceil(np.log2(count))), 0)
-    found: Array = qmc.Sobol(size, scramble=True, rng=seed).random_base2(power)[:count]
-    return np.clip(found, 1e-12, 1 - 1e-12)
 
 
 def by_reason(reasons: Sequence[str]) -> Mapping[str, int]:

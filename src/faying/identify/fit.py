@@ -6,6 +6,7 @@ from typing import final
 import numpy as np
 
 from faying.identify.emulator import Emulator
+from faying.identify.points import sobol
 from faying.result.fields import Recorded, variable
 from faying.typing import Array, Index, Mask
 
@@ -88,7 +89,6 @@ def least_squares_ends(emulator: Emulator, test: Array, used: Mask, scatter: flo
         seed: of the Sobol points.
     """
     from scipy.optimize import least_squares
-    from scipy.stats import qmc
 
     priors, logs = emulator.priors, np.log(np.where(used, test, 1.0))[used]
     reach = [-1.0 if p.kind == "uniform" else -REACH for p in priors]
@@ -107,7 +107,7 @@ def least_squares_ends(emulator: Emulator, test: Array, used: Mask, scatter: flo
     def slope(x: Array) -> Array:
         return np.concatenate([emulator.gradient(values(x))[0][used] / scatter, PULL * np.eye(len(x))])
 
-    points = qmc.Sobol(len(priors), rng=np.random.default_rng(seed)).random(STARTS)
+    points = sobol(len(priors), STARTS, seed)
     last = (np.array([float(p.standardised(v)) for p, v in zip(priors, peak, strict=True)]) - low) / (high - low)
     starts = low + (high - low) * np.clip(np.vstack([points, last]), 0.02, 0.98)
     ends = [least_squares(residual, x, jac=slope, bounds=(low, high), max_nfev=50).x for x in starts]

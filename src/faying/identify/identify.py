@@ -14,6 +14,7 @@ from faying.identify.fit import Fit, least_squares_ends, what_is_seen
 from faying.identify.identification import Identification
 from faying.identify.model import Model, Report
 from faying.identify.noise import DISCREPANCY, DISCREPANCY_SD, SCATTER, TEST_SD, Offsets, offsets
+from faying.identify.points import at_shares, sobol
 from faying.identify.tempering import Tempered, temper
 from faying.typing import Array, Mask
 
@@ -67,7 +68,7 @@ def identify_model(
     test, loads = np.asarray(test, dtype=float), np.asarray(loads, dtype=float)
     wanted, left_out = _what_counts(test, loads, leave_out)
     size = len(model.names)
-    chosen = _spread(model.priors, evaluations or _evaluations(size), seed)
+    chosen = at_shares(model.priors, sobol(size, evaluations or _evaluations(size), seed))
     points = _Points.at(model, chosen, test.shape, report)
     answered = int(np.isfinite(points.frequencies).any(axis=(1, 2)).sum())
     if answered < 2 * (size + 1):
@@ -115,14 +116,6 @@ def _what_counts(test: Array, loads: Array, leave_out: Sequence[int]) -> tuple[M
 def _evaluations(size: int) -> int:
     """A power of 2 that has four points for each coefficient of a quadratic."""
     return int(min(max(FEWEST, 2 ** ceil(log2(2 * (size + 1) * (size + 2)))), MOST))
-
-
-def _spread(priors: Sequence[Distribution], count: int, seed: int) -> Array:
-    """Sobol points of the priors (n, d)."""
-    from scipy.stats import qmc
-
-    doubled = qmc.Sobol(len(priors), rng=np.random.default_rng(seed)).random_base2(ceil(log2(count)))
-    return np.column_stack([prior.quantile(u) for prior, u in zip(priors, doubled[:count].T, strict=True)])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

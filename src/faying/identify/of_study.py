@@ -8,7 +8,7 @@ import numpy as np
 
 from faying import units
 from faying.errors import InputError
-from faying.identify.ensemble import Ensemble
+from faying.identify.ensemble import Ensemble, scattering
 from faying.identify.evaluate import TOLERANCE, Reduced
 from faying.identify.identification import Identification, mixed
 from faying.identify.identify import identify_model
@@ -142,11 +142,8 @@ def _identified(
     store: Store,
     report: Report | None,
 ) -> Identification:
-    choice, test = study.uncertain, study.test
+    choice, test = scattering(study), study.test
     assert test is not None
-    if choice is None:
-        Ensemble.of(study, 8, seed)  # raises what a study without [uncertain] lacks
-    assert choice is not None
     variants = _variants(study, choice)
     found = []
     for number, (name, variant) in enumerate(variants):
@@ -177,7 +174,7 @@ def _variants(study: Study, choice: UncertainChoice) -> list[tuple[str, Study]]:
     if not choice.models:
         return [("", study)]
     alone = replace(choice, models=())
-    if not (alone.inputs or alone.fit):  # the law alone scatters: a factor that hardly does stands for the rest
+    if not (alone.inputs or alone.fit):
         raise InputError(
             "uncertain lists laws and nothing else; add what scatters beside them, for example "
             'stiffness = {distribution = "lognormal", median = 1, sd_ln = 0.6}'

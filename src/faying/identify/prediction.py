@@ -162,13 +162,10 @@ class Prediction(Recorded):
         inside = (self.test >= low) & (self.test <= high)
         return int(inside.sum()), int(np.isfinite(self.test).sum())
 
-    def shares(self, *, seed: int = 0) -> tuple[Shares, Array]:
+    def shares(self) -> tuple[Shares, Array]:
         """Shares of the variance of the frequencies at the last load that each input has.
 
         They are those of a polynomial through the samples, in the scores of the inputs; one for each law.
-
-        Args:
-            seed: Of the points at which the polynomial is taken.
 
         Returns:
             The shares of each mode: of the test's modes, or of all where there is no test; and the polynomial's
@@ -177,6 +174,10 @@ class Prediction(Recorded):
         Raises:
             InputError: Too few samples with an answer.
         """
+        return self._shares
+
+    @cached_property
+    def _shares(self) -> tuple[Shares, Array]:
         seen = self.observed[0][:, -1]
         inputs = self.inputs
         numeric = len(inputs.columns) - bool(inputs.models)
@@ -206,7 +207,7 @@ class Prediction(Recorded):
         spread = np.nanstd(seen[self.sound][:, modes], axis=0)
         error = np.full(seen.shape[1], np.nan)
         error[modes] = np.sqrt(squared / self.answered) / np.where(spread > 0, spread, np.inf)
-        found = shares(function, inputs.priors, count=POINTS, seed=seed)
+        found = shares(function, inputs.priors, count=POINTS)
         return _at_modes(found, modes, seen.shape[1]), error
 
     def _scores(self, values: Array) -> Array:

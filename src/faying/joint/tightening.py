@@ -16,15 +16,6 @@ class Tightening:
     source: str
 
     @property
-    def factor(self) -> float:
-        """Tightening factor alpha_A = F_max/F_min = (1 + t)/(1 - t) [-].
-
-        Source:
-            VDI 2230, tightening factor.
-        """
-        return (1 + self.scatter) / (1 - self.scatter)
-
-    @property
     def distribution(self) -> Distribution:
         """Of the preload over its mean [-]: normal, the published range read as two standard deviations each way."""
         return Distribution(kind="normal", centre=1.0, spread=self.scatter / 2).within(0.0, float("inf"), "()")[0]

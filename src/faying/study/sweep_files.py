@@ -79,7 +79,8 @@ class Store(Kept):
 
     def __init__(self, out: Path, fingerprint: str, size: int, count: int) -> None:
         super().__init__(out, fingerprint, what="sweep")
-        self.out, self.kept = out, out.with_name(out.name + ".part")
+        assert self.folder is not None
+        self.out, self.kept = out, self.folder
         self.rows: dict[str, Array] = {
             name: np.full((size, count) if name in ("frequencies", "loss_factors") else size, np.nan)
             for name in self.COLUMNS

@@ -48,10 +48,6 @@ class Input:
     cut: float = 0.0
     within: bool = False
 
-    def read(self) -> str:
-        """What it is, for people."""
-        return f"{self.key}: {self.distribution.text(self.unit)}"
-
 
 @dataclass(frozen=True, kw_only=True)
 class UncertainChoice:
