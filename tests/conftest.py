@@ -8,6 +8,7 @@ import tempfile
 import pytest
 from hypothesis import settings
 
+from tests.helpers.browser import browser as browser
 from tests.helpers.published import Published
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):

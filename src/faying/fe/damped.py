@@ -34,10 +34,15 @@ class DampedModes:
     error: Array
     shapes: Complex
 
+    def scaled_shapes(self, mass: Any) -> tuple[Array, Array]:
+        """Real and imaginary part of the shapes (unknowns, m), scaled so that the real part is mass-normalised."""
+        real = self.shapes.real
+        size = np.sqrt(np.einsum("im,im->m", real, mass @ real))
+        return np.asarray(real / size), np.asarray(self.shapes.imag / size)
+
     def real_shapes(self, mass: Any) -> Array:
         """Shapes (unknowns, m) of the motion at its greatest: the real parts, mass-normalised."""
-        real = self.shapes.real
-        return np.asarray(real / np.sqrt(np.einsum("im,im->m", real, mass @ real)))
+        return self.scaled_shapes(mass)[0]
 
     @property
     def damping_ratios(self) -> Array:

@@ -271,6 +271,11 @@ class FittedBolt:
         frame = np.stack([self.axis, second, np.cross(self.axis, second)])
         return csr_array(block_diag([frame] * 4) @ vstack(self.ends))
 
+    @property
+    def seats(self) -> Array:
+        """Points (2, 3) [m] where the axis meets the seats of head and nut."""
+        return np.stack([self.point, self.point + self.length * self.axis])
+
     @cached_property
     def load(self) -> Array:
         """Nodal forces [N] (unknowns,) that pull the two seats towards each other with 1 N."""

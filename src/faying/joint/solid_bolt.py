@@ -87,12 +87,12 @@ class SolidBolt:
         pull = np.zeros_like(drawn)  # nothing but rounding outside the layer, where the motion is rigid
         pull[layer] = np.asarray(stiffness @ drawn.ravel()).reshape(-1, 3)[layer]
         rigidity = float(np.sum(pull * drawn))
-        return FittedSolidBolt(bolt=self, pull=pull.ravel(), rigidity=rigidity)
+        return FittedSolidBolt(bolt=self, pull=pull.ravel(), rigidity=rigidity, seats=np.stack([centre, end]))
 
 
 @dataclass(frozen=True, kw_only=True)
 class FittedSolidBolt:
-    """A solid bolt in its place: pull (unknowns,) and rigidity [N/m].
+    """A solid bolt in its place: pull (unknowns,), rigidity [N/m], and the centres (2, 3) [m] of its two faces.
 
     The far half is drawn towards the head by a (the turn of a nut), v being 1 along the axis in that half and 0 in the
     other. The bolt is strained by u + a v, so that its tension is v.K(u + a v) = pull.u + rigidity a: the resultant of
@@ -103,6 +103,7 @@ class FittedSolidBolt:
     bolt: SolidBolt
     pull: Array
     rigidity: float
+    seats: Array
 
     @cached_property
     def load(self) -> Array:

@@ -11,8 +11,8 @@ from faying.fe.constraint import constrain
 from faying.fe.elasticity import Solid
 from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
+from faying.fe.outline import Outline, outline
 from faying.fe.quality import quality
-from faying.fe.sides import skin, triangles_of
 from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt, FittedBolt
 from faying.joint.frame import Frame, added
@@ -252,9 +252,22 @@ class Structure:
 
     def outline(self) -> tuple[Index, Index]:
         """Nodes of the outer surface and triangles between them (t, 3), for pictures."""
-        outer = triangles_of(skin(self.mesh.blocks, len(self.mesh.points)))
-        nodes, triangles = np.unique(outer, return_inverse=True)
-        return nodes, triangles.reshape(-1, 3).astype(np.int64)
+        found = self.surface()
+        return found.nodes, found.triangles
+
+    def surface(self) -> Outline:
+        """The outer surface with parts and faces; a triangle on several faces belongs to that of a joint."""
+        used = [face for joint in self.joints for face in joint.faces]
+        used += [face for bolt in self.bolts for face in bolt.faces] + [support.face for support in self.supports]
+        return outline(self.mesh, used)
+
+    @property
+    def part_masses(self) -> Array:
+        """Mass of each part [kg] (p,), without bolts and point masses."""
+        along = np.zeros(self.mesh.unknowns)
+        along[::3] = 1.0
+        of_node = np.asarray(self.matrices[1] @ along)[::3]
+        return np.array([of_node[self.mesh.part_nodes(part)].sum() for part in self.mesh.parts])
 
 
 def bond(mesh: Mesh, pairs: Sequence[tuple[str, str]]) -> Any | None:

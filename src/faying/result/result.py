@@ -11,6 +11,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.files import write_text
+from faying.joint.attachments import PointMass, Support
 from faying.joint.loads import preload_index
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse, ModelModes
@@ -112,6 +113,8 @@ class Result(Recorded):
     was made from and its own numbers. low and high: the frequencies at the ends of the range of stiffness that the laws
     state, None where none states one; `beside` names other laws, whose frequencies stand in `beside_frequencies`.
     `tightening` names the bolts in the order in which they were pulled, and is empty where all were pulled at once.
+    `parts`, `faces`, `joint_faces` (the two faces of each joint), `supports` and `masses` say what the structure is
+    made of; they and the fields that go with them are empty or None in files of earlier versions.
     """
 
     title: str
@@ -147,6 +150,42 @@ class Result(Recorded):
     triangles: Index = variable("triangle", "corner", unit="1", long_name="triangles between them", dtype="i8")
     shapes: Any = variable(
         "load", "mode", "node", "axis", unit="kg^-1/2", long_name="mass-normalised mode shapes", dtype="f4"
+    )
+    shapes_imaginary: Any = variable(
+        "load",
+        "mode",
+        "node",
+        "axis",
+        unit="kg^-1/2",
+        long_name="imaginary part of the complex mode shapes, scaled as shapes: the motion is the real part of "
+        "(shapes + i shapes_imaginary) exp(i phase)",
+        dtype="f4",
+        default=None,
+    )
+    part_of_triangle: Index | None = variable(
+        "triangle", unit="1", long_name="part of each triangle, from 0", dtype="i8", default=None
+    )
+    face_of_triangle: Index | None = variable(
+        "triangle", unit="1", long_name="named face of each triangle, from 0, -1: none", dtype="i8", default=None
+    )
+    part_masses: Array | None = variable(
+        "part", unit="kg", long_name="mass of each part, without bolts and point masses", default=None
+    )
+    slip: Array | None = variable(
+        "load",
+        "point",
+        unit="m",
+        long_name="tangential displacement of the second face against the first under the preload",
+        default=None,
+    )
+    gap: Array | None = variable(
+        "point", unit="m", long_name="distance of the faces before any load, form included", default=None
+    )
+    bolt_seats: Array | None = variable(
+        "bolt", "end", "axis", unit="m", long_name="where the axis of each bolt meets its seats", default=None
+    )
+    bolt_diameters: Array | None = variable(
+        "bolt", unit="m", long_name="diameter of each shank, NaN where none is given", gaps=True, default=None
     )
     outside_share: Array = variable(
         "load", unit="1", long_name="share of the joints where their law is outside its validity range"
@@ -218,6 +257,11 @@ class Result(Recorded):
     beside: tuple[str, ...] = ()
     joints: tuple[str, ...]
     bolts: tuple[str, ...]
+    parts: tuple[str, ...] = ()
+    faces: tuple[str, ...] = ()
+    joint_faces: tuple[tuple[str, str], ...] = ()
+    supports: tuple[Support, ...] = ()
+    masses: tuple[PointMass, ...] = ()
     unknowns: int
     solver: str
     factor_memory: float = 0.0
@@ -303,6 +347,7 @@ class Result(Recorded):
         out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
         out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
         out["beside"] = list(self.beside)
+        out["parts"] = list(self.parts)
         out |= {"joints": list(self.joints), "bolts": list(self.bolts), "tightening": list(self.tightening)}
         out |= {"damping": self.damping, "surfaces": list(self.surfaces), "laws": list(self.laws)}
         if self.comparison is not None:
@@ -323,6 +368,8 @@ class Result(Recorded):
         labels: dict[str, Any] = {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
         if self.beside:
             labels["beside"] = self.beside
+        if self.parts:
+            labels["part"] = self.parts
         labels["mode"] = np.arange(1, len(self.free) + 1)
         return write_whole(self, path, labels)
 

@@ -145,7 +145,9 @@ def collect(
         **_at_loads(states, lossless),
         **_bonded_beyond(states, lossless),
         **_at_points(states),
-        **_outline(structure, shapes),
+        **_on_faces(structure, states),
+        **_outline(structure, shapes, states),
+        **_made_of(structure),
         **beside_fields(besides, len(states), len(bounds[0])),
         joints=tuple(j.name for j in structure.joints),
         bolts=tuple(bolt.name for bolt in study.bolts),
@@ -208,13 +210,47 @@ def _at_loads(states: Sequence[State], lossless: bool) -> dict[str, Any]:
     }
 
 
-def _outline(structure: Structure, shapes: Sequence[Array]) -> dict[str, Any]:
+def _outline(structure: Structure, shapes: Sequence[Array], states: Sequence[State]) -> dict[str, Any]:
     """Fields of the result on the outer surface."""
-    nodes, triangles = structure.outline()
+    outer, mass = structure.surface(), structure.vibrating[1]
+    lagging = [s.damped.scaled_shapes(mass)[1].T.reshape(len(s.damped.frequencies), -1, 3) for s in states]
     return {
-        "outline": structure.mesh.points[nodes],
-        "triangles": triangles,
-        "shapes": np.stack([shape[:, nodes] for shape in shapes]),
+        "outline": structure.mesh.points[outer.nodes],
+        "triangles": outer.triangles,
+        "part_of_triangle": outer.part_of_triangle,
+        "face_of_triangle": outer.face_of_triangle,
+        "faces": outer.faces,
+        "shapes": np.stack([shape[:, outer.nodes] for shape in shapes]),
+        "shapes_imaginary": np.stack([shape[:, outer.nodes] for shape in lagging]),
+    }
+
+
+def _made_of(structure: Structure) -> dict[str, Any]:
+    """Fields of the result that say what the structure is made of."""
+    bolts = structure.fitted_bolts
+    return {
+        "parts": tuple(structure.mesh.parts),
+        "part_masses": structure.part_masses,
+        "joint_faces": tuple(joint.faces for joint in structure.joints),
+        "supports": structure.supports,
+        "masses": structure.masses,
+        "bolt_seats": np.array([bolt.seats for bolt in bolts]).reshape(-1, 2, 3),
+        "bolt_diameters": np.array([bolt.bolt.diameter or np.nan for bolt in bolts]),
+    }
+
+
+def _on_faces(structure: Structure, states: Sequence[State]) -> dict[str, Any]:
+    """Gap and slip at the points of the joints' springs."""
+
+    def at_springs(k: int, values: Array) -> Array:
+        joint, springs = structure.joints[k], states[0].springs[k]
+        return joint.interface.to_nodes(springs.interface, values) if joint.per_node else values
+
+    interfaces = [joint.interface for joint in structure.joints]
+    slips = [[np.linalg.norm(i.slip(s.preload.displacement), axis=1) for i in interfaces] for s in states]
+    return {
+        "gap": np.concatenate([at_springs(k, i.gap) for k, i in enumerate(interfaces)]),
+        "slip": np.stack([np.concatenate([at_springs(k, one) for k, one in enumerate(row)]) for row in slips]),
     }
 
 

@@ -1,0 +1,203 @@
+"""Scenes of results, studies and meshes."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from faying.fe.mesh import Mesh
+from faying.fe.outline import edges_of, normals, outline, regions
+from faying.joint.attachments import PointMass, nearest_node
+from faying.joint.attachments import Support as HeldFace
+from faying.output.scene.maps import joint_map
+from faying.output.scene.model import Bolt, Face, Joint, Map, Mass, Modes, Scene, Support
+from faying.result import Result
+from faying.typing import Array, Index
+
+if TYPE_CHECKING:
+    from faying.study import Study
+
+SHARP = 0.5  # rad: neighbours whose normals differ by more have a feature edge between them
+
+
+def of_result(result: Result) -> Scene:
+    """Return the scene of a result: parts, joints with maps, bolts, supports, masses, complex modes at every load.
+
+    A result of an earlier version has one part and no joints' faces, since its file does not say them.
+    """
+    parts = result.parts or ("structure",)
+    given = result.part_of_triangle, result.face_of_triangle
+    none = np.zeros(len(result.triangles), dtype=np.int64)
+    part, named = none if given[0] is None else given[0], none - 1 if given[1] is None else given[1]
+    faces, of_triangle = faces_of(result.outline, result.triangles, part, named, result.faces)
+    by_name = {face.name: k for k, face in enumerate(faces) if face.name}
+    joints = [
+        Joint(
+            name=name,
+            faces=tuple(by_name[face] for face in pair if face in by_name),
+            map=_map(result, k, of_triangle == by_name.get(pair[0], -1)),
+        )
+        for k, (name, pair) in enumerate(zip(result.joints, result.joint_faces, strict=False))
+    ]
+    return Scene(
+        title=result.title,
+        points=result.outline,
+        triangles=result.triangles,
+        parts=parts,
+        faces=faces,
+        face_of_triangle=of_triangle,
+        edges=feature_edges(result.outline, result.triangles, of_triangle),
+        joints=tuple(joints),
+        bolts=_bolts(result, parts),
+        supports=_supports(result.supports, by_name),
+        masses=_masses(result.masses, faces, by_name),
+        loads=result.loads,
+        modes=Modes(
+            frequencies=result.frequencies,
+            loss_factors=result.loss_factors,
+            real=result.shapes,
+            imaginary=result.shapes_imaginary,
+        ),
+    )
+
+
+def of_mesh(mesh: Mesh, study: "Study | None" = None, *, title: str = "") -> Scene:
+    """Return the scene of a mesh: parts and faces; with the study that it belongs to, also joints, bolts and the like.
+
+    Raises:
+        InputError: A bolt of the study does not fit the mesh.
+    """
+    joined = () if study is None else tuple(face for joint in study.joints for face in joint.faces)
+    seats = () if study is None else tuple(face for bolt in study.bolts for face in bolt.faces)
+    outer = outline(mesh, (*joined, *seats))
+    points = mesh.points[outer.nodes]
+    faces, of_triangle = faces_of(points, outer.triangles, outer.part_of_triangle, outer.face_of_triangle, outer.faces)
+    by_name = {face.name: k for k, face in enumerate(faces) if face.name}
+    more: dict[str, Any] = {}
+    if study is not None:
+        more = {
+            "joints": tuple(
+                Joint(name=joint.name, faces=tuple(by_name[face] for face in joint.faces if face in by_name))
+                for joint in study.joints
+            ),
+            "bolts": _planned_bolts(study, mesh),
+            "supports": _supports(study.supports, by_name),
+            "masses": _masses(study.masses, faces, by_name, mesh),
+        }
+    return Scene(
+        title=title or (study.title if study is not None else mesh.source),
+        points=points,
+        triangles=outer.triangles,
+        parts=tuple(mesh.parts),
+        faces=faces,
+        face_of_triangle=of_triangle,
+        edges=feature_edges(points, outer.triangles, of_triangle),
+        **more,
+    )
+
+
+def faces_of(
+    points: Array, triangles: Index, part: Index, named: Index, names: Sequence[str]
+) -> tuple[tuple[Face, ...], Index]:
+    """Faces of a surface, part by part, and the face of each triangle (t,).
+
+    part, named (t,): part and named face of each triangle, -1 without a name. Named faces come first, in their order;
+    what has no name is divided into smooth regions.
+    """
+    region = regions(points, triangles, part * (len(names) + 2) + named, angle=SHARP)
+    key = np.where(named >= 0, named, len(names) + region)
+    pairs = np.stack([part, key], axis=1)
+    unique, of_triangle = np.unique(pairs, axis=0, return_inverse=True)
+    faces: list[Face] = []
+    count: dict[int, int] = {}
+    measured = measures(points, triangles, of_triangle.ravel(), len(unique))
+    for k, (owner, label) in enumerate(unique.tolist()):
+        count[owner] = count.get(owner, 0) + 1
+        name = names[label] if label < len(names) else ""
+        faces.append(face(owner, count[owner], name, *(values[k] for values in measured)))
+    return tuple(faces), of_triangle.ravel().astype(np.int64)
+
+
+def face(part: int, number: int, name: str, area: float, centre: Array, normal: Array) -> Face:
+    """Return a face with its numbers as plain ones."""
+    return Face(part=part, number=number, name=name, area=float(area), centre=centre, normal=normal)
+
+
+def measures(points: Array, triangles: Index, of_triangle: Index, count: int) -> tuple[Array, Array, Array]:
+    """Area [m2] (f,), centre [m] (f, 3) and mean unit normal (f, 3) of groups of triangles."""
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    total: Array = np.asarray(np.bincount(of_triangle, area, count), dtype=float)
+    weighted = [area[:, None] * rows for rows in ((a + b + c) / 3, normals(points, triangles))]
+    centre, normal = (
+        np.stack([np.bincount(of_triangle, rows[:, k], count) for k in range(3)], axis=1)
+        / np.where(total > 0, total, 1.0)[:, None]
+        for rows in weighted
+    )
+    size = np.linalg.norm(normal, axis=1, keepdims=True)
+    return total, centre, np.where(size > 1e-6, normal / np.where(size > 0, size, 1.0), 0.0)
+
+
+def feature_edges(points: Array, triangles: Index, of_triangle: Index) -> Index:
+    """Edges (e, 2) between two faces, at a sharp bend, or at a rim."""
+    edges, first, last = edges_of(triangles)
+    normal = normals(points, triangles)
+    sharp = np.einsum("ij,ij->i", normal[first], normal[last]) < np.cos(SHARP)
+    return np.asarray(edges[sharp | (of_triangle[first] != of_triangle[last]) | (first == last)])
+
+
+def _map(result: Result, joint: int, here: Array) -> Map | None:
+    """Values on the first face of a joint; None where its triangles are not known."""
+    at = result.joint_of_point == joint
+    if not np.any(here) or not np.any(at):
+        return None
+    fields = {"pressure": result.pressure, "k_n": result.k_n, "k_t": result.k_t, "slip": result.slip}
+    values = {name: rows[:, at] for name, rows in fields.items() if rows is not None}
+    if result.gap is not None and np.ptp(result.gap) > 1e-9 * float(np.ptp(result.outline)):
+        values["gap"] = result.gap[None, at]
+    return joint_map(result.outline, result.triangles[here], result.points[at], result.weights[at], values)
+
+
+def _bolts(result: Result, parts: Sequence[str]) -> tuple[Bolt, ...]:
+    if result.bolt_seats is None or result.bolt_diameters is None:
+        return ()
+    rows = zip(result.bolts, result.bolt_seats, result.bolt_diameters, strict=True)
+    return tuple(Bolt(name=name, seats=seats, diameter=float(np.nan_to_num(d))) for name, seats, d in rows)
+
+
+def _planned_bolts(study: "Study", mesh: Mesh) -> tuple[Bolt, ...]:
+    """The bolts of a study on its mesh. A solid bolt is a part, which its seats only mark."""
+    from faying.fe.faces import face_centre
+    from faying.joint.bolt import Bolt as Beam
+
+    out = []
+    for bolt in study.bolts:
+        if isinstance(bolt, Beam):
+            seats, part = bolt.fitted(mesh).seats, -1
+        else:
+            seats = np.stack([face_centre(mesh.points, mesh.face(face))[0] for face in bolt.faces])
+            part = list(mesh.parts).index(bolt.part)
+        out.append(Bolt(name=bolt.name, seats=seats, diameter=bolt.diameter or 0.0, part=part))
+    return tuple(out)
+
+
+def _supports(supports: Sequence[HeldFace], by_name: dict[str, int]) -> tuple[Support, ...]:
+    return tuple(
+        Support(face=by_name[one.face], directions=one.directions, elastic=one.stiffness is not None)
+        for one in supports
+        if one.face in by_name
+    )
+
+
+def _masses(
+    masses: Sequence[PointMass], faces: Sequence[Face], by_name: dict[str, int], mesh: Mesh | None = None
+) -> tuple[Mass, ...]:
+    out = []
+    for one in masses:
+        if one.point is not None:
+            if mesh is not None:
+                nearest_node(mesh, one.point, f"point mass of {one.mass:g} kg")
+            out.append(Mass(mass=one.mass, point=np.array(one.point)))
+        elif one.face in by_name:
+            out.append(Mass(mass=one.mass, point=faces[by_name[one.face]].centre + np.array(one.offset)))
+    return tuple(out)

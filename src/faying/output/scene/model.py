@@ -1,0 +1,140 @@
+"""What the viewer shows, as compact arrays."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from faying.typing import Array, Index
+
+UNITS = ((0.5e-3, "µm", 1e6), (2.0, "mm", 1e3), (np.inf, "m", 1.0))  # up to this size of the structure [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Face:
+    """A face of a part.
+
+    Args:
+        part: Part, by its position in `Scene.parts`.
+        number: Number within the part, from 1. Of a STEP file: the position in `list(solid.faces)`, before any gluing.
+            Of a mesh: the named faces in the order of the mesh, then the smooth regions that have no name.
+        name: Its name, empty where it has none.
+        area: Area of its triangles [m2].
+        centre: Centre of that area (3,) [m].
+        normal: Mean unit normal (3,); zero for a closed face, whose normals cancel.
+    """
+
+    part: int
+    number: int
+    name: str
+    area: float
+    centre: Array
+    normal: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Map:
+    """Triangles on the first face of a joint, each triangle of the outline cut into four, with values at their corners.
+
+    Args:
+        parents: Two nodes of the outline (k, 2) between which each corner lies half-way; the same twice at a node.
+        triangles: Triangles (m, 3) between these corners.
+        fields: Name -> values (loads, k), or (1, k) for what does not depend on the load; SI.
+    """
+
+    parents: Index
+    triangles: Index
+    fields: dict[str, Array]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Joint:
+    """A joint: its name, its two faces by their position in `Scene.faces`, and the maps on the first of them."""
+
+    name: str
+    faces: tuple[int, ...]
+    map: Map | None = None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Bolt:
+    """A bolt: where its axis meets its seats (2, 3) [m], and its diameter [m]; 0 where none is given."""
+
+    name: str
+    seats: Array
+    diameter: float = 0.0
+    part: int = -1  # of a meshed bolt
+
+
+@dataclass(frozen=True, kw_only=True)
+class Support:
+    """A face, by its position in `Scene.faces`, the directions in which it is held, and whether by springs."""
+
+    face: int
+    directions: tuple[str, ...]
+    elastic: bool
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Mass:
+    """A point mass [kg] and its place (3,) [m]."""
+
+    mass: float
+    point: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Modes:
+    """Complex modes at each load: displacement = cos(phase) real - sin(phase) imaginary.
+
+    Args:
+        frequencies: (l, m) [Hz].
+        loss_factors: (l, m) [-], NaN where none is predicted.
+        real: (l, m, n, 3) [kg^-1/2], at the points of the scene.
+        imaginary: Likewise, None where the modes are real.
+    """
+
+    frequencies: Array
+    loss_factors: Array
+    real: Array
+    imaginary: Array | None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Scene:
+    """A structure to look at.
+
+    Args:
+        title: What it is called.
+        points: Nodes (n, 3) [m].
+        triangles: Triangles (t, 3), normals outwards.
+        parts: Names of the parts.
+        faces: Faces of the parts; face_of_triangle: the face of each triangle (t,).
+        edges: Feature edges (e, 2) between nodes: rims of faces, and sharp bends.
+        joints, bolts, supports, masses: Where there are any.
+        loads: Preloads of the first bolt [N] (l,); empty before a run.
+        modes: Modes at each load; None before a run.
+    """
+
+    title: str
+    points: Array
+    triangles: Index
+    parts: tuple[str, ...]
+    faces: tuple[Face, ...]
+    face_of_triangle: Index
+    edges: Index
+    joints: tuple[Joint, ...] = ()
+    bolts: tuple[Bolt, ...] = ()
+    supports: tuple[Support, ...] = ()
+    masses: tuple[Mass, ...] = ()
+    loads: Array = field(default_factory=lambda: np.zeros(0))
+    modes: Modes | None = None
+
+    @property
+    def unit(self) -> tuple[str, float]:
+        """Unit in which lengths are read, and how many of it are in a metre."""
+        return next((unit, factor) for most, unit, factor in UNITS if self.size <= most)
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the box around all nodes [m]."""
+        return float(np.linalg.norm(np.ptp(self.points, axis=0)))

@@ -1,0 +1,70 @@
+"""Pages that show scenes: the viewer and its data inside one file, which opens anywhere and asks for nothing."""
+
+import re
+from functools import cache
+from html import escape
+from pathlib import Path
+
+from faying.output.scene.model import Scene
+from faying.output.scene.text import to_text
+
+HERE = Path(__file__).parent
+# what a server gives out beside a page: address relative to the viewer -> file
+ASSETS = {"viewer.js": HERE / "viewer.js", "vendor/three.min.js": HERE / "vendor" / "three.min.js"}
+_EXPORT = re.compile(r"export\s*\{([^}]*)\};?\s*$")
+_IMPORT = re.compile(r'^import \* as THREE from "\./vendor/three\.min\.js";$', re.M)
+
+
+@cache
+def inline() -> str:
+    """The viewer with three.js as text of one inline `<script type="module">`, in which `mount` is then known."""
+    three = ASSETS["vendor/three.min.js"].read_text(encoding="utf-8")
+    found = _EXPORT.search(three)
+    assert found is not None
+    names = (pair.split(" as ") for pair in found.group(1).split(","))
+    given = ",".join(f"{pair[-1].strip()}:{pair[0].strip()}" for pair in names)
+    whole = f"const THREE=(()=>{{{three[: found.start()]};return{{{given}}}}})();"
+    viewer = ASSETS["viewer.js"].read_text(encoding="utf-8")
+    return safe(_IMPORT.sub(lambda _: whole, re.sub(r"^export ", "", viewer, flags=re.M)))
+
+
+def safe(script: str) -> str:
+    """A script that no HTML parser ends before its end: `</script` and `<!--` occur in strings alone."""
+    return script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
+
+
+def data(text: str, name: str) -> str:
+    """JSON text as an element that a script reads by its id; nothing in it can be markup."""
+    inert = text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
+    inert = inert.replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+    return f'<script type="application/json" id="{name}">{inert}</script>'
+
+
+START = """
+const place = document.getElementById("view");
+try {
+  window.view = await mount(place, JSON.parse(document.getElementById("scene").textContent));
+} catch (fault) {
+  place.textContent = `This browser cannot show the view (${fault.message}).`;
+}
+"""
+
+STYLE = """
+html,body{height:100%;margin:0}
+body{display:flex;flex-direction:column;font:15px/1.45 system-ui,sans-serif;background:#fff;color:#1c2733}
+h1{font-size:1.05rem;font-weight:600;margin:.6rem .9rem;overflow-wrap:anywhere}
+#view{flex:1;min-height:24rem}
+@media (prefers-color-scheme:dark){body{background:#14181d;color:#e3e8ee}}
+"""
+
+
+def page(scene: Scene) -> str:
+    """Return one self-contained page that shows a scene."""
+    title = escape(scene.title)
+    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title>'
+    return (
+        f'<!doctype html><html lang="en"><head>{head}<meta name="color-scheme" content="light dark">'
+        f'<style>{STYLE}</style></head><body><h1>{title}</h1><div id="view">'
+        "<noscript>This page needs JavaScript.</noscript></div>"
+        f'{data(to_text(scene), "scene")}<script type="module">{inline()}{START}</script></body></html>\n'
+    )

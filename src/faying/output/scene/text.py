@@ -1,0 +1,153 @@
+"""A scene as text: JSON whose arrays are compressed binary in base64.
+
+    {"format": "faying-scene", "version": 1, "title": ..., "unit": "mm", "factor": 1000.0, "size": 0.41,
+     "loads": [4000.0, ...],
+     "parts": [{"name": "upper"}, ...],
+     "faces": [{"part": 0, "number": 1, "name": "upper.joint", "area": ..., "centre": [x, y, z], "normal": [...]}, ...],
+     "joints": [{"name": "flange", "faces": [0, 7], "map": "map0" or null}, ...],
+     "bolts": [{"name": "left", "seats": [[x, y, z], [x, y, z]], "diameter": 0.008 or 0, "part": -1}, ...],
+     "supports": [{"face": 3, "directions": ["x", "y", "z"], "elastic": false}, ...],
+     "masses": [{"mass": 0.2, "point": [x, y, z]}, ...],
+     "fields": {"pressure": {"label": "pressure", "unit": "MPa", "factor": 1e-06, "range": [0.0, 1.2e7]}, ...},
+     "modes": {"frequencies": [[...], ...], "loss_factors": [[... or null], ...]} or null,
+     "arrays": {"points": {"type": "f4", "shape": [n, 3], "scale": 1.0, "data": "..."}, ...}}
+
+Lengths and values are in SI units; "factor" turns metres into "unit", and a field's values into its unit. "range"
+spans all loads and joints, so that one colour scale serves all. An array is little-endian, row by row, of type f4
+(float), i2, u2 or u4, compressed as zlib (`DecompressionStream("deflate")` in a browser) and written in base64; its
+numbers are multiplied by "scale". Names:
+
+- points (n, 3), triangles (t, 3), face_of_triangle (t,), edges (e, 2);
+- map0.parents (k, 2), map0.triangles (m, 3), map0.pressure (loads, k), ...: maps of the joints, see `maps`;
+- real.L.M and imaginary.L.M (n, 3): the shape of mode M at load L, both from 0. The displacement at a phase is
+  cos(phase) real - sin(phase) imaginary. Shapes are rounded to 1/32767 of the greatest component of the mode; an
+  imaginary part that vanishes with that is left out.
+"""
+
+import json
+import zlib
+from base64 import b64encode
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from faying.output.scene.model import Joint, Modes, Scene
+from faying.typing import Array
+
+VERSION = 1
+STEPS = 32767  # of a 16-bit integer on each side of zero
+
+
+@dataclass(frozen=True, kw_only=True)
+class Field:
+    """A field on the faces of joints: its label, the unit in which it is read, and how many of that are 1 in SI."""
+
+    label: str
+    unit: str
+    factor: float
+
+
+FIELDS = {
+    "pressure": Field(label="pressure", unit="MPa", factor=1e-6),
+    "slip": Field(label="slip under the preload", unit="µm", factor=1e6),
+    "k_n": Field(label="normal stiffness k_n", unit="MPa/µm", factor=1e-12),
+    "k_t": Field(label="tangential stiffness k_t", unit="MPa/µm", factor=1e-12),
+    "gap": Field(label="gap before any load", unit="µm", factor=1e6),
+}
+
+
+def to_text(scene: Scene) -> str:
+    """Return a scene as JSON text; see the top of this module."""
+    return json.dumps(to_dict(scene), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
+def to_dict(scene: Scene) -> dict[str, Any]:
+    """Return a scene as what `to_text` writes."""
+    arrays = {
+        "points": _packed(scene.points, "f4"),
+        "triangles": _packed(scene.triangles, "u4"),
+        "face_of_triangle": _packed(scene.face_of_triangle, "u4"),
+        "edges": _packed(scene.edges, "u4"),
+    }
+    joints = [_joint(joint, f"map{k}", arrays) for k, joint in enumerate(scene.joints)]
+    return {
+        "format": "faying-scene",
+        "version": VERSION,
+        "title": scene.title,
+        "unit": scene.unit[0],
+        "factor": scene.unit[1],
+        "size": scene.size,
+        "loads": scene.loads.tolist(),
+        "parts": [{"name": name} for name in scene.parts],
+        "faces": [
+            {
+                "part": face.part,
+                "number": face.number,
+                "name": face.name,
+                "area": face.area,
+                "centre": face.centre.tolist(),
+                "normal": face.normal.tolist(),
+            }
+            for face in scene.faces
+        ],
+        "joints": joints,
+        "bolts": [
+            {"name": b.name, "seats": b.seats.tolist(), "diameter": b.diameter, "part": b.part} for b in scene.bolts
+        ],
+        "supports": [{"face": s.face, "directions": list(s.directions), "elastic": s.elastic} for s in scene.supports],
+        "masses": [{"mass": m.mass, "point": m.point.tolist()} for m in scene.masses],
+        "fields": _fields(scene),
+        "modes": _modes(scene.modes, arrays),
+        "arrays": arrays,
+    }
+
+
+def _joint(joint: Joint, key: str, arrays: dict[str, Any]) -> dict[str, Any]:
+    if joint.map is not None:
+        arrays[f"{key}.parents"] = _packed(joint.map.parents, "u4")
+        arrays[f"{key}.triangles"] = _packed(joint.map.triangles, "u4")
+        for name, values in joint.map.fields.items():
+            arrays[f"{key}.{name}"] = _packed(values, "f4")
+    return {"name": joint.name, "faces": list(joint.faces), "map": None if joint.map is None else key}
+
+
+def _fields(scene: Scene) -> dict[str, Any]:
+    """The fields that any joint has, each with its range over all joints and loads."""
+    out: dict[str, Any] = {}
+    for name, known in FIELDS.items():
+        values = [j.map.fields[name] for j in scene.joints if j.map is not None and name in j.map.fields]
+        if values:
+            low, high = min(float(v.min()) for v in values), max(float(v.max()) for v in values)
+            out[name] = {
+                "label": known.label,
+                "unit": known.unit,
+                "factor": known.factor,
+                "range": [min(low, 0.0), high],
+            }
+    return out
+
+
+def _modes(modes: Modes | None, arrays: dict[str, Any]) -> dict[str, Any] | None:
+    if modes is None:
+        return None
+    for load, mode in np.ndindex(*modes.frequencies.shape):
+        real = np.asarray(modes.real[load, mode])
+        imaginary = None if modes.imaginary is None else np.asarray(modes.imaginary[load, mode])
+        greatest = max(float(np.abs(part).max()) for part in (real, imaginary) if part is not None)
+        scale = greatest / STEPS or 1.0
+        arrays[f"real.{load}.{mode}"] = _packed(real, "i2", scale)
+        if imaginary is not None and float(np.abs(imaginary).max()) >= scale / 2:
+            arrays[f"imaginary.{load}.{mode}"] = _packed(imaginary, "i2", scale)
+    lost = [[None if np.isnan(eta) else float(eta) for eta in row] for row in modes.loss_factors]
+    return {"frequencies": modes.frequencies.tolist(), "loss_factors": lost}
+
+
+def _packed(values: Any, kind: str, scale: float = 1.0) -> dict[str, Any]:
+    """An array as JSON holds it."""
+    array: Array = np.asarray(values)
+    if kind == "i2":
+        array = np.rint(array / scale)
+    small = np.ascontiguousarray(array, dtype=f"<{kind}")
+    data = b64encode(zlib.compress(small.tobytes(), 9)).decode("ascii")
+    return {"type": kind, "shape": list(small.shape), "scale": scale, "data": data}
