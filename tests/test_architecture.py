@@ -21,6 +21,7 @@ ORDER = [
     {"study"},
     {"identify"},
     {"output"},
+    {"app"},
     {"cli"},
     {"__main__"},
 ]

@@ -10,6 +10,7 @@ import click
 
 # command -> (module, one line for `faying --help`)
 COMMANDS = {
+    "app": ("app", "A page on this machine: scan, geometry, study, run, result."),
     "asperity": ("asperity", "Press one asperity by finite elements: force, area, stresses."),
     "attach": ("attach", "Lay a joint on a model of another solver, and write it in its words."),
     "backbone": ("backbone", "Frequency and damping of a mode against its amplitude."),
