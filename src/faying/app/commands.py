@@ -48,8 +48,17 @@ def answer(arguments: Sequence[str], folder: Path) -> dict[str, Any]:
         found = json.loads(out)
     except json.JSONDecodeError:
         words = done.stderr.decode("utf-8", errors="replace").strip()
-        raise InputError(words.removeprefix("faying: ") or f"faying {arguments[0]} failed") from None
+        raise InputError(words.rpartition("faying: ")[2] or f"faying {arguments[0]} failed") from None
     return dict(found)
+
+
+def _event(line: str) -> dict[str, Any] | None:
+    """What a line of progress says; None for other words."""
+    try:
+        found = json.loads(line) if line.startswith("{") else None
+    except json.JSONDecodeError:
+        return None
+    return found
 
 
 @final
@@ -79,15 +88,14 @@ class Job:
     def _read(self, which: str) -> None:
         stream = self._process.stdout if which == "out" else self._process.stderr
         assert stream is not None
-        for raw in stream:
-            line = raw.decode("utf-8", errors="replace").rstrip()
-            if which == "err" and line.startswith("{"):
-                try:
-                    self.progress = json.loads(line)
-                    continue
-                except json.JSONDecodeError:
-                    pass
-            self.words = [*self.words, line][-KEPT:]
+        with stream:
+            for raw in stream:
+                line = raw.decode("utf-8", errors="replace").rstrip()
+                event = _event(line) if which == "err" else None
+                if event is None:
+                    self.words = [*self.words, line][-KEPT:]
+                else:
+                    self.progress = event
 
     def _wait(self) -> None:
         self._process.wait()
