@@ -121,16 +121,16 @@ def test_a_mesh_beyond_the_memory_is_refused_before_it_is_made(tmp_path, monkeyp
 
 def test_a_death_of_the_cad_kernel_is_an_error(tmp_path, monkeypatch):
     """A segmentation fault in the child, as mutated files cause it, is no end of this process."""
-    import faying.fe.geometry as geometry
+    import faying.fe.cad_process as cad_process
 
     path = step(tmp_path, *plate_and_block())
     dying = "import os, signal, sys; os.kill(os.getpid(), signal.SIGSEGV); "
-    run = geometry.subprocess.run
+    run = cad_process.subprocess.run
 
     def killed(command, **given):
         return run([command[0], "-c", dying, *command[3:]], **given)
 
-    monkeypatch.setattr(geometry.subprocess, "run", killed)
+    monkeypatch.setattr(cad_process.subprocess, "run", killed)
     with pytest.raises(faying.ReadError, match="the CAD kernel died on it .signal 11.; repair the geometry"):
         mesh_step(path, size=8e-3)
 

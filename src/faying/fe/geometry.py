@@ -4,10 +4,6 @@ Names are those that the CAD program gave to solids and faces. A face without a 
 nearest to it takes the name.
 """
 
-import json
-import subprocess
-import sys
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -15,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from faying.errors import InputError, ReadError
+from faying.errors import InputError
 from faying.fe.cad import check_head, kernel, products, read_step
+from faying.fe.cad_process import Answer, ask
 from faying.fe.elements import KINDS
 from faying.fe.memory import guessed
 from faying.fe.mesh import Mesh, split_at_joints
@@ -65,52 +62,29 @@ def mesh_step(
     """
     check_head(path)
     request = _Request(path=str(path.resolve()), size=size, local_size=local_size or {}, face_points=face_points or {})
-    with tempfile.TemporaryDirectory() as folder:
-        order, answer = Path(folder) / "request.json", Path(folder) / "mesh.npz"
-        order.write_text(json.dumps(asdict(request)), encoding="utf-8")
-        code = "import sys; sys.path[:] = sys.argv[2:]; from faying.fe.geometry import serve; serve(sys.argv[1])"
-        done = subprocess.run(
-            [sys.executable, "-c", code, folder, *sys.path], stdin=subprocess.DEVNULL, capture_output=True, check=False
-        )
-        fault = Path(folder) / "fault.json"
-        if fault.is_file():
-            kind, text = json.loads(fault.read_text(encoding="utf-8"))
-            raise {"ReadError": ReadError, "InputError": InputError}[kind](text)
-        if done.returncode or not answer.is_file():
-            last = done.stderr.decode("utf-8", errors="replace").strip().splitlines()[-1:]
-            how = f"signal {-done.returncode}" if done.returncode < 0 else " ".join(last) or f"code {done.returncode}"
-            raise ReadError(
-                f"{path}: the CAD kernel died on it ({how}); repair the geometry in the CAD program and export it again"
-            )
-        with np.load(answer) as data:
-            parts = json.loads(str(data["parts"]))
-            faces = json.loads(str(data["faces"]))
-            return Mesh(
-                points=data["points"],
-                parts={name: (data[f"part{k}"],) for k, name in enumerate(parts)},
-                faces={name: (data[f"face{k}"],) for k, name in enumerate(faces)},
-                face_part=faces,
-                source=path.name,
-                notes=tuple(Note(**note) for note in json.loads(str(data["notes"]))),
-            )
+    answer = ask(mesh_answer, asdict(request), path=path)
+    parts, faces, data = answer.facts["parts"], answer.facts["faces"], answer.arrays
+    return Mesh(
+        points=data["points"],
+        parts={name: (data[f"part{k}"],) for k, name in enumerate(parts)},
+        faces={name: (data[f"face{k}"],) for k, name in enumerate(faces)},
+        face_part=faces,
+        source=path.name,
+        notes=tuple(Note(**note) for note in answer.facts["notes"]),
+    )
 
 
-def serve(folder: str) -> None:
-    """Do what `mesh_step` has asked for in a folder; this runs in the process of its own."""
-    place = Path(folder)
-    given = json.loads((place / "request.json").read_text(encoding="utf-8"))
-    try:
-        mesh = _mesh_here(_Request(**given))
-    except (ReadError, InputError) as fault:
-        text = json.dumps([type(fault).__name__, str(fault)])
-        (place / "fault.json").write_text(text, encoding="utf-8")
-        return
+def mesh_answer(request: dict[str, Any]) -> Answer:
+    """Mesh what `mesh_step` asks for; this runs in the process of its own."""
+    mesh = _mesh_here(_Request(**request))
     arrays: dict[str, Any] = {f"part{k}": blocks[0] for k, blocks in enumerate(mesh.parts.values())}
     arrays |= {f"face{k}": blocks[0] for k, blocks in enumerate(mesh.faces.values())}
-    arrays["parts"] = np.array(json.dumps(list(mesh.parts)))
-    arrays["notes"] = np.array(json.dumps([asdict(note) for note in mesh.notes]))
-    arrays["faces"] = np.array(json.dumps({name: mesh.face_part[name] for name in mesh.faces}))
-    np.savez(place / "mesh.npz", points=mesh.points, **arrays)
+    facts = {
+        "parts": list(mesh.parts),
+        "faces": {name: mesh.face_part[name] for name in mesh.faces},
+        "notes": [asdict(note) for note in mesh.notes],
+    }
+    return Answer(facts=facts, arrays={"points": mesh.points} | arrays)
 
 
 def _mesh_here(request: _Request) -> Mesh:
