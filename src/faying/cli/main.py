@@ -15,6 +15,7 @@ COMMANDS = {
     "backbone": ("backbone", "Frequency and damping of a mode against its amplitude."),
     "compare": ("compare", "Set a hammer test beside the result of a study: MAC, pairs, FRFs."),
     "condense": ("condense", "One joint as a 6 x 6 stiffness and loss between two points, with its error."),
+    "faces": ("faces", "Faces of a STEP or mesh file: numbers, normals, centres, contacts."),
     "form": ("form", "Flatness, crowns and twist of a measured face or gap."),
     "identify": ("identify", "What a test tells of the numbers that scatter in a study."),
     "init": ("init", "Write a commented study file to start from."),
