@@ -22,6 +22,7 @@ COMMANDS = {
     "law": ("law", "Curves of a contact law: area, stiffness and loss against pressure."),
     "models": ("models", "List the contact models with their sources, inputs and ranges."),
     "modes": ("modes", "Real modes of a study or of assembled matrices, also over many machines."),
+    "new": ("new", "Write a study of your own STEP file: joints, bolts, seats, mesh."),
     "predict": ("predict", "Intervals of the frequencies under scatter, and what causes them."),
     "run": ("run", "Run a study: from the surface and the preload to the modes."),
     "sweep": ("sweep", "Many laws, surfaces and preloads on one structure, solved once."),

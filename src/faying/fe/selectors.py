@@ -14,10 +14,13 @@ WITHIN = 1e-3  # m: a point farther from a face than this does not mean it
 AMBIGUOUS = 1e-6  # m: faces whose distances differ by less are not told apart
 TOUCHING = 1e-6  # of the size of the structure: faces closer than this touch
 LISTED = 12  # faces that a message lists
-AXES = {
-    f"{sign}{axis}": tuple((1.0 if sign == "+" else -1.0) * (axis == other) for other in "xyz")
-    for sign in "+-"
-    for axis in "xyz"
+AXES: dict[str, Point] = {
+    "+x": (1.0, 0.0, 0.0),
+    "-x": (-1.0, 0.0, 0.0),
+    "+y": (0.0, 1.0, 0.0),
+    "-y": (0.0, -1.0, 0.0),
+    "+z": (0.0, 0.0, 1.0),
+    "-z": (0.0, 0.0, -1.0),
 }
 
 

@@ -9,7 +9,10 @@ from faying.errors import FayingError, InputError
 from faying.files import write_atomically, write_text
 from faying.surface.scan import Scan
 
-TEXT = """# A Faying study. Quantities are text with a unit; plain numbers have no dimension.
+# first line of a study, for editors that know TOML (Taplo, Even Better TOML); `faying schema` writes the file
+SCHEMA = "#:schema ./faying.schema.json"
+TEXT = """#:schema ./faying.schema.json
+# A Faying study. Quantities are text with a unit; plain numbers have no dimension.
 # Run it with: faying run {name}
 title = "Two blocks and a bolt"
 

@@ -85,8 +85,7 @@ def _normal(value: Any, name: str) -> Point:
     if isinstance(value, str):
         if value not in AXES:
             raise InputError(f'{name} = "{value}" should be one of {", ".join(AXES)}, or three numbers')
-        x, y, z = AXES[value]
-        return x, y, z
+        return AXES[value]
     if not isinstance(value, list):
         raise InputError(f'{name} = {value!r} should be an axis such as "+z", or three numbers such as [0, 0, 1]')
     along = np.array(direction(value, name))
