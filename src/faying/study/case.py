@@ -159,8 +159,8 @@ def joint_law(joint: JointChoice, law: LawChoice, surface: Surface, rough: Mater
 
 
 def part_of(study: Study, face: str) -> str | None:
-    """The part that a face belongs to by its name (part.face) or by [geometry.face_at]; None where neither says it."""
-    part = study.geometry.face_at[face][0] if face in study.geometry.face_at else face.partition(".")[0]
+    """The part that a face belongs to by its name (part.face) or its selector; None where neither says it."""
+    part = study.geometry.face[face].part if face in study.geometry.face else face.partition(".")[0]
     return part if part in study.parts else None
 
 
