@@ -41,7 +41,7 @@ def data(text: str, name: str) -> str:
 
 
 START = """
-const place = document.getElementById("view");
+const place = document.getElementById("stage");
 try {
   window.view = await mount(place, JSON.parse(document.getElementById("scene").textContent));
 } catch (fault) {
@@ -53,7 +53,7 @@ STYLE = """
 html,body{height:100%;margin:0}
 body{display:flex;flex-direction:column;font:15px/1.45 system-ui,sans-serif;background:#fff;color:#1c2733}
 h1{font-size:1.05rem;font-weight:600;margin:.6rem .9rem;overflow-wrap:anywhere}
-#view{flex:1;min-height:24rem}
+#stage{flex:1;min-height:24rem}
 @media (prefers-color-scheme:dark){body{background:#14181d;color:#e3e8ee}}
 """
 
@@ -64,7 +64,7 @@ def page(scene: Scene) -> str:
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title>'
     return (
         f'<!doctype html><html lang="en"><head>{head}<meta name="color-scheme" content="light dark">'
-        f'<style>{STYLE}</style></head><body><h1>{title}</h1><div id="view">'
+        f'<style>{STYLE}</style></head><body><h1>{title}</h1><div id="stage">'
         "<noscript>This page needs JavaScript.</noscript></div>"
         f'{data(to_text(scene), "scene")}<script type="module">{inline()}{START}</script></body></html>\n'
     )

@@ -149,5 +149,5 @@ def _packed(values: Any, kind: str, scale: float = 1.0) -> dict[str, Any]:
     if kind == "i2":
         array = np.rint(array / scale)
     small = np.ascontiguousarray(array, dtype=f"<{kind}")
-    data = b64encode(zlib.compress(small.tobytes(), 9)).decode("ascii")
+    data = b64encode(zlib.compress(small.tobytes(), 6)).decode("ascii")
     return {"type": kind, "shape": list(small.shape), "scale": scale, "data": data}

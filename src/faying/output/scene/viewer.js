@@ -20,7 +20,8 @@
  *   view.pick(x, y)             the face at a place of the canvas [CSS pixels], as onPick gets it; null beside it
  *   view.select(part, number)   selects a face as a click does; view.select(null) clears
  *   view.highlight([{part, number}])   colours faces; an empty list ends it
- *   view.joint(name)            highlights both faces of a joint by its name; null ends it
+ *   view.joint(name, {look})    highlights both faces of a joint by its name; look: also turns the view square to it;
+ *                               null ends it
  *   view.hide(part), view.unhide(part)   by name
  *   view.look(direction)        "x", "-x", "y", "-y", "z", "-z" or "corner"; fits the structure into the view
  *   view.positions(part)        {nodes, positions}: nodes of a part and where they are shown now [m], three numbers each:
@@ -39,6 +40,7 @@ const VIRIDIS = [
 ];
 const PARTS = [0x8fa9c4, 0xc4a98f, 0x93b8a4, 0xb3a0c2, 0xc0b283, 0x86b3bf, 0xc29aa5, 0xa3a8ae];
 const SELECTED = 0xe07b1f;
+const SMOOTHED = 1e5; // triangles up to which edges are smoothed
 const THEMES = {
   light: { edge: 0x2b3844, rest: 0x8a97a5, bolt: 0x59656f, support: 0x0b7a75, mass: 0x8a3b8f },
   dark: { edge: 0x0b0f13, rest: 0x77828e, bolt: 0xa9b4be, support: 0x35b8b0, mass: 0xcf86d3 },
@@ -123,7 +125,7 @@ void main() {
   if (vFace >= 0.0) {
     int f = int(vFace + 0.5);
     float mark = texelFetch(marks, ivec2(f % 1024, f / 1024), 0).r;
-    if (mark > 0.0 && kind != 2) { colour = mix(colour, marked, 0.8 * mark); a = max(a, 0.6 * mark); }
+    if (mark > 0.0 && kind != 2) { colour = mix(colour, marked, 0.8 * mark); if (alpha < 1.0) a = max(a, 0.35 * mark); }
   }
   if (kind > 0) light = 0.75 + 0.25 * (light - 0.5) * 2.0;
   gl_FragColor = vec4(colour * light, a);
@@ -448,6 +450,14 @@ class Eye {
     this.fit();
   }
 
+  /** Look at a box along a normal, from above where that is the question. */
+  square(low, high, normal) {
+    const [x, y, z] = normal, flat = Math.hypot(x, y), sense = z < -0.01 && flat < 0.1 ? -1 : 1;
+    this.azimuth = flat < 1e-3 ? -Math.PI / 2 : Math.atan2(y, x);
+    this.elevation = Math.atan2(sense * z, flat);
+    this.fit(low, high);
+  }
+
   axes() {
     const [a, e] = [this.azimuth, this.elevation];
     const back = new THREE.Vector3(Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e));
@@ -455,13 +465,13 @@ class Eye {
     return { back, right, up: back.clone().cross(right) };
   }
 
-  fit() {
-    this.target = this.low.clone().add(this.high).multiplyScalar(0.5);
+  fit(low = this.low, high = this.high) {
+    this.target = low.clone().add(high).multiplyScalar(0.5);
     const { right, up } = this.axes();
     let [w, h] = [0, 0];
     for (let k = 0; k < 8; k++) {
       const corner = new THREE.Vector3(
-        (k & 1 ? this.low : this.high).x, (k & 2 ? this.low : this.high).y, (k & 4 ? this.low : this.high).z,
+        (k & 1 ? low : high).x, (k & 2 ? low : high).y, (k & 4 ? low : high).z,
       ).sub(this.target);
       w = Math.max(w, Math.abs(corner.dot(right)));
       h = Math.max(h, Math.abs(corner.dot(up)));
@@ -516,9 +526,11 @@ class View {
     this.highlighted = [];
     style();
     const canvas = (this.canvas = document.createElement("canvas"));
-    const context = canvas.getContext("webgl2", { antialias: true, alpha: true });
+    // smoothed edges cost a software renderer three times the work
+    const antialias = arrays.triangles.length < 3 * SMOOTHED;
+    const context = canvas.getContext("webgl2", { antialias, alpha: true });
     if (!context) throw new Error("WebGL 2 is not available");
-    this.renderer = new THREE.WebGLRenderer({ canvas, context, antialias: true, alpha: true });
+    this.renderer = new THREE.WebGLRenderer({ canvas, context, antialias, alpha: true });
     this.renderer.setClearColor(0, 0);
     this.renderer.outputColorSpace = "srgb-linear"; // colours of the shaders are what is shown
     this.model = new Model(scene, arrays);
@@ -628,10 +640,21 @@ class View {
     const fields = Object.entries(scene.fields).map(([name, field]) => [name, `${field.label} [${field.unit}]`]);
     if (modes || fields.length)
       panel.append(this.pickList("field", "Colour", [["parts", "parts"], ...(modes ? [["motion", "motion"]] : []), ...fields], String));
+    this.joints();
     this.parts();
     this.extras();
     this.views();
     this.facts();
+  }
+
+  joints() {
+    const named = this.scene.joints.filter((joint) => joint.faces.length);
+    if (!named.length) return;
+    const rows = [["", "whole structure"], ...named.map(({ name }) => [name, `joint ${name}`])];
+    const select = (this.jointSelect = make("select", {
+      "aria-label": "Look at", onchange: () => this.joint(select.value || null, { look: true }),
+    }, ...rows.map(([value, text]) => make("option", { value }, text))));
+    this.panel.append(make("div", {}, make("div", { class: "fv-top" }, make("span", {}, "Look at")), select));
   }
 
   parts() {
@@ -677,7 +700,7 @@ class View {
       scene.parts.forEach((part, k) => {
         const group = make("optgroup", { label: part.name });
         scene.faces.forEach((face, f) => {
-          if (face.part === k) group.append(make("option", { value: String(f) }, `${face.number}${face.name ? ` ${face.name}` : ""}`));
+          if (face.part === k) group.append(make("option", { value: String(f) }, face.name ? `${face.number} ${face.name}` : `face ${face.number}`));
         });
         select.append(group);
       });
@@ -976,10 +999,28 @@ class View {
     this.redraw();
   }
 
-  joint(name) {
-    this.highlighted = name === null ? [] : [...(this.scene.joints.find((j) => j.name === name)?.faces ?? [])];
+  joint(name, { look = false } = {}) {
+    const found = name === null ? undefined : this.scene.joints.find((joint) => joint.name === name);
+    if (name !== null && !found) throw new Error(`no joint ${name}`);
+    this.highlighted = [...(found?.faces ?? [])];
+    if (this.jointSelect) this.jointSelect.value = name ?? "";
+    if (look && found?.faces.length) this.eye.square(...this.around(found.faces));
+    else if (look) this.eye.look("corner");
     this.marked();
     this.redraw();
+  }
+
+  /** The box around some faces and the normal of the first. */
+  around(faces) {
+    const { points, triangles, face_of_triangle: faceOf } = this.arrays, wanted = new Set(faces);
+    const [low, high] = [new THREE.Vector3(Infinity, Infinity, Infinity), new THREE.Vector3(-Infinity, -Infinity, -Infinity)];
+    for (let k = 0; k < triangles.length; k++) {
+      if (!wanted.has(faceOf[Math.floor(k / 3)])) continue;
+      const at = new THREE.Vector3().fromArray(points, 3 * triangles[k]);
+      low.min(at);
+      high.max(at);
+    }
+    return [low, high, this.scene.faces[faces[0]].normal];
   }
 
   visible(part, on) {
@@ -1041,13 +1082,18 @@ class View {
     });
   }
 
-  draw() {
-    if (!this.sized || this.gone) return;
+  /** Phase, amplitude and camera as they are now. */
+  pose() {
     const { shared } = this.model, angle = (this.state.phase * Math.PI) / 180;
     shared.amp.value = this.state.mode === null ? 0 : this.state.amplitude;
     shared.co.value = Math.cos(angle);
     shared.si.value = Math.sin(angle);
     this.eye.update();
+  }
+
+  draw() {
+    if (!this.sized || this.gone) return;
+    this.pose();
     this.renderer.render(this.model.root, this.eye.camera);
     this.overlay();
     this.draws += 1;
@@ -1100,7 +1146,7 @@ class View {
       object.visible = solid.has(object);
       object.material = model.pickMaterial;
     }
-    this.draw(); // uniforms and camera as they are now
+    this.pose();
     eye.camera.setViewOffset(w, h, Math.floor(x), Math.floor(y), 1, 1);
     renderer.setRenderTarget(target);
     renderer.clear();
@@ -1110,7 +1156,6 @@ class View {
     renderer.setRenderTarget(null);
     eye.camera.clearViewOffset();
     for (const [object, visible, material] of kept) Object.assign(object, { visible, material });
-    this.draw();
     return rgba[3] ? rgba[0] + 256 * rgba[1] + 65536 * rgba[2] - 1 : null;
   }
 
