@@ -58,19 +58,15 @@ def page(browser, address):
         yield page
 
 
-def state(page):
-    return page.evaluate("window.view.state")
-
-
 def test_rows_of_modes_and_joints_lead_to_what_is_shown(page, result):
     page.locator("[data-table=modes] tr").nth(3).get_by_role("button").first.click()
-    assert state(page)["mode"] == 2
+    until(page, "window.view.state.mode === 2")
     page.locator("[data-table=modes] tr").nth(2).get_by_role("button").nth(1).click()  # the first preload
     until(page, "window.view.state.mode === 1 && window.view.state.load === 0")
     assert "Mode 2: 250 Hz" in page.locator(".fv-head").inner_text()
-    assert page.locator("[data-table=modes] tr.now").inner_text().startswith("2")
+    until(page, "document.querySelector('[data-table=modes] tr.now').cells[0].textContent === '2'")
     page.get_by_label("Mode", exact=True).select_option("0")
-    assert page.locator("[data-table=modes] tr.now").inner_text().startswith("1")
+    until(page, "document.querySelector('[data-table=modes] tr.now').cells[0].textContent === '1'")
     page.locator("[data-table=joints] tr").nth(2).get_by_role("button").click()
     until(page, "window.view.state.field === 'pressure' && window.view.state.load === 1")
     assert page.evaluate("window.view.highlighted.length") == 2
