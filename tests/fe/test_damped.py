@@ -226,3 +226,17 @@ def test_a_mode_that_creeps_is_none_that_oscillates():
         else:
             with pytest.raises(faying.NotConverged, match="only 1 of 2 modes oscillate"):
                 damped_modes(modes, K, M, C, rigid=0, kind="viscous")
+
+
+def test_scaled_shapes_are_the_complex_shapes_with_a_real_part_of_unit_mass():
+    """The motion Re((a + i b) exp(i t)) of a mode is that of its shape, but for one real factor."""
+    K, M, loss = jointed([3, 4], (1, 1), eta=0.3)
+    found = damped_modes(lowest_modes(K, M, 16, shift_frequency=50.0), K, M, loss, rigid=6, count=5)
+    real, imaginary = found.scaled_shapes(M)
+    np.testing.assert_allclose(np.einsum("im,im->m", real, M @ real), 1.0, rtol=1e-12)
+    ratio = (real + 1j * imaginary) / found.shapes
+    np.testing.assert_allclose(ratio, np.broadcast_to(ratio[0], ratio.shape), rtol=1e-9)
+    np.testing.assert_allclose(ratio.imag, 0, atol=1e-12)
+    assert np.abs(imaginary).max() > 1e-3 * np.abs(real).max()  # the loss makes points lag
+    # orthogonal to their own imaginary part, since shape^T M shape is real
+    np.testing.assert_allclose(np.einsum("im,im->m", real, M @ imaginary), 0.0, atol=1e-10)

@@ -1,6 +1,7 @@
 """A real browser for tests of pages: Debian's Chromium, driven by Playwright; no browser is downloaded."""
 
 import shutil
+import time
 from contextlib import contextmanager
 
 import pytest
@@ -40,3 +41,11 @@ def opened(browser, address, *, width=1280, height=800, allowed=("file:", "data:
         assert foreign == []
     finally:
         made.close()
+
+
+def until(page, expression, *, seconds=30.0):
+    """Wait until an expression is true; unlike wait_for_function, also under a policy that forbids evaluation."""
+    end = time.monotonic() + seconds
+    while not page.evaluate(f"Boolean({expression})"):
+        assert time.monotonic() < end, f"{expression} did not become true"
+        page.wait_for_timeout(50)

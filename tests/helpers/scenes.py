@@ -52,7 +52,8 @@ def two_boxes(*, names=("flange",), title="two boxes", lengths=(0.1, 0.2), count
         "joint_faces": (("p0.right", "p1.left"),),
         "bolt_seats": np.array([[[0.0, 0.025, 0.02], [sum(lengths), 0.025, 0.02]]]),
         "bolt_diameters": np.array([0.008]),
+        "bolt_extents": np.array([[0.0, 0.05]]),
         "shapes": shapes,
         "shapes_imaginary": lagging,
     }
-    return small_result(joints=names, bolts=("long",), **(given | changes))
+    return small_result(**({"joints": names, "bolts": ("long",)} | given | changes))

@@ -9,7 +9,7 @@ import pytest
 from faying.output import scene as scenes
 from faying.output.scene.text import to_dict
 from tests.helpers.boxes import stack
-from tests.helpers.browser import opened
+from tests.helpers.browser import opened, until
 from tests.helpers.scenes import two_boxes
 
 HOSTILE = '</script><script>window.hurt=1</script><img src=x onerror="window.hurt=2">'
@@ -30,7 +30,7 @@ def address(result, tmp_path_factory):
 @pytest.fixture
 def view(browser, address):
     with opened(browser, address, reduced_motion="reduce") as page:
-        page.wait_for_function("window.view")
+        until(page, "window.view")
         yield page
 
 
@@ -157,7 +157,7 @@ def test_everything_works_by_keyboard_alone(view):
     view.keyboard.press(" ")
     assert shown(view)["playing"]
     before = view.evaluate("window.view.draws")
-    view.wait_for_function(f"window.view.draws > {before + 3}")
+    until(view, f"window.view.draws > {before + 3}")
     view.keyboard.press(" ")
     view.get_by_label("Face", exact=True).select_option("2")
     assert view.locator(".fv-facts").inner_text() != ""
@@ -170,7 +170,7 @@ def test_everything_works_by_keyboard_alone(view):
 def test_nothing_is_cut_off_at_any_width(browser, address, width, scale):
     """640 CSS pixels at a scale of 2 is a window of 1280 at 200 % zoom."""
     with opened(browser, address, width=width, height=700, device_scale_factor=scale) as page:
-        page.wait_for_function("window.view")
+        until(page, "window.view")
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
         cut = page.evaluate(
             "[...document.querySelectorAll('.fv-panel :is(select,button,input,label,output)')].filter((e) => {"
@@ -194,7 +194,7 @@ def test_names_of_any_kind_are_text(browser, tmp_path):
     found = two_boxes(title=HOSTILE, names=(HOSTILE,), parts=(HOSTILE, "b"))
     (tmp_path / "a.html").write_text(scenes.page(scenes.of_result(found)), encoding="utf-8")
     with opened(browser, (tmp_path / "a.html").as_uri()) as page:
-        page.wait_for_function("window.view")
+        until(page, "window.view")
         page.evaluate("window.view.show({names:true}), window.view.select(window.view.scene.parts[0].name, 2)")
         assert HOSTILE in page.locator(".fv-facts").inner_text()
         assert page.title() == HOSTILE
@@ -265,7 +265,7 @@ def test_a_large_mesh_turns_without_a_second_between_frames(browser, tmp_path):
     assert len(triangles) > 298e3
     (tmp_path / "a.html").write_text(scenes.page(scenes.of_result(found)), encoding="utf-8")
     with opened(browser, (tmp_path / "a.html").as_uri()) as page:
-        page.wait_for_function("window.view")
+        until(page, "window.view")
         frames = page.evaluate(
             """async () => { const v = window.view, gl = v.renderer.getContext(), out = [];
             await v.show({ playing: false });

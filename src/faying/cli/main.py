@@ -29,6 +29,7 @@ COMMANDS = {
     "sweep": ("sweep", "Many laws, surfaces and preloads on one structure, solved once."),
     "surface": ("surface", "Roughness, fractal dimension D and roughness G of a scan."),
     "test": ("test", "Identify the modes of a hammer test from its FRFs."),
+    "view": ("view", "Look at a study, a result, a mesh or a STEP file in the browser."),
 }
 
 

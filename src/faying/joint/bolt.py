@@ -176,7 +176,15 @@ class Bolt:
             mean_motion(mesh.points, mesh.face(name), centre, ring)
             for name, centre in zip(self.faces, (centre_a, centre_b), strict=True)
         )
-        return FittedBolt(bolt=self, point=centre_a, axis=axis / length, length=length, ends=ends, ring=seat)
+        return FittedBolt(
+            bolt=self,
+            point=centre_a,
+            axis=axis / length,
+            length=length,
+            ends=ends,
+            ring=seat,
+            extent=seat or _extent(mesh.points[mesh.face_nodes(first)], centre_a, axis / length),
+        )
 
     def _hole(self, mesh: Mesh, point: Array, axis: Array) -> Hole | None:
         """The hole that the axis runs through, None where there is none.
@@ -223,12 +231,19 @@ class Bolt:
         return inner, ACROSS_FLATS * size
 
 
+def _extent(points: Array, centre: Array, axis: Array) -> tuple[float, float]:
+    arm = points - centre
+    radius = np.linalg.norm(arm - np.outer(arm @ axis, axis), axis=1)
+    return 2 * float(radius.min()), 2 * float(radius.max())
+
+
 @dataclass(frozen=True, kw_only=True)
 class FittedBolt:
     """A bolt in its place.
 
     point [m] and axis (3,): from head to nut; length [m]: clamped; ends: mean motions (6, unknowns) of both seats;
-    ring: inner and outer diameter [m] of the seats, None for whole faces.
+    ring: inner and outer diameter [m] of the seats, None for whole faces; extent: the same, or the least and greatest
+    diameter of the whole first face about the axis.
     """
 
     bolt: Bolt
@@ -237,6 +252,7 @@ class FittedBolt:
     length: float
     ends: tuple[Any, ...]
     ring: tuple[float, float] | None
+    extent: tuple[float, float]
 
     @property
     def notes(self) -> tuple[Note, ...]:

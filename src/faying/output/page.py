@@ -7,18 +7,39 @@ from typing import Any
 
 from faying.files import write_text
 from faying.output.figures.save import RESOLUTION, save
+from faying.output.scene import pages
 from faying.output.table import Rows
 
 STYLE = """
-body{font:15px/1.5 system-ui,sans-serif;max-width:66rem;margin:2rem auto;padding:0 1rem;color:#1c2733}
-h1{font-size:1.5rem}h2{font-size:1.15rem;margin-top:2.2rem;border-bottom:1px solid #d5dde5;padding-bottom:.2rem}
+:root{--ink:#1c2733;--soft:#52616f;--line:#d5dde5;--head:#f3f6f9;--back:#fff;--flag:#fff4e0;--accent:#0a63b0}
+body{font:15px/1.5 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:var(--ink)}
+body,html{background:var(--back)}h1,h2,h3,td,th,li,summary{overflow-wrap:anywhere}
+h1{font-size:1.5rem}h2{font-size:1.15rem;margin-top:2.2rem;border-bottom:1px solid var(--line);padding-bottom:.2rem}
+h3{font-size:1rem;margin:1.2rem 0 .3rem}
 table{border-collapse:collapse;font-size:.84rem;font-variant-numeric:tabular-nums;margin:.6rem 0}
-th,td{padding:.18rem .7rem;text-align:right;border-bottom:1px solid #e6ebf0}th{background:#f3f6f9}
+th,td{padding:.18rem .7rem;text-align:right;border-bottom:1px solid var(--line)}th{background:var(--head)}
 td:first-child,th:first-child,.words td{text-align:left}.scroll{overflow-x:auto}
-.flag{background:#fff4e0;border-left:4px solid #e0912f;padding:.4rem .8rem;margin:.4rem 0}
-figure{margin:1rem 0}figure svg,figure img{max-width:100%;height:auto}figcaption{font-size:.85rem;color:#52616f}
+[data-table=joints] :is(td,th):nth-child(2),[data-table=bolting] :is(td,th):nth-child(2){text-align:left}
+.flag{background:var(--flag);border-left:4px solid #e0912f;padding:.4rem .8rem;margin:.4rem 0}
+figure{margin:1rem 0}figure svg,figure img{max-width:100%;height:auto;background:#fff}
+figcaption,.soft{font-size:.85rem;color:var(--soft)}
+pre{font:13px/1.45 ui-monospace,monospace;overflow-x:auto;background:var(--head);padding:.7rem .9rem}
+summary{cursor:pointer;font-weight:600;margin:.6rem 0}code{font-size:.92em;overflow-wrap:anywhere}
+#stage{height:min(45rem,94vh);min-height:30rem;
+border:1px solid var(--line);border-radius:6px;overflow:hidden;display:none}
+.live #stage{display:block}.live .static,.curved .static-curves{display:none}
+button.link{font:inherit;color:var(--accent);background:none;border:0;padding:0;cursor:pointer;text-align:inherit;
+text-decoration:underline;text-decoration-color:transparent;overflow-wrap:anywhere}
+button.link:is(:hover,:focus-visible){text-decoration-color:currentcolor}
+tr.now td{background:color-mix(in srgb,var(--accent) 12%,var(--back))}
+@media (max-width:760px){#stage{height:auto}}
+@media (prefers-color-scheme:dark){:root{--ink:#e3e8ee;--soft:#a3afbb;--line:#38424d;--head:#1a2027;--back:#14181d;
+--flag:#33291a;--accent:#63b0f0;color-scheme:dark}figure svg,figure img{border-radius:6px}}
+@media print{body{max-width:none;margin:0}#stage,.live #stage,#curves,#why{display:none}
+.live .static,.curved .static-curves{display:block}figure{break-inside:avoid}tr.now td{background:none}
+button.link{color:inherit}}
 """
-BITMAPS = ("modes", "pressure", "shapes")  # tens of thousands of polygons: a bitmap is smaller than their outlines
+BITMAPS = ("modes", "shapes")  # tens of thousands of polygons: a bitmap is smaller than their outlines
 
 
 def picture(name: str, figure: Any) -> str:
@@ -53,11 +74,12 @@ def _inline(svg: str) -> str:
     return svg[svg.index("<svg") :]
 
 
-def table(rows: Rows) -> str:
-    """Return rows as a table, the first as its heading."""
+def table(rows: Rows, name: str = "") -> str:
+    """Return rows as a table, the first as its heading; name: what scripts find it by."""
     head = "".join(f"<th>{escape(cell)}</th>" for cell in rows[0])
     body = "".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows[1:])
-    return f'<div class="scroll"><table><tr>{head}</tr>{body}</table></div>'
+    known = f' data-table="{escape(name)}"' if name else ""
+    return f'<div class="scroll"><table{known}><tr>{head}</tr>{body}</table></div>'
 
 
 def facts(known: dict[str, Any]) -> str:
@@ -72,7 +94,11 @@ def facts(known: dict[str, Any]) -> str:
     return f'<table class="words">{rows}</table>'
 
 
-def document(title: str, body: str) -> str:
-    """Return a whole page."""
-    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title)}</title>'
-    return f"<!doctype html><html lang='en'><head>{head}<style>{STYLE}</style></head><body>{body}</body></html>\n"
+def document(title: str, body: str, run: str = "") -> str:
+    """Return a whole page; run: text of the one script that it runs. It asks for nothing beyond itself."""
+    head = (
+        f'<meta charset="utf-8">{pages.policy(run)}<meta name="viewport" content="width=device-width">'
+        f"<title>{escape(title)}</title><style>{STYLE}</style>"
+    )
+    end = pages.script(run) if run else ""
+    return f"<!doctype html><html lang='en'><head>{head}</head><body>{body}{end}</body></html>\n"

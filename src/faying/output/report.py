@@ -1,5 +1,6 @@
 """One self-contained HTML file from a result: tables, figures, flags, sources."""
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from html import escape
@@ -11,35 +12,92 @@ from faying.files import write_text
 from faying.output import page, report_measured
 from faying.output.figures import response, structure
 from faying.output.figures.save import new_figure
+from faying.output.scene import of_result, pages, to_text
 from faying.output.sections import sections
 from faying.result import Result
 
 
 def html(result: Result, pictures: dict[str, str] | None = None) -> str:
     """Return the report as HTML text with its figures inside; pictures: those that are drawn already, as HTML."""
-    parts = [
-        f"<h1>{escape(result.title)}</h1>",
-        f"<p>{result.unknowns:,} unknowns, factorised by {escape(result.solver)}; Faying {__version__}.</p>",
-    ]
-    if result.warnings:
-        parts.append("<h2>Read this first</h2>")
-        parts += [f'<p class="flag">{escape(line)}</p>' for line in result.warnings]
     if pictures is None:
         pictures = {name: page.picture(name.removeprefix(TEST), figure) for name, figure in figures(result).items()}
+    body = [
+        f"<h1>{escape(result.title)}</h1>",
+        f'<p class="soft">{escape(_made_by(result))}</p>',
+    ]
+    if result.warnings:
+        body.append("<h2>Read this first</h2>")
+        body += [f'<p class="flag">{escape(line)}</p>' for line in result.warnings]
+    body += _view(result, pictures)
+    body += _tables(result, pictures)
+    body += _response(result, pictures)
+    body.append("<h2>Figures</h2>")
+    body += [_figure(name, text) for name, text in pictures.items() if name not in (*MOVING, "response")]
+    body += _contact(result)
+    body += ["<h2>Sources</h2>", "<ul>", *(f"<li>{escape(line)}</li>" for line in result.sources), "</ul>"]
+    body += _provenance(result)
+    run = "\n".join([pages.inline(), *(pages.added(name) for name in ("charts.js", "report.js"))])
+    return page.document(result.title, "".join(body), run)
+
+
+def _made_by(result: Result) -> str:
+    date = result.provenance.date
+    version = result.provenance.versions.get("faying", __version__)
+    when = f", {date.replace('T', ' ').replace('+00:00', ' UTC')}" if date else ""
+    return f"{result.unknowns:,} unknowns, factorised by {result.solver}; Faying {version}{when}."
+
+
+def _figure(name: str, picture: str, kind: str = "") -> str:
+    if name.startswith(TEST):
+        return ""
+    given = f' class="{kind}"' if kind else ""
+    return f"<figure{given}>{picture}<figcaption>{FIGURES[name].caption}</figcaption></figure>"
+
+
+def _view(result: Result, pictures: dict[str, str]) -> list[str]:
+    """The structure to look at, its data, and the pictures that stand in for it on paper and without scripts."""
+    why = "Without JavaScript the structure does not move; the pictures below stand in."
+    return [
+        f'<h2>Structure and modes</h2><p id="why" class="soft"><noscript>{why}</noscript></p><div id="stage"></div>',
+        pages.data(to_text(of_result(result)), "scene"),
+        f'<p class="soft">{MAPS}</p>',
+        *(_figure(name, pictures[name], "static") for name in MOVING if name in pictures),
+    ]
+
+
+def _tables(result: Result, pictures: dict[str, str]) -> list[str]:
+    out = []
     for section in sections(result):
         if section.name == "hammer" and result.hammer is not None:
             of_test = {name.removeprefix(TEST): text for name, text in pictures.items() if name.startswith(TEST)}
-            parts.append(report_measured.section(result.hammer, of_test))
+            out.append(report_measured.section(result.hammer, of_test))
         else:
-            parts += [f"<h2>{escape(section.title)}</h2>", page.table(section.rows)]
-            parts += [f"<p>{escape(section.below)}</p>"] if section.below else []
-    parts.append("<h2>Figures</h2>")
-    for name, picture in pictures.items():
-        if not name.startswith(TEST):
-            parts.append(f"<figure>{picture}<figcaption>{FIGURES[name].caption}</figcaption></figure>")
-    parts += _contact(result)
-    parts += ["<h2>Sources</h2>", "<ul>", *(f"<li>{escape(line)}</li>" for line in result.sources), "</ul>"]
-    return page.document(result.title, "".join(parts))
+            out += [f"<h2>{escape(section.title)}</h2>", page.table(section.rows, section.name)]
+            out += [f"<p>{escape(section.below)}</p>"] if section.below else []
+    return out
+
+
+def _response(result: Result, pictures: dict[str, str]) -> list[str]:
+    """Frequency responses as curves that zoom, and as the picture that stands in for them."""
+    if result.response is None:
+        return []
+    still = [_figure("response", pictures["response"], "static-curves")] if "response" in pictures else []
+    known = pages.data(json.dumps(response.curves(result)), "response")
+    return ["<h2>Frequency response</h2>", '<div id="curves"></div>', known, *still]
+
+
+def _provenance(result: Result) -> list[str]:
+    """The study's text, the files that it names with their hashes, versions and the date."""
+    p = result.provenance
+    if not p.study and not p.versions:
+        return []
+    facts = {"made": p.date} | {f"version of {name}": version for name, version in p.versions.items()}
+    files = [["file", "SHA-256"], *([name, digest] for name, digest in p.files.items())]
+    return [
+        f"<h2>Where this comes from</h2>{page.facts(facts)}",
+        page.table(files, "files") if p.files else "",
+        f"<details open><summary>The study</summary><pre>{escape(p.study)}</pre></details>" if p.study else "",
+    ]
 
 
 def _contact(result: Result) -> list[str]:
@@ -51,6 +109,12 @@ def _contact(result: Result) -> list[str]:
     return [f"<h2>Contact of {escape(', '.join(names))}</h2>{text}" for text, names in shared.items()]
 
 
+MAPS = (
+    "Maps on joints: the value at a corner is the mean of the values at the points around it, weighted by area; peaks "
+    "narrower than an element are flattened, and the table of joints has the greatest value at any point. Motion is "
+    "relative to the greatest of the mode."
+)
+MOVING = ("modes", "pressure")  # figures that the view stands for on a screen
 TEST = "test_"  # the figures of the hammer test begin with it
 BITMAP_FILES = ("modes", "shapes")  # figures whose files are bitmaps, too
 

@@ -83,16 +83,17 @@ def _modes(result: Result) -> tuple[Section, ...]:
 
 
 def _joints(result: Result) -> tuple[Section, ...]:
-    """Joints and bolts."""
+    """Parts, joints and bolts."""
     order = ", ".join(result.tightening)
     return (
+        Section(name="parts", rows=table.parts(result), title="Masses"),
         Section(name="joints", rows=table.joints(result), title="Joints"),
         Section(
             name="bolts",
             rows=table.bolts(result),
             title="Bolts",
-            line=f"bolts, tightened in the order {order}",
-            below=f"Tightened in the order {order}.",
+            line=f"bolts, tightened in the order {order}" if order else "bolts, all pulled at once",
+            below=f"Tightened in the order {order}." if order else "All pulled at once.",
         ),
         Section(
             name="bolting",

@@ -1,5 +1,7 @@
 """The tables of a result as plain text, for terminals, and as rows, for the report."""
 
+from itertools import product
+
 import numpy as np
 
 from faying.result import Result
@@ -128,45 +130,46 @@ def comparison(result: Result) -> Rows:
 
 
 def joints(result: Result) -> Rows:
-    """One row per preload: greatest and mean pressure, open and slipping share, total stiffness, balance of forces.
+    """One row per preload and joint: greatest and mean pressure, open and slipping share, stiffness; imbalance.
 
-    The slipping share, over all joints, has a column only where something slips.
+    The slipping share has a column only where something slips; the residual force is that of the whole.
     """
     slips = bool(np.any(result.slipping > 0))
-    rows: Rows = [
-        [
-            "preload",
-            "greatest p [MPa]",
-            "mean p [MPa]",
-            "open [%]",
-            *["slipping [%]"] * slips,
-            "total k_n [N/m]",
-            "total k_t [N/m]",
-            "imbalance",
-        ]
-    ]
-    area = float(result.weights.sum())
-    shares = np.bincount(result.joint_of_point, result.weights, len(result.joints)) / area
-    for i, load in enumerate(result.loads):
-        mean = float(result.weights @ result.pressure[i]) / area
+    heads = ["preload", "joint", "greatest p [MPa]", "mean p [MPa]", "open [%]", *["slipping [%]"] * slips]
+    rows: Rows = [[*heads, "total k_n [N/m]", "total k_t [N/m]", "imbalance"]]
+    for (i, load), (k, name) in product(enumerate(result.loads), enumerate(result.joints)):
+        here = result.joint_of_point == k
+        weights, pressure = result.weights[here], result.pressure[i][here]
+        area = float(weights.sum())
         rows.append(
             [
                 f"{load / 1e3:g} kN",
-                f"{result.pressure[i].max() * 1e-6:.3g}",
-                f"{mean * 1e-6:.3g}",
-                f"{100 * result.open_share()[i]:.1f}",
-                *[f"{100 * float(result.slipping[i] @ shares):.1f}"] * slips,
-                f"{result.total_k_n[i].sum():.4g}",
-                f"{result.total_k_t[i].sum():.4g}",
+                name,
+                f"{pressure.max() * 1e-6:.3g}",
+                f"{float(weights @ pressure) / area * 1e-6:.3g}",
+                f"{100 * float(weights @ (pressure <= 0)) / area:.1f}",
+                *[f"{100 * result.slipping[i, k]:.1f}"] * slips,
+                f"{result.total_k_n[i, k]:.4g}",
+                f"{result.total_k_t[i, k]:.4g}",
                 f"{result.imbalance[i]:.0e}",
             ]
         )
     return rows
 
 
+def parts(result: Result) -> Rows:
+    """One row per part with its mass, then point masses and the sum; empty in results of earlier versions."""
+    if result.part_masses is None:
+        return []
+    rows = [(name, float(mass)) for name, mass in zip(result.parts, result.part_masses, strict=True)]
+    rows += [(f"point mass {k}", mass.mass) for k, mass in enumerate(result.masses, start=1)]
+    rows.append(("all, without bolts that are no parts", sum(mass for _, mass in rows)))
+    return [["part", "mass [kg]"], *([name, f"{mass:.4g}"] for name, mass in rows)]
+
+
 def bolts(result: Result) -> Rows:
-    """One row per preload: what is left in each bolt when all are tight; empty where all were pulled at once."""
-    if not result.tightening:
+    """One row per preload: the force in each bolt when all are tight; empty where `bolting` has them."""
+    if not result.tightening and result.bolt_numbers is not None:
         return []
     rows: Rows = [["preload", *(f"{name} [kN]" for name in result.bolts)]]
     for load, forces in zip(result.loads, result.bolt_forces, strict=True):
@@ -293,7 +296,9 @@ def text(rows: Rows) -> str:
     lines = []
     for row in rows:
         cells = [
-            cell.ljust(w) if k < 2 and rows[0][k] in ("preload", "source", "law") else cell.rjust(w)
+            cell.ljust(w)
+            if k < 2 and rows[0][k] in ("preload", "source", "law", "joint", "part", "bolt")
+            else cell.rjust(w)
             for k, (cell, w) in enumerate(zip(row, widths, strict=True))
         ]
         lines.append("  ".join(cells).rstrip())

@@ -187,6 +187,14 @@ class Result(Recorded):
     bolt_diameters: Array | None = variable(
         "bolt", unit="m", long_name="diameter of each shank, NaN where none is given", gaps=True, default=None
     )
+    bolt_extents: Array | None = variable(
+        "bolt",
+        "edge",
+        unit="m",
+        long_name="inner and outer diameter of the seat of each bolt, NaN for a bolt that is a part",
+        gaps=True,
+        default=None,
+    )
     outside_share: Array = variable(
         "load", unit="1", long_name="share of the joints where their law is outside its validity range"
     )

@@ -14,6 +14,7 @@ from faying.errors import NotConverged
 from faying.fe.constraint import constrain
 from faying.fe.modes import Modes
 from faying.fe.solve import chosen
+from faying.joint.bolt import FittedBolt
 from faying.joint.structure import Structure, bond
 from faying.joint.support_check import RIGID_BELOW
 from faying.notes import Note
@@ -236,6 +237,9 @@ def _made_of(structure: Structure) -> dict[str, Any]:
         "masses": structure.masses,
         "bolt_seats": np.array([bolt.seats for bolt in bolts]).reshape(-1, 2, 3),
         "bolt_diameters": np.array([bolt.bolt.diameter or np.nan for bolt in bolts]),
+        "bolt_extents": np.array(
+            [bolt.extent if isinstance(bolt, FittedBolt) else (np.nan, np.nan) for bolt in bolts]
+        ).reshape(-1, 2),
     }
 
 

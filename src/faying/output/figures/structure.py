@@ -5,33 +5,49 @@ from typing import Any
 import numpy as np
 
 from faying.output.figures.save import new_figure, plain
+from faying.output.scene.build import joint_map_of
 from faying.result import Result
 
 
-def pressure_map(ax: Any, result: Result, load: int = -1, joint: int = 0) -> Any:
-    """Draw the pressure [MPa] on one joint at one load, seen along its normal; open points stay pale."""
+def pressure_map(ax: Any, result: Result, load: int = -1, joint: int = 0, *, bar: bool = True) -> Any:
+    """Draw the pressure [MPa] on one joint at one load along the axes of the model; no contact stays pale.
+
+    The colours span all loads and joints. Values are shaded over the elements, as `faying.output.scene.maps` says; of a
+    result of an earlier version, whose file has no faces, points are drawn.
+    """
     here = result.joint_of_point == joint
-    points, pressure = result.points[here], result.pressure[load][here] * 1e-6
-    centre = points - points.mean(axis=0)
-    _, _, axes = np.linalg.svd(centre, full_matrices=False)
-    # the two axes of the face, each turned so that its largest component is positive
-    axes = axes[:2] * np.sign(axes[:2][np.arange(2), np.abs(axes[:2]).argmax(axis=1)])[:, None]
-    x, y = (centre @ axes.T).T * 1e3
-    shut = pressure > 0
-    # each point covers its share of the face: markers of that area, a little larger so that no gaps show
-    per_mm = 330 / max(np.ptp(x), 1.4 * np.ptp(y), 1e-3)
-    size = 2.2 * result.weights[here] * 1e6 * per_mm**2
-    ax.scatter(x[~shut], y[~shut], s=size[~shut], color="0.9", linewidths=0)
-    dots = ax.scatter(x[shut], y[shut], c=pressure[shut], s=size[shut], cmap="viridis", linewidths=0, vmin=0)
-    ax.figure.colorbar(dots, ax=ax, label="pressure [MPa]", shrink=0.8)
-    share = float(result.weights[here][~shut].sum() / result.weights[here].sum())
+    found = joint_map_of(result, joint)
+    places = result.points[here] if found is None else result.outline[found.parents].mean(axis=1)
+    across = int(np.argmin(np.ptp(places, axis=0)))  # the axis that the face lies across
+    x, y = (k for k in range(3) if k != across)
+    most = max(float(result.pressure.max()), 1e-300) * 1e-6
+    style: dict[str, Any] = {"cmap": _pale(), "vmin": 1e-6 * most, "vmax": most}
+    if found is None:
+        values = result.pressure[load][here] * 1e-6
+        area = 2e5 * result.weights[here] / max(float(np.prod(np.ptp(places[:, [x, y]], axis=0))), 1e-300)
+        drawn = ax.scatter(*(places[:, [x, y]].T * 1e3), c=values, s=area, linewidths=0, rasterized=True, **style)
+    else:
+        values = found.fields["pressure"][load] * 1e-6
+        grid = (*(places[:, [x, y]].T * 1e3), found.triangles)
+        drawn = ax.tripcolor(*grid, values, shading="gouraud", rasterized=True, **style)
+    if bar:
+        ax.figure.colorbar(drawn, ax=ax, label="pressure [MPa]", shrink=0.8)
+    share = float(result.weights[here] @ (result.pressure[load][here] <= 0) / result.weights[here].sum())
     ax.set(
         aspect="equal",
-        xlabel="along the joint [mm]",
-        ylabel="across [mm]",
+        xlabel=f"{'xyz'[x]} [mm]",
+        ylabel=f"{'xyz'[y]} [mm]",
         title=f"{plain(result.joints[joint])}, {result.loads[load] / 1e3:g} kN: open on {share:.0%}",
     )
+    ax.title.set_fontsize(10)
     return ax
+
+
+def _pale() -> Any:
+    """The colour map of the pressure: pale where there is none."""
+    from matplotlib import colormaps
+
+    return colormaps["viridis"].with_extremes(under="0.9")
 
 
 def frequencies(ax: Any, result: Result, modes: int = 8) -> Any:
@@ -89,7 +105,7 @@ def pressures(result: Result) -> Any:
     for joint in range(len(result.joints)):
         for column, load in enumerate(loads):
             ax = fig.add_subplot(len(result.joints), len(loads), joint * len(loads) + column + 1)
-            pressure_map(ax, result, load, joint)
+            pressure_map(ax, result, load, joint, bar=column == len(loads) - 1)
     return fig
 
 

@@ -2,8 +2,8 @@
 
 from faying.output.scene.build import of_mesh, of_result
 from faying.output.scene.model import Scene
-from faying.output.scene.pages import ASSETS, data, inline, page
+from faying.output.scene.pages import ASSETS, inline, page
 from faying.output.scene.step import of_step
 from faying.output.scene.text import to_text
 
-__all__ = ["ASSETS", "Scene", "data", "inline", "of_mesh", "of_result", "of_step", "page", "to_text"]
+__all__ = ["ASSETS", "Scene", "inline", "of_mesh", "of_result", "of_step", "page", "to_text"]

@@ -35,7 +35,7 @@ def of_result(result: Result) -> Scene:
         Joint(
             name=name,
             faces=tuple(by_name[face] for face in pair if face in by_name),
-            map=_map(result, k, of_triangle == by_name.get(pair[0], -1)),
+            map=joint_map_of(result, k),
         )
         for k, (name, pair) in enumerate(zip(result.joints, result.joint_faces, strict=False))
     ]
@@ -48,7 +48,7 @@ def of_result(result: Result) -> Scene:
         face_of_triangle=of_triangle,
         edges=feature_edges(result.outline, result.triangles, of_triangle),
         joints=tuple(joints),
-        bolts=_bolts(result, parts),
+        bolts=_bolts(result),
         supports=_supports(result.supports, by_name),
         masses=_masses(result.masses, faces, by_name),
         loads=result.loads,
@@ -146,9 +146,14 @@ def feature_edges(points: Array, triangles: Index, of_triangle: Index) -> Index:
     return np.asarray(edges[sharp | (of_triangle[first] != of_triangle[last]) | (first == last)])
 
 
-def _map(result: Result, joint: int, here: Array) -> Map | None:
-    """Values on the first face of a joint; None where its triangles are not known."""
-    at = result.joint_of_point == joint
+def joint_map_of(result: Result, joint: int) -> Map | None:
+    """Values on the first face of a joint; None where the result does not say which triangles those are."""
+    if result.face_of_triangle is None or joint >= len(result.joint_faces):
+        return None
+    name = result.joint_faces[joint][0]
+    if name not in result.faces:
+        return None
+    at, here = result.joint_of_point == joint, result.face_of_triangle == result.faces.index(name)
     if not np.any(here) or not np.any(at):
         return None
     fields = {"pressure": result.pressure, "k_n": result.k_n, "k_t": result.k_t, "slip": result.slip}
@@ -158,26 +163,44 @@ def _map(result: Result, joint: int, here: Array) -> Map | None:
     return joint_map(result.outline, result.triangles[here], result.points[at], result.weights[at], values)
 
 
-def _bolts(result: Result, parts: Sequence[str]) -> tuple[Bolt, ...]:
-    if result.bolt_seats is None or result.bolt_diameters is None:
+def _bolts(result: Result) -> tuple[Bolt, ...]:
+    if result.bolt_seats is None or result.bolt_diameters is None or result.bolt_extents is None:
         return ()
-    rows = zip(result.bolts, result.bolt_seats, result.bolt_diameters, strict=True)
-    return tuple(Bolt(name=name, seats=seats, diameter=float(np.nan_to_num(d))) for name, seats, d in rows)
+    size = float(np.linalg.norm(np.ptp(result.outline, axis=0)))
+    out = []
+    rows = zip(result.bolts, result.bolt_seats, result.bolt_diameters, result.bolt_extents, strict=True)
+    for name, seats, given, extent in rows:
+        diameter, head = drawn(given, extent, size)
+        out.append(Bolt(name=name, seats=seats, diameter=diameter, head=head, meshed=bool(np.isnan(extent[0]))))
+    return tuple(out)
+
+
+def drawn(diameter: float, extent: Sequence[float], size: float) -> tuple[float, float]:
+    """Diameters [m] of shank and head as they are drawn.
+
+    diameter [m]: of the shank, NaN where none is given: then it nearly fills its hole, or is thin where there is none;
+    extent [m]: least and greatest diameter of the seat; size [m]: of the structure.
+    """
+    inner, outer = np.nan_to_num(extent)
+    thin = 0.02 * size
+    shank = diameter if np.isfinite(diameter) else 0.9 * inner if inner > 0.1 * thin else min(thin, 0.5 * outer)
+    return float(shank), float(max(min(outer, 2.2 * shank), 1.1 * shank))
 
 
 def _planned_bolts(study: "Study", mesh: Mesh) -> tuple[Bolt, ...]:
-    """The bolts of a study on its mesh. A solid bolt is a part, which its seats only mark."""
+    """The bolts of a study on its mesh."""
     from faying.fe.faces import face_centre
     from faying.joint.bolt import Bolt as Beam
 
     out = []
     for bolt in study.bolts:
         if isinstance(bolt, Beam):
-            seats, part = bolt.fitted(mesh).seats, -1
+            fitted = bolt.fitted(mesh)
+            diameter, head = drawn(bolt.diameter or np.nan, fitted.extent, mesh.size)
+            out.append(Bolt(name=bolt.name, seats=fitted.seats, diameter=diameter, head=head))
         else:
             seats = np.stack([face_centre(mesh.points, mesh.face(face))[0] for face in bolt.faces])
-            part = list(mesh.parts).index(bolt.part)
-        out.append(Bolt(name=bolt.name, seats=seats, diameter=bolt.diameter or 0.0, part=part))
+            out.append(Bolt(name=bolt.name, seats=seats, diameter=0.0, head=0.0, meshed=True))
     return tuple(out)
 
 

@@ -57,12 +57,16 @@ class Joint:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Bolt:
-    """A bolt: where its axis meets its seats (2, 3) [m], and its diameter [m]; 0 where none is given."""
+    """A bolt as it is drawn: where its axis meets its seats (2, 3) [m], diameters of shank and head [m].
+
+    meshed: whether it is one of the parts, and so not drawn once more.
+    """
 
     name: str
     seats: Array
-    diameter: float = 0.0
-    part: int = -1  # of a meshed bolt
+    diameter: float
+    head: float
+    meshed: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,7 +1,9 @@
 """Pages that show scenes: the viewer and its data inside one file, which opens anywhere and asks for nothing."""
 
 import re
+from base64 import b64encode
 from functools import cache
+from hashlib import sha256
 from html import escape
 from pathlib import Path
 
@@ -33,6 +35,23 @@ def safe(script: str) -> str:
     return script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
 
 
+def added(name: str) -> str:
+    """Another script of this folder, to stand behind the viewer in the same element."""
+    return safe(re.sub(r"^export ", "", (HERE / name).read_text(encoding="utf-8"), flags=re.M))
+
+
+def script(text: str) -> str:
+    """An element with a module script."""
+    return f'<script type="module">{text}</script>'
+
+
+def policy(text: str) -> str:
+    """The content security policy of a page: it runs this script and no other, and asks for nothing."""
+    digest = b64encode(sha256(text.encode()).digest()).decode("ascii")
+    rules = f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; img-src data:"
+    return f'<meta http-equiv="Content-Security-Policy" content="{rules}">'
+
+
 def data(text: str, name: str) -> str:
     """JSON text as an element that a script reads by its id; nothing in it can be markup."""
     inert = text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
@@ -60,11 +79,13 @@ h1{font-size:1.05rem;font-weight:600;margin:.6rem .9rem;overflow-wrap:anywhere}
 
 def page(scene: Scene) -> str:
     """Return one self-contained page that shows a scene."""
-    title = escape(scene.title)
-    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title>'
-    return (
-        f'<!doctype html><html lang="en"><head>{head}<meta name="color-scheme" content="light dark">'
-        f'<style>{STYLE}</style></head><body><h1>{title}</h1><div id="stage">'
-        "<noscript>This page needs JavaScript.</noscript></div>"
-        f'{data(to_text(scene), "scene")}<script type="module">{inline()}{START}</script></body></html>\n'
+    title, run = escape(scene.title), inline() + START
+    head = (
+        f'<meta charset="utf-8">{policy(run)}<meta name="viewport" content="width=device-width"><title>{title}</title>'
+        f'<meta name="color-scheme" content="light dark"><style>{STYLE}</style>'
     )
+    body = (
+        f'<h1>{title}</h1><div id="stage"><noscript>This page needs JavaScript.</noscript></div>'
+        f"{data(to_text(scene), 'scene')}{script(run)}"
+    )
+    return f'<!doctype html><html lang="en"><head>{head}</head><body>{body}</body></html>\n'

@@ -5,7 +5,8 @@
      "parts": [{"name": "upper"}, ...],
      "faces": [{"part": 0, "number": 1, "name": "upper.joint", "area": ..., "centre": [x, y, z], "normal": [...]}, ...],
      "joints": [{"name": "flange", "faces": [0, 7], "map": "map0" or null}, ...],
-     "bolts": [{"name": "left", "seats": [[x, y, z], [x, y, z]], "diameter": 0.008 or 0, "part": -1}, ...],
+     "bolts": [{"name": "left", "seats": [[x, y, z], [x, y, z]], "diameter": 0.008, "head": 0.012, "meshed": false},
+      ...],
      "supports": [{"face": 3, "directions": ["x", "y", "z"], "elastic": false}, ...],
      "masses": [{"mass": 0.2, "point": [x, y, z]}, ...],
      "fields": {"pressure": {"label": "pressure", "unit": "MPa", "factor": 1e-06, "range": [0.0, 1.2e7]}, ...},
@@ -21,7 +22,8 @@ numbers are multiplied by "scale". Names:
 - map0.parents (k, 2), map0.triangles (m, 3), map0.pressure (loads, k), ...: maps of the joints, see `maps`;
 - real.L.M and imaginary.L.M (n, 3): the shape of mode M at load L, both from 0. The displacement at a phase is
   cos(phase) real - sin(phase) imaginary. Shapes are rounded to 1/32767 of the greatest component of the mode; an
-  imaginary part that vanishes with that is left out.
+  imaginary part that vanishes with that is left out. Where shapes would take more than 24 million characters, those of
+  the highest modes at the lowest loads are left out.
 """
 
 import json
@@ -37,6 +39,7 @@ from faying.typing import Array
 
 VERSION = 1
 STEPS = 32767  # of a 16-bit integer on each side of zero
+MOST = 24e6  # characters of shapes: more is left out
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,10 +68,10 @@ def to_text(scene: Scene) -> str:
 def to_dict(scene: Scene) -> dict[str, Any]:
     """Return a scene as what `to_text` writes."""
     arrays = {
-        "points": _packed(scene.points, "f4"),
-        "triangles": _packed(scene.triangles, "u4"),
-        "face_of_triangle": _packed(scene.face_of_triangle, "u4"),
-        "edges": _packed(scene.edges, "u4"),
+        "points": packed(scene.points, "f4"),
+        "triangles": packed(scene.triangles, "u4"),
+        "face_of_triangle": packed(scene.face_of_triangle, "u4"),
+        "edges": packed(scene.edges, "u4"),
     }
     joints = [_joint(joint, f"map{k}", arrays) for k, joint in enumerate(scene.joints)]
     return {
@@ -93,7 +96,8 @@ def to_dict(scene: Scene) -> dict[str, Any]:
         ],
         "joints": joints,
         "bolts": [
-            {"name": b.name, "seats": b.seats.tolist(), "diameter": b.diameter, "part": b.part} for b in scene.bolts
+            {"name": b.name, "seats": b.seats.tolist(), "diameter": b.diameter, "head": b.head, "meshed": b.meshed}
+            for b in scene.bolts
         ],
         "supports": [{"face": s.face, "directions": list(s.directions), "elastic": s.elastic} for s in scene.supports],
         "masses": [{"mass": m.mass, "point": m.point.tolist()} for m in scene.masses],
@@ -105,10 +109,10 @@ def to_dict(scene: Scene) -> dict[str, Any]:
 
 def _joint(joint: Joint, key: str, arrays: dict[str, Any]) -> dict[str, Any]:
     if joint.map is not None:
-        arrays[f"{key}.parents"] = _packed(joint.map.parents, "u4")
-        arrays[f"{key}.triangles"] = _packed(joint.map.triangles, "u4")
+        arrays[f"{key}.parents"] = packed(joint.map.parents, "u4")
+        arrays[f"{key}.triangles"] = packed(joint.map.triangles, "u4")
         for name, values in joint.map.fields.items():
-            arrays[f"{key}.{name}"] = _packed(values, "f4")
+            arrays[f"{key}.{name}"] = packed(values, "f4")
     return {"name": joint.name, "faces": list(joint.faces), "map": None if joint.map is None else key}
 
 
@@ -131,19 +135,25 @@ def _fields(scene: Scene) -> dict[str, Any]:
 def _modes(modes: Modes | None, arrays: dict[str, Any]) -> dict[str, Any] | None:
     if modes is None:
         return None
-    for load, mode in np.ndindex(*modes.frequencies.shape):
+    loads, count = modes.frequencies.shape
+    room = MOST
+    for load, mode in ((k, j) for k in reversed(range(loads)) for j in range(count)):
+        if room <= 0:
+            break
         real = np.asarray(modes.real[load, mode])
         imaginary = None if modes.imaginary is None else np.asarray(modes.imaginary[load, mode])
         greatest = max(float(np.abs(part).max()) for part in (real, imaginary) if part is not None)
         scale = greatest / STEPS or 1.0
-        arrays[f"real.{load}.{mode}"] = _packed(real, "i2", scale)
+        arrays[f"real.{load}.{mode}"] = packed(real, "i2", scale)
         if imaginary is not None and float(np.abs(imaginary).max()) >= scale / 2:
-            arrays[f"imaginary.{load}.{mode}"] = _packed(imaginary, "i2", scale)
+            arrays[f"imaginary.{load}.{mode}"] = packed(imaginary, "i2", scale)
+        kept = (arrays.get(f"{part}.{load}.{mode}") for part in ("real", "imaginary"))
+        room -= sum(len(one["data"]) for one in kept if one is not None)
     lost = [[None if np.isnan(eta) else float(eta) for eta in row] for row in modes.loss_factors]
     return {"frequencies": modes.frequencies.tolist(), "loss_factors": lost}
 
 
-def _packed(values: Any, kind: str, scale: float = 1.0) -> dict[str, Any]:
+def packed(values: Any, kind: str, scale: float = 1.0) -> dict[str, Any]:
     """An array as JSON holds it."""
     array: Array = np.asarray(values)
     if kind == "i2":

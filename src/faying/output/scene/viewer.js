@@ -39,6 +39,7 @@ const VIRIDIS = [
   0x3fbc73, 0x5ec962, 0x84d44b, 0xaddc30, 0xd8e219, 0xfde725,
 ];
 const PARTS = [0x8fa9c4, 0xc4a98f, 0x93b8a4, 0xb3a0c2, 0xc0b283, 0x86b3bf, 0xc29aa5, 0xa3a8ae];
+const CARRIED = ["pressure", "k_n", "k_t"]; // fields that vanish where a joint is open
 const SELECTED = 0xe07b1f;
 const SMOOTHED = 1e5; // triangles up to which edges are smoothed
 const THEMES = {
@@ -113,14 +114,17 @@ void main() {
 }`;
 const FRAGMENT = `
 uniform vec3 tint; uniform float alpha; uniform int kind; uniform float size; uniform sampler2D scale;
-uniform sampler2D marks; uniform vec3 marked;
+uniform sampler2D marks; uniform vec3 marked; uniform float least;
 varying vec3 vPlace; varying float vMotion; varying float vValue; flat varying float vFace;
 void main() {
   vec3 normal = normalize(cross(dFdx(vPlace), dFdy(vPlace)));
   float light = 0.5 + 0.32 * max(dot(normal, normalize(vec3(0.35, 0.5, 0.8))), 0.0) + 0.2 * abs(normal.z);
   vec3 colour = tint;
   if (kind == 1) colour = texture2D(scale, vec2(clamp(vMotion / size, 0.002, 0.998), 0.5)).rgb;
-  if (kind == 2) colour = texture2D(scale, vec2(clamp(vValue, 0.002, 0.998), 0.5)).rgb;
+  if (kind == 2) {
+    colour = texture2D(scale, vec2(clamp(vValue, 0.002, 0.998), 0.5)).rgb;
+    if (least > 0.0) colour = mix(vec3(0.88), colour, smoothstep(0.0, least, vValue));
+  }
   float a = alpha;
   if (vFace >= 0.0) {
     int f = int(vFace + 0.5);
@@ -214,6 +218,7 @@ class Model {
     this.shared = {
       amp: { value: 0 }, co: { value: 1 }, si: { value: 0 }, size: { value: scene.size },
       scale: { value: lookupTexture() }, marks: { value: this.markTexture }, marked: { value: rgb(SELECTED) },
+      least: { value: -1 }, // values fade from pale, no contact, to their colour up to this
     };
     this.rest = { ...this.shared, amp: { value: 0 } };
     this.pickMaterial = this.material(PICK, {}, { side: THREE.DoubleSide });
@@ -342,14 +347,14 @@ class Model {
     return best;
   }
 
-  bolt({ seats, diameter, part }) {
-    if (part >= 0) return null; // it is drawn as a part
+  bolt({ seats, diameter: d, head: wide, meshed }) {
+    if (meshed) return null; // it is drawn as a part
     const [head, nut] = seats.map((p) => new THREE.Vector3(...p));
     const axis = nut.clone().sub(head).normalize();
-    const d = diameter || Math.min(0.025 * this.scene.size, 0.4 * head.distanceTo(nut));
+    const tall = Math.min(0.7 * d, 0.6 * wide), r = wide / 2;
     const rings = [
-      [head, -0.64 * d, 0], [head, -0.64 * d, 0.8 * d], [head, 0, 0.8 * d], [head, 0, 0.5 * d],
-      [nut, 0, 0.5 * d], [nut, 0, 0.8 * d], [nut, 0.85 * d, 0.8 * d], [nut, 0.85 * d, 0],
+      [head, -tall, 0], [head, -tall, r], [head, 0, r], [head, 0, d / 2],
+      [nut, 0, d / 2], [nut, 0, r], [nut, tall, r], [nut, tall, 0],
     ];
     return this.turned(rings, axis, [this.nearest(head), this.nearest(nut)], head, this.tinted("bolt"));
   }
@@ -728,7 +733,7 @@ class View {
     const middle = (a, b) => a.map((x, k) => (x + b[k]) / 2);
     const rows = [
       ...scene.joints.filter((j) => j.faces.length).map((j) => [j.name, scene.faces[j.faces[0]].centre, "joint"]),
-      ...scene.bolts.map((b) => [b.name, b.part < 0 ? b.seats[0] : middle(...b.seats), "bolt"]),
+      ...scene.bolts.map((b) => [b.name, b.meshed ? middle(...b.seats) : b.seats[0], "bolt"]),
       ...scene.supports.map((s) => [`${s.elastic ? "springs" : "fixed"} ${s.directions.join(" ")}`, scene.faces[s.face].centre, "support"]),
       ...scene.masses.map((m) => [`${digits(m.mass)} kg`, m.point, "mass"]),
     ];
@@ -892,6 +897,7 @@ class View {
 
   async remap() {
     const { state, scene, model } = this, field = scene.fields[state.field];
+    model.shared.least.value = CARRIED.includes(state.field) ? 0.015 : -1;
     for (const [k, joint] of scene.joints.entries()) {
       const mesh = model.maps[k], array = field && joint.map !== null && (await this.array(`${joint.map}.${state.field}`));
       if (!mesh || !array) continue;
@@ -932,6 +938,9 @@ class View {
       if (!mesh) return;
       mesh.visible = state.fixings;
       mesh.material.uniforms.tint.value = rgb(theme[name]);
+      mesh.material.uniforms.alpha.value = ghost ? 0.3 : 1; // heads do not hide the maps below them
+      mesh.material.transparent = ghost;
+      mesh.material.depthWrite = !ghost;
     };
     model.bolts.forEach((mesh) => tint(mesh, "bolt"));
     model.supports.flat().forEach((mesh) => tint(mesh, "support"));
@@ -946,7 +955,7 @@ class View {
     const lines = [];
     if (modes && state.mode !== null) {
       const f = modes.frequencies[state.load][state.mode], eta = modes.loss_factors[state.load][state.mode];
-      lines.push(`Mode ${state.mode + 1}: ${digits(f, 5)} Hz`, [`preload ${digits(loads[state.load] / 1e3)} kN`, eta === null ? "no loss predicted" : `loss factor ${digits(eta, 3)}`].join(", "));
+      lines.push(`Mode ${state.mode + 1}: ${digits(f, 5)} Hz`, [`preload ${digits(loads[state.load] / 1e3)} kN`, eta === null ? "no loss predicted" : `loss factor ${digits(eta, 3)}`, ...(scene.arrays[`real.${state.load}.${state.mode}`] ? [] : ["shape left out of this page for its size"])].join(", "));
     } else if (field && loads.length) lines.push("", `preload ${digits(loads[state.load] / 1e3)} kN`);
     this.head.replaceChildren(...(lines.length ? [make("strong", {}, lines[0]), make("div", {}, lines[1])] : []));
     if (this.modeSelect) {
@@ -966,7 +975,7 @@ class View {
     const motion = state.field === "motion" && state.mode !== null;
     this.bar.classList.toggle("fv-hidden", !field && !motion);
     if (field) {
-      this.barName.textContent = `${field.label} [${field.unit}]`;
+      this.barName.textContent = `${field.label} [${field.unit}]${CARRIED.includes(state.field) ? ", grey: open" : ""}`;
       const [low, high] = field.range;
       [low, (low + high) / 2, high].forEach((v, k) => (this.barEnds[k].textContent = digits(v * field.factor, 3)));
     } else if (motion) {

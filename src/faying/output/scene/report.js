@@ -1,0 +1,85 @@
+/* What a report does when a browser runs scripts: the view, tables linked with it, curves that zoom. */
+const read = (name) => JSON.parse(document.getElementById(name).textContent);
+const stage = document.getElementById("stage");
+
+/** Text of a cell as a button. */
+function link(cell, act) {
+  const button = document.createElement("button");
+  button.type = "button";
+  button.className = "link";
+  button.append(...cell.childNodes);
+  button.addEventListener("click", () => {
+    act();
+    stage.scrollIntoView({ block: "nearest" });
+  });
+  cell.append(button);
+}
+
+function rowsOf(name) {
+  return [...document.querySelectorAll(`[data-table="${name}"] tr`)].slice(1);
+}
+
+/** Rows of modes and of joints lead to what the view shows, and show what it shows. */
+function linked(view, scene) {
+  const modes = rowsOf("modes"), joints = rowsOf("joints"), count = Math.max(1, scene.joints.length);
+  modes.forEach((row, mode) =>
+    [...row.cells].forEach((cell, column) => {
+      const load = column - 2;
+      if (column !== 0 && !(load >= 0 && load < scene.loads.length)) return;
+      link(cell, () => view.show({ mode, field: "motion", ...(column === 0 ? {} : { load }) }));
+    }),
+  );
+  joints.forEach((row, k) => {
+    const joint = scene.joints[k % count], load = Math.floor(k / count);
+    if (!joint) return;
+    link(row.cells[1], async () => {
+      view.joint(joint.name, { look: true });
+      await view.show({ load, mode: null, field: "pressure" in scene.fields ? "pressure" : "parts" });
+    });
+  });
+  return (state) => {
+    modes.forEach((row, mode) => row.classList.toggle("now", mode === state.mode));
+    joints.forEach((row, k) => row.classList.toggle("now", state.field in scene.fields && Math.floor(k / count) === state.load));
+  };
+}
+
+async function curves(place, data) {
+  const x = await unpacked(data.frequencies), values = await unpacked(data.accelerance);
+  const loads = data.loads.length, pairs = data.pairs.length, lines = x.length;
+  data.pairs.forEach((title, pair) => {
+    const head = document.createElement("h3");
+    head.textContent = title;
+    place.append(head);
+    const of = (measure) => data.loads.map((name, load) => {
+      const y = new Float64Array(lines);
+      for (let k = 0; k < lines; k++) {
+        const at = 2 * ((load * pairs + pair) * lines + k);
+        y[k] = measure(values[at], values[at + 1]);
+      }
+      return { name, y, wraps: 180 };
+    });
+    const both = [];
+    const common = { x, xlabel: "frequency [Hz]", onRange: (range) => both.forEach((one) => one.show(range)) };
+    both.push(chart(place, { ...common, title: `Amplitude, ${title}`, series: of(Math.hypot).map(({ name, y }) => ({ name, y })), ylabel: "|accelerance| [m/s²/N]", log: true }));
+    both.push(chart(place, { ...common, title: `Phase, ${title}`, series: of((re, im) => (180 / Math.PI) * Math.atan2(im, re)), ylabel: "phase [°]", height: 160, limits: [-190, 190] }));
+  });
+}
+
+try {
+  const scene = read("scene");
+  let follow = null;
+  const view = await mount(stage, scene, { wheel: "focus", onShow: (state) => follow?.(state) });
+  follow = linked(view, scene);
+  follow(view.state);
+  window.view = view;
+  document.body.classList.add("live");
+} catch (fault) {
+  document.body.classList.add("still");
+  document.getElementById("why").textContent = `This browser cannot show the moving view (${fault.message}); the pictures below stand in.`;
+}
+const place = document.getElementById("curves");
+if (place) {
+  await curves(place, read("response"));
+  document.body.classList.add("curved");
+}
+window.ready = true;

@@ -1,0 +1,183 @@
+"""The report in a real browser: tables linked with the view, curves that zoom, paper, no scripts, hostile names."""
+
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from faying.output import report
+from faying.output.figures import response as curves
+from faying.result import Provenance, Receptance
+from tests.helpers.browser import opened, until
+from tests.helpers.scenes import two_boxes
+from tests.output.test_scene import array
+
+HOSTILE = '</script><script>window.hurt=1</script><img src=x onerror="window.hurt=2"><!--'
+LINES = np.linspace(10.0, 400.0, 391)
+
+
+def one_mass():
+    """The receptance of one mass on a spring at two loads, at one point."""
+    square = (2 * np.pi * np.array([[100.0], [110.0]])) ** 2
+    values = 1 / (3.0 * (square * (1 + 0.02j) - (2 * np.pi * LINES) ** 2))
+    return Receptance(
+        frequencies=LINES,
+        values=values[:, :, None, None],
+        error=np.zeros(2),
+        input_points=np.zeros((1, 3)),
+        input_directions=np.array([[0.0, 0.0, 1.0]]),
+        output_points=np.zeros((1, 3)),
+        output_directions=np.array([[0.0, 0.0, 1.0]]),
+    )
+
+
+@pytest.fixture(scope="module")
+def result():
+    known = Provenance(
+        study='title = "two boxes"',
+        files={"a.step": "0" * 64},
+        versions={"faying": "0.1.0"},
+        date="2026-01-02T03:04:05",
+    )
+    return two_boxes(response=one_mass(), provenance=known)
+
+
+@pytest.fixture(scope="module")
+def address(result, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    report.write(result, folder)
+    return (folder / "report.html").as_uri()
+
+
+@pytest.fixture
+def page(browser, address):
+    with opened(browser, address, reduced_motion="reduce") as page:
+        until(page, "window.ready")
+        yield page
+
+
+def test_rows_of_modes_and_joints_lead_to_what_is_shown(page, result):
+    page.locator("[data-table=modes] tr").nth(3).get_by_role("button").first.click()
+    until(page, "window.view.state.mode === 2")
+    page.locator("[data-table=modes] tr").nth(2).get_by_role("button").nth(1).click()  # the first preload
+    until(page, "window.view.state.mode === 1 && window.view.state.load === 0")
+    assert "Mode 2: 250 Hz" in page.locator(".fv-head").inner_text()
+    until(page, "document.querySelector('[data-table=modes] tr.now').cells[0].textContent === '2'")
+    page.get_by_label("Mode", exact=True).select_option("0")
+    until(page, "document.querySelector('[data-table=modes] tr.now').cells[0].textContent === '1'")
+    page.locator("[data-table=joints] tr").nth(2).get_by_role("button").click()
+    until(page, "window.view.state.field === 'pressure' && window.view.state.load === 1")
+    assert page.evaluate("window.view.highlighted.length") == 2
+
+
+def test_the_page_says_what_it_was_made_from(page):
+    text = page.locator("body").inner_text()
+    for part in ('title = "two boxes"', "0" * 64, "2026-01-02", "flange", "kg", "Faying 0.1.0"):
+        assert part in text
+
+
+def test_curves_zoom_by_mouse_and_keyboard_and_both_together(page):
+    charts = page.locator("#curves .fc > svg")
+    assert charts.count() == 2
+    ends = (
+        "[...document.querySelectorAll('#curves .fc > svg')].map((s) =>"
+        " [...s.querySelectorAll('text')].map((t) => t.textContent).join(' '))"
+    )
+    charts.first.scroll_into_view_if_needed()
+    before = page.evaluate(ends)
+    box = charts.first.bounding_box()
+    page.mouse.move(box["x"] + 0.2 * box["width"], box["y"] + 60)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 60)
+    page.mouse.up()
+    after = page.evaluate(ends)
+    assert after[0] != before[0]
+    assert after[1] != before[1]
+    assert " 400 " not in after[0]
+    charts.first.focus()
+    page.keyboard.press("Escape")
+    assert page.evaluate(ends) == before
+    page.keyboard.press("+")
+    assert page.evaluate(ends)[0] != before[0]
+
+
+def test_the_packed_curves_are_the_accelerance(result):
+    packed = curves.curves(result)
+    np.testing.assert_allclose(array(packed["frequencies"]), LINES, rtol=1e-6)
+    both = array(packed["accelerance"])
+    wanted = -((2 * np.pi * LINES) ** 2) * result.response.values[:, :, 0, 0]
+    np.testing.assert_allclose(both[:, 0, :, 0] + 1j * both[:, 0, :, 1], wanted, rtol=1e-5)
+
+
+def test_on_paper_and_without_scripts_the_pictures_stand(browser, address, page):
+    pictures = page.locator("figure.static, figure.static-curves")
+    assert pictures.count() == 3
+    assert not pictures.first.is_visible()
+    page.emulate_media(media="print")
+    assert all(pictures.nth(k).is_visible() for k in range(3))
+    assert not page.locator("#stage").is_visible()
+    with opened(browser, address, java_script_enabled=False) as still:
+        pictures = still.locator("figure.static, figure.static-curves")
+        assert all(pictures.nth(k).is_visible() for k in range(3))
+        assert "the pictures below stand in" in still.locator("#why").inner_text()
+
+
+def test_without_webgl_the_pictures_stand(browser, address):
+    with opened(browser, "about:blank") as page:
+        page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+        page.goto(address)
+        until(page, "window.ready")
+        assert "WebGL 2 is not available" in page.locator("#why").inner_text()
+        assert page.locator("figure.static").first.is_visible()
+        assert page.locator("#curves svg").count() > 0
+
+
+@pytest.mark.parametrize(("width", "scale", "scheme"), [(1280, 1, "light"), (800, 1, "dark"), (640, 2, "light")])
+def test_the_page_fits_its_window(browser, address, width, scale, scheme):
+    with opened(browser, address, width=width, device_scale_factor=scale, color_scheme=scheme) as page:
+        until(page, "window.ready")
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+        dark = page.evaluate("getComputedStyle(document.body).backgroundColor") != "rgb(255, 255, 255)"
+        assert dark == (scheme == "dark")
+
+
+def test_hostile_names_stay_text(browser, tmp_path, result):
+    known = replace(result.provenance, study=HOSTILE, files={HOSTILE: "0" * 64})
+    found = two_boxes(
+        title=HOSTILE,
+        names=(HOSTILE,),
+        parts=(HOSTILE, "b"),
+        bolts=(HOSTILE,),
+        provenance=known,
+        sources=(HOSTILE,),
+        solver=HOSTILE,
+        response=one_mass(),
+    )
+    text = report.html(found)
+    (tmp_path / "a.html").write_text(text, encoding="utf-8")
+    assert len(re.findall("<script", text)) == 3  # two of data, one that runs
+    assert json.loads(re.search('id="scene">(.*?)</script>', text, re.S).group(1))["title"] == HOSTILE
+    with opened(browser, (tmp_path / "a.html").as_uri()) as page:
+        until(page, "window.ready")
+        assert page.evaluate("window.hurt") is None
+        assert page.title() == HOSTILE
+        assert page.evaluate("[...document.images].every((i) => i.src.startsWith('data:'))")
+
+
+def test_a_report_is_small(address):
+    from pathlib import Path
+    from urllib.parse import urlparse
+
+    assert Path(urlparse(address).path).stat().st_size < 2e6
+
+
+@pytest.mark.slow
+def test_the_report_of_the_t_specimen_is_below_3_mb(tmp_path):
+    from pathlib import Path
+
+    from faying.study import run
+
+    found = run(Path(__file__).parents[2] / "examples" / "t-specimen" / "study.toml")
+    assert len(report.html(found).encode()) < 3e6
