@@ -26,6 +26,7 @@ COMMANDS = {
     "new": ("new", "Write a study of your own STEP file: joints, bolts, seats, mesh."),
     "predict": ("predict", "Intervals of the frequencies under scatter, and what causes them."),
     "run": ("run", "Run a study: from the surface and the preload to the modes."),
+    "schema": ("schema", "JSON schema of a study, for editors that know TOML."),
     "sweep": ("sweep", "Many laws, surfaces and preloads on one structure, solved once."),
     "surface": ("surface", "Roughness, fractal dimension D and roughness G of a scan."),
     "test": ("test", "Identify the modes of a hammer test from its FRFs."),
