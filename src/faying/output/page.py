@@ -13,7 +13,7 @@ from faying.output.table import Rows
 STYLE = """
 :root{--ink:#1c2733;--soft:#52616f;--line:#d5dde5;--head:#f3f6f9;--back:#fff;--flag:#fff4e0;--accent:#0a63b0}
 body{font:15px/1.5 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:var(--ink)}
-body,html{background:var(--back)}h1,h2,h3,td,th,li,summary{overflow-wrap:anywhere}
+body,html{background:var(--back)}h1,h2,h3,li,summary{overflow-wrap:anywhere}td,th{overflow-wrap:break-word}
 h1{font-size:1.5rem}h2{font-size:1.15rem;margin-top:2.2rem;border-bottom:1px solid var(--line);padding-bottom:.2rem}
 h3{font-size:1rem;margin:1.2rem 0 .3rem}
 table{border-collapse:collapse;font-size:.84rem;font-variant-numeric:tabular-nums;margin:.6rem 0}
@@ -29,7 +29,7 @@ summary{cursor:pointer;font-weight:600;margin:.6rem 0}code{font-size:.92em;overf
 border:1px solid var(--line);border-radius:6px;overflow:hidden;display:none}
 .live #stage{display:block}.live .static,.curved .static-curves{display:none}
 button.link{font:inherit;color:var(--accent);background:none;border:0;padding:0;cursor:pointer;text-align:inherit;
-text-decoration:underline;text-decoration-color:transparent;overflow-wrap:anywhere}
+text-decoration:underline;text-decoration-color:transparent;font-variant-numeric:inherit}
 button.link:is(:hover,:focus-visible){text-decoration-color:currentcolor}
 tr.now td{background:color-mix(in srgb,var(--accent) 12%,var(--back))}
 @media (max-width:760px){#stage{height:auto}}
