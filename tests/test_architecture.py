@@ -11,7 +11,7 @@ SOURCE = Path(__file__).parent.parent / "src" / "faying"
 # a room may import from rooms on earlier lines, and from itself; rooms on one line do not see each other
 ORDER = [
     {"errors"},
-    {"units", "files", "memory", "typing", "notes"},
+    {"units", "files", "memory", "typing", "notes", "progress"},
     {"materials", "netcdf", "columns", "distribution"},
     {"surface", "fe", "halfspace"},
     {"contact", "asperity_fe"},
@@ -21,6 +21,7 @@ ORDER = [
     {"study"},
     {"identify"},
     {"output"},
+    {"app"},
     {"cli"},
     {"__main__"},
 ]

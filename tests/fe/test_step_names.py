@@ -6,8 +6,10 @@ import re
 import pytest
 
 import faying
-from faying.fe.cad import kernel
+from faying.fe.cad import kernel, read_parts
 from faying.fe.geometry import mesh_step
+from faying.fe.products import decoded, read_products
+from faying.fe.selectors import Selector
 
 
 def assembly(tmp_path, *parts, loose=False):
@@ -74,18 +76,84 @@ def joined(bodies):
     )
 
 
-def test_parts_of_an_assembly_are_told_by_their_places(tmp_path):
-    """The kernel hands on no names of an assembly: the note says which part lies where, and what the products are."""
+def test_parts_of_an_assembly_have_the_names_of_their_products(tmp_path):
     path = assembly(tmp_path, ("upper arm", "Boss"), ("lower arm", "Pad"))
-    given = {"low": ("part1", (10e-3, 10e-3, 0.0)), "high": ("part2", (10e-3, 10e-3, 20e-3))}
-    mesh = mesh_step(path, size=8e-3, face_points=given)
-    (note,) = mesh.notes
-    assert note.code == "nameless-parts"
-    assert "part1 about (10, 10, 5) mm, part2 about (10, 10, 15) mm" in note.text
-    assert "(products: whole, upper arm, lower arm)" in note.text or "upper arm, lower arm" in note.text
-    heights = [mesh.points[mesh.part_nodes(name), 2].mean() for name in ("part1", "part2")]
+    given = {
+        "low": Selector(part="upper arm", nearest=(10e-3, 10e-3, 0.0)),
+        "high": Selector(part="lower arm", nearest=(10e-3, 10e-3, 20e-3)),
+    }
+    mesh = mesh_step(path, size=8e-3, faces=given)
+    assert not mesh.notes
+    heights = [mesh.points[mesh.part_nodes(name), 2].mean() for name in ("upper arm", "lower arm")]
     assert heights == pytest.approx([5e-3, 15e-3], abs=1e-3)
     assert area_of(mesh, "low") == pytest.approx(400e-6, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("occurrences", "names"),
+    [
+        (("", ""), ["plate_1", "plate_2"]),
+        (("NAUO1", "NAUO2"), ["plate_1", "plate_2"]),
+        (("front plate", "rear plate"), ["front plate", "rear plate"]),
+        (("same", "same"), ["plate_1", "plate_2"]),
+    ],
+)
+def test_a_product_that_occurs_twice_is_called_by_its_occurrences(tmp_path, occurrences, names):
+    """Names of occurrences that only count them say nothing, so that the product's name is numbered in their place."""
+    path = assembly(tmp_path, ("plate", "a"), ("plate", "b"))
+    text = path.read_text()
+    for number, word in enumerate(occurrences):
+        text = text.replace(f"OCCURRENCE('{number}','',", f"OCCURRENCE('{number}','{word}',")
+    path.write_text(text)
+    held = read_parts(path)
+    assert held.names == names
+    assert [note.code for note in held.notes] == ([] if "plate_1" not in names else ["numbered-parts"])
+
+
+def test_a_product_within_an_assembly_within_an_assembly(tmp_path):
+    """The chain of occurrences is followed: the name is that of the last product, not of those on the way."""
+    path = assembly(tmp_path, ("upper", "a"), ("lower", "b"))
+    text = path.read_text()
+    outer = re.search(r"#(\d+)\s*=\s*PRODUCT_CONTEXT", text)[1]
+    axis = re.search(r"ITEM_DEFINED_TRANSFORMATION\('','',#(\d+)", text)[1]
+    context = re.search(r"#990007=SHAPE_REPRESENTATION\('',\(.*?\),#(\d+)\)", text)[1]
+    of = re.search(r"PRODUCT_DEFINITION\('design','',#990003,#(\d+)\)", text)[1]
+    more = f"""#991002=PRODUCT('all','all','',(#{outer}));
+#991003=PRODUCT_DEFINITION_FORMATION('','',#991002);
+#991004=PRODUCT_DEFINITION('design','',#991003,#{of});
+#991005=PRODUCT_DEFINITION_SHAPE('','',#991004);
+#991007=SHAPE_REPRESENTATION('',(#{axis}),#{context});
+#991006=SHAPE_DEFINITION_REPRESENTATION(#991005,#991007);
+#992000=NEXT_ASSEMBLY_USAGE_OCCURRENCE('7','','',#991004,#990004,$);
+#992001=PRODUCT_DEFINITION_SHAPE('','',#992000);
+#992002=ITEM_DEFINED_TRANSFORMATION('','',#{axis},#{axis});
+#992003=(REPRESENTATION_RELATIONSHIP('','',#990007,#991007)
+REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#992002)SHAPE_REPRESENTATION_RELATIONSHIP());
+#992004=CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#992003,#992001);
+"""
+    path.write_text(text.replace("#990005=", f"{more}#990005=", 1))
+    assert read_parts(path).names == ["upper", "lower"]
+
+
+@pytest.mark.parametrize(
+    ("written", "read"),
+    [
+        ("it''s", "it's"),
+        (r"\X2\00FC\X0\ber", "\u00fcber"),
+        (r"\X\FCber", "\u00fcber"),
+        (r"\S\|ber", "\u00fcber"),
+        (r"a\\b", r"a\b"),
+    ],
+)
+def test_letters_outside_of_ascii(written, read):
+    """ISO 10303-21, 6.4.3: coded letters, and the doubled marks."""
+    assert decoded(written) == read
+
+
+def test_an_entity_may_hold_comments_and_brackets_in_its_texts():
+    text = "#1=PRODUCT('i','a ); b',/* no, 'c' */'',(#9)); #2=PRODUCT_DEFINITION_FORMATION('','',#1); "
+    text += "#3 = PRODUCT_DEFINITION ( 'design', '', #2 , #8 );"
+    assert read_products(text).names == {3: "a ); b"}
 
 
 def area_of(mesh, name):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import faying
+from faying.fe.selectors import Selector
 from faying.study import Study, build, case, run
 from faying.study.axes import axis_of
 from faying.study.sweep import sweep
@@ -60,7 +61,7 @@ def test_a_material_that_a_law_cannot_use(study, no_mesh):
 
 def test_a_face_given_by_a_point_has_the_material_of_its_part(study, no_mesh):
     plan = study(law={"model": "gw", **IN_FULL})
-    geometry = replace(plan.geometry, face_at={"below": ("lower", (0.0, 0.0, 0.0))})
+    geometry = replace(plan.geometry, face={"below": Selector(part="lower", nearest=(0.0, 0.0, 0.0))})
     moved = replace(plan, geometry=geometry, joints=(replace(plan.joints[0], faces=("upper.joint", "below")),))
     with pytest.raises(faying.InputError, match="no tangential stiffness"):
         run(moved)

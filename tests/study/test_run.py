@@ -194,14 +194,15 @@ def test_a_file_that_is_not_step(study, tmp_path):
 
 
 def test_faces_can_be_named_by_a_point(study):
-    at = {"upper.side": ("upper", (0.04, 0.0, 0.0075))}
     from faying.fe.geometry import mesh_step
+    from faying.fe.selectors import Selector
 
-    mesh = mesh_step(study.geometry.step, size=8e-3, face_points=at)
+    at = {"upper.side": Selector(part="upper", nearest=(0.04, 0.0, 0.0075))}
+    mesh = mesh_step(study.geometry.step, size=8e-3, faces=at)
     assert mesh.face_part["upper.side"] == "upper"
     assert mesh.points[np.unique(mesh.face("upper.side")), 0] == pytest.approx(0.04)
     with pytest.raises(faying.InputError, match="no part is called 'roof'"):
-        mesh_step(study.geometry.step, size=8e-3, face_points={"x": ("roof", (0, 0, 0))})
+        mesh_step(study.geometry.step, size=8e-3, faces={"x": Selector(part="roof", number=1)})
 
 
 @pytest.mark.slow

@@ -1,11 +1,12 @@
 """`faying asperity`: press one asperity, or a table of them, by finite elements."""
 
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
 import click
+
+from faying.cli.progress import Shown
 
 COLUMNS = {
     "R": "m",
@@ -78,9 +79,8 @@ def command(
         cases = [case_of(options)]
     if plot and len(cases) > 1:
         raise InputError(f"--plot draws one case and the table has {len(cases)}; leave out --plot or --table")
-    shown: Any = click.progressbar(length=len(cases), label="asperities", file=sys.stderr)
-    with shown as bar:
-        results = solve_cases(cases, processes=processes, progress=lambda _: bar.update(1))
+    with Shown("asperity") as report:
+        results = solve_cases(cases, processes=processes, progress=lambda done: report("cases", done, len(cases)))
     if netcdf:
         write_netcdf(netcdf, cases, results)
     first: Any = results[0]

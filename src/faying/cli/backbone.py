@@ -1,13 +1,12 @@
 """faying backbone STUDY.toml --friction 0.2"""
 
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
 import click
 
-STEPS = 1000  # of the progress bar
+from faying.cli.progress import Shown, progress_options
 
 
 @click.command()
@@ -30,6 +29,7 @@ STEPS = 1000  # of the progress bar
 )
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw the curves (svg, png, pdf).")
 @click.option("--json", "as_json", is_flag=True, help="Print the curves as JSON.")
+@progress_options
 def command(study: Path, **options: Any) -> None:
     """Frequency and damping of one mode of STUDY against its amplitude, from rest to large motions.
 
@@ -49,16 +49,15 @@ def command(study: Path, **options: Any) -> None:
     plan = Study.read(study)
     choice, loads = asked(plan, options)
     out = out or plan.folder / "results" / "backbone.nc"
-    bar = click.progressbar(length=STEPS, file=sys.stderr, label="backbone", item_show_func=lambda s: s or "")
-    with new_folder(out.parent, "give another file with --out"), bar:
+    progress = Shown("backbone", options["progress"])
+    with new_folder(out.parent, "give another file with --out"), progress as report:
         curves = backbones(
             plan,
             choice,
             loads=loads,
             out=out,
-            report=lambda text, share: bar.update(int(STEPS * share) - bar.pos, text),
+            report=report,
         )
-        bar.update(STEPS - bar.pos, "done")
     files = names(out, len(curves))
     if plot:
         files.append(save(drawing.figure(curves, measured), plot))

@@ -1,12 +1,12 @@
 """faying condense STUDY.toml: one joint as a 6 x 6 stiffness and loss between two points."""
 
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
 import click
 
+from faying.cli.progress import Form, Shown, progress_options
 from faying.decks.programs import CONDENSED
 
 WORDS = ("x", "y", "z", "turn x", "turn y", "turn z")
@@ -26,6 +26,7 @@ WORDS = ("x", "y", "z", "turn x", "turn y", "turn z")
 @click.option("--element", type=int, default=900001, show_default=True, help="Number of the element and property.")
 @click.option("--out", type=click.Path(path_type=Path), help="Folder of the deck (default: joint/ beside the study).")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
+@progress_options
 def command(
     study: Path,
     joint: str | None,
@@ -40,27 +41,26 @@ def command(
     element: int,
     out: Path | None,
     as_json: bool,
+    progress: Form | None,
 ) -> None:
     """Condense a joint of STUDY to six motions, and say how far that holds."""
     from faying.decks.write import write_condensed
     from faying.errors import InputError
     from faying.output.table import text
     from faying.study import Study
-    from faying.study.condense import STAGES, condense
+    from faying.study.condense import condense
 
     if solver is not None and unit is None:
         raise InputError('--to needs --unit, the unit of length of that model, such as "mm"')
     plan = Study.read(study)
     points = (_point(point_a, "--point-a"), _point(point_b, "--point-b"))
-    with click.progressbar(
-        length=STAGES + len(plan.loads), file=sys.stderr, label="study", item_show_func=lambda stage: stage or ""
-    ) as bar:
+    with Shown("condense", progress) as report:
         found = condense(
             plan,
             joint=joint,
             preload=preload,
             points=points,
-            report=lambda stage, done, total: bar.update(min(done, 1), stage),
+            report=report,
         )
     files: list[Path] = []
     if solver is not None:

@@ -2,11 +2,11 @@
 
 import json
 import os
-import sys
-import time
 from pathlib import Path
 
 import click
+
+from faying.cli.progress import Form, Shown, progress_options
 
 
 @click.command()
@@ -21,6 +21,7 @@ import click
 )
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw priors, posteriors, frequencies.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was found as JSON.")
+@progress_options
 def command(
     study: Path,
     leave_out: tuple[str, ...],
@@ -31,6 +32,7 @@ def command(
     out: Path | None,
     plot: Path | None,
     as_json: bool,
+    progress: Form | None,
 ) -> None:
     """What the test of STUDY tells of the numbers that its [uncertain] lists, and what it cannot tell.
 
@@ -46,7 +48,7 @@ def command(
         check_figure(plot)
     plan = Study.read(study)
     out = out or plan.folder / "results" / "identification.nc"
-    with new_folder(out.parent, "give another file with --out"):
+    with new_folder(out.parent, "give another file with --out"), Shown("identify", progress) as report:
         found = identify(
             plan,
             leave_out or None,
@@ -55,32 +57,11 @@ def command(
             jobs=jobs or os.cpu_count() or 1,
             dask=dask,
             out=out,
-            report=_Progress(),
+            report=report,
         )
-    sys.stderr.write("\n")
     files = [out] + ([save(drawing.figure(found), plot)] if plot else [])
     if as_json:
         click.echo(json.dumps(found.to_dict() | {"files": [str(file) for file in files]}, indent=2))
         return
     click.echo(f"{plan.title}: {plan.test.source if plan.test else ''}\n\n{found.table()}")
     click.echo(f"\nwritten to {', '.join(map(str, files))}")
-
-
-class _Progress:
-    """One line on stderr: the stage, how much of it is done, and the time that it will still take."""
-
-    def __init__(self) -> None:
-        self.stage, self.began = "", 0.0
-
-    def __call__(self, stage: str, done: int, total: int) -> None:
-        now = time.monotonic()
-        if stage != self.stage:
-            self.stage, self.began = stage, now
-        line = f"identify: {stage}"
-        if total:
-            line += f" {done} of {total}"
-            if done:
-                line += f", {(now - self.began) * (total - done) / done:.0f} s left"
-        if sys.stderr.isatty():
-            sys.stderr.write(f"\r{line:<78.78}")
-            sys.stderr.flush()

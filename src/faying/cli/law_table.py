@@ -1,7 +1,6 @@
 """`faying law --models`: several laws of one scan in one table and on one plot, with the factor between them."""
 
 import json
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -11,6 +10,7 @@ from typing import Any
 import click
 
 from faying.cli.options import quantity
+from faying.cli.progress import Shown
 
 SURFACE_UNITS = {"G": "m", "scan_area": "m^2", "m0": "m^2", "m4": "1/m^2", "h_rms": "m", "shortest": "m"}
 
@@ -66,17 +66,8 @@ def watched(surface: Any) -> Iterator[Any]:
     if surface is None:
         yield surface
         return
-    bars: list[Any] = []
-
-    def step(done: int, total: int) -> None:
-        if not bars:
-            bars.append(click.progressbar(length=total, label="contact of the scan", file=sys.stderr))
-            bars[0].__enter__()
-        bars[0].update(done - bars[0].pos)
-        if done == total:
-            bars.pop().__exit__(None, None, None)
-
-    yield replace(surface, progress=step)
+    with Shown("law") as report:
+        yield replace(surface, progress=lambda done, total: report("contact of the scan", done, total))
 
 
 def labels(surface: Any, pair: Any, names: list[str] | None) -> list[str]:

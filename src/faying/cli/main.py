@@ -10,17 +10,20 @@ import click
 
 # command -> (module, one line for `faying --help`)
 COMMANDS = {
+    "app": ("app", "A page on this machine: scan, geometry, study, run, result."),
     "asperity": ("asperity", "Press one asperity by finite elements: force, area, stresses."),
     "attach": ("attach", "Lay a joint on a model of another solver, and write it in its words."),
     "backbone": ("backbone", "Frequency and damping of a mode against its amplitude."),
     "compare": ("compare", "Set a hammer test beside the result of a study: MAC, pairs, FRFs."),
     "condense": ("condense", "One joint as a 6 x 6 stiffness and loss between two points, with its error."),
+    "faces": ("faces", "Faces of a STEP or mesh file: numbers, normals, centres, contacts."),
     "form": ("form", "Flatness, crowns and twist of a measured face or gap."),
     "identify": ("identify", "What a test tells of the numbers that scatter in a study."),
     "init": ("init", "Write a commented study file to start from."),
     "law": ("law", "Curves of a contact law: area, stiffness and loss against pressure."),
     "models": ("models", "List the contact models with their sources, inputs and ranges."),
     "modes": ("modes", "Real modes of a study or of assembled matrices, also over many machines."),
+    "new": ("new", "Write a study of your own STEP file: joints, bolts, seats, mesh."),
     "predict": ("predict", "Intervals of the frequencies under scatter, and what causes them."),
     "run": ("run", "Run a study: from the surface and the preload to the modes."),
     "sweep": ("sweep", "Many laws, surfaces and preloads on one structure, solved once."),

@@ -2,10 +2,11 @@
 
 import json
 import os
-import sys
 from pathlib import Path
 
 import click
+
+from faying.cli.progress import Form, Shown, progress_options
 
 
 @click.command()
@@ -21,6 +22,7 @@ import click
 @click.option("--tornado", type=click.Path(dir_okay=False, path_type=Path), help="Draw the shares of the variance.")
 @click.option("--scatter", type=click.Path(dir_okay=False, path_type=Path), help="Draw inputs against frequencies.")
 @click.option("--json", "as_json", is_flag=True, help="Print the quantiles and shares as JSON.")
+@progress_options
 def command(
     study: Path,
     samples: int,
@@ -32,6 +34,7 @@ def command(
     tornado: Path | None,
     scatter: Path | None,
     as_json: bool,
+    progress: Form | None,
 ) -> None:
     """Intervals of the frequencies of STUDY under the scatter that its [uncertain] states, and what causes them.
 
@@ -51,8 +54,7 @@ def command(
     plan = Study.read(study)
     check(plan, samples, seed)
     out = out or plan.folder / "results" / "prediction.nc"
-    bar = click.progressbar(length=samples, file=sys.stderr, label="predict", item_show_func=lambda s: s or "")
-    with new_folder(out.parent, "give another file with --out"), bar:
+    with new_folder(out.parent, "give another file with --out"), Shown("predict", progress) as report:
         found = predict(
             plan,
             samples,
@@ -60,7 +62,7 @@ def command(
             jobs=jobs or os.cpu_count() or 1,
             dask=dask,
             out=out,
-            report=lambda stage, done: bar.update(done, stage),
+            report=report,
         )
     files = [out, *(save(draw(found), file) for draw, file in figures.items() if file)]
     if as_json:

@@ -1,12 +1,13 @@
 """faying run STUDY.toml"""
 
 import json
-import sys
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
 import click
+
+from faying.cli.progress import Form, Shown, progress_options
 
 
 @click.command()
@@ -17,13 +18,14 @@ import click
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--no-files", is_flag=True, help="Write no files, only print.")
 @click.option("--uff", is_flag=True, help="Write modes and frequency responses as universal files, too (.uff).")
-def command(study: Path, out: Path | None, as_json: bool, no_files: bool, uff: bool) -> None:
+@progress_options
+def command(study: Path, out: Path | None, as_json: bool, no_files: bool, uff: bool, progress: Form | None) -> None:
     """Run STUDY: surface, contact law, preload, modes; write NetCDF, CSV, figures and a report."""
     from faying.errors import InputError
     from faying.files import together
     from faying.output import report
     from faying.study import Study, run, universal
-    from faying.study.run import stage_count
+    from faying.study.run import stages
 
     plan = Study.read(study)
     if uff and no_files:
@@ -31,18 +33,16 @@ def command(study: Path, out: Path | None, as_json: bool, no_files: bool, uff: b
     if uff:
         universal.check(plan.response)
     folder = out or plan.folder / "results"
-    bar = click.progressbar(
-        length=stage_count(plan) + 1, file=sys.stderr, label="study", item_show_func=lambda stage: stage or ""
-    )
+    every = [*stages(plan), *([] if no_files else ["report"])]
+    bar = Shown("study", progress, every)
     with nullcontext() if no_files else together(folder, "give another with --out") as hidden, bar:
-        result = run(plan, report=lambda stage, done, total: bar.update(min(done, 1), stage))
+        result = run(plan, report=lambda stage, done, _: bar(stage, done, len(every)))
         files = []
         if hidden is not None:
-            bar.update(1, "report")
+            bar("report", len(every) - 1, len(every))
             files = report.write(result, hidden)
             files += universal.write(result, hidden) if uff else []
             files = [folder / file.name for file in files]
-        bar.update(1, "done")
     if as_json:
         click.echo(json.dumps(result.to_dict() | {"files": [str(f) for f in files]}, indent=2))
         return

@@ -1,10 +1,11 @@
 """faying sweep STUDY.toml --set KEY=FIRST:LAST:COUNT"""
 
 import json
-import sys
 from pathlib import Path
 
 import click
+
+from faying.cli.progress import Form, Shown, progress_options
 
 
 @click.command()
@@ -26,6 +27,7 @@ import click
 @click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw one axis or two (svg, png, pdf).")
 @click.option("--json", "as_json", is_flag=True, help="Print a summary as JSON.")
+@progress_options
 def command(
     study: Path,
     settings: tuple[str, ...],
@@ -35,6 +37,7 @@ def command(
     dask: str | None,
     plot: Path | None,
     as_json: bool,
+    progress: Form | None,
 ) -> None:
     """Evaluate STUDY for many laws, surfaces and preloads: the parts are solved once, only the joint changes.
 
@@ -52,14 +55,8 @@ def command(
         drawing.check(plot, len(axes))
     plan = Study.read(study)
     out = out or plan.folder / "results" / "sweep.nc"
-    size = 1
-    for axis in axes:
-        size *= len(axis.values)
-    bar = click.progressbar(length=size, file=sys.stderr, label="sweep", item_show_func=lambda s: s or "")
-    with new_folder(out.parent, "give another file with --out"), bar:
-        done = sweep(
-            plan, axes, out, tolerance=tolerance, jobs=jobs, dask=dask, report=lambda text, n: bar.update(n, text)
-        )
+    with new_folder(out.parent, "give another file with --out"), Shown("sweep", progress) as report:
+        done = sweep(plan, axes, out, tolerance=tolerance, jobs=jobs, dask=dask, report=report)
     summary = done.to_dict()
     if plot:
         summary["plot"] = str(save(drawing.figure(done), plot))

@@ -1,14 +1,18 @@
 """The CAD kernel, OpenCASCADE in netgen: how it is loaded, and what it leaves out of a STEP file."""
 
 import re
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from faying.errors import InputError, ReadError
+from faying.fe.products import Products, leaves, named_by_product, read_products
+from faying.notes import Note
 
 _SOLID = re.compile(r"=\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\s*\(")
-_PRODUCT = re.compile(r"=\s*PRODUCT\s*\(\s*'(?:(?:[^']|'')*)'\s*,\s*'((?:[^']|'')*)'")
 
+STEP = (".step", ".stp")  # suffixes of STEP files, in small letters
 # what OpenCASCADE links against; wheels do not bring them
 LIBRARIES = {
     "Debian, Ubuntu": "apt-get install libgl1 libglu1-mesa libxrender1 libxext6 libsm6",
@@ -44,10 +48,15 @@ def read_step(path: Path) -> Any:
 
     Raises ReadError for files that cannot be read, hold no solid, or solids that the kernel leaves out.
     """
+    return _geometry(path).shape
+
+
+def _geometry(path: Path) -> Any:
     check_head(path)
     occ = kernel()
     try:
-        shape = occ.OCCGeometry(str(path)).shape
+        geometry = occ.OCCGeometry(str(path))
+        shape = geometry.shape
     except Exception as fault:
         raise ReadError(f"{path} cannot be read as STEP ({fault}); export it again from the CAD program") from None
     found, written = len(list(shape.solids)), len(_SOLID.findall(path.read_text(encoding="latin-1")))
@@ -58,9 +67,80 @@ def read_step(path: Path) -> Any:
             f"{path} holds {written} solids, of which the CAD kernel reads {found}: they are not in one assembly; "
             "export them as one"
         )
-    return shape
+    return geometry
 
 
-def products(path: Path) -> list[str]:
-    """The names of the products of a STEP file, which the kernel does not hand on."""
-    return [name for name in dict.fromkeys(_PRODUCT.findall(path.read_text(encoding="latin-1"))) if name.strip()]
+@dataclass(frozen=True, kw_only=True)
+class CadParts:
+    """The solids of a STEP file.
+
+    Args:
+        shape: all of them, as the kernel read it [mm].
+        solids: one by one, in the kernel's order; their faces count from 1 in the order of `solid.faces`.
+        names: a name of its own for each.
+        notes: where names are missing or given several times.
+    """
+
+    shape: Any
+    solids: list[Any]
+    names: list[str]
+    notes: tuple[Note, ...]
+
+
+def read_parts(path: Path) -> CadParts:
+    """Read the solids of a STEP file with their names: of the solid, else of its product, else part1, part2.
+
+    Raises ReadError as `read_step`.
+    """
+    geometry = _geometry(path)
+    solids = list(geometry.shape.solids)
+    found = products(path)
+    tree = geometry.GetAssemblyTree() if hasattr(geometry, "GetAssemblyTree") else None  # netgen 6.2.2608 and later
+    given = [""] * len(solids) if tree is None else named_by_product(solids, leaves(tree, found))
+    given = [solid.name or product for solid, product in zip(solids, given, strict=True)]
+    names, notes = own_names(given, path.name)
+    listed = [name for name in dict.fromkeys(found.names.values()) if name.strip()]
+    return CadParts(
+        shape=geometry.shape, solids=solids, names=names, notes=notes + _nameless(path, solids, given, listed)
+    )
+
+
+def products(path: Path) -> Products:
+    """The products of a STEP file, which the kernel does not hand on."""
+    return read_products(path.read_text(encoding="latin-1"))
+
+
+def own_names(given: Sequence[str], file: str) -> tuple[list[str], tuple[Note, ...]]:
+    """A name of its own for every solid, and a note where the file gives one several times."""
+    names = [name or f"part{number + 1}" for number, name in enumerate(given)]
+    out: list[str] = []
+    for number, name in enumerate(names):
+        own = name if names.count(name) == 1 else f"{name}_{names[: number + 1].count(name)}"
+        while own in out or (own != name and own in names):
+            own += "_"
+        out.append(own)
+    numbered = [
+        f"{name!r} is {', '.join(o for n, o in zip(names, out, strict=True) if n == name)}"
+        for name in dict.fromkeys(names)
+        if names.count(name) > 1
+    ]
+    if not numbered:
+        return out, ()
+    text = f"{file} names several solids alike; they are numbered in the order of the file: {'; '.join(numbered)}"
+    return out, (Note(code="numbered-parts", text=text),)
+
+
+def _nameless(path: Path, solids: Sequence[Any], names: Sequence[str], listed: Sequence[str]) -> tuple[Note, ...]:
+    """Where solids without a name lie."""
+    where = [
+        f"part{number} about ({', '.join(f'{getattr(solid.center, axis):.4g}' for axis in 'xyz')}) mm"
+        for number, (solid, name) in enumerate(zip(solids, names, strict=True), 1)
+        if not name
+    ]
+    if not where:
+        return ()
+    text = (
+        f"{path.name} gives no names that tell its solids apart: {', '.join(where)} (products: "
+        f"{', '.join(listed) or 'none'}); name the bodies in the CAD program, or take these names"
+    )
+    return (Note(code="nameless-parts", text=text),)

@@ -1,35 +1,31 @@
 """From a STEP file with named solids and faces to a mesh, through netgen (LGPL) and its OpenCASCADE kernel.
 
-Names are those that the CAD program gave to solids and faces. A face without a name can be named by a point: the face
-nearest to it takes the name.
+Names are those that the CAD program gave to solids, products and faces. A face without a name gets one by a selector.
 """
 
-import json
-import subprocess
-import sys
-import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from faying.errors import InputError, ReadError
-from faying.fe.cad import check_head, kernel, products, read_step
+from faying.errors import InputError
+from faying.fe.cad import CadParts, check_head, kernel, read_parts
+from faying.fe.cad_process import Answer, ask
 from faying.fe.elements import KINDS
+from faying.fe.face_facts import facts_of, shared_volumes
 from faying.fe.memory import guessed
 from faying.fe.mesh import Mesh, split_at_joints
+from faying.fe.selectors import Selector, chosen, from_plain, points_of
 from faying.memory import available
 from faying.notes import Note
 from faying.typing import Array, Index
 
-# netgen numbers the middle nodes by these edges; VTK, and so we, by those of its element
-NEAR = 1.0  # mm: a point farther from every face than this names none
-AMBIGUOUS = 1e-3  # mm: faces whose distances differ by less are not told apart
 # tetrahedra per volume over edge^3, and unknowns per tetrahedron of second order: counted on blocks and on bolted
 # joints
 ELEMENTS, UNKNOWNS = 5.0, 4.5
+# netgen numbers the middle nodes by these edges; VTK, and so we, by those of its element
 _NETGEN_EDGES = {"tet10": ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)), "tri6": ((1, 2), (0, 2), (0, 1))}
 
 
@@ -45,7 +41,8 @@ class _Request:
     path: str
     size: float
     local_size: Mapping[str, float]
-    face_points: Mapping[str, tuple[str, Sequence[float]]]
+    selectors: Mapping[str, Any]
+    snap: float
 
 
 def mesh_step(
@@ -53,91 +50,77 @@ def mesh_step(
     *,
     size: float,
     local_size: Mapping[str, float] | None = None,
-    face_points: Mapping[str, tuple[str, Sequence[float]]] | None = None,
+    faces: Mapping[str, Selector] | None = None,
+    snap: float = 0.0,
 ) -> Mesh:
     """Mesh the solids of a STEP file with second-order tetrahedra, in a process of its own.
 
-    path: STEP file; size: largest edge [m]; local_size: face name -> largest edge there [m]; face_points: name to
-    give -> (part, point [m] at most 1 mm away) for faces that the file does not name. Faces that two parts share come
-    out matched node for node, one copy per part. Raises ReadError for unreadable files, among them those on which the
-    CAD kernel dies, and InputError for names that do not exist, points on no face or several, and meshes beyond the
-    memory.
+    Args:
+        path: STEP file.
+        size: largest edge [m].
+        local_size: face name -> largest edge there [m].
+        faces: name to give -> which faces get it, beside the names of the file.
+        snap: faces of two parts that lie no farther apart than this count as touching [m].
+
+    Faces that two parts share come out matched node for node, one copy per part.
+
+    Raises:
+        ReadError: unreadable files, among them those on which the CAD kernel dies.
+        InputError: names that do not exist, selectors that fit no face or several, meshes beyond the memory.
     """
     check_head(path)
-    request = _Request(path=str(path.resolve()), size=size, local_size=local_size or {}, face_points=face_points or {})
-    with tempfile.TemporaryDirectory() as folder:
-        order, answer = Path(folder) / "request.json", Path(folder) / "mesh.npz"
-        order.write_text(json.dumps(asdict(request)), encoding="utf-8")
-        code = "import sys; sys.path[:] = sys.argv[2:]; from faying.fe.geometry import serve; serve(sys.argv[1])"
-        done = subprocess.run(
-            [sys.executable, "-c", code, folder, *sys.path], stdin=subprocess.DEVNULL, capture_output=True, check=False
-        )
-        fault = Path(folder) / "fault.json"
-        if fault.is_file():
-            kind, text = json.loads(fault.read_text(encoding="utf-8"))
-            raise {"ReadError": ReadError, "InputError": InputError}[kind](text)
-        if done.returncode or not answer.is_file():
-            last = done.stderr.decode("utf-8", errors="replace").strip().splitlines()[-1:]
-            how = f"signal {-done.returncode}" if done.returncode < 0 else " ".join(last) or f"code {done.returncode}"
-            raise ReadError(
-                f"{path}: the CAD kernel died on it ({how}); repair the geometry in the CAD program and export it again"
-            )
-        with np.load(answer) as data:
-            parts = json.loads(str(data["parts"]))
-            faces = json.loads(str(data["faces"]))
-            return Mesh(
-                points=data["points"],
-                parts={name: (data[f"part{k}"],) for k, name in enumerate(parts)},
-                faces={name: (data[f"face{k}"],) for k, name in enumerate(faces)},
-                face_part=faces,
-                source=path.name,
-                notes=tuple(Note(**note) for note in json.loads(str(data["notes"]))),
-            )
+    request = _Request(
+        path=str(path.resolve()),
+        size=size,
+        local_size=local_size or {},
+        selectors={label: asdict(one) for label, one in (faces or {}).items()},
+        snap=snap,
+    )
+    answer = ask(mesh_answer, asdict(request), path=path)
+    parts, owners, data = answer.facts["parts"], answer.facts["faces"], answer.arrays
+    return Mesh(
+        points=data["points"],
+        parts={name: (data[f"part{k}"],) for k, name in enumerate(parts)},
+        faces={name: (data[f"face{k}"],) for k, name in enumerate(owners)},
+        face_part=owners,
+        source=path.name,
+        notes=tuple(Note(**note) for note in answer.facts["notes"]),
+    )
 
 
-def serve(folder: str) -> None:
-    """Do what `mesh_step` has asked for in a folder; this runs in the process of its own."""
-    place = Path(folder)
-    given = json.loads((place / "request.json").read_text(encoding="utf-8"))
-    try:
-        mesh = _mesh_here(_Request(**given))
-    except (ReadError, InputError) as fault:
-        text = json.dumps([type(fault).__name__, str(fault)])
-        (place / "fault.json").write_text(text, encoding="utf-8")
-        return
+def mesh_answer(request: dict[str, Any]) -> Answer:
+    """Mesh what `mesh_step` asks for; this runs in the process of its own."""
+    mesh = _mesh_here(_Request(**request))
     arrays: dict[str, Any] = {f"part{k}": blocks[0] for k, blocks in enumerate(mesh.parts.values())}
     arrays |= {f"face{k}": blocks[0] for k, blocks in enumerate(mesh.faces.values())}
-    arrays["parts"] = np.array(json.dumps(list(mesh.parts)))
-    arrays["notes"] = np.array(json.dumps([asdict(note) for note in mesh.notes]))
-    arrays["faces"] = np.array(json.dumps({name: mesh.face_part[name] for name in mesh.faces}))
-    np.savez(place / "mesh.npz", points=mesh.points, **arrays)
+    facts = {
+        "parts": list(mesh.parts),
+        "faces": {name: mesh.face_part[name] for name in mesh.faces},
+        "notes": [asdict(note) for note in mesh.notes],
+    }
+    return Answer(facts=facts, arrays={"points": mesh.points} | arrays)
 
 
 def _mesh_here(request: _Request) -> Mesh:
     path, size = Path(request.path), request.size
-    local_size, face_points = request.local_size, request.face_points
+    local_size = request.local_size
     occ = kernel()
     Glue, OCCGeometry = occ.Glue, occ.OCCGeometry
-    shape = read_step(path)
-    solids = list(shape.solids)
-    names, notes = _names([solid.name or "" for solid in solids], path.name)
-    notes += _nameless(path, solids)
+    held = read_parts(path)
+    shape, solids, names, notes = held.shape, held.solids, held.names, held.notes
     for solid, name in zip(solids, names, strict=True):
         solid.name = name
-    for label, (part, point) in face_points.items():
-        if part not in names:
-            raise InputError(f"face {label!r}: no part is called {part!r}; the parts are {', '.join(names)}")
-        _face_at(label, part, point, list(solids[names.index(part)].faces)).name = label
     _check_size(sum(solid.mass for solid in solids), size, path.name)
 
     # gluing merges touching faces and keeps one of their names: remember the geometry of every named face
     marks = [Mark(face.name, names[i], face) for i, solid in enumerate(solids) for face in solid.faces if face.name]
+    marks += _selected(held, request, {mark.name for mark in marks})
     glued = Glue(solids) if len(solids) > 1 else shape
     parts = list(glued.solids)
     if len(parts) != len(solids):
         raise InputError(
             f"{path.name}: parts run into each other, so that gluing makes {len(parts)} solids of {len(names)}: "
-            f"{_overlaps(solids, names)}; parts may touch, not overlap"
+            f"{'; '.join(shared_volumes(solids, names)) or ', '.join(names)}; parts may touch, not overlap"
         )
     for face in glued.faces:
         face.name = ""
@@ -168,64 +151,23 @@ def _mesh_here(request: _Request) -> Mesh:
     return replace(collected, notes=notes)
 
 
-def _names(given: Sequence[str], file: str) -> tuple[list[str], tuple[Note, ...]]:
-    """A name of its own for every solid, and a note where the file gives one several times."""
-    names = [name or f"part{number + 1}" for number, name in enumerate(given)]
-    out: list[str] = []
-    for number, name in enumerate(names):
-        own = name if names.count(name) == 1 else f"{name}_{names[: number + 1].count(name)}"
-        while own in out or (own != name and own in names):
-            own += "_"
-        out.append(own)
-    numbered = [
-        f"{name!r} is {', '.join(o for n, o in zip(names, out, strict=True) if n == name)}"
-        for name in dict.fromkeys(names)
-        if names.count(name) > 1
-    ]
-    if not numbered:
-        return out, ()
-    text = f"{file} names several solids alike; they are numbered in the order of the file: {'; '.join(numbered)}"
-    return out, (Note(code="numbered-parts", text=text),)
-
-
-def _nameless(path: Path, solids: Sequence[Any]) -> tuple[Note, ...]:
-    """Where solids without a name lie: the kernel hands on no names of an assembly's parts, nor of their faces."""
-    where = [
-        f"part{number} about ({', '.join(f'{getattr(solid.center, axis):.4g}' for axis in 'xyz')}) mm"
-        for number, solid in enumerate(solids, 1)
-        if not solid.name
-    ]
-    if not where:
-        return ()
-    text = (
-        f"{path.name}: the CAD kernel gives no names for {', '.join(where)} (products: {', '.join(products(path))}); "
-        "in an assembly those of faces are lost, too: give them as face_at, or export the parts as bodies of one part"
-    )
-    return (Note(code="nameless-parts", text=text),)
-
-
-def _face_at(label: str, part: str, point: Sequence[float], faces: Sequence[Any]) -> Any:
-    """The one face of a part at a point. Raises InputError where none is near, or several are."""
-    from netgen.occ import Pnt, Vertex
-
-    here = Vertex(Pnt(*(1e3 * x for x in point)))
-    distance = np.array([face.Distance(here) for face in faces])
-    order = np.argsort(distance)
-    where = f"face {label!r} at ({', '.join(f'{1e3 * x:g}' for x in point)}) mm"
-    if distance[order[0]] > NEAR:
-        raise InputError(
-            f"{where}: the nearest face of {part!r} is {distance[order[0]]:.4g} mm away, more than {NEAR:g} mm; check "
-            f"the point "
-            "and its unit"
-        )
-    near = [faces[k] for k in order if distance[k] < distance[order[0]] + AMBIGUOUS]
-    if len(near) > 1:
-        centres = "; ".join(f"({f.center.x:.4g}, {f.center.y:.4g}, {f.center.z:.4g}) mm" for f in near)
-        raise InputError(
-            f"{where} lies on {len(near)} faces of {part!r}, with their centres at {centres}; give a point inside one "
-            f"of them"
-        )
-    return near[0]
+def _selected(held: CadParts, request: _Request, taken: Container[str]) -> list["Mark"]:
+    """Marks of the faces that the selectors mean. Raises InputError where one takes a name that the file gives."""
+    selectors = {label: from_plain(fields) for label, fields in request.selectors.items()}
+    again = [label for label in selectors if label in taken]
+    if again:
+        raise InputError(f"face {again[0]!r}: the file has a face of this name already; choose another name")
+    if not selectors:
+        return []
+    touching = any(selector.touching is not None for selector in selectors.values())
+    name = Path(request.path).name
+    facts = facts_of(held.solids, held.names, name, points_of(selectors), touching=touching)
+    out = []
+    for label, selector in selectors.items():
+        faces = list(held.solids[held.names.index(selector.part)].faces) if selector.part in held.names else []
+        found = chosen(label, selector, facts, snap=request.snap)
+        out += [Mark(label, selector.part, faces[face.number - 1]) for face in found]
+    return out
 
 
 def _check_size(volume: float, size: float, name: str) -> None:
@@ -240,20 +182,6 @@ def _check_size(volume: float, size: float, name: str) -> None:
             f"factorisation takes {needed / 1e9:.3g} GB; {free / 1e9:.3g} GB are free: take {least * 1e3:.2g} mm or "
             f"more"
         )
-
-
-def _overlaps(solids: Sequence[Any], names: Sequence[str]) -> str:
-    """Which parts have a volume in common, and where."""
-    found = []
-    for k, one in enumerate(solids):
-        for j in range(k):
-            both = one * solids[j]
-            if both.mass > 1e-9 * one.mass:
-                low, high = both.bounding_box
-                size = " x ".join(f"{b - a:.3g}" for a, b in zip(low, high, strict=True))
-                centre = f"({both.center.x:.4g}, {both.center.y:.4g}, {both.center.z:.4g}) mm"
-                found.append(f"{names[j]!r} and {names[k]!r} share {size} mm about {centre}")
-    return "; ".join(found) or ", ".join(names)
 
 
 def _signature(face: Any) -> Array:

@@ -1,6 +1,6 @@
 """Evaluates samples of a study in its small bases: modes at every load, and which of them are those of the test."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -15,6 +15,7 @@ from faying.joint.reduced import ReducedModel, Variant
 from faying.joint.structure import Structure
 from faying.measured.mac import mac
 from faying.measured.pairing import pair_over_loads
+from faying.progress import Report, silent
 from faying.study.keys.test import TestChoice
 from faying.study.parallel import Rows, each
 from faying.study.recipe import Recipe, contact_shares
@@ -25,7 +26,6 @@ TOLERANCE = 1e-4  # relative error of a frequency that the bases are made for: f
 CHUNK = 32  # samples evaluated in one go
 ROUNDS = 6  # of training at samples that the bases do not fit
 WORST = 4  # samples trained on in each round
-Report = Callable[[str, int], None]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,7 +137,7 @@ class Reduced:
     Args:
         ensemble: The samples.
         jobs, dask: Processes on this machine, or the address of a Dask scheduler.
-        report: Called with a stage and the number of samples just done.
+        report: Called with a stage, the samples done, and their number; 0 of 0 while the bases grow.
         tolerance: Relative error of a frequency that the bases are made for.
         store: Keeps bases and samples on disk, so that interrupted work goes on; None keeps nothing.
     """
@@ -153,8 +153,8 @@ class Reduced:
         store: Store | None = None,
     ) -> None:
         self.jobs, self.dask = jobs, dask
-        self.report: Report = report or (lambda _stage, _done: None)
-        self.report("mesh", 0)
+        self.report: Report = report or silent
+        self.report("mesh", 0, 0)
         self.trainer = Trainer.of(ensemble.study, ensemble, tolerance, self.report)
         self.store = store or Store(None, what="samples")
         self.seen: tuple[Array, Array] | None = None
@@ -186,8 +186,11 @@ class Reduced:
                 left.append(chunk)
             else:
                 _put(out, ensemble.count, chunk, found)
-                self.report("evaluations", len(chunk))
+        done = ensemble.count - sum(map(len, left))
+        self.report("evaluations", done, ensemble.count)
         for indices, rows in self._evaluated(ensemble, left):
+            done += len(indices)
+            self.report("evaluations", done, ensemble.count)
             _put(out, ensemble.count, indices, rows)
             self.store.keep_rows(what, indices[0] // CHUNK, rows)
         for _ in range(ROUNDS):
@@ -195,7 +198,7 @@ class Reduced:
             if not len(far):
                 break
             worst = far[np.argsort(-out["estimate"][far])][:WORST]
-            self.report(f"enrichment: {len(far)} samples", 0)
+            self.report(f"enrichment: {len(far)} samples", 0, 0)
             points = [int(ensemble.training + k) * ensemble.loads + ensemble.loads - 1 for k in worst]
             before = out["estimate"][far].copy()
             self.trainer.recipe = replace(self.trainer.recipe, design=ensemble)
@@ -210,9 +213,7 @@ class Reduced:
         """Evaluate chunk by chunk, as they come."""
         recipe = replace(self.trainer.recipe, design=ensemble)
         work = Evaluator(model=self.model, recipe=recipe, seen=self.seen, test=ensemble.study.test)
-        for indices, rows in each(partial(_rows, work), chunks, self.jobs, self.dask):
-            self.report("evaluations", len(indices))
-            yield indices, rows
+        return each(partial(_rows, work), chunks, self.jobs, self.dask)
 
 
 def _put(out: Rows, count: int, indices: Sequence[int], rows: Rows) -> None:

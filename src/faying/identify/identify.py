@@ -12,10 +12,11 @@ from faying.identify import remarks
 from faying.identify.emulator import Emulator
 from faying.identify.fit import Fit, least_squares_ends, what_is_seen
 from faying.identify.identification import Identification
-from faying.identify.model import Model, Report
+from faying.identify.model import Model
 from faying.identify.noise import DISCREPANCY, DISCREPANCY_SD, SCATTER, TEST_SD, Offsets, offsets
 from faying.identify.points import at_shares, sobol
 from faying.identify.tempering import Tempered, temper
+from faying.progress import Report
 from faying.typing import Array, Mask
 
 FEWEST, MOST = 256, 1024  # evaluations over the priors, where not given

@@ -1,12 +1,10 @@
 """What an identification asks of a model."""
 
-from collections.abc import Callable
 from typing import Protocol
 
 from faying.distribution import Distribution
+from faying.progress import Report
 from faying.typing import Array
-
-Report = Callable[[str, int, int], None]
 
 
 class Model(Protocol):

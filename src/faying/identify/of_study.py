@@ -12,11 +12,11 @@ from faying.identify.ensemble import Ensemble, scattering
 from faying.identify.evaluate import TOLERANCE, Reduced
 from faying.identify.identification import Identification, mixed
 from faying.identify.identify import identify_model
-from faying.identify.model import Report
 from faying.identify.noise import DISCREPANCY_SD, TEST_SD
 from faying.identify.predict import check, cut_notes
 from faying.identify.store import Store
 from faying.joint.loads import preload_index
+from faying.progress import Report, silent
 from faying.study.keys.uncertain import UncertainChoice
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
@@ -37,25 +37,22 @@ class StudyModel:
     def frequencies(self, values: Array, report: Report | None = None) -> tuple[Array, list[str]]:
         """Frequencies of the test's modes (n, load, mode) [Hz] at values (n, d), and why a sample has none."""
         self.calls += 1
-        self.stage.begin(f"evaluations{self.label}", len(values), report)
+        self.stage.begin(f"evaluations{self.label}", report)
         rows = self.reduced.rows(self.ensemble.with_values(values), f"{self.calls:03d}")
         return rows["paired"], [str(reason) for reason in rows["reasons"]]
 
 
 class _Stage:
-    """Turns the samples that the bases report into (stage, done, total)."""
+    """Gives the evaluations that the bases report the name of what they are for."""
 
     def __init__(self, report: Report | None) -> None:
-        self.report, self.name, self.total, self.done = report, "bases", 0, 0
+        self.report, self.name = report or silent, "evaluations"
 
-    def begin(self, name: str, total: int, report: Report | None) -> None:
-        self.report, self.name, self.total, self.done = report or self.report, name, total, 0
+    def begin(self, name: str, report: Report | None) -> None:
+        self.report, self.name = report or self.report, name
 
-    def __call__(self, stage: str, done: int) -> None:
-        self.done += done
-        if self.report is not None:
-            name = self.name if stage == "evaluations" else stage
-            self.report(name, min(self.done, self.total), self.total)
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        self.report(self.name if stage == "evaluations" else stage, done, total)
 
 
 def identify(

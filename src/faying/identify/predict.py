@@ -8,10 +8,11 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.identify.ensemble import Ensemble, by_reason
-from faying.identify.evaluate import TOLERANCE, Reduced, Report
+from faying.identify.evaluate import TOLERANCE, Reduced
 from faying.identify.prediction import Prediction
 from faying.identify.store import Store
 from faying.notes import Note
+from faying.progress import Report
 from faying.study.parallel import Rows
 from faying.study.part_folder import fingerprint
 from faying.study.run import provenance
@@ -43,7 +44,7 @@ def predict(
         jobs: processes on this machine.
         dask: address of a Dask scheduler, in place of processes.
         out: file to write, ending in .nc; what is done is kept beside it, and the same call goes on where it stopped.
-        report: called with a stage and the number of samples just done.
+        report: called with a stage, the samples done, and their number; 0 of 0 while the bases grow.
 
     Returns:
         The samples with their frequencies; `quantiles()` and `shares()` say what they come to.

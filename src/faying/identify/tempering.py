@@ -9,9 +9,9 @@ import numpy as np
 
 from faying.distribution import Distribution
 from faying.errors import InputError
+from faying.progress import Report
 from faying.typing import Array, Index
 
-Report = Callable[[str, int, int], None]
 LogLikelihood = Callable[[Array], Array]
 WALKS_ACCEPTED, DRAWS_ACCEPTED = 0.25, 0.4  # shares of the moves that their lengths are set for
 WIDER = 1.2  # the Gaussian that is drawn from, over the particles' own

@@ -29,6 +29,25 @@ COARSE = {
     36: 4.0,
     39: 4.0,
 }
+# diameters [mm] of clearance holes, fine, medium and coarse, by nominal diameter [mm] (ISO 273)
+CLEARANCE_HOLES = {
+    3: (3.2, 3.4, 3.6),
+    4: (4.3, 4.5, 4.8),
+    5: (5.3, 5.5, 5.8),
+    6: (6.4, 6.6, 7.0),
+    8: (8.4, 9.0, 10.0),
+    10: (10.5, 11.0, 12.0),
+    12: (13.0, 13.5, 14.5),
+    14: (15.0, 15.5, 16.5),
+    16: (17.0, 17.5, 18.5),
+    18: (19.0, 20.0, 21.0),
+    20: (21.0, 22.0, 24.0),
+    22: (23.0, 24.0, 26.0),
+    24: (25.0, 26.0, 28.0),
+}
+# outer diameters [mm] of plain washers (ISO 7089) and of heads of cap screws (ISO 4762), by nominal diameter [mm]
+WASHERS = {3: 7, 4: 9, 5: 10, 6: 12, 8: 16, 10: 20, 12: 24, 14: 28, 16: 30, 18: 34, 20: 37, 22: 39, 24: 44}
+HEADS = {3: 5.5, 4: 7, 5: 8.5, 6: 10, 8: 13, 10: 16, 12: 18, 14: 21, 16: 24, 18: 27, 20: 30, 22: 33, 24: 36}
 # stress under proof load [Pa] of each property class (ISO 898-1:2013, Table 3)
 PROOF = {
     "4.6": 225e6,
@@ -96,6 +115,20 @@ class Thread:
         pitch_diameter = self.diameter - 0.64952 * self.pitch  # ISO 724
         minor_diameter = self.diameter - 1.22687 * self.pitch
         return pi / 4 * ((pitch_diameter + minor_diameter) / 2) ** 2
+
+
+def size_for_hole(diameter: float) -> int | None:
+    """Return the nominal diameter [mm] of the bolt that a clearance hole [m] is made for; None where there is none.
+
+    The size whose medium hole is nearest, the greater of two alike, if the hole is wider than the bolt and not wider
+    than its coarse hole.
+
+    Source:
+        ISO 273:1979.
+    """
+    hole = 1e3 * diameter
+    fitting = [size for size, (_, _, coarse) in CLEARANCE_HOLES.items() if size < hole <= coarse * (1 + 1e-6)]
+    return min(fitting, key=lambda size: (round(abs(CLEARANCE_HOLES[size][1] - hole), 6), -size), default=None)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,6 +18,7 @@ from faying.joint.microslip import Microslip
 from faying.joint.slip_basis import SlipBasis
 from faying.joint.springs import Springs
 from faying.joint.support_check import check_motions
+from faying.progress import Report
 from faying.result.backbone import Backbone
 from faying.study.backbone_result import Curve, collected
 from faying.study.backbone_store import CurveStore
@@ -37,7 +38,7 @@ EACH = 0.5  # in steps of so many
 SPENT = 0.05  # residual, in energy, at which a basis is spent
 STILL = 1e-3  # of the greatest motion: a point that moves less says nothing of the mode
 
-Report = Callable[[str, float], None]
+STEPS = 1000  # of its progress
 
 
 @overload
@@ -105,7 +106,7 @@ def backbone(
         slip: "microslip" (default) cuts the law's curve into springs with sliders; "coulomb" takes one slider a point.
         out: File (.nc) that the curve is written to. What is done is kept beside it until then: a computation that was
             killed goes on where it stopped. With several curves, their files are numbered.
-        report: Called with the stage and the share of the work that is done [-].
+        report: Called with a stage, the steps done, and how many there are.
 
     Returns:
         The curve, with its error bounds and the reason why it ends.
@@ -204,11 +205,12 @@ class _Progress:
 
     def stage(self, text: str, share: float) -> None:
         if self.report is not None:
-            self.report(text, 0.2 * share)
+            self.report(text, int(STEPS * 0.2 * share), STEPS)
 
     def within(self, text: str, share: float) -> None:
         if self.report is not None:
-            self.report(text, 0.2 + 0.8 * (self.curve + min(max(share, 0.0), 1.0)) / self.curves)
+            done = 0.2 + 0.8 * (self.curve + min(max(share, 0.0), 1.0)) / self.curves
+            self.report(text, int(STEPS * done), STEPS)
 
 
 def _curves(

@@ -1,6 +1,6 @@
 """From a study to its case: mesh, joints with their laws, bolts, supports, all ready to be solved."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -13,6 +13,7 @@ from faying.joint.structure import Joint, Structure
 from faying.materials import Material
 from faying.measured.mapping import PointMap
 from faying.notes import Note
+from faying.progress import Report
 from faying.study.hammer import Hammer
 from faying.study.keys.geometry import mesh_of
 from faying.study.keys.joint import JointChoice
@@ -23,7 +24,6 @@ from faying.study.study import Study
 from faying.typing import Array
 from faying.units import show
 
-Report = Callable[[str, int, int], None]
 SIZES = 3e-3, 30.0  # m: a structure smaller or larger than these is noted, for its unit may be wrong
 SEEN = 1e-6  # of snap: less is rounding
 SPARE_MODES = 6  # beyond those asked for, so that the basis of the complex modes does not end at the last of them
@@ -159,8 +159,8 @@ def joint_law(joint: JointChoice, law: LawChoice, surface: Surface, rough: Mater
 
 
 def part_of(study: Study, face: str) -> str | None:
-    """The part that a face belongs to by its name (part.face) or by [geometry.face_at]; None where neither says it."""
-    part = study.geometry.face_at[face][0] if face in study.geometry.face_at else face.partition(".")[0]
+    """The part that a face belongs to by its name (part.face) or its selector; None where neither says it."""
+    part = study.geometry.face[face].part if face in study.geometry.face else face.partition(".")[0]
     return part if part in study.parts else None
 
 

@@ -14,7 +14,8 @@ from faying.joint.condensed import CondensedJoint, condensed_modes
 from faying.joint.loads import preload_index
 from faying.joint.support_check import check_motions
 from faying.measured.mac import mac
-from faying.study.case import Case, Progress, Report
+from faying.progress import Report
+from faying.study.case import Case, Progress
 from faying.study.modes import modes_of, settled
 from faying.study.study import Study
 from faying.typing import Array

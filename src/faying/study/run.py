@@ -18,11 +18,12 @@ from faying.joint.bolt import FittedBolt
 from faying.joint.structure import Structure, bond
 from faying.joint.support_check import RIGID_BELOW
 from faying.notes import Note
+from faying.progress import Report
 from faying.result import BoltNumbers, Comparison, Provenance, Receptance, Result
 from faying.study.beside import Beside, beside_fields, solve_beside
 from faying.study.beyond import stiff_as_bonded
 from faying.study.bolt_numbers import bolt_numbers, conductances
-from faying.study.case import Case, Progress, Report
+from faying.study.case import Case, Progress
 from faying.study.findings import against_exact_contact, falling
 from faying.study.form_band import form_band
 from faying.study.modes import modes_with
@@ -50,7 +51,7 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         NotConverged: an iteration stops short.
     """
     study = Study.read(study)
-    progress = Progress(stage_count(study), report)
+    progress = Progress(len(stages(study)), report)
     case = Case.of(study, progress)
     problem = case.structure.assembly(solver=study.modes.solver)
     states = [solve(case, number, problem, progress) for number in range(len(study.loads))]
@@ -67,10 +68,18 @@ def findings(case: Case, states: Sequence[State]) -> list[Note]:
     return [*falling(case, states), *against_exact_contact(case, states[0])]
 
 
-def stage_count(study: Study) -> int:
-    """How many stages `run` reports for a study."""
-    tested = 0 if study.hammer is None else 2
-    return 3 + tested + len(study.loads) * (2 + 2 * len(study.beside) + (study.response is not None))
+def stages(study: Study) -> list[str]:
+    """The stages that `run` reports for a study, in their order."""
+    loads = [f"{load / 1e3:g} kN" for load in study.loads]
+    out = [] if study.hammer is None else ["hammer test"]
+    out += ["surface", "mesh"]
+    for number, load in enumerate(loads):
+        out += [f"preload {load}", f"modes at {load}"]
+        out += [f"frequency response at {load}"] if study.response is not None else []
+        if study.hammer is not None and number == study.hammer.load:
+            out.append("frequency response at the points of the test")
+    out += [stage for _ in study.beside for load in loads for stage in (f"preload {load}", f"modes at {load}")]
+    return [*out, "modes free and bonded"]
 
 
 def bounds(case: Case) -> tuple[Array, Array, list[Note]]:

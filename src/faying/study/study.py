@@ -128,6 +128,7 @@ class Study:
         response = ResponseChoice.of(top.table("response"))
         backbone = BackboneChoice.of(top.table("backbone"))
         test, hammer = read_test(top, max((b.preload for b in bolts if b.preload), key=len, default=()))
+        geometry = _with_selectors(geometry, faults)
         uncertain = _uncertain(top, inside, joints, bolts, materials, parts)
         top.close()
         faults.raise_if_any(where)
@@ -154,6 +155,14 @@ class Study:
             text=text,
             files=tuple(dict.fromkeys(faults.files)),
         )
+
+
+def _with_selectors(geometry: GeometryChoice, faults: Faults) -> GeometryChoice:
+    """The geometry with the selectors that stand in joints, bolts, supports and masses."""
+    both = [name for name in faults.selectors if name in geometry.face]
+    if both:
+        faults.add(f"geometry.face.{both[0]!r} is the name that a selector elsewhere gets; choose another name")
+    return replace(geometry, face={**geometry.face, **faults.selectors})
 
 
 def _uncertain(

@@ -1,6 +1,6 @@
 """Many laws and preloads on one structure: reduced once, then evaluated in milliseconds each."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -9,6 +9,7 @@ import numpy as np
 
 from faying.errors import FayingError, InputError
 from faying.joint.reduced import ReducedModel
+from faying.progress import Report, silent
 from faying.study.axes import Axis, Grid
 from faying.study.case import checked_laws, surfaces_of
 from faying.study.parallel import each
@@ -70,7 +71,7 @@ def sweep(
     tolerance: float = 4e-6,
     jobs: int = 1,
     dask: str | None = None,
-    report: Callable[[str, int], None] | None = None,
+    report: Report | None = None,
 ) -> Sweep:
     """Evaluate a study at all combinations of the values of `axes` and write them to `out` (NetCDF).
 
@@ -83,7 +84,7 @@ def sweep(
         tolerance: relative error of a frequency that the bases are made for, 1e-10 to 1e-2.
         jobs: processes on this machine.
         dask: address of a Dask scheduler, in place of processes.
-        report: called with a stage and the number of points just done.
+        report: called with a stage, the points done, and their number; 0 of 0 while the bases grow.
 
     Returns:
         The finished sweep.
@@ -92,31 +93,29 @@ def sweep(
         InputError: axes that do not fit the study, leftovers of another sweep.
     """
     study = Study.read(study)
-    report = report or (lambda _stage, _done: None)
+    report = report or silent
     _check(study, tolerance)
-    report("surface", 0)
+    report("surface", 0, 0)
     grid = Grid(study=study, surfaces=surfaces_of(study), axes=tuple(axes))
     _check_laws(grid)
     mark = fingerprint(study, tuple(axes), tolerance)
     with Store(Path(out), mark, grid.size, study.modes.count) as store:
-        report("mesh", 0)
+        report("mesh", 0, 0)
         trainer, model = _begun(study, grid, store, tolerance, report)
-        report("evaluations", store.found)
+        report("evaluations", store.found, grid.size)
         # within a chunk each point starts from the last; chunks are the same after an interruption, so the answers are
         path = grid.winding()
         chunks = [c for c in (path[i : i + CHUNK] for i in range(0, len(path), CHUNK)) if not store.done[c].all()]
         work = partial(evaluate, model, trainer.recipe)
         for indices, rows in each(work, chunks, jobs, dask):
-            report("evaluations", int((~store.done[indices]).sum()))
             store.keep(indices, rows)
+            report("evaluations", int(store.done.sum()), grid.size)
         model = _enriched(model, trainer, store, trainer.recipe)
         unknowns = trainer.structure.mesh.unknowns
         return store.written(grid, title=study.title, tolerance=tolerance, unknowns=unknowns, model=model)
 
 
-def _begun(
-    study: Study, grid: Grid, store: Store, tolerance: float, report: Callable[[str, int], None]
-) -> tuple[Trainer, ReducedModel]:
+def _begun(study: Study, grid: Grid, store: Store, tolerance: float, report: Report) -> tuple[Trainer, ReducedModel]:
     """What makes the bases, and the model in them: made now, or left by an interrupted sweep."""
     trainer = Trainer.of(study, grid, tolerance, report)
     model = store.model()
@@ -162,7 +161,7 @@ def _enriched(model: ReducedModel, trainer: Trainer, store: Store, recipe: Recip
         if not len(far):
             break
         worst = far[np.argsort(-store.rows["estimate"][far])][:4]
-        trainer.report(f"enrichment: {len(far)} points", 0)
+        trainer.report(f"enrichment: {len(far)} points", 0, 0)
         model = trainer.model(worst.tolist())
         store.keep_model(model)
         before = store.rows["estimate"][far].copy()

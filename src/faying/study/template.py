@@ -9,7 +9,10 @@ from faying.errors import FayingError, InputError
 from faying.files import write_atomically, write_text
 from faying.surface.scan import Scan
 
-TEXT = """# A Faying study. Quantities are text with a unit; plain numbers have no dimension.
+# first line of a study, for editors that know TOML (Taplo, Even Better TOML); `faying schema` writes the file
+SCHEMA = "#:schema ./faying.schema.json"
+TEXT = """#:schema ./faying.schema.json
+# A Faying study. Quantities are text with a unit; plain numbers have no dimension.
 # Run it with: faying run {name}
 title = "Two blocks and a bolt"
 
@@ -19,9 +22,11 @@ step = "{step}"
 size = "8 mm"                  # largest element
 [geometry.face_size]           # finer where it matters
 "upper.joint" = "4 mm"
-# A face without a name in the file takes one here: the face of that part nearest to the point.
-# [geometry.face_at]
-# "upper.end" = {{ part = "upper", point = ["50 mm", "0 mm", "30 mm"] }}
+# A face without a name in the file gets one here, by what it is; `faying faces {step}` lists the faces.
+# [geometry.face]
+# "upper.joint" = {{ part = "upper", touching = "lower" }}    # or in place of a name: faces = [{{ part = ... }}, ...]
+# "upper.top" = {{ part = "upper", normal = "+z" }}           # or number = 3, as the list has it
+# "upper.end" = {{ part = "upper", nearest = ["50 mm", "0 mm", "30 mm"] }}   # at most 1 mm away, or within = "5 mm"
 # Or a mesh of your own in place of step and size (.inp, .bdf, .msh, .cdb, .vtk, .vtu): its sets are parts and faces.
 # mesh = "model.inp"
 # unit = "mm"                  # of its coordinates; no such file says

@@ -1,6 +1,6 @@
 """Bases for all points of a sweep or an ensemble: where they are trained, and where they are looked at afterwards."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Self
 
@@ -11,6 +11,7 @@ from faying.joint.part_shares import PartShares
 from faying.joint.reduce import STATIC_SHARE, Reduction
 from faying.joint.reduced import ReducedModel
 from faying.joint.structure import Structure
+from faying.progress import Report
 from faying.study.case import checked_mesh, materials_at, structure_of
 from faying.study.recipe import Design, Place, Recipe
 from faying.study.study import Study
@@ -26,15 +27,13 @@ SEED = 20241121
 class Trainer:
     """Makes the bases when they are first needed, and enriches them at points of the design."""
 
-    def __init__(
-        self, study: Study, structure: Structure, recipe: Recipe, tolerance: float, report: Callable[[str, int], None]
-    ) -> None:
+    def __init__(self, study: Study, structure: Structure, recipe: Recipe, tolerance: float, report: Report) -> None:
         self.study, self.structure, self.recipe, self.tolerance = study, structure, recipe, tolerance
         self.report = report
         self.reduction: Reduction | None = None
 
     @classmethod
-    def of(cls, study: Study, design: Design, tolerance: float, report: Callable[[str, int], None]) -> Self:
+    def of(cls, study: Study, design: Design, tolerance: float, report: Report) -> Self:
         """Mesh a study and lay its laws on the joints; what varies is that of the design."""
         mesh = checked_mesh(study)
         pairs = tuple(materials_at(study, mesh, joint) for joint in study.joints)
@@ -69,7 +68,7 @@ class Trainer:
         fault: FayingError | None = None
         parts = self.recipe.design.varied_parts
         for index in dict.fromkeys(points):
-            self.report("reference solution", 0)
+            self.report("reference solution", 0, 0)
             try:
                 laws, forces, _ = self.recipe.laws(index)
                 return Reduction.of(
@@ -90,7 +89,7 @@ class Trainer:
         fault: FayingError | None = None
         start: Array | None = None
         for number, index in enumerate(points):
-            self.report(f"{what} {number + 1}", 0)
+            self.report(f"{what} {number + 1}", 0, 0)
             try:
                 start = reduction.train(
                     *self.recipe.laws(index),
@@ -109,7 +108,7 @@ class Trainer:
         """Look at points that were not trained on by their full residual; train on those that are not good enough."""
         poor = []
         for index in points:
-            self.report("check", 0)
+            self.report("check", 0, 0)
             try:
                 laws, forces, friction = self.recipe.laws(index)
                 model = reduction.model.with_gaps(self.recipe.gaps(index)).with_scales(self.recipe.scales(index))

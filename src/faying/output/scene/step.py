@@ -1,17 +1,12 @@
 """The scene of a STEP file: every face of every solid as the CAD kernel draws it, each with its number."""
 
-import json
-import subprocess
-import sys
-import tempfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from faying.errors import InputError, ReadError
-from faying.fe.cad import check_head, read_step
-from faying.fe.geometry import _names
+from faying.fe.cad import check_head, read_parts
+from faying.fe.cad_process import Answer, ask
 from faying.output.scene.build import face, feature_edges, measures
 from faying.output.scene.model import Scene
 from faying.typing import Array, Index
@@ -29,48 +24,17 @@ def of_step(path: str | Path) -> Scene:
     """
     file = Path(path)
     check_head(file)
-    with tempfile.TemporaryDirectory() as folder:
-        code = (
-            "import sys; sys.path[:] = sys.argv[3:]; from faying.output.scene.step import serve; serve(*sys.argv[1:3])"
-        )
-        done = subprocess.run(
-            [sys.executable, "-c", code, str(file.resolve()), folder, *sys.path],
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            check=False,
-        )
-        fault, answer = Path(folder) / "fault.json", Path(folder) / "faces.npz"
-        if fault.is_file():
-            kind, text = json.loads(fault.read_text(encoding="utf-8"))
-            raise {"ReadError": ReadError, "InputError": InputError}[kind](text)
-        if done.returncode or not answer.is_file():
-            last = done.stderr.decode("utf-8", errors="replace").strip().splitlines()[-1:]
-            how = f"signal {-done.returncode}" if done.returncode < 0 else " ".join(last) or f"code {done.returncode}"
-            raise ReadError(
-                f"{file}: the CAD kernel died on it ({how}); repair it in the CAD program and export it again"
-            )
-        with np.load(answer) as data:
-            return _scene(file.name, data["corners"] * 1e-3, data["owner"], json.loads(str(data["faces"])))
+    answer = ask(tessellate, {"path": str(file.resolve())}, path=file)
+    return _scene(file.name, answer.arrays["corners"] * 1e-3, answer.arrays["owner"], answer.facts)
 
 
-def serve(path: str, folder: str) -> None:
-    """Tessellate a STEP file and leave corners (t, 3, 3) [mm], the face of each triangle, and the faces."""
-    try:
-        corners, owner, faces = _tessellated(Path(path))
-    except (ReadError, InputError) as fault:
-        text = json.dumps([type(fault).__name__, str(fault)])
-        (Path(folder) / "fault.json").write_text(text, encoding="utf-8")
-        return
-    np.savez(Path(folder) / "faces.npz", corners=corners, owner=owner, faces=np.array(json.dumps(faces)))
-
-
-def _tessellated(path: Path) -> tuple[Array, Index, dict[str, Any]]:
-    solids = list(read_step(path).solids)
-    names, _ = _names([solid.name or "" for solid in solids], path.name)
+def tessellate(request: dict[str, Any]) -> Answer:
+    """Corners of the triangles of a STEP file (t, 3, 3) [mm], the face of each, and the faces; in its own process."""
+    read = read_parts(Path(request["path"]))
     found: list[Array] = []
     owner: list[Index] = []
     faces: list[tuple[int, int, str, float, tuple[float, ...]]] = []
-    for number, solid in enumerate(solids):
+    for number, solid in enumerate(read.solids):
         solid._webgui_data()  # the triangles of neighbours then meet at their common edge
         for position, one in enumerate(solid.faces, start=1):
             drawn = one._webgui_data()["Bezier_trig_points"][:3]
@@ -79,7 +43,8 @@ def _tessellated(path: Path) -> tuple[Array, Index, dict[str, Any]]:
             owner.append(np.full(len(corners), len(faces)))
             centre = tuple(1e-3 * getattr(one.center, axis) for axis in "xyz")
             faces.append((number, position, one.name or "", 1e-6 * one.mass, centre))
-    return np.concatenate(found), np.concatenate(owner), {"parts": names, "faces": faces}
+    arrays = {"corners": np.concatenate(found), "owner": np.concatenate(owner)}
+    return Answer(facts={"parts": read.names, "faces": faces}, arrays=arrays)
 
 
 def _scene(title: str, corners: Array, owner: Index, known: dict[str, Any]) -> Scene:

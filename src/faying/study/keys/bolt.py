@@ -10,6 +10,7 @@ from faying.joint.bolt import Bolt, Washer, torque_to_preload
 from faying.joint.solid_bolt import SolidBolt
 from faying.joint.threads import Fastener, Thread
 from faying.materials import Material
+from faying.study.keys.face import face_names
 from faying.study.keys.reader import Table, point, quantity
 
 OF_THE_MESH = ("material", "seat", "washer", "head_mass", "nut_mass")  # what a meshed bolt has already
@@ -18,7 +19,7 @@ OF_THE_MESH = ("material", "seat", "washer", "head_mass", "nut_mass")  # what a 
 def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bolt | SolidBolt | None:
     """Read one [[bolt]]; None where its faults leave no bolt."""
     name = table.text("name", f"bolt {index + 1}")
-    faces = tuple(table.texts("faces", 2) or ("", ""))
+    faces = face_names(table, "faces", name)
     at = table.take("at", point, None)
     part = table.text("part", None)
     diameter = table.quantity("diameter", "m", None)

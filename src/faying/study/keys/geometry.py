@@ -1,11 +1,14 @@
 """The [geometry] table of a study: a STEP file to mesh, or a mesh file of another program."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from faying.errors import InputError
 from faying.fe.mesh import Mesh
-from faying.study.keys.reader import Faults, Table, point
+from faying.fe.mesh_facts import mesh_facts
+from faying.fe.selectors import Selector, chosen, points_of
+from faying.study.keys.face import read_selector
+from faying.study.keys.reader import Faults, Table
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,7 +21,7 @@ class GeometryChoice:
     step: Path | None = None
     size: float = 0.0
     face_size: dict[str, float] = field(default_factory=dict)
-    face_at: dict[str, tuple[str, tuple[float, float, float]]] = field(default_factory=dict)
+    face: dict[str, Selector] = field(default_factory=dict)
     mesh: Path | None = None
     unit: str | None = None
     sets: dict[str, str] = field(default_factory=dict)
@@ -44,14 +47,23 @@ def read_geometry(top: Table) -> GeometryChoice:
     inner = table.table("face_size")
     for name in list(inner.data) if inner else []:
         sizes[name] = inner.quantity(name, "m") if inner else 0.0
-    at: dict[str, tuple[str, tuple[float, float, float]]] = {}
-    places = table.table("face_at")
-    for name, one in places.each().items() if places else ():
-        at[name] = (one.text("part"), one.take("point", point))
-        one.close()
+    faces = _faces(table)
     snap = table.quantity("snap", "m", 0.0)
     table.close()
-    return GeometryChoice(step=step, size=size, face_size=sizes, face_at=at, snap=snap)
+    return GeometryChoice(step=step, size=size, face_size=sizes, face=faces, snap=snap)
+
+
+def _faces(table: Table) -> dict[str, Selector]:
+    """Take [geometry.face]."""
+    if "face_at" in table.data:
+        table.faults.add(
+            f"{table.where}.face_at has become {table.where}.face, with nearest in place of point; write for example "
+            '[geometry.face] "upper.end" = {part = "upper", nearest = ["50 mm", "0 mm", "30 mm"]}'
+        )
+        table.data.pop("face_at")
+    places = table.table("face")
+    found = {name: read_selector(one) for name, one in (places.each().items() if places else ())}
+    return {name: selector for name, selector in found.items() if selector is not None}
 
 
 def _meshed(table: Table) -> GeometryChoice:
@@ -59,15 +71,16 @@ def _meshed(table: Table) -> GeometryChoice:
     if "unit" not in table.data:
         table.faults.add('geometry.unit is missing: a mesh file does not say its unit; write for example unit = "mm"')
     unit = table.text("unit", None)
-    for key in ("step", "size", "face_size", "face_at"):
+    for key in ("step", "size", "face_size"):
         if key in table.data:
             table.faults.add(f"geometry.{key} goes with a STEP file; geometry.mesh names a mesh that is ready")
             table.data.pop(key)
     inner = table.table("sets")
     sets = {name: inner.text(name) for name in list(inner.data)} if inner else {}
+    faces = _faces(table)
     snap = table.quantity("snap", "m", 0.0)
     table.close()
-    return GeometryChoice(mesh=mesh, unit=unit, sets=sets, snap=snap)
+    return GeometryChoice(mesh=mesh, unit=unit, sets=sets, face=faces, snap=snap)
 
 
 def mesh_of(spec: GeometryChoice) -> Mesh:
@@ -75,7 +88,22 @@ def mesh_of(spec: GeometryChoice) -> Mesh:
     if spec.mesh is not None:
         from faying.decks.meshfile import read_mesh
 
-        return read_mesh(spec.mesh, unit=spec.unit, parts=spec.sets or None)
+        return with_faces(read_mesh(spec.mesh, unit=spec.unit, parts=spec.sets or None), spec)
     from faying.fe.geometry import mesh_step
 
-    return mesh_step(spec.file, size=spec.size, local_size=spec.face_size, face_points=spec.face_at)
+    return mesh_step(spec.file, size=spec.size, local_size=spec.face_size, faces=spec.face, snap=spec.snap)
+
+
+def with_faces(mesh: Mesh, spec: GeometryChoice) -> Mesh:
+    """Give the names of selectors to faces of a mesh file that have names of their own there."""
+    if not spec.face:
+        return mesh
+    facts = mesh_facts(mesh, points_of(spec.face))
+    faces, owner = dict(mesh.faces), dict(mesh.face_part)
+    for label, selector in spec.face.items():
+        if label in mesh.faces:
+            raise InputError(f"face {label!r}: the file has a face of this name already; choose another name")
+        found = chosen(label, selector, facts, snap=spec.snap)
+        faces[label] = tuple(block for face in found for block in mesh.face(face.name))
+        owner[label] = selector.part
+    return replace(mesh, faces=faces, face_part=owner)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from faying.joint.form import Form
+from faying.study.keys.face import face_names
 from faying.study.keys.form import read_form
 from faying.study.keys.law import LawChoice
 from faying.study.keys.reader import Table
@@ -35,9 +36,10 @@ class JointChoice:
             table.faults.add(f"{table.where}.gap has become {table.where}.form.gap; rename the table")
             table.data.pop("gap")
         surface, law = table.table("surface"), table.table("law")
+        name = table.text("name", f"joint {index + 1}")
         choice = cls(
-            name=table.text("name", f"joint {index + 1}"),
-            faces=tuple(table.texts("faces", 2) or ("", "")),
+            name=name,
+            faces=face_names(table, "faces", name),
             springs=table.text("springs", "per-area", ("per-area", "per-node")),
             tangential=table.text("tangential", None, ("law", "mindlin")),
             friction=table.number("friction", None),

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 from faying import units
 from faying.contact.parameter import FILE, Parameter
 from faying.errors import InputError
+from faying.fe.selectors import Selector
 
 MISSING: Any = object()
 Made = TypeVar("Made")
@@ -16,11 +17,15 @@ Made = TypeVar("Made")
 
 @dataclass
 class Faults:
-    """The faults found so far, and the files that the study names, which lie relative to `folder`."""
+    """The faults found so far, the files that the study names, which lie relative to `folder`, and selectors by name.
+
+    selectors: those that stand in place of a face's name, under the name that the face gets.
+    """
 
     lines: list[str] = field(default_factory=list)
     folder: Path = field(default_factory=Path)
     files: list[Path] = field(default_factory=list)
+    selectors: dict[str, Selector] = field(default_factory=dict)
 
     def add(self, text: str) -> None:
         """Note one fault."""
@@ -76,6 +81,10 @@ class Table:
     def texts(self, key: str, size: int, default: Any = MISSING) -> Any:
         """Take a list of `size` texts."""
         return self.take(key, lambda value, name: _texts(value, name, size), default)
+
+    def truth(self, key: str, default: bool) -> bool:
+        """Take true or false."""
+        return bool(self.take(key, _truth, default))
 
     def table(self, key: str, *, required: bool = False) -> "Table | None":
         """Take a table within this one."""
@@ -191,6 +200,12 @@ def number(value: Any, name: str) -> float:
 def _count(value: Any, name: str) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or value < 1:
         raise InputError(f"{name} = {value!r} should be a whole number of 1 or more")
+    return value
+
+
+def _truth(value: Any, name: str) -> bool:
+    if not isinstance(value, bool):
+        raise InputError(f"{name} = {value!r} should be true or false, without quotes")
     return value
 
 

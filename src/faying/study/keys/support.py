@@ -4,6 +4,7 @@ from typing import Any
 
 from faying.errors import InputError
 from faying.joint.attachments import PointMass, Support
+from faying.study.keys.face import face_name
 from faying.study.keys.reader import Table, point
 
 
@@ -15,7 +16,7 @@ def read_support(table: Table) -> Support | None:
             raise InputError(f'{name} = {value!r} should be some of "x", "y", "z" in a list')
         return tuple(value)
 
-    face, directions = table.text("face"), table.take("directions", axes, ("x", "y", "z"))
+    face, directions = face_name(table, "face", table.where), table.take("directions", axes, ("x", "y", "z"))
     stiffness = table.quantity("stiffness", "Pa/m", None)
     table.close()
     if face is None:
@@ -25,7 +26,7 @@ def read_support(table: Table) -> Support | None:
 
 def read_mass(table: Table) -> PointMass | None:
     """Read one [[mass]]; None where its faults leave none."""
-    mass, face = table.quantity("mass", "kg"), table.text("face", None)
+    mass, face = table.quantity("mass", "kg"), face_name(table, "face", table.where, required=False)
     place = table.take("point", point, None)
     offset = table.take("offset", point, (0.0, 0.0, 0.0))
     table.close()

@@ -1,0 +1,82 @@
+"""Whether intervals of an identification hold what they say: truths from the priors, a test made of each, identified.
+
+    python benchmarks/calibration.py [--study examples/two-blocks/uncertain.toml] [--truths 30]
+
+For each truth the model itself gives the frequencies; offset and scatter are drawn from their priors, too. Printed are
+the share of truths inside the 5 to 95 % intervals, for each parameter and for all, and the chi-square of the ranks in
+five bins (Talts et al. 2018, arXiv:1804.06788).
+"""
+
+import argparse
+import os
+import time
+from pathlib import Path
+
+for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ[name] = "1"
+
+import numpy as np  # noqa: E402  the thread counts come first
+
+ROOT = Path(__file__).parent.parent
+BINS = 5
+
+
+class Kept:
+    """A model that remembers where it was evaluated: all truths share the points over the priors."""
+
+    def __init__(self, model):
+        self.model, self.known = model, {}
+        self.names, self.units, self.priors = model.names, model.units, model.priors
+
+    def frequencies(self, values, report=None):
+        key = values.tobytes()
+        if key not in self.known:
+            self.known[key] = self.model.frequencies(values, report)
+        return self.known[key]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--study", type=Path, default=ROOT / "examples" / "two-blocks" / "uncertain.toml")
+    parser.add_argument("--truths", type=int, default=30)
+    parser.add_argument("--seed", type=int, default=0)
+    given = parser.parse_args()
+
+    from faying.identify.ensemble import Ensemble
+    from faying.identify.evaluate import Reduced
+    from faying.identify.identify import identify_model
+    from faying.identify.noise import DISCREPANCY_SD, TEST_SD
+    from faying.identify.of_study import StudyModel, _Stage
+    from faying.study import Study
+
+    study = Study.read(given.study)
+    began = time.process_time()
+    stage = _Stage(None)
+    ensemble = Ensemble.of(study, 8, given.seed)
+    model = Kept(StudyModel(ensemble, Reduced(ensemble, report=stage), stage))
+    print(f"bases: {time.process_time() - began:.0f} CPU s", flush=True)
+    rng = np.random.default_rng(given.seed)
+    loads, size = np.array(study.loads), len(model.names)
+    ranks, started = [], time.process_time()
+    while len(ranks) < given.truths:
+        truth = np.array([float(prior.quantile(rng.random())) for prior in model.priors])
+        sd, bias = (float(prior.quantile(rng.random())) for prior in (TEST_SD, DISCREPANCY_SD))
+        found, reasons = model.model.frequencies(truth[None])
+        if reasons[0] or not np.isfinite(found).all():
+            print(f"no answer at {truth}: {reasons[0]}", flush=True)
+            continue
+        noise = bias * rng.standard_normal(found.shape[2]) + sd * rng.standard_normal(found.shape[1:])
+        answer = identify_model(model, found[0] * np.exp(noise), loads, seed=given.seed)
+        ranks.append((answer.samples[:, : size + 2] < [*truth, sd, bias]).mean(axis=0))
+        print(len(ranks), " ".join(f"{rank:.2f}" for rank in ranks[-1]), flush=True)
+    ranks = np.array(ranks)
+    inside = (ranks > 0.05) & (ranks < 0.95)
+    expected = given.truths / BINS
+    for name, column, within in zip((*model.names, "test scatter", "discrepancy"), ranks.T, inside.T, strict=True):
+        counts = np.histogram(column, bins=BINS, range=(0, 1))[0]
+        print(f"{name:<28} inside {within.mean():.2f}  chi-square {((counts - expected) ** 2 / expected).sum():.1f}")
+    print(f"all: inside {inside.mean():.3f}; {(time.process_time() - started) / given.truths:.1f} CPU s a truth")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,523 @@
+/* The page of `faying app`: files, scan, structure, study, run, result. It asks the server behind its own address alone,
+ * and puts what it is told into the page as text, never as HTML. */
+import { mount } from "./viewer.js";
+
+const SAVE_AFTER = 700; // ms without a key
+const POLL = 600; // ms between two looks at a job
+const PICTURES = ["prediction.svg", "tornado.svg", "identification.svg", "backbone.svg"];
+const MM = 1e3;
+
+const $ = (id) => document.getElementById(id);
+const state = { project: null, view: null, picks: [], saved: "", timer: 0, shown: "", scan: "", job: null, checks: 0 };
+
+/* the server */
+
+async function ask(method, path, query = {}, body = undefined) {
+  const address = `api/${path}?${new URLSearchParams(query)}`;
+  let answer;
+  try {
+    answer = await fetch(address, { method, body });
+  } catch (fault) {
+    $("lost").hidden = false;
+    throw new Error("the server does not answer", { cause: fault });
+  }
+  $("lost").hidden = true;
+  const kind = answer.headers.get("Content-Type") || "";
+  const found = kind.startsWith("application/json") ? await answer.json() : { fault: await answer.text() };
+  if (found.fault || !answer.ok) throw new Error(found.fault || `${answer.status}`);
+  return found;
+}
+
+function made(name, text = "", properties = {}) {
+  const element = Object.assign(document.createElement(name), properties);
+  element.textContent = text;
+  return element;
+}
+
+function table(rows) {
+  const out = made("table");
+  rows.forEach((row, k) => {
+    const line = out.appendChild(made("tr"));
+    for (const cell of row) line.append(made(k ? "td" : "th", cell));
+  });
+  return out;
+}
+
+function said(id, fault) {
+  $(id).textContent = fault ? fault.message || String(fault) : "";
+  $(id).hidden = !fault;
+}
+
+async function busy(button, words, work) {
+  const label = button.textContent;
+  button.textContent = words;
+  button.disabled = true;
+  try {
+    return await work();
+  } finally {
+    button.textContent = label;
+    button.disabled = false;
+  }
+}
+
+/* tabs */
+
+const TABS = ["surface", "structure", "run", "result"];
+
+function open(name) {
+  for (const one of TABS) {
+    const tab = $(`tab-${one}`);
+    tab.setAttribute("aria-selected", String(one === name));
+    tab.tabIndex = one === name ? 0 : -1;
+    $(one).hidden = one !== name;
+  }
+  state.tab = name;
+  if (name === "structure") showShape();
+  if (name === "surface") showScan();
+  if (name === "result") showResult();
+}
+
+for (const [number, name] of TABS.entries()) {
+  $(`tab-${name}`).addEventListener("click", () => open(name));
+  $(`tab-${name}`).addEventListener("keydown", (event) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    const next = TABS[(number + step + TABS.length) % TABS.length];
+    open(next);
+    $(`tab-${next}`).focus();
+  });
+}
+
+/* the project */
+
+function fill(select, entries, wanted) {
+  select.replaceChildren(...entries.map(([value, text]) => new Option(text, value)));
+  select.disabled = !entries.length;
+  if (entries.some(([value]) => value === wanted)) select.value = wanted;
+}
+
+async function look() {
+  const project = await ask("GET", "project");
+  state.project = project;
+  $("folder").textContent = project.folder;
+  $("study-name").textContent = project.study;
+  const of = (kind) => project.files.filter((file) => file.kinds.includes(kind)).map((file) => [file.name, file.name]);
+  fill($("scans"), of("scan"), $("scans").value || state.scan);
+  const shapes = [...of("geometry"), ...of("mesh")];
+  if (project.text) shapes.unshift(["study", "the study"]);
+  fill($("shapes"), shapes, $("shapes").value);
+  proposable();
+  $("example").hidden = project.text !== null;
+  if (project.text !== null && project.text !== state.saved && $("text").value === state.saved) {
+    $("text").value = state.saved = project.text;
+    draw();
+    check();
+  }
+  if (project.job) job(project.job);
+  return project;
+}
+
+/* files */
+
+for (const button of document.querySelectorAll(".add")) button.addEventListener("click", () => $("file").click());
+$("file").addEventListener("change", () => upload([...$("file").files]));
+
+async function upload(files) {
+  let last = null;
+  for (const file of files) {
+    try {
+      $("status").textContent = `reading ${file.name} …`;
+      await ask("POST", "file", { name: file.name }, file);
+      last = file.name;
+    } catch (fault) {
+      $("status").textContent = "";
+      said(state.tab === "structure" ? "shape-fault" : "scan-fault", fault);
+      return;
+    }
+  }
+  $("status").textContent = "";
+  $("file").value = "";
+  const project = await look();
+  const kinds = project.files.find((file) => file.name === last)?.kinds || [];
+  if (kinds.includes("geometry") || kinds.includes("mesh")) {
+    $("shapes").value = last;
+    state.shown = "";
+    open("structure");
+  } else if (kinds.includes("scan")) {
+    $("scans").value = last;
+    state.scan = "";
+    open("surface");
+  }
+}
+
+let depth = 0;
+addEventListener("dragenter", (event) => { event.preventDefault(); depth += 1; $("drop").hidden = false; });
+addEventListener("dragleave", () => { depth -= 1; $("drop").hidden = depth > 0; });
+addEventListener("dragover", (event) => event.preventDefault());
+addEventListener("drop", (event) => {
+  event.preventDefault();
+  depth = 0;
+  $("drop").hidden = true;
+  upload([...event.dataTransfer.files]);
+});
+
+/* surface */
+
+const length = (metres) => {
+  if (metres === null || metres === undefined) return "-";
+  const size = Math.abs(metres);
+  const [factor, unit] = size >= 1e-3 ? [1e3, "mm"] : size >= 1e-6 ? [1e6, "µm"] : size >= 1e-9 ? [1e9, "nm"] : [1, "m"];
+  return `${Number((metres * factor).toPrecision(4))} ${unit}`;
+};
+const plain = (value, digits = 4) => (value === null || value === undefined ? "-" : String(Number(value.toPrecision(digits))));
+
+async function showScan(again = false) {
+  const name = $("scans").value;
+  $("show-laws").disabled = !name;
+  $("scan-hint").hidden = Boolean(name);
+  if (!name || (name === state.scan && !again)) return;
+  state.scan = name;
+  for (const id of ["scan-picture", "laws-picture"]) $(id).hidden = true;
+  $("laws-table").replaceChildren();
+  $("scan-facts").replaceChildren(made("p", "reading the scan …", { className: "hint" }));
+  const units = {};
+  for (const id of ["xy-unit", "z-unit"]) if ($(id).value.trim()) units[id] = $(id).value.trim();
+  if ($("scan-size").value.trim()) units.size = $("scan-size").value.trim();
+  try {
+    const { facts, picture } = await ask("GET", "scan", { name, ...units });
+    said("scan-fault", null);
+    $("scan-facts").replaceChildren(scanTable(facts), fitTable(facts), ...warnings(facts));
+    $("scan-picture").firstElementChild.src = `data:image/png;base64,${picture}`;
+    $("scan-picture").hidden = false;
+  } catch (fault) {
+    $("scan-facts").replaceChildren();
+    said("scan-fault", fault);
+    $("scan-units").hidden = !/unit|size|spacing/.test(fault.message);
+  }
+}
+
+function scanTable(facts) {
+  const r = facts.roughness;
+  const shape = facts.points.length === 2 ? `${facts.points[1]} x ${facts.points[0]}` : `${facts.points[0]}`;
+  return table([
+    ["points", "size", "spacing", "missing", "spikes", "rms height", "mean", "peak to valley", "rms slope"],
+    [shape, facts.size.map(length).join(" x "), facts.spacing.map(length).join(" x "), String(facts.missing),
+      String(facts.spikes), length(r.Rq), length(r.Ra), length(r.Rz), plain(r.Rdq)],
+  ]);
+}
+
+function fitTable(facts) {
+  const rows = [["estimator", "D", "95 % interval", "G", "95 % interval"]];
+  for (const [name, fit] of Object.entries(facts.fits)) {
+    if (fit.error) rows.push([name, fit.error, "", "", ""]);
+    else rows.push([name, plain(fit.D), fit.D_interval.map((v) => plain(v)).join(" to "), length(fit.G),
+      fit.G_interval.map(length).join(" to ")]);
+  }
+  return table(rows);
+}
+
+function warnings(facts) {
+  const lines = Object.values(facts.fits).flatMap((fit) => fit.warnings || []);
+  return lines.map((line) => made("p", line, { className: "hint" }));
+}
+
+$("scans").addEventListener("change", () => showScan());
+$("scan-again").addEventListener("click", () => showScan(true));
+$("show-laws").addEventListener("click", (event) => busy(event.target, "solving the contact …", async () => {
+  try {
+    const { facts, picture } = await ask("GET", "laws", { name: $("scans").value });
+    const marks = "* outside the validity range of the law; - outside what it covers, or without a stiffness of its own";
+    $("laws-table").replaceChildren(lawTable(facts), made("p", marks, { className: "hint" }));
+    $("laws-picture").firstElementChild.src = `data:image/png;base64,${picture}`;
+    $("laws-picture").hidden = false;
+    said("scan-fault", null);
+  } catch (fault) {
+    said("scan-fault", fault);
+  }
+}));
+
+function lawTable(facts) {
+  const pressures = facts.pressure.values;
+  const chosen = [0, Math.floor(pressures.length / 2), pressures.length - 1];
+  const heads = chosen.map((k) => `k_n at ${plain(pressures[k] / 1e6, 3)} MPa [MPa/µm]`);
+  const rows = [["law", ...heads]];
+  for (const [name, law] of Object.entries(facts.laws)) {
+    const value = (k) => law.k_n?.values[k] ?? null;
+    const cell = (k) => (value(k) === null ? "-" : plain(value(k) / 1e12, 3) + (law.valid[k] ? "" : " *"));
+    rows.push([name, ...chosen.map(cell)]);
+  }
+  return table(rows);
+}
+
+/* structure */
+
+function proposable() {
+  const name = $("shapes").value;
+  const file = state.project?.files.find((one) => one.name === name);
+  $("propose").disabled = !file?.kinds.includes("geometry");
+  $("shape-hint").hidden = Boolean($("shapes").value);
+}
+
+async function showShape(again = false) {
+  const name = $("shapes").value;
+  proposable();
+  const mark = name === "study" ? `study\n${state.saved}` : name;
+  if (!name || (mark === state.shown && !again)) return;
+  state.shown = mark;
+  said("shape-fault", null);
+  state.view?.dispose();
+  state.view = null;
+  $("view").replaceChildren(made("p", "reading the geometry …", { className: "hint" }));
+  try {
+    const scene = await ask("GET", "scene", { of: name });
+    $("view").replaceChildren();
+    state.view = await mount($("view"), scene, { onPick: pick });
+    window.fayingView = state.view;
+  } catch (fault) {
+    $("view").replaceChildren();
+    said("shape-fault", fault);
+  }
+  clearPicks();
+}
+
+function pick(face) {
+  if (!face) return;
+  const same = (one) => one.part === face.part && one.number === face.number;
+  state.picks = state.picks.some(same) ? state.picks.filter((one) => !same(one)) : [...state.picks, face].slice(-2);
+  drawPicks();
+}
+
+function clearPicks() {
+  state.picks = [];
+  drawPicks();
+}
+
+function drawPicks() {
+  $("picks").replaceChildren(...state.picks.map((face) => {
+    const item = made("li");
+    const where = face.centre ? face.centre.map((x) => plain(x * MM, 4)).join(", ") : "";
+    item.append(made("code", selector(face)), ` ${plain((face.area || 0) * MM * MM, 4)} mm² about (${where}) mm`);
+    return item;
+  }));
+  state.view?.highlight(state.picks.map(({ part, number }) => ({ part, number })));
+  const two = state.picks.length === 2;
+  $("make-joint").disabled = $("make-bolt").disabled = !two;
+  $("clear-picks").disabled = !state.picks.length;
+}
+
+const quoted = (text) => JSON.stringify(text);
+const selector = (face) => (face.name ? quoted(face.name) : `{part = ${quoted(face.part)}, number = ${face.number}}`);
+
+function insert(block) {
+  const area = $("text");
+  area.value = `${area.value.replace(/\s*$/, "")}\n\n${block}`;
+  area.scrollTop = area.scrollHeight;
+  typed();
+}
+
+function count(kind) {
+  return ($("text").value.match(new RegExp(`^\\s*\\[\\[${kind}\\]\\]`, "gm")) || []).length + 1;
+}
+
+$("make-joint").addEventListener("click", () => {
+  insert(`[[joint]]\nname = "joint ${count("joint")}"\nfaces = [${state.picks.map(selector).join(", ")}]\n`);
+  clearPicks();
+});
+$("make-bolt").addEventListener("click", () => {
+  insert(`[[bolt]]\nname = "bolt ${count("bolt")}"\nfaces = [${state.picks.map(selector).join(", ")}]\n` +
+    'preload = "10 kN"             # fill in: this is no proposal\n');
+  clearPicks();
+});
+$("clear-picks").addEventListener("click", clearPicks);
+$("shapes").addEventListener("change", () => showShape());
+$("propose").addEventListener("click", (event) => busy(event.target, "reading the faces …", async () => {
+  const query = { geometry: $("shapes").value };
+  if ($("scans").value) query.scan = $("scans").value;
+  if (state.project.text) {
+    if (!confirm(`Replace ${state.project.study}? Its text is lost.`)) return;
+    query.replace = "yes";
+  }
+  await written("new", query);
+}));
+$("example").addEventListener("click", (event) => busy(event.target, "writing …", () => written("example", {})));
+
+async function written(path, query) {
+  try {
+    await ask("POST", path, query);
+    said("shape-fault", null);
+    $("text").value = state.saved;
+    await look();
+    $("shapes").value = "study";
+    await showShape(true);
+  } catch (fault) {
+    said("shape-fault", fault);
+  }
+}
+
+/* study */
+
+let faulty = new Set();
+
+function draw() {
+  const lines = $("text").value.split("\n").length;
+  const parts = [];
+  for (let line = 1; line <= lines; line += 1) {
+    parts.push(faulty.has(line) ? made("b", String(line)) : document.createTextNode(String(line)));
+    parts.push(document.createTextNode("\n"));
+  }
+  $("gutter").replaceChildren(...parts);
+  $("gutter").scrollTop = $("text").scrollTop;
+}
+
+function typed() {
+  $("saved").textContent = "not saved yet";
+  draw();
+  clearTimeout(state.timer);
+  state.timer = setTimeout(save, SAVE_AFTER);
+}
+
+async function save() {
+  clearTimeout(state.timer);
+  const text = $("text").value;
+  if (text === state.saved) {
+    $("saved").textContent = "";
+    return;
+  }
+  try {
+    await ask("PUT", "study", {}, JSON.stringify({ text }));
+    state.saved = text;
+    $("saved").textContent = "saved";
+    if (state.project) state.project.text = text;
+    await check();
+  } catch (fault) {
+    $("saved").textContent = fault.message;
+  }
+}
+
+async function check() {
+  const number = (state.checks += 1);
+  if (!state.saved) return;
+  $("check-hint").textContent = "checking …";
+  let found;
+  try {
+    found = (await ask("GET", "check")).findings;
+  } catch (fault) {
+    found = [{ level: "fault", text: fault.message, line: null }];
+  }
+  if (number !== state.checks) return; // a later one is under way
+  const faults = found.filter((one) => one.level === "fault");
+  faulty = new Set(faults.map((one) => one.line).filter(Boolean));
+  $("check-hint").textContent = faults.length ? `${faults.length} fault${faults.length > 1 ? "s" : ""}` : "no fault";
+  $("faults").replaceChildren(...faults.map(finding));
+  $("findings").replaceChildren(...found.map(finding));
+  draw();
+}
+
+function finding(one) {
+  const item = made("li", "", { className: one.level === "fault" ? "fault-line" : one.level });
+  if (one.line) {
+    const button = made("button", `line ${one.line}`, { type: "button" });
+    button.addEventListener("click", () => reach(one.line));
+    item.append(button, ": ");
+  }
+  item.append(one.text);
+  return item;
+}
+
+function reach(line) {
+  const area = $("text");
+  const start = area.value.split("\n").slice(0, line - 1).reduce((sum, text) => sum + text.length + 1, 0);
+  const end = area.value.indexOf("\n", start);
+  area.focus();
+  area.setSelectionRange(start, end < 0 ? area.value.length : end);
+  area.scrollTop = (area.scrollHeight / area.value.split("\n").length) * (line - 1) - area.clientHeight / 2;
+}
+
+$("text").addEventListener("input", typed);
+$("text").addEventListener("scroll", () => { $("gutter").scrollTop = $("text").scrollTop; });
+addEventListener("beforeunload", (event) => { if ($("text").value !== state.saved) event.preventDefault(); });
+addEventListener("keydown", (event) => {
+  if ((event.ctrlKey || event.metaKey) && event.key === "s") { event.preventDefault(); save(); }
+});
+
+/* run */
+
+const duration = (seconds) => (seconds < 120 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} min`);
+
+$("start").addEventListener("click", async () => {
+  await save();
+  try {
+    job(await ask("POST", "job", { command: $("command").value }));
+    follow();
+  } catch (fault) {
+    $("job").hidden = false;
+    $("job-line").textContent = fault.message;
+  }
+});
+$("cancel").addEventListener("click", async () => job(await ask("DELETE", "job")));
+
+function job(found) {
+  const before = state.job;
+  state.job = found;
+  if (!found.command) return;
+  $("job").hidden = false;
+  const left = found.running && found.left_s !== null && found.left_s !== undefined ? `, ${duration(found.left_s)} left` : "";
+  const steps = found.total ? ` (${found.done} of ${found.total})` : "";
+  const line = found.running
+    ? `${found.stage}${steps}, ${duration(found.seconds)}${left}`
+    : `${found.command}: ${found.end} after ${duration(found.seconds)}`;
+  $("job-line").textContent = line;
+  $("status").textContent = found.running ? line : found.end === "failed" ? "failed" : "";
+  if (found.running && !found.total) $("job-bar").removeAttribute("value");
+  else $("job-bar").value = found.end === "done" ? 1 : found.total ? found.done / found.total : 0;
+  $("words").textContent = found.words.join("\n");
+  $("start").disabled = found.running;
+  $("cancel").disabled = !found.running;
+  if (!found.running && before?.running) ended(found);
+}
+
+async function follow() {
+  while (state.job?.running) {
+    await new Promise((done) => setTimeout(done, POLL));
+    try {
+      job(await ask("GET", "job"));
+    } catch { /* it is said; go on trying */ }
+  }
+}
+
+async function ended(found) {
+  await look();
+  if (found.end === "done") {
+    state.shownResult = "";
+    open("result");
+  }
+}
+
+/* result */
+
+async function showResult() {
+  const names = state.project?.results || [];
+  $("result-hint").hidden = names.length > 0;
+  $("links").replaceChildren(...names.map((name) => made("a", name, { href: `results/${encodeURIComponent(name)}`,
+    target: "_blank", rel: "noopener" })));
+  const mark = `${names.join()} ${state.job?.seconds}`;
+  if (mark === state.shownResult) return;
+  state.shownResult = mark;
+  $("pictures").replaceChildren(...PICTURES.filter((name) => names.includes(name)).map((name) => {
+    const figure = made("figure");
+    figure.append(made("img", "", { alt: name, src: `results/${name}` }));
+    return figure;
+  }));
+  $("report").hidden = !names.includes("report.html");
+  if (!$("report").hidden) $("report").src = "results/report.html";
+}
+
+/* begin */
+
+open("surface");
+look().then((project) => {
+  if (project.results.length) open("result");
+  else if ($("shapes").value) open("structure");
+  else showScan();
+  if (project.job?.running) { open("run"); follow(); }
+});

@@ -1,0 +1,144 @@
+"""A project: a folder with a study, what was put beside it, and its results."""
+
+import re
+from dataclasses import dataclass
+from io import BufferedIOBase
+from pathlib import Path
+from typing import Any, final
+
+from faying.errors import InputError
+from faying.files import write_atomically, write_text
+
+# what a suffix tells of a file; the readers tell the rest
+KINDS = {
+    "geometry": (".step", ".stp"),
+    "mesh": (".inp", ".bdf", ".nas", ".dat", ".msh", ".cdb", ".vtk", ".vtu", ".unv", ".med"),
+    "scan": (".x3p", ".sur", ".xyz", ".asc", ".txt", ".opd", ".opdx", ".plux", ".sdf", ".al3d", ".tif", ".npy", ".nc"),
+    "test": (".uff", ".unv", ".csv"),
+    "study": (".toml",),
+}
+NAME = re.compile(r"[\w()+\- ][\w.()+\- ]{0,118}", re.ASCII)
+LARGEST = 1 << 30  # bytes of an upload
+LARGEST_STUDY = 1 << 20  # bytes of a study's text
+BLOCK = 1 << 20
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class Project:
+    """A folder and the name of its study, which need not exist yet."""
+
+    folder: Path
+    study_name: str = "study.toml"
+
+    @classmethod
+    def at(cls, place: Path) -> "Project":
+        """The project of a folder or of a study file. Raises InputError where it is neither, or has several studies."""
+        if place.is_file():
+            if place.suffix != ".toml":
+                raise InputError(f"{place} is no study; give a folder, or a study file that ends in .toml")
+            return cls(folder=place.resolve().parent, study_name=place.name)
+        if not place.is_dir():
+            raise InputError(f"no folder {place}; make it first, or give another")
+        studies = sorted(path.name for path in place.glob("*.toml") if _looks_like_a_study(path))
+        if len(studies) > 1 and "study.toml" not in studies:
+            raise InputError(
+                f"{place} has several studies: {', '.join(studies)}; name one, such as faying app {place / studies[0]}"
+            )
+        name = "study.toml" if len(studies) != 1 else studies[0]
+        return cls(folder=place.resolve(), study_name=name)
+
+    @property
+    def study(self) -> Path:
+        """The study file, which may not exist yet."""
+        return self.folder / self.study_name
+
+    @property
+    def results(self) -> Path:
+        """Where results lie, which may not exist yet."""
+        return self.folder / "results"
+
+    def file(self, name: str) -> Path:
+        """The path of a file that lies in the folder itself. Raises InputError for names that lead elsewhere."""
+        return _inside(self.folder, checked_name(name))
+
+    def result(self, name: str) -> Path:
+        """The path of a file of the results. Raises InputError for names that lead elsewhere, or to none."""
+        path = _inside(self.results, checked_name(name))
+        if not path.is_file():
+            raise InputError(f"no result {name!r}")
+        return path
+
+    def listed(self) -> dict[str, Any]:
+        """What lies in the folder, for the page."""
+        files = [
+            {"name": path.name, "size": path.stat().st_size, "kinds": _kinds(path.name)}
+            for path in sorted(self.folder.iterdir())
+            if path.is_file() and not path.name.startswith(".") and _kinds(path.name)
+        ]
+        results = []
+        if self.results.is_dir():
+            results = [path.name for path in sorted(self.results.iterdir()) if path.is_file() and path.name[0] != "."]
+        return {
+            "folder": str(self.folder),
+            "study": self.study_name,
+            "files": files,
+            "results": results,
+            "text": self.text(),
+        }
+
+    def text(self) -> str | None:
+        """The study's text; None where there is no study yet."""
+        return self.study.read_text(encoding="utf-8", errors="replace") if self.study.is_file() else None
+
+    def save_text(self, text: str) -> None:
+        """Replace the study's text. Raises InputError where it is far too long."""
+        if len(text.encode()) > LARGEST_STUDY:
+            raise InputError(f"the study has more than {LARGEST_STUDY >> 20} MB; nothing was saved")
+        write_text(self.study, text)
+
+    def receive(self, name: str, source: BufferedIOBase, size: int) -> Path:
+        """Write `size` bytes of a stream into the folder; the file appears complete or not at all."""
+        path = self.file(name)
+        if not _kinds(name):
+            known = ", ".join(sorted({suffix for suffixes in KINDS.values() for suffix in suffixes}))
+            raise InputError(f"{name!r} ends in none of {known}")
+
+        def write(temporary: Path) -> None:
+            left = size
+            with temporary.open("wb") as file:
+                while left:
+                    block = source.read(min(left, BLOCK))
+                    if not block:
+                        raise InputError(f"{name!r} ended {left:,} bytes early; send it again")
+                    file.write(block)
+                    left -= len(block)
+
+        return write_atomically(path, write)
+
+
+def checked_name(name: str) -> str:
+    """A bare file name. Raises InputError for folders, hidden files and characters that not every system takes."""
+    if not NAME.fullmatch(name) or name.endswith((" ", ".")):
+        raise InputError(
+            f"{name[:80]!r} is no file name that is taken here; use letters, digits, blanks and . _ - + ( ), at most "
+            "119, with no folder and no dot at either end"
+        )
+    return name
+
+
+def _inside(folder: Path, name: str) -> Path:
+    path = folder / name
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise InputError(f"{name!r} leads out of the folder {folder}")
+    return path
+
+
+def _kinds(name: str) -> list[str]:
+    lower = name.lower()
+    return [kind for kind, suffixes in KINDS.items() if lower.endswith(suffixes)]
+
+
+def _looks_like_a_study(path: Path) -> bool:
+    text = path.read_text(encoding="utf-8", errors="replace")
+    return re.search(r"^\s*\[geometry\]", text, re.MULTILINE) is not None

@@ -1,0 +1,207 @@
+"""What the page asks for: a table of (method, path) -> function of the session and the query."""
+
+import json
+import tempfile
+import threading
+from base64 import b64encode
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from io import BufferedIOBase
+from pathlib import Path
+from typing import Any
+
+from faying import __version__
+from faying.app.commands import Job, answer
+from faying.app.project import Project, checked_name
+from faying.errors import FayingError, InputError
+
+# what may run, with the pictures that it draws for the page
+JOBS = {
+    "run": (),
+    "predict": ("--plot=results/prediction.svg", "--tornado=results/tornado.svg"),
+    "identify": ("--plot=results/identification.svg",),
+    "backbone": ("--plot=results/backbone.svg",),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """The query of a request, and its body, which is read by whoever wants it."""
+
+    query: Mapping[str, str]
+    body: BufferedIOBase
+    size: int
+
+    def given(self, name: str) -> str:
+        """A value of the query. Raises InputError where it is missing."""
+        if name not in self.query:
+            raise InputError(f"the request lacks {name}")
+        return self.query[name]
+
+    def data(self) -> dict[str, Any]:
+        """The body as JSON. Raises InputError where it is none."""
+        try:
+            found = json.loads(self.body.read(self.size))
+        except ValueError:
+            raise InputError("the request is no JSON") from None
+        if not isinstance(found, dict):
+            raise InputError("the request is no table of JSON")
+        return found
+
+
+class Session:
+    """The project that is open, and the job that runs on it."""
+
+    def __init__(self, project: Project) -> None:
+        self.project = project
+        self.job: Job | None = None
+        self._lock = threading.Lock()
+
+    def close(self) -> None:
+        """Stop the job that runs."""
+        if self.job is not None:
+            self.job.cancel()
+
+    def look(self, request: Request) -> dict[str, Any]:
+        """All that the page needs to draw itself."""
+        job = None if self.job is None else self.job.state()
+        return self.project.listed() | {"job": job, "version": __version__}
+
+    def upload(self, request: Request) -> dict[str, Any]:
+        """Take a file into the folder."""
+        return {"name": self.project.receive(request.given("name"), request.body, request.size).name}
+
+    def save(self, request: Request) -> dict[str, Any]:
+        """Save the study's text."""
+        text = request.data().get("text")
+        if not isinstance(text, str):
+            raise InputError("the request lacks text")
+        self.project.save_text(text)
+        return {"saved": True}
+
+    def check(self, request: Request) -> dict[str, Any]:
+        """Check the study as `faying check` does."""
+        return self._answer("check", self.project.study_name)
+
+    def example(self, request: Request) -> dict[str, Any]:
+        """Write a small study that runs, as `faying init` does."""
+        return self._answer("init", self.project.study_name)
+
+    def propose(self, request: Request) -> dict[str, Any]:
+        """Write a study for a STEP file, as `faying new` does; an existing study is replaced where that is wanted."""
+        arguments = ["new", self._name(request, "geometry"), "--yes", "--out", self.project.study_name]
+        if "scan" in request.query:
+            arguments += ["--scan", self._name(request, "scan")]
+        return self._answer(*arguments, *(["--force"] if request.query.get("replace") == "yes" else []))
+
+    def scan(self, request: Request) -> dict[str, Any]:
+        """Roughness, D and G of a scan with its picture, as `faying surface` gives them."""
+        options = [f"--{key}={request.query[key]}" for key in ("xy-unit", "z-unit", "size") if key in request.query]
+        return self._pictured("surface", self._name(request, "name"), *options)
+
+    def laws(self, request: Request) -> dict[str, Any]:
+        """The laws on a scan beside each other, as `faying law --all-models` gives them."""
+        material = request.query.get("material", "45 steel")
+        name = self._name(request, "name")
+        return self._pictured("law", f"--scan={name}", "--all-models", f"--material={material}", "--against=same")
+
+    def faces(self, request: Request) -> dict[str, Any]:
+        """The faces of a STEP file or mesh, as `faying faces` lists them."""
+        return self._answer("faces", self._name(request, "name"))
+
+    def begin(self, request: Request) -> dict[str, Any]:
+        """Start a job on the study, one at a time."""
+        what = request.given("command")
+        if what not in JOBS:
+            raise InputError(f"{what!r} is none of {', '.join(JOBS)}")
+        with self._lock:
+            if self.job is not None and self.job.running:
+                raise InputError(f"{self.job.command} still runs; cancel it or wait")
+            if self.project.text() is None:
+                raise InputError("there is no study yet")
+            self.job = Job([what, self.project.study_name, *JOBS[what]], self.project.folder)
+        return self.job.state()
+
+    def progress(self, request: Request) -> dict[str, Any]:
+        """The job's state; nothing where there was none."""
+        return {} if self.job is None else self.job.state()
+
+    def cancel(self, request: Request) -> dict[str, Any]:
+        """Stop the job."""
+        if self.job is not None:
+            self.job.cancel()
+        return self.progress(request)
+
+    def scene(self, request: Request) -> str:
+        """The scene of a file, of the study, or of its result, as JSON."""
+        what = request.given("of")
+        if what == "study":
+            return scene_of(self.project.study)
+        if what == "result":
+            return scene_of(self.project.result("result.nc"))
+        return scene_of(self.project.file(what))
+
+    def _name(self, request: Request, key: str) -> str:
+        """The name of a file of the folder, which cannot be taken for an option."""
+        name = checked_name(request.given(key))
+        if name.startswith("-") or not self.project.file(name).is_file():
+            raise InputError(f"no file {name!r} in the folder")
+        return name
+
+    def _answer(self, *arguments: str) -> dict[str, Any]:
+        return answer(arguments, self.project.folder)
+
+    def _pictured(self, *arguments: str) -> dict[str, Any]:
+        """What a command says, and what it draws."""
+        with tempfile.TemporaryDirectory() as folder:
+            picture = Path(folder) / "picture.png"
+            found = self._answer(*arguments, f"--plot={picture}")
+            return {"facts": found, "picture": b64encode(picture.read_bytes()).decode()}
+
+
+def scene_of(path: Path) -> str:
+    """The scene of a file as JSON. Raises FayingError where it has none."""
+    from faying.decks.meshfile import read_mesh
+    from faying.output import scene
+    from faying.result import Result
+
+    if path.suffix == ".toml":
+        from faying.study import Study
+        from faying.study.case import checked_mesh
+
+        study = Study.read(path)
+        return scene.to_text(scene.of_mesh(checked_mesh(study), study, title=study.title))
+    if path.suffix == ".nc":
+        return scene.to_text(scene.of_result(Result.load(path)))
+    if path.suffix.lower() in (".step", ".stp"):
+        return scene.to_text(scene.of_step(path))
+    return scene.to_text(scene.of_mesh(read_mesh(path, unit="mm"), title=path.name))
+
+
+ROUTES: dict[tuple[str, str], Callable[[Session, Request], dict[str, Any] | str]] = {
+    ("GET", "project"): Session.look,
+    ("POST", "file"): Session.upload,
+    ("PUT", "study"): Session.save,
+    ("GET", "check"): Session.check,
+    ("POST", "example"): Session.example,
+    ("POST", "new"): Session.propose,
+    ("GET", "scan"): Session.scan,
+    ("GET", "laws"): Session.laws,
+    ("GET", "faces"): Session.faces,
+    ("GET", "scene"): Session.scene,
+    ("POST", "job"): Session.begin,
+    ("GET", "job"): Session.progress,
+    ("DELETE", "job"): Session.cancel,
+}
+
+
+def answered(session: Session, method: str, path: str, request: Request) -> bytes | None:
+    """The answer to a request as JSON, {"fault": ...} where it cannot be; None where there is no such route."""
+    route = ROUTES.get((method, path))
+    if route is None:
+        return None
+    try:
+        found = route(session, request)
+    except FayingError as fault:  # an answer like others: what the user should read
+        return json.dumps({"fault": str(fault)}).encode()
+    return (found if isinstance(found, str) else json.dumps(found, allow_nan=False)).encode()

@@ -1,0 +1,124 @@
+"""faying faces FILE"""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import click
+
+WIDE = 18  # letters of a face's name in the table
+
+
+@click.command()
+@click.argument("geometry", type=click.Path(path_type=Path))
+@click.option("--part", help="Only the faces of this part.")
+@click.option("--unit", help='Unit of a mesh file\'s coordinates, such as "mm".')
+@click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
+def command(geometry: Path, part: str | None, unit: str | None, as_json: bool) -> None:
+    """List the faces of GEOMETRY, a STEP or mesh file: number, kind, area, normal, centre, and where parts touch."""
+    from faying.errors import InputError
+
+    facts = read(geometry, unit)
+    if part is not None and part not in facts.by_part:
+        raise InputError(f"no part is called {part!r}; the parts are {', '.join(map(repr, facts.by_part))}")
+    if as_json:
+        click.echo(json.dumps(to_dict(facts, part), indent=2))
+        return
+    click.echo(text(facts, part))
+
+
+def read(geometry: Path, unit: str | None) -> Any:
+    """The facts of a STEP file, or of the named faces of a mesh file."""
+    from faying.errors import InputError
+    from faying.fe.cad import STEP
+
+    if geometry.suffix.lower() in STEP:
+        from faying.fe.face_facts import read_facts
+
+        if unit is not None:
+            raise InputError("--unit goes with a mesh file; a STEP file says its unit")
+        return read_facts(geometry)
+    from faying.decks.meshfile import read_mesh
+    from faying.fe.mesh_facts import mesh_facts
+
+    return mesh_facts(read_mesh(geometry, unit=unit))
+
+
+def to_dict(facts: Any, part: str | None) -> dict[str, Any]:
+    """Parts, faces and contacts with the units of their numbers."""
+    keep = [face for face in facts.faces if part in (None, face.part)]
+    meets = [c for c in facts.contacts if part is None or part in (c.first[0], c.second[0])]
+    units = {
+        "area": "m^2",
+        "centre": "m",
+        "normal": "1",
+        "radius": "m",
+        "axis": "1",
+        "start": "m",
+        "length": "m",
+        "turn": "1",
+        "gap": "m",
+        "volume": "m^3",
+        "low": "m",
+        "high": "m",
+    }
+    return {
+        "file": facts.file,
+        "units": units,
+        "parts": [asdict(one) for one in facts.parts if part in (None, one.name)],
+        "faces": [asdict(face) for face in keep],
+        "contacts": [asdict(contact) for contact in meets],
+        "notes": [note.text for note in facts.notes],
+    }
+
+
+def text(facts: Any, part: str | None) -> str:
+    """One table for each part, and one of the faces that look at each other."""
+    lines: list[str] = []
+    for one in facts.parts:
+        if part not in (None, one.name):
+            continue
+        faces = facts.by_part[one.name]
+        size = " x ".join(f"{1e3 * (b - a):.4g}" for a, b in zip(one.low, one.high, strict=True))
+        lines += [f"{one.name}: {len(faces)} faces, {1e6 * one.volume:.4g} cm3, within {size} mm"]
+        named = any(face.name for face in faces)
+        head = ["no", *(["name"] if named else []), "kind", "area mm2", "normal", "centre mm", "r mm", "next to"]
+        lines += [*_aligned([head, *(_row(face, named) for face in faces)]), ""]
+    meets = [c for c in facts.contacts if part is None or part in (c.first[0], c.second[0])]
+    if meets:
+        lines.append("faces that look at each other")
+        rows = [["part", "no", "part", "no", "area mm2", "gap mm"]]
+        rows += [
+            [c.first[0], str(c.first[1]), c.second[0], str(c.second[1]), f"{1e6 * c.area:.4g}", f"{1e3 * c.gap:.3g}"]
+            for c in meets
+        ]
+        lines += [*_aligned(rows), ""]
+    lines += [f"note: {note.text}" for note in facts.notes]
+    return "\n".join(lines).rstrip()
+
+
+def _row(face: Any, named: bool) -> list[str]:
+    name = face.name if len(face.name) <= WIDE else f"..{face.name[2 - WIDE :]}"
+    kind = face.kind if face.hole is None else ("hole" if face.hole else "shaft")
+    normal = "" if face.normal is None else _direction(face.normal)
+    centre = " ".join(f"{1e3 * x:.4g}" for x in face.centre)
+    radius = "" if face.radius is None else f"{1e3 * face.radius:.4g}"
+    near = ",".join(map(str, face.neighbours))
+    near = near if len(near) <= 16 else near[:14].rpartition(",")[0] + ",.."
+    return [str(face.number), *([name] if named else []), kind, f"{1e6 * face.area:.4g}", normal, centre, radius, near]
+
+
+def _direction(normal: Any) -> str:
+    """An axis word, or three numbers."""
+    from faying.fe.selectors import AXES
+
+    words = [word for word, axis in AXES.items() if max(abs(a - b) for a, b in zip(axis, normal, strict=True)) < 1e-6]
+    return words[0] if words else " ".join(f"{x:.2f}" for x in normal)
+
+
+def _aligned(rows: list[list[str]]) -> list[str]:
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    return [
+        "  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
+    ]

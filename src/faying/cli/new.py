@@ -1,0 +1,86 @@
+"""faying new PART.step"""
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+
+@click.command()
+@click.argument("step", type=click.Path(path_type=Path))
+@click.option("--scan", type=click.Path(path_type=Path), help="Scan of one face (default: a synthetic milled one).")
+@click.option("--out", type=click.Path(path_type=Path), default="study.toml", show_default=True, help="The study file.")
+@click.option("--yes", is_flag=True, help="Ask nothing: steel, class 8.8 at 70 % of the proof load; each is said.")
+@click.option("--force", is_flag=True, help="Replace files that exist.")
+@click.option("--json", "as_json", is_flag=True, help="Print what was found and written as JSON; asks nothing.")
+def command(step: Path, scan: Path | None, out: Path, yes: bool, force: bool, as_json: bool) -> None:
+    """Write a commented study of the assembly in STEP: its joints, bolts, seats and mesh, and what is left to say."""
+    from faying.errors import InputError
+    from faying.study import new
+
+    silent = yes or as_json
+    if not silent and not sys.stdin.isatty():
+        raise InputError("faying new asks questions and there is no terminal to ask; give --yes to assume the answers")
+    proposal = new.find(step)
+    answers = new.Answers(scan=scan) if silent else asked(proposal, scan)
+    written = new.write(proposal, step, out, answers, force=force)
+    if as_json:
+        click.echo(json.dumps(to_dict(written), indent=2))
+        return
+    click.echo("\n".join(new.summary(written, out)))
+
+
+def asked(proposal: Any, scan: Path | None) -> Any:
+    """Ask what the geometry does not tell; each question has its default."""
+    from faying import units
+    from faying.materials import CATALOGUE
+    from faying.study import new
+
+    facts = proposal.facts
+    click.echo(f"{facts.file}: {len(facts.parts)} parts, {len(proposal.joints)} joints, {len(proposal.bolts)} bolts")
+    for bolt in proposal.bolts:
+        click.echo(f"  {bolt.name}: {bolt.remark}")
+    choice = click.Choice(list(CATALOGUE))
+    materials = {
+        part.name: click.prompt(f"material of {part.name}", default=new.STEEL, type=choice) for part in facts.parts
+    }
+    known = next((bolt.preload for bolt in proposal.bolts if bolt.preload is not None), None)
+    preload = None
+    if proposal.bolts:
+        said = click.prompt(
+            "preload of each bolt",
+            default=units.show(known, "N") if known is not None else "10 kN",
+            value_proc=lambda text: units.parse(text, "N", name="preload") and text,
+        )
+        preload = units.parse(said, "N", name="preload")
+    if scan is None:
+        named = click.prompt("scan of one face (empty for a synthetic milled one)", default="", show_default=False)
+        scan = Path(named) if named.strip() else None
+    return new.Answers(materials=materials, preload=preload, scan=scan)
+
+
+def to_dict(written: Any) -> dict[str, Any]:
+    """What was found and written, in SI units."""
+    found = written.proposal
+    return {
+        "files": [str(file) for file in written.files],
+        "parts": [part.name for part in found.facts.parts],
+        "joints": [
+            {"name": j.name, "faces": list(j.faces), "area": {"unit": "m^2", "values": j.area}} for j in found.joints
+        ],
+        "bolts": [
+            {
+                "name": b.name,
+                "faces": list(b.faces),
+                "size": b.size and f"M{b.size}",
+                "part": b.part,
+                "preload": {"unit": "N", "values": b.preload},
+            }
+            for b in found.bolts
+        ],
+        "size": {"unit": "m", "values": found.size},
+        "unknowns": found.unknowns,
+        "assumed": list(written.assumed),
+    }

@@ -1,0 +1,93 @@
+"""A face by its name or by a selector: {part = "upper", normal = "+z"}."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.fe.face_facts import Point
+from faying.fe.selectors import AXES, WITHIN, Selector
+from faying.study.keys.reader import Table, direction, point
+
+FORM = '"upper.joint", or {part = "upper", normal = "+z"}'
+
+
+def read_selector(table: Table) -> Selector | None:
+    """Read the table of one selector; None where its faults leave none."""
+    part = table.text("part")
+    if "point" in table.data:
+        table.faults.add(f"{table.where}.point has become {table.where}.nearest; rename the key")
+        table.data.pop("point")
+    given: dict[str, Any] = {
+        "normal": table.take("normal", _normal, None),
+        "touching": table.text("touching", None),
+        "nearest": table.take("nearest", point, None),
+        "within": table.quantity("within", "m", None),
+        "number": table.count("number", None),
+        "all": table.truth("all", False),
+    }
+    rules = [key for key in ("normal", "touching", "nearest", "number") if key in table.data]
+    table.close()
+    if not rules and part is not None:
+        table.faults.add(
+            f'{table.where} names a part and nothing of its face; add normal = "+z", touching = "another part", '
+            f'nearest = ["0 mm", "0 mm", "5 mm"] or number = 1 (`faying faces` lists them)'
+        )
+        return None
+    if given["within"] is not None and given["nearest"] is None:
+        table.faults.add(f"{table.where}.within goes with nearest; leave it out")
+    if part is None or any(given[key] is None for key in rules):
+        return None
+    return Selector(part=part, **given | {"within": given["within"] or WITHIN})
+
+
+def face_name(table: Table, key: str, label: str, *, required: bool = True) -> str | None:
+    """Take a face: its name, or a selector, whose face gets the name `label`."""
+    value = table.data.get(key)
+    if isinstance(value, Mapping):
+        inner = table.table(key)
+        selector = None if inner is None else read_selector(inner)
+        if selector is not None:
+            table.faults.selectors[label] = selector
+        return label
+    name: str | None = table.text(key) if required else table.text(key, None)
+    return name
+
+
+def face_names(table: Table, key: str, label: str) -> tuple[str, str]:
+    """Take two faces, by name or by selector; the face of a selector gets the name `label` with its place behind it."""
+
+    def named(value: Any, where: str) -> tuple[str, str]:
+        if not isinstance(value, list) or len(value) != 2 or not all(isinstance(v, str | Mapping) for v in value):
+            raise InputError(
+                f"{where} = {value!r} should be a list of 2 names, for example "
+                f'["upper.joint", "lower.joint"], or of selectors such as {{part = "upper", touching = "lower"}}'
+            )
+        names = []
+        for place, one in enumerate(value):
+            if isinstance(one, str):
+                names.append(one)
+                continue
+            name = f"{label} {('first', 'second')[place]}"
+            selector = read_selector(type(table)(one, f"{where}[{place + 1}]", table.faults))
+            if selector is not None:
+                table.faults.selectors[name] = selector
+            names.append(name)
+        return names[0], names[1]
+
+    found: tuple[str, str] | None = table.take(key, named)
+    return found or ("", "")
+
+
+def _normal(value: Any, name: str) -> Point:
+    """Convert an axis word or three numbers to a unit vector."""
+    if isinstance(value, str):
+        if value not in AXES:
+            raise InputError(f'{name} = "{value}" should be one of {", ".join(AXES)}, or three numbers')
+        return AXES[value]
+    if not isinstance(value, list):
+        raise InputError(f'{name} = {value!r} should be an axis such as "+z", or three numbers such as [0, 0, 1]')
+    along = np.array(direction(value, name))
+    x, y, z = along / np.linalg.norm(along)
+    return float(x), float(y), float(z)

@@ -1,0 +1,233 @@
+"""The page in a real browser: from files to a result."""
+
+import json
+import re
+import shutil
+import time
+
+import numpy as np
+import pytest
+
+from faying.app.project import Project
+from faying.app.server import Server
+from faying.study import template
+from faying.surface.synthesize import spectral
+from tests.helpers.browser import opened
+
+WAIT = 120_000  # ms: a command is a process of its own, and the machine may be slow
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("example")
+    study = folder / "study.toml"
+    template.write(study)
+    text = study.read_text().replace('model = "auto"', 'model = "jk"').replace('["2 kN", "6 kN"]', '"6 kN"')
+    text = re.sub("(?m)^(scan|counter) = .*\n", "", text)  # no contact to solve: D and G in place of the scan
+    study.write_text(text.replace("[surface]\n", '[surface]\nD = 2.39\nG = "1.53e-10 m"\nscan_area = "16 mm^2"\n'))
+    return folder
+
+
+@pytest.fixture
+def served(tmp_path):
+    server = Server(Project.at(tmp_path))
+    thread = server.run_in_thread()
+    yield server
+    server.shutdown()
+    thread.join()
+    server.close()
+
+
+def page_at(browser, server, **how):
+    origin = server.address.rsplit("/", 2)[0]
+    return opened(browser, server.address, allowed=(origin, "data:", "blob:"), **how)
+
+
+def until(page, condition):
+    """Wait until JavaScript is true. Asked again and again, since the page forbids itself to evaluate text."""
+    end = time.monotonic() + WAIT / 1000
+    while not page.evaluate(condition):
+        assert time.monotonic() < end, condition
+        page.wait_for_timeout(50)
+
+
+def set_text(page, text):
+    page.fill("#text", text)
+    until(page, "document.querySelector('#saved').textContent === 'saved'")
+
+
+def test_a_scan_is_dropped_and_read(browser, served, example, tmp_path):
+    with page_at(browser, served) as page:
+        page.set_input_files("#file", example / "surface.x3p")
+        page.wait_for_selector("#scan-picture:not([hidden])", timeout=WAIT)
+        facts = page.inner_text("#scan-facts")
+        assert "320 x 320" in facts
+        assert "psd" in facts
+        width = page.evaluate("document.querySelector('#scan-picture img').naturalWidth")
+        assert width > 400
+    assert (tmp_path / "surface.x3p").read_bytes() == (example / "surface.x3p").read_bytes()
+
+
+def test_a_scan_without_units_asks_for_them_and_takes_them(browser, served, tmp_path):
+    heights = spectral((64, 64), spacing=1e-6, D=2.3, Rq=1e-7, longest=3e-5, seed=1).heights * 1e9
+    rows = [f"{x} {y} {height:.3f}" for (y, x), height in np.ndenumerate(heights)]
+    (tmp_path / "plain.xyz").write_text("\n".join(rows))
+    with page_at(browser, served) as page:
+        page.wait_for_selector("#scan-units:not([hidden])", timeout=WAIT)
+        assert "unit" in page.inner_text("#scan-fault")
+        page.fill("#xy-unit", "um")
+        page.fill("#z-unit", "nm")
+        page.click("#scan-again")
+        page.wait_for_selector("#scan-picture:not([hidden])", timeout=WAIT)
+        assert "64 x 64" in page.inner_text("#scan-facts")
+        assert page.is_hidden("#scan-fault")
+
+
+def test_faces_are_picked_into_a_joint(browser, served, example, tmp_path):
+    shutil.copy(example / "two-blocks.step", tmp_path)
+    with page_at(browser, served) as page:
+        page.click("#tab-structure")
+        until(page, "window.fayingView !== undefined")
+        page.evaluate("window.fayingView.select('upper', 1)")
+        page.evaluate("window.fayingView.select('lower', 2)")
+        page.wait_for_selector("#picks li:nth-child(2)")
+        picked = page.inner_text("#picks")
+        assert "mm²" in picked
+        page.click("#make-joint")
+        assert page.input_value("#text").count("[[joint]]") == 1
+        assert page.inner_text("#picks") == ""
+        until(page, "document.querySelector('#saved').textContent === 'saved'")
+    assert "[[joint]]" in (tmp_path / "study.toml").read_text()
+
+
+def test_the_study_runs_with_progress_to_its_report(browser, served, example, tmp_path):
+    for name in ("study.toml", "surface.x3p", "two-blocks.step"):
+        shutil.copy(example / name, tmp_path)
+    with page_at(browser, served) as page:
+        page.click("#tab-run")
+        page.click("#start")
+        until(page, "document.querySelector('#job-line').textContent.includes(' of ')")
+        page.wait_for_selector("#report:not([hidden])", timeout=WAIT)
+        report = page.frame_locator("#report")
+        report.get_by_role("heading", name="Modes", exact=True).wait_for(timeout=WAIT)
+        assert "Two blocks and a bolt" in report.locator("h1").inner_text()
+        links = page.locator("#links a").all_inner_texts()
+        assert {"result.nc", "modes.csv", "report.html"} <= set(links)
+        assert page.is_enabled("#start")
+
+
+def test_a_run_is_cancelled_and_leaves_nothing(browser, served, example, tmp_path):
+    for name in ("study.toml", "surface.x3p", "two-blocks.step"):
+        shutil.copy(example / name, tmp_path)
+    with page_at(browser, served) as page:
+        page.click("#tab-run")
+        page.click("#start")
+        until(page, "document.querySelector('#job-line').textContent.includes(' of ')")
+        page.click("#cancel")
+        until(page, "document.querySelector('#job-line').textContent.includes('cancelled')")
+        assert page.is_enabled("#start")
+    assert not (tmp_path / "results").exists()
+    assert not list(tmp_path.glob("*.part"))
+
+
+def test_closing_the_page_loses_nothing(browser, served, example, tmp_path):
+    for name in ("study.toml", "surface.x3p", "two-blocks.step"):
+        shutil.copy(example / name, tmp_path)
+    with page_at(browser, served) as page:
+        set_text(page, (example / "study.toml").read_text().replace("Two blocks", "Mine: two blocks"))
+        page.click("#tab-run")
+        page.click("#start")
+        until(page, "document.querySelector('#job-line').textContent.includes(' of ')")
+    with page_at(browser, served) as page:  # the run went on
+        assert "Mine: two blocks" in page.input_value("#text")
+        page.wait_for_selector("#report:not([hidden])", timeout=WAIT)
+        assert "Mine" in page.frame_locator("#report").locator("h1").inner_text()
+
+
+def test_scripts_in_names_and_texts_are_inert(browser, served, example, tmp_path):
+    for name in ("surface.x3p", "two-blocks.step"):
+        shutil.copy(example / name, tmp_path)
+    evil = "<img src=x onerror=alert(1)></script><script>alert(2)</script>"
+    text = (example / "study.toml").read_text().replace("Two blocks and a bolt", evil)
+    (tmp_path / "study.toml").write_text(text.replace('name = "joint"', f"name = '{evil}'"))
+    with page_at(browser, served) as page:
+        said = []
+        page.on("dialog", lambda dialog: (said.append(dialog.message), dialog.dismiss()))
+        page.click("#tab-structure")
+        until(page, "window.fayingView !== undefined")
+        page.click("#tab-run")
+        page.click("#start")
+        page.wait_for_selector("#report:not([hidden])", timeout=WAIT)
+        heading = page.frame_locator("#report").locator("h1")
+        heading.wait_for(timeout=WAIT)
+        assert heading.inner_text() == evil
+        assert said == []
+
+
+def test_the_report_in_the_page_cannot_ask_the_server(browser, served, example, tmp_path):
+    (tmp_path / "results").mkdir()
+    script = (
+        "fetch('../api/project').then(r => r.text()).then(t => document.title = t, e => document.title = 'refused')"
+    )
+    (tmp_path / "results" / "report.html").write_text(f"<!doctype html><h1>x</h1><script>{script}</script>")
+    made = browser.new_context()
+    page = made.new_page()
+    page.goto(served.address + "results/report.html")
+    until(page, "document.title !== ''")
+    assert page.title() == "refused"
+    made.close()
+
+
+def test_keyboard_alone_reaches_every_view(browser, served, example, tmp_path):
+    for name in ("study.toml", "surface.x3p", "two-blocks.step"):
+        shutil.copy(example / name, tmp_path)
+    with page_at(browser, served) as page:
+        until(page, "document.querySelector('#text').value.length > 0")
+        page.focus("#tab-surface")
+        for name in ("structure", "run", "result", "surface"):
+            page.keyboard.press("ArrowRight")
+            assert page.evaluate("document.activeElement.id") == f"tab-{name}"
+            assert page.is_visible(f"#{name}")
+        page.focus("#text")
+        page.keyboard.press("Control+End")
+        page.keyboard.type("# typed")
+        page.keyboard.press("Control+s")
+        until(page, "document.querySelector('#saved').textContent === 'saved'")
+    assert (tmp_path / "study.toml").read_text().endswith("# typed")
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 800), (800, 600), (640, 400)])  # the last: 1280 at 200 % zoom
+def test_nothing_is_cut_off(browser, served, example, tmp_path, width, height):
+    for name in ("study.toml", "surface.x3p", "two-blocks.step"):
+        shutil.copy(example / name, tmp_path)
+    with page_at(browser, served, width=width, height=height) as page:
+        for name in ("structure", "run", "result", "surface"):
+            page.click(f"#tab-{name}")
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), name
+        for button in page.locator("button:visible").all():
+            box = button.bounding_box()
+            assert box["x"] >= 0
+            assert box["x"] + box["width"] <= width
+
+
+def test_a_server_that_is_gone_is_said_and_the_text_stays(browser, served, example, tmp_path):
+    (tmp_path / "study.toml").write_text('title = "x"\n')
+    made = browser.new_context()
+    page = made.new_page()
+    page.goto(served.address)
+    until(page, "document.querySelector('#text').value.length > 0")
+    page.route("**/api/**", lambda route: route.abort())
+    page.fill("#text", 'title = "precious"')
+    page.wait_for_selector("#lost:not([hidden])", timeout=WAIT)
+    assert "precious" in page.input_value("#text")
+    made.close()
+
+
+def test_the_page_does_what_the_command_line_does(served, example, tmp_path):
+    """The answers are those of the commands, word for word."""
+    from faying.app.commands import answer
+
+    shutil.copy(example / "surface.x3p", tmp_path)
+    found = answer(["surface", "surface.x3p"], tmp_path)
+    assert found["points"] == [320, 320]
+    assert json.dumps(found)
