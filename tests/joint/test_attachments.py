@@ -44,6 +44,11 @@ def axial(found):
     return found.frequencies[shape[0] > 0.99 * shape.sum(axis=0)]
 
 
+def test_the_mass_of_a_part_is_its_density_times_its_volume():
+    made = structure(supports=(Support(face="foot"),), masses=(PointMass(mass=3.0, face="tip"),))
+    assert made.part_masses == pytest.approx([7800 * L * WIDTH * HEIGHT])  # the point mass is none of its own
+
+
 def test_a_clamped_bar():
     """Axial (2n - 1) c/4L; bending 1.8751^2/(2 pi L^2) sqrt(EI/rho A), lowered by shear as Timoshenko's beam is."""
     made = structure(supports=(Support(face="foot"),))

@@ -80,6 +80,14 @@ def test_a_bolt_without_a_seat_presses_from_its_hole_to_its_head():
     assert bare.ring == pytest.approx((2 * INNER, 1.5 * 2 * INNER / 1.1), rel=1e-9)
 
 
+def test_seats_are_where_the_axis_meets_the_faces_and_reach_from_the_hole_to_the_rim():
+    mesh = rings()
+    whole = bolt(at=None).fitted(mesh)
+    assert whole.extent == pytest.approx((2 * INNER, 2 * OUTER), rel=1e-6)
+    np.testing.assert_allclose(whole.seats, CENTRE + np.array([[0, 0, 5e-3], [0, 0, -5e-3]]), atol=1e-6)
+    assert bolt().fitted(mesh).extent == pytest.approx((2 * INNER, 12e-3), rel=1e-9)
+
+
 def test_a_seat_that_nothing_tells_is_asked_for():
     from tests.helpers.boxes import stack
 

@@ -79,10 +79,10 @@ def test_the_page_says_what_it_was_made_from(page):
 
 
 def test_curves_zoom_by_mouse_and_keyboard_and_both_together(page):
-    charts = page.locator("#curves .fc > svg")
+    charts = page.locator("[data-curves] .fc > svg")
     assert charts.count() == 2
     ends = (
-        "[...document.querySelectorAll('#curves .fc > svg')].map((s) =>"
+        "[...document.querySelectorAll('[data-curves] .fc > svg')].map((s) =>"
         " [...s.querySelectorAll('text')].map((t) => t.textContent).join(' '))"
     )
     charts.first.scroll_into_view_if_needed()
@@ -104,22 +104,23 @@ def test_curves_zoom_by_mouse_and_keyboard_and_both_together(page):
 
 
 def test_the_packed_curves_are_the_accelerance(result):
-    packed = curves.curves(result)
-    np.testing.assert_allclose(array(packed["frequencies"]), LINES, rtol=1e-6)
-    both = array(packed["accelerance"])
+    (group,) = curves.curves(result)
+    np.testing.assert_allclose(array(group["frequencies"]), LINES, rtol=1e-6)
+    both = array(group["values"])
     wanted = -((2 * np.pi * LINES) ** 2) * result.response.values[:, :, 0, 0]
-    np.testing.assert_allclose(both[:, 0, :, 0] + 1j * both[:, 0, :, 1], wanted, rtol=1e-5)
+    np.testing.assert_allclose(both[:, 0] + 1j * both[:, 1], wanted, rtol=1e-5)
+    assert group["names"] == ["2 kN", "8 kN"]
 
 
 def test_on_paper_and_without_scripts_the_pictures_stand(browser, address, page):
-    pictures = page.locator("figure.static, figure.static-curves")
+    pictures = page.locator("figure.static, figure.of-response")
     assert pictures.count() == 3
     assert not pictures.first.is_visible()
     page.emulate_media(media="print")
     assert all(pictures.nth(k).is_visible() for k in range(3))
     assert not page.locator("#stage").is_visible()
     with opened(browser, address, java_script_enabled=False) as still:
-        pictures = still.locator("figure.static, figure.static-curves")
+        pictures = still.locator("figure.static, figure.of-response")
         assert all(pictures.nth(k).is_visible() for k in range(3))
         assert "the pictures below stand in" in still.locator("#why").inner_text()
 
@@ -131,7 +132,7 @@ def test_without_webgl_the_pictures_stand(browser, address):
         until(page, "window.ready")
         assert "WebGL 2 is not available" in page.locator("#why").inner_text()
         assert page.locator("figure.static").first.is_visible()
-        assert page.locator("#curves svg").count() > 0
+        assert page.locator("[data-curves] svg").count() > 0
 
 
 @pytest.mark.parametrize(("width", "scale", "scheme"), [(1280, 1, "light"), (800, 1, "dark"), (640, 2, "light")])

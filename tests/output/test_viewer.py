@@ -112,6 +112,23 @@ def test_a_click_picks_the_face_and_says_its_number_name_part_area_and_centre(vi
     assert view.locator(".fv-facts").inner_text() == ""
 
 
+def test_a_map_is_read_where_it_is_clicked(view, result):
+    """At the middle of the joint, seen square to it, and at a corner: what NumPy has on the map's corners there."""
+    (joint,) = scenes.of_result(result).joints
+    corners = result.outline[joint.map.parents].mean(axis=1)
+    view.evaluate("window.view.show({mode:null,field:'pressure',load:1})")
+    view.evaluate("window.view.joint('flange', {look:true})")
+    for place in (corners.mean(axis=0), corners.mean(axis=0) + np.array([0, 0.0125, 0.01])):
+        at = view.evaluate(f"window.view.project({place.tolist()})")
+        found = view.evaluate(f"window.view.reading({at['x']}, {at['y']})")
+        near = np.argmin(np.linalg.norm(corners - place, axis=1))
+        assert found["joint"] == "flange"
+        assert found["value"] == pytest.approx(joint.map.fields["pressure"][1, near], rel=1e-3)
+        box = view.locator("canvas").bounding_box()
+        view.mouse.click(box["x"] + at["x"], box["y"] + at["y"])
+        assert "pressure here: " in view.locator(".fv-facts").inner_text()
+
+
 def test_names_that_are_asked_for_and_do_not_exist_are_errors(view):
     for call in ("select('p0',99)", "hide('p9')", "show({colour:'red'})"):
         told = view.evaluate(f"(async () => window.view.{call})().then(() => '', (fault) => fault.message)")

@@ -74,7 +74,7 @@ def _per_triangle(outer: Sequence[Index], values: Sequence[Index]) -> Index:
     )
 
 
-def regions(points: Array, triangles: Index, apart: Index, *, angle: float = 0.5) -> Index:
+def regions(points: Array, triangles: Index, apart: Index, *, angle: float = 0.7) -> Index:
     """Number smooth regions of a surface (t,), from 0: neighbours whose normals differ by less than an angle [rad].
 
     points (n, 3); triangles (t, 3); apart (t,): triangles of different numbers are never in one region.

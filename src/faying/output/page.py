@@ -1,5 +1,6 @@
 """What pages are made of: style, tables, pictures as text of HTML."""
 
+import json
 from html import escape
 from io import BytesIO, StringIO
 from pathlib import Path
@@ -13,7 +14,7 @@ from faying.output.table import Rows
 STYLE = """
 :root{--ink:#1c2733;--soft:#52616f;--line:#d5dde5;--head:#f3f6f9;--back:#fff;--flag:#fff4e0;--accent:#0a63b0}
 body{font:15px/1.5 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:var(--ink)}
-body,html{background:var(--back)}h1,h2,h3,td,th,li,summary{overflow-wrap:anywhere}
+body,html{background:var(--back)}h1,h2,h3,li,summary{overflow-wrap:anywhere}td,th{overflow-wrap:break-word}
 h1{font-size:1.5rem}h2{font-size:1.15rem;margin-top:2.2rem;border-bottom:1px solid var(--line);padding-bottom:.2rem}
 h3{font-size:1rem;margin:1.2rem 0 .3rem}
 table{border-collapse:collapse;font-size:.84rem;font-variant-numeric:tabular-nums;margin:.6rem 0}
@@ -27,16 +28,17 @@ pre{font:13px/1.45 ui-monospace,monospace;overflow-x:auto;background:var(--head)
 summary{cursor:pointer;font-weight:600;margin:.6rem 0}code{font-size:.92em;overflow-wrap:anywhere}
 #stage{height:min(45rem,94vh);min-height:30rem;
 border:1px solid var(--line);border-radius:6px;overflow:hidden;display:none}
-.live #stage{display:block}.live .static,.curved .static-curves{display:none}
+.live #stage{display:block}
+.live .static,.has-response .of-response,.has-test-frf .of-test-frf{display:none}
 button.link{font:inherit;color:var(--accent);background:none;border:0;padding:0;cursor:pointer;text-align:inherit;
-text-decoration:underline;text-decoration-color:transparent;overflow-wrap:anywhere}
+text-decoration:underline;text-decoration-color:transparent;font-variant-numeric:inherit}
 button.link:is(:hover,:focus-visible){text-decoration-color:currentcolor}
 tr.now td{background:color-mix(in srgb,var(--accent) 12%,var(--back))}
 @media (max-width:760px){#stage{height:auto}}
 @media (prefers-color-scheme:dark){:root{--ink:#e3e8ee;--soft:#a3afbb;--line:#38424d;--head:#1a2027;--back:#14181d;
 --flag:#33291a;--accent:#63b0f0;color-scheme:dark}figure svg,figure img{border-radius:6px}}
-@media print{body{max-width:none;margin:0}#stage,.live #stage,#curves,#why{display:none}
-.live .static,.curved .static-curves{display:block}figure{break-inside:avoid}tr.now td{background:none}
+@media print{body{max-width:none;margin:0}#stage,.live #stage,[data-curves],#why{display:none}
+.live .static,.has-response .of-response,.has-test-frf .of-test-frf{display:block}figure{break-inside:avoid}tr.now td{background:none}
 button.link{color:inherit}}
 """
 BITMAPS = ("modes", "shapes")  # tens of thousands of polygons: a bitmap is smaller than their outlines
@@ -92,6 +94,11 @@ def facts(known: dict[str, Any]) -> str:
 
     rows = "".join(f"<tr><td>{escape(k)}</td><td>{escape(show(v))}</td></tr>" for k, v in known.items())
     return f'<table class="words">{rows}</table>'
+
+
+def curves(name: str, groups: list[dict[str, Any]]) -> str:
+    """A place for curves that zoom, with their data; pictures of the class of-NAME stand in for them."""
+    return f'<div data-curves="{name}"></div>{pages.data(json.dumps(groups), name)}'
 
 
 def document(title: str, body: str, run: str = "") -> str:

@@ -1,6 +1,5 @@
 """One self-contained HTML file from a result: tables, figures, flags, sources."""
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from html import escape
@@ -70,7 +69,7 @@ def _tables(result: Result, pictures: dict[str, str]) -> list[str]:
     for section in sections(result):
         if section.name == "hammer" and result.hammer is not None:
             of_test = {name.removeprefix(TEST): text for name, text in pictures.items() if name.startswith(TEST)}
-            out.append(report_measured.section(result.hammer, of_test))
+            out.append(report_measured.section(result.hammer, of_test, moving=True))
         else:
             out += [f"<h2>{escape(section.title)}</h2>", page.table(section.rows, section.name)]
             out += [f"<p>{escape(section.below)}</p>"] if section.below else []
@@ -81,9 +80,8 @@ def _response(result: Result, pictures: dict[str, str]) -> list[str]:
     """Frequency responses as curves that zoom, and as the picture that stands in for them."""
     if result.response is None:
         return []
-    still = [_figure("response", pictures["response"], "static-curves")] if "response" in pictures else []
-    known = pages.data(json.dumps(response.curves(result)), "response")
-    return ["<h2>Frequency response</h2>", '<div id="curves"></div>', known, *still]
+    still = [_figure("response", pictures["response"], "of-response")] if "response" in pictures else []
+    return ["<h2>Frequency response</h2>", page.curves("response", response.curves(result)), *still]
 
 
 def _provenance(result: Result) -> list[str]:

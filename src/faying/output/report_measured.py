@@ -8,7 +8,8 @@ from faying import __version__
 from faying.files import write_text
 from faying.measured.compare import ModalComparison
 from faying.output.figures.save import new_figure
-from faying.output.page import BITMAPS, document, saved, table
+from faying.output.page import BITMAPS, curves, document, saved, table
+from faying.output.scene.text import packed_curves
 
 CAPTIONS = {
     "mac": "MAC of the modes of the test against those of the model, at the points of the test. Pairs are framed.",
@@ -36,8 +37,11 @@ def figures(comparison: ModalComparison) -> dict[str, Any]:
     return out
 
 
-def section(comparison: ModalComparison, pictures: dict[str, str]) -> str:
-    """Return the section as HTML, its figures (by name, as HTML) inside, to stand in any report."""
+def section(comparison: ModalComparison, pictures: dict[str, str], *, moving: bool = False) -> str:
+    """Return the section as HTML, its figures (by name, as HTML) inside, to stand in any report.
+
+    moving: whether the page runs the script that draws curves; they stand in place of the figure of the FRFs then.
+    """
     points = comparison.point_map
     worst = max(points.distance.values())
     parts = [
@@ -52,8 +56,27 @@ def section(comparison: ModalComparison, pictures: dict[str, str]) -> str:
         "<p>Difference: model over test. Intervals of the test's loss factors: 95 %.</p>",
     ]
     for name, picture in pictures.items():
-        parts.append(f"<figure>{picture}<figcaption>{CAPTIONS[name]}</figcaption></figure>")
+        live = moving and name == "frf" and comparison.frf is not None
+        parts += [f"<h3>Test and model</h3>{curves('test-frf', _curves(comparison))}"] if live else []
+        kind = ' class="of-test-frf"' if live else ""
+        parts.append(f"<figure{kind}>{picture}<figcaption>{CAPTIONS[name]}</figcaption></figure>")
     return "".join(parts)
+
+
+def _curves(comparison: ModalComparison) -> list[dict[str, Any]]:
+    """The FRFs that the figure shows, for curves in a page."""
+    frf, model = comparison.frf, comparison.predicted
+    if frf is None or model is None:
+        return []
+    return [
+        packed_curves(
+            f"{frf.outputs[o]} / {frf.inputs[i]}",
+            f"|{frf.quantity}| [{frf.unit}]",
+            frf.frequency,
+            {"test": frf.values[o, i], "model": model[o, i]},
+        )
+        for o, i in frf.measured[:MOST_FRFS]
+    ]
 
 
 def write(comparison: ModalComparison, folder: Path) -> list[Path]:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from faying.output.figures.save import new_figure
-from faying.output.scene.text import packed
+from faying.output.scene.text import packed_curves
 from faying.result import Result
 
 
@@ -53,20 +53,21 @@ def _words(point: Any, axis: Any) -> str:
     return f"({', '.join(f'{1e3 * v:.4g}' for v in point)}) mm along {name}"
 
 
-def curves(result: Result, most: int = 12) -> dict[str, Any]:
-    """Accelerance of the first pairs of output and input at every preload, packed for curves in a page."""
+def curves(result: Result, most: int = 12) -> list[dict[str, Any]]:
+    """Accelerance of the first pairs of output and input at every preload, for curves in a page."""
     found = result.response
     assert found is not None
-    pairs = list(np.ndindex(*found.values.shape[2:]))[:most]
+    loads = [f"{load / 1e3:g} kN" for load in result.loads]
     accelerance = -((2 * np.pi * found.frequencies) ** 2)[None, :, None, None] * found.values
-    rows = np.stack([accelerance[:, :, o, i] for o, i in pairs], axis=1)  # load, pair, line
-    names = [f"{_words(*found.outputs[o])} / {_words(*found.inputs[i])}" for o, i in pairs]
-    return {
-        "frequencies": packed(found.frequencies, "f4"),
-        "accelerance": packed(np.stack([rows.real, rows.imag], axis=-1), "f4"),
-        "loads": [f"{load / 1e3:g} kN" for load in result.loads],
-        "pairs": names,
-    }
+    return [
+        packed_curves(
+            f"{_words(*found.outputs[o])} / {_words(*found.inputs[i])}",
+            "|accelerance| [m/s²/N]",
+            found.frequencies,
+            dict(zip(loads, accelerance[:, :, o, i], strict=True)),
+        )
+        for o, i in list(np.ndindex(*found.values.shape[2:]))[:most]
+    ]
 
 
 def responses(result: Result, most: int = 4) -> Any:

@@ -101,7 +101,10 @@ def comparison(ax: Any, result: Result) -> Any:
 def pressures(result: Result) -> Any:
     """Return a figure of the pressure on each joint at the least and the greatest preload."""
     loads = sorted({0, len(result.loads) - 1})
-    fig = new_figure(5.2 * len(loads), 3.8 * len(result.joints))
+    wide = [result.points[result.joint_of_point == joint] for joint in range(len(result.joints))]
+    spans = [np.sort(np.ptp(points, axis=0)) for points in wide]
+    tall = max((float(min(one[1] / one[2], 1.0)) if one[2] > 0 else 1.0) for one in spans)
+    fig = new_figure(5.2 * len(loads), (1.1 + 3.6 * max(tall, 0.3)) * len(result.joints))
     for joint in range(len(result.joints)):
         for column, load in enumerate(loads):
             ax = fig.add_subplot(len(result.joints), len(loads), joint * len(loads) + column + 1)
@@ -143,7 +146,8 @@ def mode_shapes(result: Result, modes: int = 8, load: int = -1) -> Any:
     count = min(modes, len(result.bonded))
     columns = min(4, count)
     rows = -(-count // columns)
-    fig = new_figure(2.6 * columns, 3.2 * rows)
+    x, y, z = np.ptp(result.outline, axis=0)
+    fig = new_figure(2.6 * columns, float(np.clip(2.6 * z / max(np.hypot(x, y), 1e-12), 1.5, 2.9) + 0.3) * rows)
     for mode in range(count):
         mode_shape(fig.add_subplot(rows, columns, mode + 1, projection="3d"), result, mode, load)
     return fig

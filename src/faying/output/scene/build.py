@@ -17,7 +17,7 @@ from faying.typing import Array, Index
 if TYPE_CHECKING:
     from faying.study import Study
 
-SHARP = 0.5  # rad: neighbours whose normals differ by more have a feature edge between them
+SHARP = 0.7  # rad: neighbours whose normals differ by more have a feature edge between them
 
 
 def of_result(result: Result) -> Scene:

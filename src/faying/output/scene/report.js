@@ -43,26 +43,22 @@ function linked(view, scene) {
   };
 }
 
-async function curves(place, data) {
-  const x = await unpacked(data.frequencies), values = await unpacked(data.accelerance);
-  const loads = data.loads.length, pairs = data.pairs.length, lines = x.length;
-  data.pairs.forEach((title, pair) => {
+/** Size and phase of complex curves over frequency, one pair of charts a group. */
+async function curves(place, groups) {
+  for (const { title, label, names, frequencies, values: given } of groups) {
+    const x = await unpacked(frequencies), values = await unpacked(given), lines = x.length;
     const head = document.createElement("h3");
     head.textContent = title;
     place.append(head);
-    const of = (measure) => data.loads.map((name, load) => {
-      const y = new Float64Array(lines);
-      for (let k = 0; k < lines; k++) {
-        const at = 2 * ((load * pairs + pair) * lines + k);
-        y[k] = measure(values[at], values[at + 1]);
-      }
-      return { name, y, wraps: 180 };
+    const of = (measure) => names.map((name, curve) => {
+      const begin = 2 * curve * lines;
+      return { name, y: Float64Array.from(x, (_, k) => measure(values[begin + k], values[begin + lines + k])), wraps: 180 };
     });
     const both = [];
     const common = { x, xlabel: "frequency [Hz]", onRange: (range) => both.forEach((one) => one.show(range)) };
-    both.push(chart(place, { ...common, title: `Amplitude, ${title}`, series: of(Math.hypot).map(({ name, y }) => ({ name, y })), ylabel: "|accelerance| [m/s²/N]", log: true }));
+    both.push(chart(place, { ...common, title: `Amplitude, ${title}`, series: of(Math.hypot).map(({ name, y }) => ({ name, y })), ylabel: label, log: true }));
     both.push(chart(place, { ...common, title: `Phase, ${title}`, series: of((re, im) => (180 / Math.PI) * Math.atan2(im, re)), ylabel: "phase [°]", height: 160, limits: [-190, 190] }));
-  });
+  }
 }
 
 try {
@@ -77,9 +73,8 @@ try {
   document.body.classList.add("still");
   document.getElementById("why").textContent = `This browser cannot show the moving view (${fault.message}); the pictures below stand in.`;
 }
-const place = document.getElementById("curves");
-if (place) {
-  await curves(place, read("response"));
-  document.body.classList.add("curved");
+for (const place of document.querySelectorAll("[data-curves]")) {
+  await curves(place, read(place.dataset.curves));
+  document.body.classList.add(`has-${place.dataset.curves}`);
 }
 window.ready = true;

@@ -161,3 +161,15 @@ def packed(values: Any, kind: str, scale: float = 1.0) -> dict[str, Any]:
     small = np.ascontiguousarray(array, dtype=f"<{kind}")
     data = b64encode(zlib.compress(small.tobytes(), 6)).decode("ascii")
     return {"type": kind, "shape": list(small.shape), "scale": scale, "data": data}
+
+
+def packed_curves(title: str, label: str, frequencies: Array, curves: dict[str, Any]) -> dict[str, Any]:
+    """Complex curves over frequency [Hz] (f,) by their names, as `report.js` draws them; label: of their size."""
+    both = np.stack([[values.real, values.imag] for values in curves.values()])  # curve, part, line
+    return {
+        "title": title,
+        "label": label,
+        "names": list(curves),
+        "frequencies": packed(frequencies, "f4"),
+        "values": packed(both, "f4"),
+    }

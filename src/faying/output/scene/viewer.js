@@ -18,6 +18,7 @@
  *                               outline: the structure at rest beside the moved one; fixings: bolts, supports, masses
  *   view.state                  what is shown
  *   view.pick(x, y)             the face at a place of the canvas [CSS pixels], as onPick gets it; null beside it
+ *   view.reading(x, y)          what a map shows at a place of the canvas, {joint, field, value [SI]}; null beside it
  *   view.select(part, number)   selects a face as a click does; view.select(null) clears
  *   view.highlight([{part, number}])   colours faces; an empty list ends it
  *   view.joint(name, {look})    highlights both faces of a joint by its name; look: also turns the view square to it;
@@ -778,7 +779,7 @@ class View {
     });
     const release = (event) => {
       if (fingers.delete(event.pointerId) && moved < 4 && event.type === "pointerup" && event.button === 0)
-        this.chosen(this.faceAt(event.offsetX, event.offsetY));
+        this.chosen(this.faceAt(event.offsetX, event.offsetY), this.reading(event.offsetX, event.offsetY));
     };
     this.on(canvas, "pointerup", release);
     this.on(canvas, "pointercancel", release);
@@ -821,12 +822,14 @@ class View {
     this.show({ mode: this.state.mode === null ? 0 : (this.state.mode + by + count) % count });
   }
 
-  chosen(face) {
+  chosen(face, reading = null) {
     this.selection = face;
     this.marked();
     const found = face === null ? null : this.describe(face);
     if (this.faceSelect) this.faceSelect.value = face === null ? "" : String(face);
-    this.factLine.textContent = found === null ? "" : this.words(found, face);
+    const field = reading && this.scene.fields[reading.field];
+    const here = field ? `${field.label} here: ${digits(reading.value * field.factor, 3)} ${field.unit}. ` : "";
+    this.factLine.textContent = found === null ? "" : here + this.words(found, face);
     this.options.onPick?.(found);
     this.redraw();
   }
@@ -1171,6 +1174,41 @@ class View {
   pick(x, y) {
     const face = this.faceAt(x, y);
     return face === null || face < 0 ? null : this.describe(face);
+  }
+
+  /** What a map shows at a place of the canvas: {joint, field, value [SI]}; null where there is none. */
+  reading(x, y) {
+    const { scene, model, state } = this, field = scene.fields[state.field], angle = (state.phase * Math.PI) / 180;
+    if (!field) return null;
+    const size = state.mode === null ? 0 : state.amplitude, [c, s] = [size * Math.cos(angle), size * Math.sin(angle)];
+    let found = null, nearest = Infinity;
+    this.eye.update();
+    const matrix = new THREE.Matrix4().multiplyMatrices(this.eye.camera.projectionMatrix, this.eye.camera.matrixWorldInverse);
+    const { clientWidth: w, clientHeight: h } = this.stage, at = new THREE.Vector3();
+    scene.joints.forEach((joint, k) => {
+      const mesh = model.maps[k];
+      if (!mesh?.visible) return;
+      const { position, re, im, value } = mesh.geometry.attributes, index = mesh.geometry.index.array;
+      const seen = new Float64Array(3 * position.count);
+      for (let v = 0; v < position.count; v++) {
+        const [X, Y, Z] = [0, 1, 2].map((j) => position.array[3 * v + j] + c * re.array[3 * v + j] - s * im.array[3 * v + j]);
+        at.set(X, Y, Z).applyMatrix4(matrix);
+        seen.set([((at.x + 1) / 2) * w - x, ((1 - at.y) / 2) * h - y, at.z], 3 * v);
+      }
+      for (let t = 0; t < index.length; t += 3) {
+        const [a, b, d] = [index[t], index[t + 1], index[t + 2]];
+        const cross = (p, q) => seen[3 * p] * seen[3 * q + 1] - seen[3 * p + 1] * seen[3 * q];
+        const parts = [cross(b, d), cross(d, a), cross(a, b)], whole = parts[0] + parts[1] + parts[2];
+        if (!whole || parts.some((part) => part / whole < -1e-9)) continue;
+        const mean = (of) => (parts[0] * of(a) + parts[1] * of(b) + parts[2] * of(d)) / whole;
+        const depth = mean((v) => seen[3 * v + 2]);
+        if (depth >= nearest) continue;
+        nearest = depth;
+        const share = mean((v) => value.array[v]), [low, high] = field.range;
+        found = { joint: joint.name, field: state.field, value: low + share * (high - low) };
+      }
+    });
+    return found;
   }
 
   positions(part) {
