@@ -12,7 +12,9 @@ from faying.app.project import Project
 from faying.app.server import Server
 from faying.study import template
 from faying.surface.synthesize import spectral
+from faying.surface.write import write_scan
 from tests.helpers.browser import opened
+from tests.helpers.laps import lapped
 
 WAIT = 120_000  # ms: a command is a process of its own, and the machine may be slow
 
@@ -100,20 +102,50 @@ def test_faces_are_picked_into_a_joint(browser, served, example, tmp_path):
     assert "[[joint]]" in (tmp_path / "study.toml").read_text()
 
 
-def test_the_study_runs_with_progress_to_its_report(browser, served, example, tmp_path):
-    for name in ("study.toml", "surface.x3p", "two-blocks.step"):
-        shutil.copy(example / name, tmp_path)
+def test_from_a_step_file_without_names_and_a_scan_to_a_result(browser, served, tmp_path_factory, tmp_path):
+    """The newcomer's whole session: two files are dropped, nothing is typed."""
+    given = tmp_path_factory.mktemp("given")
+    lapped(given / "lap.step", size=(60, 30), holes=((15, 15), (45, 15)))
+    write_scan(spectral((128, 128), spacing=5e-6, D=2.2, Rq=1e-6, longest=1e-4, seed=7), given / "surface.x3p")
     with page_at(browser, served) as page:
+        page.set_input_files("#file", [given / "surface.x3p", given / "lap.step"])
+        until(page, "window.fayingView !== undefined")
+        page.click("#propose")
+        until(page, "document.querySelector('#text').value.includes('[[bolt]]')")
+        study = page.input_value("#text")
+        assert study.count("[[bolt]]") == 2
+        assert study.count("[[joint]]") == 1
+        assert 'scan = "surface.x3p"' in study
+        until(page, "document.querySelector('#check-hint').textContent === 'no fault'")
         page.click("#tab-run")
+        assert "joint" in page.inner_text("#findings")
         page.click("#start")
-        until(page, "document.querySelector('#job-line').textContent.includes(' of ')")
-        page.wait_for_selector("#report:not([hidden])", timeout=WAIT)
-        report = page.frame_locator("#report")
-        report.get_by_role("heading", name="Modes", exact=True).wait_for(timeout=WAIT)
-        assert "Two blocks and a bolt" in report.locator("h1").inner_text()
+        page.wait_for_selector("#report:not([hidden])", timeout=5 * WAIT)
+        page.frame_locator("#report").get_by_role("heading", name="Modes", exact=True).wait_for(timeout=WAIT)
         links = page.locator("#links a").all_inner_texts()
         assert {"result.nc", "modes.csv", "report.html"} <= set(links)
-        assert page.is_enabled("#start")
+    assert (tmp_path / "results" / "result.nc").is_file()
+
+
+def test_faults_stand_at_their_lines_and_go(browser, served, example, tmp_path):
+    for name in ("study.toml", "two-blocks.step"):
+        shutil.copy(example / name, tmp_path)
+    good = (tmp_path / "study.toml").read_text()
+    lines = good.splitlines()
+    at = next(k for k, line in enumerate(lines) if line.startswith("preload"))
+    lines[at] = "preload = 6000"
+    with page_at(browser, served) as page:
+        set_text(page, "\n".join(lines))
+        until(page, "document.querySelectorAll('#faults li').length > 0")
+        assert f"line {at + 1}" in page.inner_text("#faults")
+        assert 'such as "12 kN"' in page.inner_text("#faults") or "unit" in page.inner_text("#faults")
+        assert page.inner_text("#gutter b") == str(at + 1)
+        page.click("#faults button")
+        chosen = "document.querySelector('#text').value.slice(...['selectionStart', 'selectionEnd']"
+        assert page.evaluate(chosen + ".map((end) => document.querySelector('#text')[end]))") == "preload = 6000"
+        set_text(page, good)
+        until(page, "document.querySelector('#check-hint').textContent === 'no fault'")
+        assert page.locator("#gutter b").count() == 0
 
 
 def test_a_run_is_cancelled_and_leaves_nothing(browser, served, example, tmp_path):
@@ -149,18 +181,18 @@ def test_scripts_in_names_and_texts_are_inert(browser, served, example, tmp_path
         shutil.copy(example / name, tmp_path)
     evil = "<img src=x onerror=alert(1)></script><script>alert(2)</script>"
     text = (example / "study.toml").read_text().replace("Two blocks and a bolt", evil)
+    (tmp_path / "<img src=x onerror=alert(3)>.x3p").write_bytes(b"")
     (tmp_path / "study.toml").write_text(text.replace('name = "joint"', f"name = '{evil}'"))
     with page_at(browser, served) as page:
         said = []
         page.on("dialog", lambda dialog: (said.append(dialog.message), dialog.dismiss()))
         page.click("#tab-structure")
         until(page, "window.fayingView !== undefined")
+        assert page.locator("#scans option").all_inner_texts() == ["<img src=x onerror=alert(3)>.x3p", "surface.x3p"]
         page.click("#tab-run")
-        page.click("#start")
-        page.wait_for_selector("#report:not([hidden])", timeout=WAIT)
-        heading = page.frame_locator("#report").locator("h1")
-        heading.wait_for(timeout=WAIT)
-        assert heading.inner_text() == evil
+        until(page, "document.querySelectorAll('#findings li').length > 0")
+        assert page.locator("#findings img, #view img").count() == 0
+        assert evil in page.inner_text("#view")
         assert said == []
 
 
