@@ -38,7 +38,8 @@ tr.now td{background:color-mix(in srgb,var(--accent) 12%,var(--back))}
 @media (prefers-color-scheme:dark){:root{--ink:#e3e8ee;--soft:#a3afbb;--line:#38424d;--head:#1a2027;--back:#14181d;
 --flag:#33291a;--accent:#63b0f0;color-scheme:dark}figure svg,figure img{border-radius:6px}}
 @media print{body{max-width:none;margin:0}#stage,.live #stage,[data-curves],#why{display:none}
-.live .static,.has-response .of-response,.has-test-frf .of-test-frf{display:block}figure{break-inside:avoid}tr.now td{background:none}
+.live .static,.has-response .of-response,.has-test-frf .of-test-frf{display:block}figure{break-inside:avoid}
+tr.now td{background:none}
 button.link{color:inherit}}
 """
 BITMAPS = ("modes", "shapes")  # tens of thousands of polygons: a bitmap is smaller than their outlines
