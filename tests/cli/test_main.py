@@ -132,3 +132,18 @@ def test_version(capsys):
         main(["--version"])
     assert faying.__version__ in capsys.readouterr().out
     assert signal.getsignal(signal.SIGTERM) is before  # whoever calls a command from Python keeps their own
+
+
+def test_completion_of_the_shell_knows_the_commands():
+    """The script of click, and what it asks: the commands that begin so, and their options."""
+    import os
+
+    def asked(**given):
+        words = [sys.executable, "-c", "from faying.cli import main; main()"]
+        return subprocess.run(words, capture_output=True, text=True, check=False, env=os.environ | given).stdout
+
+    assert "complete -o nosort -F _faying_completion faying" in asked(_FAYING_COMPLETE="bash_source")
+    there = asked(_FAYING_COMPLETE="bash_complete", COMP_WORDS="faying ", COMP_CWORD="1").split()
+    assert {"plain,new", "plain,faces", "plain,check", "plain,schema", "plain,run"} <= set(there)
+    options = asked(_FAYING_COMPLETE="bash_complete", COMP_WORDS="faying new --", COMP_CWORD="2").split()
+    assert {"plain,--scan", "plain,--yes", "plain,--force"} <= set(options)

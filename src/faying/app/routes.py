@@ -133,13 +133,12 @@ class Session:
         return self.progress(request)
 
     def scene(self, request: Request) -> str:
-        """The scene of a file, of the study, or of its result, as JSON."""
+        """The scene of a file of the folder, or of the study, as `faying view` shows it."""
+        from faying.output.scene import of_file, to_text
+
         what = request.given("of")
-        if what == "study":
-            return scene_of(self.project.study)
-        if what == "result":
-            return scene_of(self.project.result("result.nc"))
-        return scene_of(self.project.file(what))
+        path = self.project.study if what == "study" else self.project.file(what)
+        return to_text(of_file(path, request.query.get("unit")))
 
     def _name(self, request: Request, key: str) -> str:
         """The name of a file of the folder, which cannot be taken for an option."""
@@ -157,25 +156,6 @@ class Session:
             picture = Path(folder) / "picture.png"
             found = self._answer(*arguments, f"--plot={picture}")
             return {"facts": found, "picture": b64encode(picture.read_bytes()).decode()}
-
-
-def scene_of(path: Path) -> str:
-    """The scene of a file as JSON. Raises FayingError where it has none."""
-    from faying.decks.meshfile import read_mesh
-    from faying.output import scene
-    from faying.result import Result
-
-    if path.suffix == ".toml":
-        from faying.study import Study
-        from faying.study.case import checked_mesh
-
-        study = Study.read(path)
-        return scene.to_text(scene.of_mesh(checked_mesh(study), study, title=study.title))
-    if path.suffix == ".nc":
-        return scene.to_text(scene.of_result(Result.load(path)))
-    if path.suffix.lower() in (".step", ".stp"):
-        return scene.to_text(scene.of_step(path))
-    return scene.to_text(scene.of_mesh(read_mesh(path, unit="mm"), title=path.name))
 
 
 ROUTES: dict[tuple[str, str], Callable[[Session, Request], dict[str, Any] | str]] = {

@@ -2,10 +2,10 @@
 
 import hmac
 import secrets
+import sys
 import threading
 from functools import partial
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, unquote, urlsplit
@@ -13,6 +13,7 @@ from urllib.parse import parse_qsl, unquote, urlsplit
 from faying.app.project import LARGEST, Project
 from faying.app.routes import Request, Session, answered
 from faying.errors import InputError
+from faying.output.scene.pages import ASSETS as VIEWER
 
 ADDRESS = "127.0.0.1"
 # what the page may load: itself; the report inside it may run its own scripts, in an origin that is nobody's
@@ -32,14 +33,9 @@ TYPES = {
     ".png": "image/png",
     ".csv": "text/csv; charset=utf-8",
 }
-# the page's files: name in the address -> package and file
-ASSETS = {
-    "": ("faying.app", "page/index.html"),
-    "app.js": ("faying.app", "page/app.js"),
-    "app.css": ("faying.app", "page/app.css"),
-    "viewer.js": ("faying.output.scene", "viewer.js"),
-    "vendor/three.min.js": ("faying.output.scene", "vendor/three.min.js"),
-}
+PAGE = Path(__file__).parent / "page"
+# the page's files by their name in the address, "" for the page itself
+ASSETS = {"": PAGE / "index.html", "app.js": PAGE / "app.js", "app.css": PAGE / "app.css", **VIEWER}
 
 
 class Server(ThreadingHTTPServer):
@@ -70,6 +66,11 @@ class Server(ThreadingHTTPServer):
         thread = threading.Thread(target=self.serve_forever, daemon=True)
         thread.start()
         return thread
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Say nothing of a page that was closed while it was being answered; show every other fault."""
+        if not isinstance(sys.exc_info()[1], ConnectionError | TimeoutError):
+            super().handle_error(request, client_address)
 
     def close(self) -> None:
         """Stop the job that runs, and listen no more."""
@@ -162,9 +163,8 @@ class _Handler(BaseHTTPRequestHandler):
         if name not in ASSETS:
             self._refuse(404, "there is nothing of this name")
             return
-        package, file = ASSETS[name]
-        kind = TYPES[Path(file).suffix]
-        self._send(200, kind, files(package).joinpath(file).read_bytes(), PAGE_POLICY)
+        file = ASSETS[name]
+        self._send(200, TYPES[file.suffix], file.read_bytes(), PAGE_POLICY)
 
     def _send(self, status: int, kind: str, body: bytes, policy: str) -> None:
         self.send_response(status)

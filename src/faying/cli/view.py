@@ -2,12 +2,8 @@
 
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
-
-if TYPE_CHECKING:
-    from faying.output.scene import Scene
 
 
 @click.command()
@@ -25,45 +21,15 @@ def command(file: Path, out: Path | None, unit: str | None, show: bool) -> None:
     import webbrowser
 
     from faying.files import write_text
-    from faying.output.scene import page
+    from faying.output.scene import of_file, page
 
-    scene = scene_of(file, unit)
+    scene = of_file(file, unit)
     made = write_text(out or place(file), page(scene))
     named = sum(1 for face in scene.faces if face.name)
     click.echo(f"{scene.title}: {len(scene.parts)} parts, {len(scene.faces)} faces, {named} of them named")
     click.echo(f"written: {made}")
     if show and not webbrowser.open(made.resolve().as_uri()):
         click.echo(f"no browser was found; open {made.resolve().as_uri()} in one", err=True)
-
-
-def scene_of(file: Path, unit: str | None = None) -> "Scene":
-    """The scene of a file by its ending. Raises ReadError and InputError as its readers do."""
-    from faying.errors import InputError, ReadError
-    from faying.output.scene import of_mesh, of_result, of_step
-
-    kind = file.suffix.lower()
-    if not file.is_file():
-        raise ReadError(f"no file {file}")
-    meshed = kind not in (".toml", ".nc", ".step", ".stp")
-    if unit is not None and not meshed:
-        raise InputError(f"--unit goes with a mesh file; {file.name} has its units inside")
-    if kind == ".toml":
-        from faying.study import Study
-        from faying.study.case import checked_mesh
-
-        study = Study.read(file)
-        return of_mesh(checked_mesh(study), study)
-    if kind == ".nc":
-        from faying.result import Result
-
-        return of_result(Result.load(file))
-    if not meshed:
-        return of_step(file)
-    if unit is None:
-        raise InputError(f'a mesh file does not say its unit; give that of {file.name}, for example --unit "mm"')
-    from faying.decks.meshfile import read_mesh
-
-    return of_mesh(read_mesh(file, unit=unit), title=file.name)
 
 
 def place(file: Path) -> Path:

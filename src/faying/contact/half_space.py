@@ -96,7 +96,7 @@ class HalfSpace(ContactLaw):
     def __post_init__(self) -> None:
         super().__post_init__()
         object.__setattr__(self, "points", int(self.points))  # the command line reads numbers as floats
-        low, high = self._asked
+        low, high = self.asked
         if not 0 < low < high < np.inf:
             raise InputError(f"half-space: pressures from {low:.4g} to {high:.4g} Pa; give 0 < lowest < highest")
         if self._hardness is not None and high >= self._hardness:
@@ -113,7 +113,7 @@ class HalfSpace(ContactLaw):
         return float(self.ladder.pressure[0]), float(self.ladder.pressure[-1])
 
     @property
-    def _asked(self) -> tuple[float, float]:
+    def asked(self) -> tuple[float, float]:
         """Least and greatest pressure to solve [Pa]; by default 1e-5 and 0.9 of the hardness.
 
         Elastic: 1e-5 and 0.3 of the pressure that closes the surface, half of E* times its rms slope.
@@ -181,13 +181,13 @@ class HalfSpace(ContactLaw):
         heights = np.asarray(self.scan.heights, dtype=float)
         names = ("elastic", "stiffness", "area", "shear_ratio", "periodic", "points", "tol")
         key = {name: getattr(self, name) for name in names}
-        key |= {"pressure": self._asked, "spacing": tuple(map(float, self.scan.spacing)), "nu": self.nu}
+        key |= {"pressure": self.asked, "spacing": tuple(map(float, self.scan.spacing)), "nu": self.nu}
         key |= {"E_star": self.pair.E_star, "hardness": self._hardness}
         if self.shear_ratio > 0:
             key["friction"] = self.pair.friction
 
         def make() -> Ladder:
-            pressure = np.geomspace(*self._asked, self.points)
+            pressure = np.geomspace(*self.asked, self.points)
             return climb(heights, self.scan.spacing, pressure, self._solve, self._numbers, self.progress)
 
         return cached(make, self.cache, key, heights)

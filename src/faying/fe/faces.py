@@ -1,10 +1,36 @@
 """Centres and normals on faces of any elements, flat or curved."""
 
+from collections.abc import Mapping
+from typing import Protocol
+
 import numpy as np
 
 from faying.fe.elements import FACES
 from faying.fe.sides import Blocks
 from faying.typing import Array, Index
+
+
+class NamedFaces(Protocol):
+    """Faces with names on parts: those of a mesh, or the outline of a geometry before there is one."""
+
+    @property
+    def points(self) -> Array:
+        """Nodes (n, 3) [m]."""
+        ...
+
+    @property
+    def face_part(self) -> Mapping[str, str]:
+        """Name of a face -> name of its part."""
+        ...
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the box around all of it [m]."""
+        ...
+
+    def face(self, name: str) -> Blocks:
+        """Blocks of a named face, each (f, a)."""
+        ...
 
 
 def surface_frame(points: Array, faces: Index, gradients: Array) -> tuple[Array, Array]:

@@ -25,6 +25,7 @@ from faying.typing import Array, Index
 # tetrahedra per volume over edge^3, and unknowns per tetrahedron of second order: counted on blocks and on bolted
 # joints
 ELEMENTS, UNKNOWNS = 5.0, 4.5
+GRADING = 0.4  # growth of elements away from where they are fine
 # netgen numbers the middle nodes by these edges; VTK, and so we, by those of its element
 _NETGEN_EDGES = {"tet10": ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)), "tri6": ((1, 2), (0, 2), (0, 1))}
 
@@ -140,7 +141,7 @@ def _mesh_here(request: _Request) -> Mesh:
                 face.maxh = size_here * 1e3
 
     try:
-        mesh = OCCGeometry(glued).GenerateMesh(maxh=size * 1e3, grading=0.4, quad_dominated=False)
+        mesh = OCCGeometry(glued).GenerateMesh(maxh=size * 1e3, grading=GRADING, quad_dominated=False)
         mesh.SecondOrder()
     except Exception as fault:  # NgException, which netgen's Python does not name
         raise InputError(

@@ -10,7 +10,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.attach import Ring, mean_motion
 from faying.fe.elasticity import Solid
-from faying.fe.faces import face_centre
+from faying.fe.faces import NamedFaces, face_centre
 from faying.fe.holes import Hole, holes
 from faying.fe.mesh import Mesh
 from faying.joint.threads import Fastener
@@ -137,9 +137,33 @@ class Bolt:
             raise InputError(f"bolt {self.name!r}: the seat's inner diameter must be less than its outer")
 
     def fitted(self, mesh: Mesh) -> "FittedBolt":
-        """Return the bolt in its place.
+        """Return the bolt in its place on a mesh. Raises InputError as `placed`, and where no element lies in its ring.
 
-        Raises InputError where its faces do not look away from each other, or no axis joins them.
+        Its ends are the mean motions of its seats.
+        """
+        place = self.placed(mesh)
+        point, end = place.point, place.point + place.length * place.axis
+        across = place.length * place.axis
+        seat = place.ring
+        ring = None if seat is None else Ring(point=point, axis=across, inner=seat[0] / 2, outer=seat[1] / 2)
+        ends = tuple(
+            mean_motion(mesh.points, mesh.face(name), centre, ring)
+            for name, centre in zip(self.faces, (point, end), strict=True)
+        )
+        return FittedBolt(
+            bolt=self,
+            point=point,
+            axis=place.axis,
+            length=place.length,
+            ends=ends,
+            ring=seat,
+            extent=seat or _extent(mesh.points[mesh.face_nodes(self.faces[0])], point, place.axis),
+        )
+
+    def placed(self, mesh: NamedFaces) -> "BoltPlace":
+        """Return where the bolt lies.
+
+        Raises InputError where its faces do not look away from each other, no axis joins them, or it misses its hole.
         """
         first, second = self.faces
         if mesh.face_part[first] == mesh.face_part[second] and self.diameter is None:
@@ -170,23 +194,9 @@ class Bolt:
                 "that head and nut press on"
             )
         hole = self._hole(mesh, centre_a, axis / length)
-        seat = self._seat(hole)
-        ring = None if seat is None else Ring(point=centre_a, axis=axis, inner=seat[0] / 2, outer=seat[1] / 2)
-        ends = tuple(
-            mean_motion(mesh.points, mesh.face(name), centre, ring)
-            for name, centre in zip(self.faces, (centre_a, centre_b), strict=True)
-        )
-        return FittedBolt(
-            bolt=self,
-            point=centre_a,
-            axis=axis / length,
-            length=length,
-            ends=ends,
-            ring=seat,
-            extent=seat or _extent(mesh.points[mesh.face_nodes(first)], centre_a, axis / length),
-        )
+        return BoltPlace(bolt=self, point=centre_a, axis=axis / length, length=length, ring=self._seat(hole))
 
-    def _hole(self, mesh: Mesh, point: Array, axis: Array) -> Hole | None:
+    def _hole(self, mesh: NamedFaces, point: Array, axis: Array) -> Hole | None:
         """The hole that the axis runs through, None where there is none.
 
         Raises InputError where the axis lies beside it.
@@ -238,6 +248,34 @@ def _extent(points: Array, centre: Array, axis: Array) -> tuple[float, float]:
 
 
 @dataclass(frozen=True, kw_only=True)
+class BoltPlace:
+    """Where a bolt lies.
+
+    point [m] and axis (3,): from head to nut; length [m]: clamped; ring: inner and outer diameter [m] of the seats,
+    None for whole faces.
+    """
+
+    bolt: Bolt
+    point: Array
+    axis: Array
+    length: float
+    ring: tuple[float, float] | None
+
+    @property
+    def notes(self) -> tuple[Note, ...]:
+        """What was chosen for want of a seat."""
+        return _seat_notes(self.bolt, self.ring)
+
+
+def _seat_notes(bolt: Bolt, ring: tuple[float, float] | None) -> tuple[Note, ...]:
+    if ring is None or bolt.seat is not None or bolt.washers:
+        return ()
+    inner, outer = (show(d, "m") for d in ring)
+    text = f"bolt {bolt.name!r} has no seat: it presses a ring of {inner} to {outer}, from its hole and its size"
+    return (Note(code="bolt-seat", text=text),)
+
+
+@dataclass(frozen=True, kw_only=True)
 class FittedBolt:
     """A bolt in its place.
 
@@ -257,13 +295,7 @@ class FittedBolt:
     @property
     def notes(self) -> tuple[Note, ...]:
         """What was chosen for want of a seat."""
-        if self.ring is None or self.bolt.seat is not None or self.bolt.washers:
-            return ()
-        inner, outer = (show(d, "m") for d in self.ring)
-        text = (
-            f"bolt {self.bolt.name!r} has no seat: it presses a ring of {inner} to {outer}, from its hole and its size"
-        )
-        return (Note(code="bolt-seat", text=text),)
+        return _seat_notes(self.bolt, self.ring)
 
     def meets(self, other: "FittedBolt") -> bool:
         """Whether two bolts run through one place: parallel, on a common face, closer than their shanks are thick."""

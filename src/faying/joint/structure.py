@@ -155,6 +155,11 @@ class Structure:
         return self._frame.matrices
 
     @property
+    def mass(self) -> float:
+        """Mass of the parts [kg]."""
+        return float(self.matrices[1].sum()) / 3
+
+    @property
     def fixed(self) -> Index:
         """Unknowns that supports keep at rest."""
         return self._frame.fixed

@@ -93,6 +93,39 @@ def cone_compliance(
     return compliance
 
 
+def cone_pressure(
+    force: float, *, depth: float, length: float, seat: float, hole: float, outer: float
+) -> tuple[float, float]:
+    """Return the pressure [Pa] in a joint under one bolt by the deformation cone: its mean, and that at the hole.
+
+    The mean is the force over the section of the cone. The second falls in proportion to the distance from the hole to
+    nothing at the edge of the cone, which is more than finite elements give at the edge of the hole.
+
+    Args:
+        force: Preload [N].
+        depth: Distance [m] of the joint from the nearer seat.
+        length: Clamped length [m].
+        seat: Outer diameter [m] of the bearing area.
+        hole: Diameter [m] of the hole, less than that of the seat.
+        outer: Outer diameter [m] of the parts.
+
+    Raises:
+        InputError: A hole as wide as the cone.
+
+    Source:
+        VDI 2230 Part 1:2015, section 5.1.2, for the cone.
+    """
+    wide = seat + 2 * depth * max(cone_angle(length, seat, outer), 0.0)
+    wide = max(min(wide, outer), seat)
+    if hole >= wide:
+        raise InputError(f"a hole of {hole:g} m must be narrower than the cone of pressure, {wide:g} m")
+    mean = force / (pi / 4 * (wide**2 - hole**2))
+    R, r = wide / 2, hole / 2
+    # 2 pi of the integral of (R - s)/(R - r) s ds from r to R
+    volume = 2 * pi * ((R**3 - 3 * R * r**2 + 2 * r**3) / 6) / (R - r)
+    return mean, force / volume
+
+
 def embedding_guide(Rz: float) -> tuple[float, float, float]:
     """Return the guideline's embedding [m] in the thread, at each bearing area, and at each interface, for axial load.
 

@@ -193,25 +193,49 @@ def materials_of(study: Study, mesh: Mesh) -> dict[str, Material]:
 
 def checked_mesh(study: Study) -> Mesh:
     """Return the mesh of a study; every name that does not fit the geometry is reported at once."""
-    file = study.geometry.file.name
     mesh = mesh_of(study.geometry)
-    faults = [f"[part] says nothing of {name!r}, which {file} holds" for name in mesh.parts if name not in study.parts]
-    held = ", ".join(mesh.parts)
-    faults += [f"part {name!r} is not in {file}; it holds {held}" for name in study.parts if name not in mesh.parts]
-    for bolt in study.bolts:
-        if bolt.part is not None and bolt.part not in mesh.parts:
-            faults.append(f"bolt {bolt.name!r} is the part {bolt.part!r}, which is not in {file}; it holds {held}")
-    named = [("joint", item.name, face) for item in study.joints for face in item.faces]
-    named += [("bolt", item.name, face) for item in study.bolts for face in item.faces]
-    named += [("support", support.face, support.face) for support in study.supports]
-    named += [("mass", mass.face, mass.face) for mass in study.masses if mass.face is not None]
-    known = ", ".join(sorted(mesh.faces))
-    for what, name, face in named:
-        if face not in mesh.faces:
-            faults.append(f"{what} {name!r} names the face {face!r}, which does not exist; the faces are {known}")
+    faults = [fault for _, fault in name_faults(study, list(mesh.parts), list(mesh.faces))]
     if faults:
         raise InputError("the study does not fit its geometry:\n" + "\n".join(f"  - {line}" for line in faults))
     return mesh
+
+
+def name_faults(study: Study, parts: Sequence[str], faces: Sequence[str]) -> list[tuple[str, str]]:
+    """Names of a study that its geometry does not hold: the key of each, and what is wrong."""
+    file = study.geometry.file.name
+    faults = [
+        ("part", f"[part] says nothing of {name!r}, which {file} holds") for name in parts if name not in study.parts
+    ]
+    held = ", ".join(parts)
+    unsaid = [name for name in parts if name not in study.parts]
+    faults = [("part", f"[part] says nothing of {name!r}, which {file} holds") for name in unsaid]
+    absent = [name for name in study.parts if name not in parts]
+    faults += [(f"part.{name}", f"part {name!r} is not in {file}; it holds {held}") for name in absent]
+    faults += [
+        (f"bolt[{k}].part", f"bolt {bolt.name!r} is the part {bolt.part!r}, which is not in {file}; it holds {held}")
+        for k, bolt in enumerate(study.bolts, 1)
+        if bolt.part is not None and bolt.part not in parts
+    ]
+    known = ", ".join(sorted(faces))
+    faults += [
+        (key, f"{what} {name!r} names the face {face!r}, which does not exist; the faces are {known}")
+        for key, what, name, face in named_faces(study)
+        if face not in faces
+    ]
+    return faults
+
+
+def named_faces(study: Study) -> list[tuple[str, str, str, str]]:
+    """Every face that a study names: the key, what names it, that thing's name, the face."""
+    named = [
+        (f"{what}[{k}].faces", what, item.name, face)
+        for what, items in (("joint", study.joints), ("bolt", study.bolts))
+        for k, item in enumerate(items, 1)
+        for face in item.faces
+    ]
+    named += [(f"support[{k}].face", "support", one.face, one.face) for k, one in enumerate(study.supports, 1)]
+    masses = [(k, one.face) for k, one in enumerate(study.masses, 1) if one.face is not None]
+    return named + [(f"mass[{k}].face", "mass", face, face) for k, face in masses]
 
 
 def structure_of(

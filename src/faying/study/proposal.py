@@ -10,11 +10,11 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.bores import Stack, bores, room_around, seat, stacks
 from faying.fe.face_facts import Contact, FaceFacts, GeometryFacts, PartFacts, part_distance
-from faying.fe.geometry import ELEMENTS, UNKNOWNS
 from faying.fe.memory import guessed
 from faying.fe.selectors import AXES, TOUCHING, Selector, chosen
 from faying.joint.threads import HEADS, WASHERS, Fastener, Thread, size_for_hole
 from faying.memory import available
+from faying.study.expected import unknowns_of
 from faying.units import show
 
 GRADE, SHARE = "8.8", 0.7  # of the bolts, and the share of the proof load that they are tightened to
@@ -89,7 +89,7 @@ class Proposal:
     @property
     def unknowns(self) -> int:
         """Unknowns of the mesh, as counted on other structures."""
-        return int(UNKNOWNS * ELEMENTS * sum(part.volume for part in self.facts.parts) / self.size**3)
+        return unknowns_of(self.facts, self.size)
 
 
 @dataclass
@@ -309,10 +309,9 @@ def mesh_size(facts: GeometryFacts, bolts: set[str | None]) -> tuple[float, str]
     thin = min(plates, key=_thickness)
     size = rounded(_thickness(thin) / ACROSS, 2)
     why = f"{ACROSS} elements across {thin.name!r}, which is about {show(_thickness(thin), 'm', digits=2)} thick"
-    volume = sum(part.volume for part in facts.parts)
     free = available()
     for _ in range(200):
-        unknowns = int(UNKNOWNS * ELEMENTS * volume / size**3)
+        unknowns = unknowns_of(facts, size)
         if unknowns <= MOST and (free is None or guessed(unknowns) <= free / 2):
             break
         size = rounded(1.1 * size, 2)

@@ -1,13 +1,17 @@
 """Notes where forces and pressures leave what the parts bear: bolts, seats and joints, and odd units."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from math import pi
+from typing import Protocol
 
 import numpy as np
 
-from faying.fe.faces import face_centre
-from faying.joint.bolt import Bolt, FittedBolt
-from faying.joint.solid_bolt import SolidBolt
+from faying.errors import InputError
+from faying.fe.elasticity import Solid
+from faying.fe.faces import NamedFaces, face_centre
+from faying.joint.bolt import Bolt, BoltPlace, FittedBolt
+from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.joint.structure import Structure
 from faying.notes import Note
 from faying.typing import Array
@@ -17,7 +21,52 @@ GRAVITY = 9.81  # m/s2
 USED = 0.9  # share of its proof load that a bolt is usually tightened to at most
 
 
-def bolt_notes(structure: Structure) -> list[Note]:
+@dataclass(frozen=True, kw_only=True)
+class SolidPlace:
+    """A meshed bolt before there is a mesh: point [m] and axis (3,) from head to nut, length [m] between its faces."""
+
+    bolt: SolidBolt
+    point: Array
+    axis: Array
+    length: float
+
+    @classmethod
+    def of(cls, bolt: SolidBolt, faces: NamedFaces) -> "SolidPlace":
+        """Place a bolt between its two faces. Raises InputError where they are not apart."""
+        (start, _, _), (end, _, _) = (face_centre(faces.points, faces.face(name)) for name in bolt.faces)
+        length = float(np.linalg.norm(end - start))
+        if length < 1e-6 * faces.size:
+            raise InputError(
+                f"bolt {bolt.name!r}: its faces have one centre; name the faces under its head and its nut"
+            )
+        return cls(bolt=bolt, point=start, axis=(end - start) / length, length=length)
+
+
+class Bolted(Protocol):
+    """What strength is judged by: a structure, or its sketch before there is a mesh."""
+
+    @property
+    def mesh(self) -> NamedFaces:
+        """The faces."""
+        ...
+
+    @property
+    def materials(self) -> Mapping[str, Solid]:
+        """Part -> its material."""
+        ...
+
+    @property
+    def mass(self) -> float:
+        """Mass of the parts [kg]."""
+        ...
+
+    @property
+    def fitted_bolts(self) -> Sequence[FittedBolt | FittedSolidBolt | BoltPlace | SolidPlace]:
+        """The bolts in their places."""
+        ...
+
+
+def bolt_notes(structure: Bolted) -> list[Note]:
     """Say which preloads are beyond what bolt or seat bears, or less than the structure weighs.
 
     A bolt whose grade is known is measured by its proof load. Else the stress over the full section of its shank is
@@ -25,7 +74,7 @@ def bolt_notes(structure: Structure) -> list[Note]:
     measured by the bearing limit of its part, or by the part's yield strength where no such limit is known.
     """
     out = []
-    weight = GRAVITY * float(structure.matrices[1].sum()) / 3
+    weight = GRAVITY * structure.mass
     for fitted in structure.fitted_bolts:
         bolt = fitted.bolt
         if not bolt.preload:
@@ -41,7 +90,7 @@ def bolt_notes(structure: Structure) -> list[Note]:
             out += _proof(bolt, greatest)
         elif isinstance(bolt, Bolt):
             out += _shank(bolt, greatest)
-        if isinstance(fitted, FittedBolt):
+        if isinstance(fitted, FittedBolt | BoltPlace):
             out += _seats(structure, fitted, greatest)
     return out
 
@@ -75,7 +124,7 @@ def _shank(bolt: Bolt, force: float) -> list[Note]:
     return [Note(code="bolt-yield", load=force, text=text)]
 
 
-def seat_area(structure: Structure, fitted: FittedBolt, face: str) -> float:
+def seat_area(structure: Bolted, fitted: FittedBolt | BoltPlace, face: str) -> float:
     """Area [m2] that the head or nut of a bolt presses on a face."""
     if fitted.ring is None:
         return float(face_centre(structure.mesh.points, structure.mesh.face(face))[2])
@@ -83,7 +132,7 @@ def seat_area(structure: Structure, fitted: FittedBolt, face: str) -> float:
     return pi / 4 * (outer**2 - inner**2)
 
 
-def seat_limit(structure: Structure, face: str) -> tuple[float, str] | None:
+def seat_limit(structure: Bolted, face: str) -> tuple[float, str] | None:
     """Pressure [Pa] that the part of a face bears under a bolt, and what that is; None where nothing is known."""
     limit: float | None = getattr(structure.materials[structure.mesh.face_part[face]], "bearing_limit", None)
     if limit is not None:
@@ -92,7 +141,7 @@ def seat_limit(structure: Structure, face: str) -> tuple[float, str] | None:
     return None if strength is None else (strength, "yield strength")
 
 
-def _seats(structure: Structure, fitted: FittedBolt, force: float) -> list[Note]:
+def _seats(structure: Bolted, fitted: FittedBolt | BoltPlace, force: float) -> list[Note]:
     out = []
     for face in fitted.bolt.faces:
         pressure, limit = force / seat_area(structure, fitted, face), seat_limit(structure, face)
@@ -106,7 +155,7 @@ def _seats(structure: Structure, fitted: FittedBolt, force: float) -> list[Note]
     return out
 
 
-def _strength(structure: Structure, face: str) -> float | None:
+def _strength(structure: Bolted, face: str) -> float | None:
     """Yield strength [Pa] of the part that a face is on, None where it is not known."""
     found: float | None = getattr(structure.materials[structure.mesh.face_part[face]], "yield_strength", None)
     return found

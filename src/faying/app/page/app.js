@@ -258,10 +258,22 @@ function proposable() {
   $("shape-hint").hidden = Boolean($("shapes").value);
 }
 
+function meshed(name) {
+  return Boolean(state.project?.files.find((one) => one.name === name)?.kinds.includes("mesh"));
+}
+
 async function showShape(again = false) {
   const name = $("shapes").value;
   proposable();
-  const mark = name === "study" ? `study\n${state.saved}` : name;
+  const unit = meshed(name) ? $("unit").value : "";
+  $("shape-unit").hidden = !meshed(name);
+  if (meshed(name) && !unit) {
+    said("shape-fault", new Error("A mesh file does not say its unit. Choose it above."));
+    state.view?.dispose();
+    state.view = state.shown = null;
+    return;
+  }
+  const mark = name === "study" ? `study\n${state.saved}` : `${name} ${unit}`;
   if (!name || (mark === state.shown && !again)) return;
   state.shown = mark;
   said("shape-fault", null);
@@ -269,7 +281,7 @@ async function showShape(again = false) {
   state.view = null;
   $("view").replaceChildren(made("p", "reading the geometry …", { className: "hint" }));
   try {
-    const scene = await ask("GET", "scene", { of: name });
+    const scene = await ask("GET", "scene", unit ? { of: name, unit } : { of: name });
     $("view").replaceChildren();
     state.view = await mount($("view"), scene, { onPick: pick });
     window.fayingView = state.view;
@@ -329,7 +341,7 @@ $("make-bolt").addEventListener("click", () => {
   clearPicks();
 });
 $("clear-picks").addEventListener("click", clearPicks);
-$("shapes").addEventListener("change", () => showShape());
+for (const id of ["shapes", "unit"]) $(id).addEventListener("change", () => showShape());
 $("propose").addEventListener("click", (event) => busy(event.target, "reading the faces …", async () => {
   const query = { geometry: $("shapes").value };
   if ($("scans").value) query.scan = $("scans").value;

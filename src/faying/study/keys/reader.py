@@ -11,6 +11,16 @@ from faying.contact.parameter import FILE, Parameter
 from faying.errors import InputError
 from faying.fe.selectors import Selector
 
+
+class StudyFaults(InputError):
+    """All faults of a study file; `lines` holds them one by one, each with its key in front."""
+
+    def __init__(self, where: str, lines: list[str]) -> None:
+        count = f"{len(lines)} fault" + "s" * (len(lines) > 1)
+        super().__init__(f"{where}: {count}\n" + "\n".join(f"  - {line}" for line in lines))
+        self.lines = tuple(lines)
+
+
 MISSING: Any = object()
 Made = TypeVar("Made")
 
@@ -32,10 +42,9 @@ class Faults:
         self.lines.append(text)
 
     def raise_if_any(self, where: str) -> None:
-        """Raise one InputError that lists all of them."""
+        """Raise one StudyFaults that lists all of them."""
         if self.lines:
-            count = f"{len(self.lines)} fault" + "s" * (len(self.lines) > 1)
-            raise InputError(f"{where}: {count}\n" + "\n".join(f"  - {line}" for line in self.lines))
+            raise StudyFaults(where, self.lines)
 
 
 class Table:

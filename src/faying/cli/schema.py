@@ -1,0 +1,27 @@
+"""faying schema"""
+
+from pathlib import Path
+
+import click
+
+
+@click.command()
+@click.option("--out", type=click.Path(path_type=Path), help="File to write, such as faying.schema.json.")
+@click.option("--json", "as_json", is_flag=True, help="Print the schema, as it does without --out.")
+def command(out: Path | None, as_json: bool) -> None:
+    """Give the JSON schema of a study: editors complete keys and mark faults with it, without a network.
+
+    A study names it in its first line: #:schema ./faying.schema.json
+    """
+    from importlib.resources import files
+
+    from faying.errors import InputError
+    from faying.files import write_text
+
+    if out is not None and as_json:
+        raise InputError("--json prints the schema and --out writes it; leave one out")
+    text = files("faying.study").joinpath("schema.json").read_text(encoding="utf-8")
+    if out is None:
+        click.echo(text, nl=False)
+    else:
+        click.echo(f"written: {write_text(out, text)}")

@@ -1,0 +1,45 @@
+"""Scenes of files, by what they end in."""
+
+from pathlib import Path
+
+from faying.errors import InputError, ReadError
+from faying.output.scene.build import of_mesh, of_result
+from faying.output.scene.model import Scene
+from faying.output.scene.step import of_step
+
+
+def of_file(path: str | Path, unit: str | None = None) -> Scene:
+    """Return the scene of a study (.toml), a result (.nc), a STEP file or a mesh.
+
+    Args:
+        path: The file; its ending says what it is.
+        unit: Of a mesh file, such as "mm", since no mesh file says its own.
+
+    Raises:
+        ReadError: The file is missing or cannot be read.
+        InputError: A mesh file without unit, a unit for another file, or a study that does not fit its geometry.
+    """
+    file = Path(path)
+    kind = file.suffix.lower()
+    if not file.is_file():
+        raise ReadError(f"no file {file}")
+    meshed = kind not in (".toml", ".nc", ".step", ".stp")
+    if unit is not None and not meshed:
+        raise InputError(f"--unit goes with a mesh file; {file.name} has its units inside")
+    if kind == ".toml":
+        from faying.study import Study
+        from faying.study.case import checked_mesh
+
+        study = Study.read(file)
+        return of_mesh(checked_mesh(study), study)
+    if kind == ".nc":
+        from faying.result import Result
+
+        return of_result(Result.load(file))
+    if not meshed:
+        return of_step(file)
+    if unit is None:
+        raise InputError(f'a mesh file does not say its unit; give that of {file.name}, for example --unit "mm"')
+    from faying.decks.meshfile import read_mesh
+
+    return of_mesh(read_mesh(file, unit=unit), title=file.name)

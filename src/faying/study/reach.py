@@ -1,0 +1,158 @@
+"""How far the laws of a study reach beside the pressures that its bolts will make."""
+
+from collections.abc import Iterator
+from math import pi
+from typing import Any, Literal
+
+import numpy as np
+
+from faying.contact.build import AUTO
+from faying.contact.half_space import HalfSpace
+from faying.errors import FayingError
+from faying.joint.bolt import BoltPlace
+from faying.joint.clamping import BESIDE
+from faying.joint.joint_law import JointLaw
+from faying.joint.vdi2230 import cone_pressure
+from faying.materials import Material
+from faying.study.case import surfaces_of
+from faying.study.keys.joint import JointChoice
+from faying.study.keys.surface import Surface
+from faying.study.sketch import Sketch
+from faying.study.strength import SolidPlace
+from faying.typing import Array
+from faying.units import show
+
+Line = tuple[Literal["ok", "note", "fault"], str, str, str]
+
+
+def law_findings(sketch: Sketch) -> Iterator[Line]:
+    """Level, code, text and key of what there is to say of the surface and the law of each joint."""
+    study = sketch.study
+    key = "surface" if study.surface is not None else "joint[1].surface"
+    try:
+        surfaces = surfaces_of(study)
+    except FayingError as fault:
+        yield "fault", "surface", str(fault), key
+        return
+    for surface in dict.fromkeys(surfaces):
+        for text in surface.warnings:
+            yield "note", "surface", text, key
+    for k, (joint, surface) in enumerate(zip(study.joints, surfaces, strict=True), 1):
+        at = f"joint[{k}].law" if joint.law is not None else "law"
+        parts = [sketch.mesh.face_part[face] for face in joint.faces]
+        rough, other = (sketch.materials[part] for part in parts)
+        try:
+            reach, name = law_reach(sketch, joint, surface, rough, other)
+        except FayingError as fault:
+            yield "fault", "law", f"joint {joint.name!r}: {fault}", at
+            continue
+        yield from _beside(sketch, k, joint, reach, name)
+
+
+def law_reach(
+    sketch: Sketch, joint: JointChoice, surface: Surface, rough: Material, other: Material
+) -> tuple[float | None, str]:
+    """Pressure [Pa] at which the law of a joint ends, and its name; None where only the solved contact tells.
+
+    A contact that is solved on the scan is not solved here: a pair that yields ends it at a share of the hardness.
+    Raises InputError where the law cannot be made, or has no stiffness.
+    """
+    choice = sketch.study.law_of(joint)
+    pair = choice.pair(rough, other)
+    scan = None if surface.rough is None else surface.rough.scan
+    solved = choice.kind.label == AUTO
+    if scan is not None and (solved or choice.kind.law is HalfSpace):
+        if not np.isfinite(pair.hardness):
+            return None, "half-space"
+        given: dict[str, Any] = {} if solved else dict(choice.given)
+        return HalfSpace(scan=scan, pair=pair, **given).asked[1], "half-space"
+    made = choice.make(surface, rough, other)
+    law = JointLaw(model=made.law, tangential=joint.tangential, nu=rough.nu)
+    law.check()
+    return made.law.greatest_pressure, made.law.name
+
+
+def _beside(sketch: Sketch, number: int, joint: JointChoice, reach: float | None, name: str) -> Iterator[Line]:
+    """The mean and the rim pressure of a joint at the greatest preload beside the reach of its law."""
+    key = f"joint[{number}].faces"
+    area = sum(contact.area for contact in sketch.contacts(joint.faces))
+    if not area:
+        return
+    bolts = _through(sketch, joint)
+    seated = sum(
+        place.bolt.preload[-1]
+        for place in sketch.fitted_bolts
+        if isinstance(place, SolidPlace) and place.bolt.preload and {*place.bolt.faces} & {*joint.faces}
+    )
+    force = seated + sum(place.bolt.preload[-1] for place, _ in bolts)
+    if not force:
+        text = f"joint {joint.name!r}: no bolt runs through it; only the parts' bending can press it together"
+        yield "note", "unclamped", text, key
+        return
+    mean = force / area
+    rims = [pressures for place, depth in bolts if (pressures := _rim(sketch, joint, place, depth)) is not None]
+    text = f"joint {joint.name!r}: {show(force, 'N')} on {1e6 * area:.4g} mm2 press {show(mean, 'Pa', digits=3)} on it"
+    highest = mean
+    if rims:
+        cone, highest = (max(column) for column in zip(*rims, strict=True))
+        text += f" on average, about {show(cone, 'Pa', digits=2)} under a bolt and {show(highest, 'Pa', digits=2)} "
+        text += "at most at its hole (cone of VDI 2230)"
+    if reach is None:
+        yield "ok", "pressure", f"{text}; how far {name} reaches is known once it is solved", key
+    elif mean > reach:
+        text += (
+            f"; {name} ends at {show(reach, 'Pa', digits=3)}, below the mean: lower the preload, widen the joint, or "
+        )
+        yield "note", "law-reach", f"{text}take a law that reaches further (`faying models`)", key
+    elif highest > reach:
+        text += f"; {name} ends at {show(reach, 'Pa', digits=3)}: the result gives bounds where the pressure is higher"
+        yield "note", "law-reach", text, key
+    else:
+        yield "ok", "pressure", f"{text}; {name} reaches {show(reach, 'Pa', digits=3)}", key
+
+
+def _through(sketch: Sketch, joint: JointChoice) -> list[tuple[BoltPlace | SolidPlace, float]]:
+    """The bolts that clamp a joint, with the depth [m] of the joint below the head: within 1.5 seats of their axes."""
+    corners = _corners(sketch, joint)
+    out: list[tuple[BoltPlace | SolidPlace, float]] = []
+    for place in sketch.fitted_bolts:
+        if not place.bolt.preload:
+            continue
+        arm = corners - place.point
+        depth = arm @ place.axis
+        beside = np.linalg.norm(arm - np.outer(depth, place.axis), axis=1)
+        level = float(np.median(depth))
+        ring = place.ring if isinstance(place, BoltPlace) else None
+        within = _inside(sketch, joint, place) or (ring is not None and beside.min() <= BESIDE * ring[1])
+        if 0 < level < place.length and within:
+            out.append((place, level))
+    return out
+
+
+def _inside(sketch: Sketch, joint: JointChoice, place: BoltPlace | SolidPlace) -> bool:
+    """Whether the axis of a bolt runs within the box around a face of a joint, seen along the axis."""
+    corners = _corners(sketch, joint)
+    helper = np.eye(3)[np.argmin(np.abs(place.axis))]
+    one = np.cross(place.axis, helper)
+    plane = np.stack([one / np.linalg.norm(one), np.cross(place.axis, one / np.linalg.norm(one))], axis=1)
+    flat = (corners - place.point) @ plane
+    return bool(np.all(flat.min(axis=0) <= 0) and np.all(flat.max(axis=0) >= 0))
+
+
+def _corners(sketch: Sketch, joint: JointChoice) -> Array:
+    """Corners (n, 3) [m] of the triangles of a joint's first face."""
+    return np.asarray(np.concatenate([sketch.mesh.points[rows.ravel()] for rows in sketch.mesh.face(joint.faces[0])]))
+
+
+def _rim(sketch: Sketch, joint: JointChoice, place: BoltPlace | SolidPlace, depth: float) -> tuple[float, float] | None:
+    """Mean pressure [Pa] in the cone of a bolt, and that at its hole; None where head and nut press no ring."""
+    if isinstance(place, SolidPlace) or place.ring is None:
+        return None
+    hole, seat = place.ring
+    near = min(depth, place.length - depth)
+    mine = sum(contact.area for contact in sketch.contacts(joint.faces)) / max(len(_through(sketch, joint)), 1)
+    outer = max(2 * float(np.sqrt(mine / pi + (hole / 2) ** 2)), seat)
+    try:
+        return cone_pressure(place.bolt.preload[-1], depth=near, length=place.length, seat=seat, hole=hole, outer=outer)
+    except FayingError:
+        return None
