@@ -66,11 +66,11 @@ def section(comparison: ModalComparison, pictures: dict[str, str], *, moving: bo
 def _curves(comparison: ModalComparison) -> list[dict[str, Any]]:
     """The FRFs that the figure shows, for curves in a page."""
     frf, model = comparison.frf, comparison.predicted
-    if frf is None or model is None:
+    if frf is None or model is None or comparison.frac is None:
         return []
     return [
         packed_curves(
-            f"{frf.outputs[o]} / {frf.inputs[i]}",
+            f"{frf.outputs[o]} / {frf.inputs[i]}, FRAC {comparison.frac[o, i]:.2f}",
             f"|{frf.quantity}| [{frf.unit}]",
             frf.frequency,
             {"test": frf.values[o, i], "model": model[o, i]},
