@@ -8,6 +8,7 @@ import numpy as np
 
 from faying.contact.build import AUTO
 from faying.contact.half_space import HalfSpace
+from faying.contact.law import ContactLaw
 from faying.errors import FayingError
 from faying.joint.bolt import BoltPlace
 from faying.joint.clamping import BESIDE
@@ -42,20 +43,20 @@ def law_findings(sketch: Sketch) -> Iterator[Line]:
         parts = [sketch.mesh.face_part[face] for face in joint.faces]
         rough, other = (sketch.materials[part] for part in parts)
         try:
-            reach, name = law_reach(sketch, joint, surface, rough, other)
+            reach, name, law = law_reach(sketch, joint, surface, rough, other)
         except FayingError as fault:
             yield "fault", "law", f"joint {joint.name!r}: {fault}", at
             continue
-        yield from _beside(sketch, k, joint, reach, name)
+        yield from _beside(sketch, k, joint, reach, name, law)
 
 
 def law_reach(
     sketch: Sketch, joint: JointChoice, surface: Surface, rough: Material, other: Material
-) -> tuple[float | None, str]:
-    """Pressure [Pa] at which the law of a joint ends, and its name; None where only the solved contact tells.
+) -> tuple[float | None, str, ContactLaw | None]:
+    """Pressure [Pa] at which the law of a joint ends, None where only the solved contact tells; its name; the law.
 
-    A contact that is solved on the scan is not solved here: a pair that yields ends it at a share of the hardness.
-    Raises InputError where the law cannot be made, or has no stiffness.
+    A contact that is solved on the scan is not solved here, so that there is no law yet; a pair that yields ends it at
+    a share of the hardness. Raises InputError where the law cannot be made, or has no stiffness.
     """
     choice = sketch.study.law_of(joint)
     pair = choice.pair(rough, other)
@@ -63,16 +64,18 @@ def law_reach(
     solved = choice.kind.label == AUTO
     if scan is not None and (solved or choice.kind.law is HalfSpace):
         if not np.isfinite(pair.hardness):
-            return None, "half-space"
+            return None, "half-space", None
         given: dict[str, Any] = {} if solved else dict(choice.given)
-        return HalfSpace(scan=scan, pair=pair, **given).asked[1], "half-space"
+        return HalfSpace(scan=scan, pair=pair, **given).asked[1], "half-space", None
     made = choice.make(surface, rough, other)
     law = JointLaw(model=made.law, tangential=joint.tangential, nu=rough.nu)
     law.check()
-    return made.law.greatest_pressure, made.law.name
+    return made.law.greatest_pressure, made.law.name, made.law
 
 
-def _beside(sketch: Sketch, number: int, joint: JointChoice, reach: float | None, name: str) -> Iterator[Line]:
+def _beside(
+    sketch: Sketch, number: int, joint: JointChoice, reach: float | None, name: str, law: ContactLaw | None
+) -> Iterator[Line]:
     """The mean and the rim pressure of a joint at the greatest preload beside the reach of its law."""
     key = f"joint[{number}].faces"
     area = sum(contact.area for contact in sketch.contacts(joint.faces))
@@ -90,6 +93,11 @@ def _beside(sketch: Sketch, number: int, joint: JointChoice, reach: float | None
         yield "note", "unclamped", text, key
         return
     mean = force / area
+    if law is not None and law.least_pressure <= mean <= law.greatest_pressure:
+        for reason, mask in law.at_pressure(mean).reasons.items():
+            if np.any(mask):
+                text = f"joint {joint.name!r}: {name} is outside its validity range at the mean pressure: {reason}"
+                yield "note", "validity", text, key
     rims = [pressures for place, depth in bolts if (pressures := _rim(sketch, joint, place, depth)) is not None]
     text = f"joint {joint.name!r}: {show(force, 'N')} on {1e6 * area:.4g} mm2 press {show(mean, 'Pa', digits=3)} on it"
     highest = mean
