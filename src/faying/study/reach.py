@@ -11,7 +11,7 @@ from faying.contact.half_space import HalfSpace
 from faying.contact.law import ContactLaw
 from faying.errors import FayingError
 from faying.joint.bolt import BoltPlace
-from faying.joint.clamping import BESIDE
+from faying.joint.clamping import BESIDE, seat_ring
 from faying.joint.joint_law import JointLaw
 from faying.joint.vdi2230 import cone_pressure
 from faying.materials import Material
@@ -103,8 +103,8 @@ def _beside(
     highest = mean
     if rims:
         cone, highest = (max(column) for column in zip(*rims, strict=True))
-        text += f" on average, about {show(cone, 'Pa', digits=2)} under a bolt and {show(highest, 'Pa', digits=2)} "
-        text += "at most at its hole (cone of VDI 2230)"
+        text += f" on average, about {show(cone, 'Pa', digits=3)} under a bolt and {show(highest, 'Pa', digits=3)} "
+        text += "at its hole (cone of VDI 2230)"
     if reach is None:
         yield "ok", "pressure", f"{text}; how far {name} reaches is known once it is solved", key
     elif mean > reach:
@@ -130,7 +130,7 @@ def _through(sketch: Sketch, joint: JointChoice) -> list[tuple[BoltPlace | Solid
         depth = arm @ place.axis
         beside = np.linalg.norm(arm - np.outer(depth, place.axis), axis=1)
         level = float(np.median(depth))
-        ring = place.ring if isinstance(place, BoltPlace) else None
+        ring = seat_ring(sketch.mesh, place) if isinstance(place, BoltPlace) else None
         within = _inside(sketch, joint, place) or (ring is not None and beside.min() <= BESIDE * ring[1])
         if 0 < level < place.length and within:
             out.append((place, level))
@@ -154,9 +154,10 @@ def _corners(sketch: Sketch, joint: JointChoice) -> Array:
 
 def _rim(sketch: Sketch, joint: JointChoice, place: BoltPlace | SolidPlace, depth: float) -> tuple[float, float] | None:
     """Mean pressure [Pa] in the cone of a bolt, and that at its hole; None where head and nut press no ring."""
-    if isinstance(place, SolidPlace) or place.ring is None:
+    ring = None if isinstance(place, SolidPlace) else seat_ring(sketch.mesh, place)
+    if ring is None:
         return None
-    hole, seat = place.ring
+    hole, seat = ring
     near = min(depth, place.length - depth)
     mine = sum(contact.area for contact in sketch.contacts(joint.faces)) / max(len(_through(sketch, joint)), 1)
     outer = max(2 * float(np.sqrt(mine / pi + (hole / 2) ** 2)), seat)
