@@ -135,6 +135,37 @@ REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#992002)SHAPE_REPRESENTATION_REL
     assert read_parts(path).names == ["upper", "lower"]
 
 
+def test_a_name_on_several_parts_names_no_face(tmp_path):
+    from netgen.occ import Box, Compound, Pnt
+
+    solids = [next(iter(Box(Pnt(0, 0, z), Pnt(20, 20, z + 10)).solids)) for z in (0, 10)]
+    for solid, part in zip(solids, ("lower", "upper"), strict=True):
+        solid.name = part
+        for face in solid.faces:
+            face.name = {0.0: "under", 10.0: "middle", 20.0: "over"}.get(round(face.center.z, 6), "")
+    Compound(solids).WriteStep(str(tmp_path / "two.step"))
+    mesh = mesh_step(tmp_path / "two.step", size=10e-3)
+    assert sorted(mesh.faces) == ["over", "under"]
+    (note,) = mesh.notes
+    assert note.code == "shared-names"
+    assert "'middle' (lower, upper)" in note.text
+
+
+def test_a_word_for_no_name_is_no_name(tmp_path):
+    """Some exporters write NONE where a body or a face has no name: two parts with it would have a face in common."""
+    from netgen.occ import Box, Compound, Pnt
+
+    solids = [next(iter(Box(Pnt(0, 0, z), Pnt(20, 20, z + 10)).solids)) for z in (0, 10)]
+    for solid in solids:
+        solid.name = "NONE"
+        for face in solid.faces:
+            face.name = "NONE"
+    Compound(solids).WriteStep(str(tmp_path / "two.step"))
+    mesh = mesh_step(tmp_path / "two.step", size=10e-3, faces={"top": Selector(part="part2", normal=(0.0, 0.0, 1.0))})
+    assert list(mesh.parts) == ["part1", "part2"]
+    assert list(mesh.faces) == ["top"]
+
+
 @pytest.mark.parametrize(
     ("written", "read"),
     [

@@ -2,6 +2,7 @@
 
 import json
 from math import pi
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -158,6 +159,17 @@ def test_the_pressure_of_a_cone_carries_the_force():
     assert np.trapezoid(rim * (R - s) / (R - r) * 2 * pi * s, s) == pytest.approx(F, rel=1e-8)
     with pytest.raises(faying.InputError, match="narrower than the cone"):
         cone_pressure(F, depth=0.0, length=length, seat=seat, hole=seat, outer=outer)
+
+
+# greatest pressure [MPa] of the runs, as docs/plates-and-bolts.md has them and tests/examples computes them
+@pytest.mark.parametrize(("name", "run"), [("sheets", 135), ("plates", 73), ("flanges", 64)])
+def test_the_pressure_at_a_hole_is_near_that_of_a_run(name, run):
+    """An estimate before the mesh, by a cone and a straight line: within a quarter, as stated."""
+    found = check(Path(__file__).parents[2] / "examples" / "plates-and-bolts" / f"{name}.toml")
+    assert not found.faults
+    said = next(one.text for one in found.findings if one.code == "pressure")
+    estimate = float(said.split(" at its hole")[0].split()[-2])
+    assert 0.95 * run < estimate < 1.25 * run
 
 
 @pytest.mark.parametrize(("size", "diameter"), [(5e-3, 9.0), (8e-3, 9.0), (6e-3, 5.5)])

@@ -13,6 +13,7 @@ from faying.notes import Note
 _SOLID = re.compile(r"=\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\s*\(")
 
 STEP = (".step", ".stp")  # suffixes of STEP files, in small letters
+NO_NAMES = ("", "NONE")  # what exporters write for want of a name
 # what OpenCASCADE links against; wheels do not bring them
 LIBRARIES = {
     "Debian, Ubuntu": "apt-get install libgl1 libglu1-mesa libxrender1 libxext6 libsm6",
@@ -94,15 +95,35 @@ def read_parts(path: Path) -> CadParts:
     """
     geometry = _geometry(path)
     solids = list(geometry.shape.solids)
+    for thing in (*solids, *(face for solid in solids for face in solid.faces)):
+        if (thing.name or "").strip().upper() in NO_NAMES:
+            thing.name = ""
     found = products(path)
     tree = geometry.GetAssemblyTree() if hasattr(geometry, "GetAssemblyTree") else None  # netgen 6.2.2608 and later
     given = [""] * len(solids) if tree is None else named_by_product(solids, leaves(tree, found))
     given = [solid.name or product for solid, product in zip(solids, given, strict=True)]
     names, notes = own_names(given, path.name)
     listed = [name for name in dict.fromkeys(found.names.values()) if name.strip()]
-    return CadParts(
-        shape=geometry.shape, solids=solids, names=names, notes=notes + _nameless(path, solids, given, listed)
-    )
+    notes += (*_nameless(path, solids, given, listed), *_drop_shared(path, solids, names))
+    return CadParts(shape=geometry.shape, solids=solids, names=names, notes=notes)
+
+
+def _drop_shared(path: Path, solids: Sequence[Any], names: Sequence[str]) -> tuple[Note, ...]:
+    """Take names away that faces of several parts have: they tell no face. A note says which."""
+    owners: dict[str, set[str]] = {}
+    for solid, part in zip(solids, names, strict=True):
+        for face in solid.faces:
+            owners.setdefault(face.name or "", set()).add(part)
+    shared = [name for name, parts in owners.items() if name and len(parts) > 1]
+    for solid in solids:
+        for face in solid.faces:
+            if face.name in shared:
+                face.name = ""
+    if not shared:
+        return ()
+    listed = ", ".join(f"{name!r} ({', '.join(sorted(owners[name]))})" for name in shared)
+    text = f"{path.name}: faces of several parts have one name, which names none of them then: {listed}"
+    return (Note(code="shared-names", text=f"{text}; name them apart, or choose them by what they are"),)
 
 
 def products(path: Path) -> Products:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 from typing import Any, Literal
 
@@ -315,23 +315,25 @@ def contacts(faces: Sequence[FaceFacts], corners: Array, face_of: Index) -> list
     than `NEAR` of the whole.
     """
     reach = NEAR * float(np.linalg.norm(np.ptp(corners.reshape(-1, 3), axis=0)))
+    order = np.argsort(face_of, kind="stable")
+    ends = np.searchsorted(face_of[order], np.arange(len(faces) + 1))
+    rows = [order[a:b] for a, b in pairwise(ends.tolist())]
+    low = np.array([corners[r].min(axis=(0, 1)) if len(r) else np.full(3, np.inf) for r in rows])
+    high = np.array([corners[r].max(axis=(0, 1)) if len(r) else np.full(3, -np.inf) for r in rows])
+    part = np.unique([face.part for face in faces], return_inverse=True)[1]
+    kind = np.array([("plane", "cylinder", "other").index(face.kind) for face in faces])
     out = []
-    boxes = {}
-    for k in range(len(faces)):
-        points = corners[face_of == k].reshape(-1, 3)
-        boxes[k] = (points.min(axis=0), points.max(axis=0)) if len(points) else (np.full(3, np.inf), np.full(3, np.inf))
-    for i, j in combinations(range(len(faces)), 2):
-        one, two = faces[i], faces[j]
-        if one.part == two.part or one.kind != two.kind or one.kind == "other":
-            continue
-        if np.any(boxes[i][0] > boxes[j][1] + reach) or np.any(boxes[j][0] > boxes[i][1] + reach):
-            continue
-        gap = _gap(one, two)
-        if gap is None or abs(gap) > reach:
-            continue
-        area = _facing_area(corners[face_of == i], corners[face_of == j], reach)
-        if area > 1e-6 * min(one.area, two.area):
-            out.append(Contact(first=(one.part, one.number), second=(two.part, two.number), area=area, gap=gap))
+    for i, one in enumerate(faces):
+        near = (np.arange(len(faces)) > i) & (part != part[i]) & (kind == kind[i]) & (kind < 2)
+        near &= np.all((low <= high[i] + reach) & (high >= low[i] - reach), axis=1)
+        for j in np.flatnonzero(near).tolist():
+            two = faces[j]
+            gap = _gap(one, two)
+            if gap is None or abs(gap) > reach:
+                continue
+            area = _facing_area(corners[rows[i]], corners[rows[j]], reach)
+            if area > 1e-6 * min(one.area, two.area):
+                out.append(Contact(first=(one.part, one.number), second=(two.part, two.number), area=area, gap=gap))
     return sorted(out, key=lambda contact: -contact.area)
 
 

@@ -271,8 +271,7 @@ def _collect(mesh: Any, parts: list[str], labels: Labels, *, source: str) -> Mes
     for number in range(1, len(names) + 1):
         for label, part in labels[int(names[number - 1])]:
             tri = tris["nodes"][face_of == number][:, :6].astype(np.int64)[:, _to_vtk("tri6")] - 1
-            if face_part.setdefault(label, part) != part:
-                raise InputError(f"face {label!r} is on two parts, {face_part[label]!r} and {part!r}; name them apart")
+            face_part[label] = part
             owner[label] = parts.index(part)
             triangles[label] = np.concatenate([triangles[label], tri]) if label in triangles else tri
     new_points, new_cells, faces = split_at_joints(points, cells, domain, triangles, owner)

@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.fe.faces import face_centre
+from faying.fe.faces import NamedFaces, face_centre
 from faying.fe.interface import Interface
 from faying.fe.modes import Modes
-from faying.joint.bolt import FittedBolt
+from faying.fe.sides import nodes_of
+from faying.joint.bolt import BoltPlace, FittedBolt
 from faying.joint.solid_bolt import FittedSolidBolt
 from faying.joint.springs import Springs
 from faying.joint.structure import Structure
@@ -151,7 +152,7 @@ def stack_of(structure: Structure, index: int) -> Stack | None:
         return None
     mesh = structure.mesh
     beams = [bolt for bolt in bolts if isinstance(bolt, FittedBolt)]
-    seat = _seat(structure, fitted)
+    seat = seat_ring(mesh, fitted)
     found: list[tuple[float, int, float]] = []
     for number, joint in enumerate(structure.joints):
         i = joint.interface
@@ -189,19 +190,19 @@ def stack_of(structure: Structure, index: int) -> Stack | None:
     )
 
 
-def _seat(structure: Structure, fitted: FittedBolt) -> tuple[float, float] | None:
+def seat_ring(mesh: NamedFaces, fitted: FittedBolt | BoltPlace) -> tuple[float, float] | None:
     """Inner and outer diameter [m] of the seat: as given, or those of the face under the head where it is a ring."""
     if fitted.ring is not None:
         return fitted.ring
-    mesh, face = structure.mesh, fitted.bolt.faces[0]
-    radius = _beside(fitted, mesh.points[mesh.face_nodes(face)])
+    face = fitted.bolt.faces[0]
+    radius = _beside(fitted, mesh.points[nodes_of(mesh.face(face))])
     inner, outer = float(radius.min()), float(radius.max())
     inner = inner if inner > 0.05 * outer else 0.0
     area = face_centre(mesh.points, mesh.face(face))[2]
     return (2 * inner, 2 * outer) if abs(np.pi * (outer**2 - inner**2) / area - 1) < ROUND else None
 
 
-def _beside(fitted: FittedBolt, positions: Array) -> Array:
+def _beside(fitted: FittedBolt | BoltPlace, positions: Array) -> Array:
     """Distance [m] of places (q, 3) from the axis of a bolt."""
     arm = positions - fitted.point
     return np.asarray(np.linalg.norm(arm - (arm @ fitted.axis)[:, None] * fitted.axis, axis=1))

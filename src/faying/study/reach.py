@@ -8,9 +8,10 @@ import numpy as np
 
 from faying.contact.build import AUTO
 from faying.contact.half_space import HalfSpace
+from faying.contact.law import ContactLaw
 from faying.errors import FayingError
 from faying.joint.bolt import BoltPlace
-from faying.joint.clamping import BESIDE
+from faying.joint.clamping import BESIDE, seat_ring
 from faying.joint.joint_law import JointLaw
 from faying.joint.vdi2230 import cone_pressure
 from faying.materials import Material
@@ -42,20 +43,20 @@ def law_findings(sketch: Sketch) -> Iterator[Line]:
         parts = [sketch.mesh.face_part[face] for face in joint.faces]
         rough, other = (sketch.materials[part] for part in parts)
         try:
-            reach, name = law_reach(sketch, joint, surface, rough, other)
+            reach, name, law = law_reach(sketch, joint, surface, rough, other)
         except FayingError as fault:
             yield "fault", "law", f"joint {joint.name!r}: {fault}", at
             continue
-        yield from _beside(sketch, k, joint, reach, name)
+        yield from _beside(sketch, k, joint, reach, name, law)
 
 
 def law_reach(
     sketch: Sketch, joint: JointChoice, surface: Surface, rough: Material, other: Material
-) -> tuple[float | None, str]:
-    """Pressure [Pa] at which the law of a joint ends, and its name; None where only the solved contact tells.
+) -> tuple[float | None, str, ContactLaw | None]:
+    """Pressure [Pa] at which the law of a joint ends, None where only the solved contact tells; its name; the law.
 
-    A contact that is solved on the scan is not solved here: a pair that yields ends it at a share of the hardness.
-    Raises InputError where the law cannot be made, or has no stiffness.
+    A contact that is solved on the scan is not solved here, so that there is no law yet; a pair that yields ends it at
+    a share of the hardness. Raises InputError where the law cannot be made, or has no stiffness.
     """
     choice = sketch.study.law_of(joint)
     pair = choice.pair(rough, other)
@@ -63,16 +64,18 @@ def law_reach(
     solved = choice.kind.label == AUTO
     if scan is not None and (solved or choice.kind.law is HalfSpace):
         if not np.isfinite(pair.hardness):
-            return None, "half-space"
+            return None, "half-space", None
         given: dict[str, Any] = {} if solved else dict(choice.given)
-        return HalfSpace(scan=scan, pair=pair, **given).asked[1], "half-space"
+        return HalfSpace(scan=scan, pair=pair, **given).asked[1], "half-space", None
     made = choice.make(surface, rough, other)
     law = JointLaw(model=made.law, tangential=joint.tangential, nu=rough.nu)
     law.check()
-    return made.law.greatest_pressure, made.law.name
+    return made.law.greatest_pressure, made.law.name, made.law
 
 
-def _beside(sketch: Sketch, number: int, joint: JointChoice, reach: float | None, name: str) -> Iterator[Line]:
+def _beside(
+    sketch: Sketch, number: int, joint: JointChoice, reach: float | None, name: str, law: ContactLaw | None
+) -> Iterator[Line]:
     """The mean and the rim pressure of a joint at the greatest preload beside the reach of its law."""
     key = f"joint[{number}].faces"
     area = sum(contact.area for contact in sketch.contacts(joint.faces))
@@ -90,13 +93,18 @@ def _beside(sketch: Sketch, number: int, joint: JointChoice, reach: float | None
         yield "note", "unclamped", text, key
         return
     mean = force / area
+    if law is not None and law.least_pressure <= mean <= law.greatest_pressure:
+        for reason, mask in law.at_pressure(mean).reasons.items():
+            if np.any(mask):
+                text = f"joint {joint.name!r}: {name} is outside its validity range at the mean pressure: {reason}"
+                yield "note", "validity", text, key
     rims = [pressures for place, depth in bolts if (pressures := _rim(sketch, joint, place, depth)) is not None]
     text = f"joint {joint.name!r}: {show(force, 'N')} on {1e6 * area:.4g} mm2 press {show(mean, 'Pa', digits=3)} on it"
     highest = mean
     if rims:
         cone, highest = (max(column) for column in zip(*rims, strict=True))
-        text += f" on average, about {show(cone, 'Pa', digits=2)} under a bolt and {show(highest, 'Pa', digits=2)} "
-        text += "at most at its hole (cone of VDI 2230)"
+        text += f" on average, about {show(cone, 'Pa', digits=3)} under a bolt and {show(highest, 'Pa', digits=3)} "
+        text += "at its hole (cone of VDI 2230)"
     if reach is None:
         yield "ok", "pressure", f"{text}; how far {name} reaches is known once it is solved", key
     elif mean > reach:
@@ -122,7 +130,7 @@ def _through(sketch: Sketch, joint: JointChoice) -> list[tuple[BoltPlace | Solid
         depth = arm @ place.axis
         beside = np.linalg.norm(arm - np.outer(depth, place.axis), axis=1)
         level = float(np.median(depth))
-        ring = place.ring if isinstance(place, BoltPlace) else None
+        ring = seat_ring(sketch.mesh, place) if isinstance(place, BoltPlace) else None
         within = _inside(sketch, joint, place) or (ring is not None and beside.min() <= BESIDE * ring[1])
         if 0 < level < place.length and within:
             out.append((place, level))
@@ -146,9 +154,10 @@ def _corners(sketch: Sketch, joint: JointChoice) -> Array:
 
 def _rim(sketch: Sketch, joint: JointChoice, place: BoltPlace | SolidPlace, depth: float) -> tuple[float, float] | None:
     """Mean pressure [Pa] in the cone of a bolt, and that at its hole; None where head and nut press no ring."""
-    if isinstance(place, SolidPlace) or place.ring is None:
+    ring = None if isinstance(place, SolidPlace) else seat_ring(sketch.mesh, place)
+    if ring is None:
         return None
-    hole, seat = place.ring
+    hole, seat = ring
     near = min(depth, place.length - depth)
     mine = sum(contact.area for contact in sketch.contacts(joint.faces)) / max(len(_through(sketch, joint)), 1)
     outer = max(2 * float(np.sqrt(mine / pi + (hole / 2) ** 2)), seat)
