@@ -120,7 +120,9 @@ def test_majumdar_bhushan_G_is_the_other_convention_s():
 
 
 def test_implied_roughness_and_the_paper_s_inconsistency():
-    assert consistency(2.39, 1.53e-10, Rq=1.0e-6, length=4e-3)[0].startswith("D and G imply Rq 3.28e-06 m")
+    assert consistency(2.39, 1.53e-10, Rq=1.0e-6, length=4e-3)[0].startswith(
+        "D and G imply Rq 3.28 um over 4 mm, the surface's own is 1 um"
+    )
     assert not consistency(2.39, 1.53e-10, Rq=3.3e-6, length=4e-3)
     fit = fit_fractal(spectral((256, 256), spacing=1e-6, D=2.6, G=G, seed=1))
     assert fit.implied_Rq == pytest.approx(implied_Rq(fit.D, fit.G, 256e-6))

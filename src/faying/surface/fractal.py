@@ -5,6 +5,7 @@ from typing import Any, final
 
 import numpy as np
 
+from faying import units
 from faying.errors import FayingError, InputError
 from faying.surface.convention import NAMES, check_dimension, cut_factor, implied_Rq, prefactor
 from faying.surface.estimators.base import Estimate, Scatter
@@ -219,6 +220,10 @@ def _in_words(D: float | None, convention: str, c: float, areal: bool) -> str:
     return text + f" (times {factor:.3f} for the isotropic surface it is cut from, cut factor {cut_factor(D):.3f})"
 
 
+def _m(metres: float) -> str:
+    return units.show(metres, "m", digits=3)
+
+
 def consistency(D: float, G: float, *, Rq: float, length: float, c: float = 1.0) -> list[str]:
     """Say in words where D and G [m] imply another rms height over `length` [m] than the measured `Rq` [m].
 
@@ -228,7 +233,7 @@ def consistency(D: float, G: float, *, Rq: float, length: float, c: float = 1.0)
     if 0.5 < implied / Rq < 2:
         return []
     return [
-        f"D and G imply Rq {implied:.3g} m over {length:.3g} m, the surface's own is {Rq:.3g} m: they do not belong "
+        f"D and G imply Rq {_m(implied)} over {_m(length)}, the surface's own is {_m(Rq)}: they do not belong "
         "together, or the law does not hold up to that length"
     ]
 

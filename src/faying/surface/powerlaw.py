@@ -16,6 +16,7 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.surface.spectrum import Spectrum
 from faying.typing import Array, Mask
+from faying.units import show
 
 LINES = 8.0  # misfit and
 GAPS = 0.8  # rms of ln(density) about a parabola above which a spectrum is taken as one of separate lines
@@ -324,7 +325,7 @@ def _roll_off_in_words(spectrum: Spectrum, plateau: PowerLaw, law: PowerLaw) -> 
     level = float(np.mean(np.log(plateau.expected / plateau.used**turn)))
     corner = law.pivot * float(np.exp((law.log_level - turn * np.log(law.pivot) - level) / (law.slope + turn)))
     return (
-        f"the spectrum is a plateau beyond a roll-off at about {1 / corner:.3g} m; D and G are those of the waves "
+        f"the spectrum is a plateau beyond a roll-off at about {show(1 / corner, 'm', digits=3)}; D and G are those of the waves "
         "below",
     )
 
@@ -332,9 +333,13 @@ def _roll_off_in_words(spectrum: Spectrum, plateau: PowerLaw, law: PowerLaw) -> 
 def _cut_in_words(low: float, high: float, bottom: float, top: float) -> tuple[str, ...]:
     words = []
     if top < high * 0.999:
-        words.append(f"waves under {1 / top:.3g} m lie off the power law (blur, noise or roll-off) and were left out")
+        words.append(
+            f"waves under {show(1 / top, 'm', digits=3)} lie off the power law (blur, noise or roll-off) and were left out"
+        )
     if bottom > low * 1.001:
-        words.append(f"waves over {1 / bottom:.3g} m lie off the power law (form, lay or roll-off) and were left out")
+        words.append(
+            f"waves over {show(1 / bottom, 'm', digits=3)} lie off the power law (form, lay or roll-off) and were left out"
+        )
     return tuple(words)
 
 

@@ -186,7 +186,7 @@ async function showScan(again = false) {
   try {
     const { facts, picture } = await ask("GET", "scan", { name, ...units });
     said("scan-fault", null);
-    $("scan-facts").replaceChildren(scanTable(facts), fitTable(facts), ...warnings(facts));
+    $("scan-facts").replaceChildren(...scanTable(facts), fitTable(facts), ...warnings(facts));
     $("scan-picture").firstElementChild.src = `data:image/png;base64,${picture}`;
     $("scan-picture").hidden = false;
   } catch (fault) {
@@ -199,11 +199,12 @@ async function showScan(again = false) {
 function scanTable(facts) {
   const r = facts.roughness;
   const shape = facts.points.length === 2 ? `${facts.points[1]} x ${facts.points[0]}` : `${facts.points[0]}`;
-  return table([
-    ["points", "size", "spacing", "missing", "spikes", "rms height", "mean", "peak to valley", "rms slope"],
+  const grid = [["points", "size", "spacing", "missing", "spikes"],
     [shape, facts.size.map(length).join(" x "), facts.spacing.map(length).join(" x "), String(facts.missing),
-      String(facts.spikes), length(r.Rq), length(r.Ra), length(r.Rz), plain(r.Rdq)],
-  ]);
+      String(facts.spikes)]];
+  const heights = [["rms height", "mean deviation", "peak to valley", "rms slope"],
+    [length(r.Rq), length(r.Ra), length(r.Rz), plain(r.Rdq)]];
+  return [table(grid), table(heights)];
 }
 
 function fitTable(facts) {
