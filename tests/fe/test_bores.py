@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from faying.fe.bores import bores, room_around, seat, stacks
+from faying.fe.bores import Bore, bores, room_around, seat, stacks
 from faying.fe.face_facts import read_facts
 from tests.fe.test_face_facts import box, written
 from tests.helpers.laps import lapped
@@ -65,3 +65,23 @@ def test_a_fillet_is_no_hole_and_halves_of_a_hole_are_one(tmp_path):
     # the same hole in two half plates glued along its axis: its halves are two faces of one solid each
     halves = Glue([box((0, 0, 0), (30, 40, 10)), box((30, 0, 0), (60, 40, 10))])
     assert len(list(halves.solids)) == 2
+
+
+def test_bores_of_one_radius_are_told_apart():
+    """A pattern of holes that agree to the last bit: a row for each axis."""
+    made = [
+        Bore(
+            part=part,
+            radius=4.5e-3,
+            axis=np.array([0.0, 0.0, 1.0]),
+            point=np.array([x, 0.0, low]),
+            low=low,
+            high=low + 0.01,
+            faces=(k,),
+        )
+        for part, low in (("a", 0.0), ("b", 0.01))
+        for k, x in enumerate((0.0, 0.02, 0.04), 7)
+    ]
+    rows = stacks(made, reach=1e-3)
+    assert [row.parts for row in rows] == [("a", "b")] * 3
+    assert [row.middle[0] for row in rows] == [0.0, 0.02, 0.04]

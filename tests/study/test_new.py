@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,10 +10,11 @@ from click.testing import CliRunner
 
 import faying
 from faying.cli.main import cli
+from faying.fe.face_facts import PartFacts
 from faying.joint.threads import CLEARANCE_HOLES, Fastener, Thread, size_for_hole
 from faying.study import Study, new
 from faying.study.case import checked_mesh
-from faying.study.proposal import rounded
+from faying.study.proposal import mesh_size, rounded
 from tests.fe.test_face_facts import box, written
 from tests.helpers.laps import lapped
 
@@ -165,6 +167,15 @@ def test_a_name_cannot_break_out_of_a_comment(tmp_path):
     path = lapped(tmp_path / "lap.step", names=('a"\\b', "upper ü"))
     text, _ = new.study_text(new.find(path), path, tmp_path / "s.toml", new.Answers())
     assert set(tomllib.loads(text)["part"]) == {'a"\\b', "upper ü"}
+
+
+def test_the_mesh_is_never_coarser_than_the_thinnest_part(monkeypatch):
+    """Where holes alone make more unknowns than are wanted, no size helps; one element across is the end."""
+    monkeypatch.setattr("faying.study.proposal.unknowns_of", lambda facts, size: 10**9)
+    part = PartFacts(name="plate", volume=1e-4, area=0.0222, low=(0.0, 0.0, 0.0), high=(0.1, 0.1, 0.01))
+    size, why = mesh_size(SimpleNamespace(parts=(part,)), set())
+    assert size == pytest.approx(0.01)
+    assert "coarser than two elements" in why
 
 
 def test_rounded():

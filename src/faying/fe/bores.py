@@ -13,9 +13,9 @@ BESIDE = 0.2  # of the radius: axes that lie farther apart are two
 LEVEL = 1e-6  # m: within which a plane begins where a bore ends
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Bore:
-    """A round hole in a part.
+    """A round hole in a part; two are the same only where they are one object.
 
     Args:
         part: the part.
@@ -39,7 +39,7 @@ class Bore:
         return np.asarray(self.point + (depth - self.point @ self.axis) * self.axis)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Stack:
     """Bores of different parts on one axis, one behind the other, from low to high; in each part the narrowest."""
 

@@ -309,13 +309,13 @@ def mesh_size(facts: GeometryFacts, bolts: set[str | None]) -> tuple[float, str]
     thin = min(plates, key=_thickness)
     size = rounded(_thickness(thin) / ACROSS, 2)
     why = f"{ACROSS} elements across {thin.name!r}, which is about {show(_thickness(thin), 'm', digits=2)} thick"
-    free = available()
-    for _ in range(200):
+    free, widest = available(), _thickness(thin)
+    while size < widest:
         unknowns = unknowns_of(facts, size)
         if unknowns <= MOST and (free is None or guessed(unknowns) <= free / 2):
             break
-        size = rounded(1.1 * size, 2)
-        why = "as fine as memory and a few minutes allow; look at a finer one before you trust thin parts"
+        size = min(rounded(1.1 * size, 2), widest)
+        why = "coarser than two elements across the thinnest part, for memory and time; try a finer one, too"
     return size, f"mesh of {show(size, 'm')}: {why}"
 
 
