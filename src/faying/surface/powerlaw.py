@@ -325,8 +325,8 @@ def _roll_off_in_words(spectrum: Spectrum, plateau: PowerLaw, law: PowerLaw) -> 
     level = float(np.mean(np.log(plateau.expected / plateau.used**turn)))
     corner = law.pivot * float(np.exp((law.log_level - turn * np.log(law.pivot) - level) / (law.slope + turn)))
     return (
-        f"the spectrum is a plateau beyond a roll-off at about {show(1 / corner, 'm', digits=3)}; D and G are those of the waves "
-        "below",
+        f"the spectrum is a plateau beyond a roll-off at about {show(1 / corner, 'm', digits=3)}; D and G are those of the "
+        "waves below",
     )
 
 
@@ -334,11 +334,13 @@ def _cut_in_words(low: float, high: float, bottom: float, top: float) -> tuple[s
     words = []
     if top < high * 0.999:
         words.append(
-            f"waves under {show(1 / top, 'm', digits=3)} lie off the power law (blur, noise or roll-off) and were left out"
+            f"waves under {show(1 / top, 'm', digits=3)} lie off the power law (blur, noise or roll-off) "
+            "and were left out"
         )
     if bottom > low * 1.001:
         words.append(
-            f"waves over {show(1 / bottom, 'm', digits=3)} lie off the power law (form, lay or roll-off) and were left out"
+            f"waves over {show(1 / bottom, 'm', digits=3)} lie off the power law (form, lay or roll-off) "
+            "and were left out"
         )
     return tuple(words)
 
