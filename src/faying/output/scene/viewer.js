@@ -41,6 +41,7 @@ const VIRIDIS = [
 ];
 const PARTS = [0x8fa9c4, 0xc4a98f, 0x93b8a4, 0xb3a0c2, 0xc0b283, 0x86b3bf, 0xc29aa5, 0xa3a8ae];
 const CARRIED = ["pressure", "k_n", "k_t"]; // fields that vanish where a joint is open
+const OVERLAYS = 124; // pixels of the view that titles and scales take of its height
 const SELECTED = 0xe07b1f;
 const SMOOTHED = 1e5; // triangles up to which edges are smoothed
 const THEMES = {
@@ -65,7 +66,9 @@ const STYLE = `
 .fv-scale{left:6.4rem;bottom:.8rem;font-size:.82em;color:var(--soft);text-align:center;
   font-variant-numeric:tabular-nums}
 .fv-scale i{display:block;height:5px;border:1px solid var(--soft);border-top:0;margin-top:1px}
-.fv-bar{right:.8rem;bottom:.8rem;font-size:.82em;color:var(--soft);font-variant-numeric:tabular-nums;width:13rem;
+.fv-bar,.fv-head strong,.fv-head div{background:color-mix(in srgb,var(--back) 72%,transparent);border-radius:4px}
+.fv-head strong,.fv-head div{width:fit-content;padding:0 .25rem;margin-left:-.25rem;display:block}
+.fv-bar{right:.5rem;bottom:.5rem;padding:.3rem;font-size:.82em;color:var(--soft);font-variant-numeric:tabular-nums;width:13rem;
   max-width:45%}
 .fv-bar i{display:block;height:.7rem;border-radius:2px;margin:.15rem 0}
 .fv-bar span{display:flex;justify-content:space-between}
@@ -482,7 +485,9 @@ class Eye {
       w = Math.max(w, Math.abs(corner.dot(right)));
       h = Math.max(h, Math.abs(corner.dot(up)));
     }
-    this.half = 1.28 * Math.max(h, w / this.aspect, 1e-3 * this.size);
+    // room for what stands above and below, and for the motion
+    const free = Math.max(0.45, 1 - OVERLAYS / (this.height || 1000));
+    this.half = Math.max((1.15 * h) / free, (1.13 * w) / this.aspect, 1e-3 * this.size);
   }
 
   turn(dx, dy) {
@@ -1073,6 +1078,7 @@ class View {
     this.renderer.setSize(w, h, false);
     const first = !this.sized, before = this.eye.aspect;
     this.eye.aspect = w / h;
+    this.eye.height = h;
     if (first || Math.abs(before / this.eye.aspect - 1) > 0.2) this.eye.fit();
     this.sized = true;
     this.draw();
