@@ -3,7 +3,6 @@
 import json
 import re
 import shutil
-import time
 
 import numpy as np
 import pytest
@@ -13,7 +12,7 @@ from faying.app.server import Server
 from faying.study import template
 from faying.surface.synthesize import spectral
 from faying.surface.write import write_scan
-from tests.helpers.browser import opened
+from tests.helpers.browser import opened, until
 from tests.helpers.laps import lapped
 
 WAIT = 120_000  # ms: a command is a process of its own, and the machine may be slow
@@ -43,14 +42,6 @@ def served(tmp_path):
 def page_at(browser, server, **how):
     origin = server.address.rsplit("/", 2)[0]
     return opened(browser, server.address, allowed=(origin, "data:", "blob:"), **how)
-
-
-def until(page, condition):
-    """Wait until JavaScript is true. Asked again and again, since the page forbids itself to evaluate text."""
-    end = time.monotonic() + WAIT / 1000
-    while not page.evaluate(condition):
-        assert time.monotonic() < end, condition
-        page.wait_for_timeout(50)
 
 
 def set_text(page, text):

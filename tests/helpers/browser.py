@@ -43,7 +43,7 @@ def opened(browser, address, *, width=1280, height=800, allowed=("file:", "data:
         made.close()
 
 
-def until(page, expression, *, seconds=30.0):
+def until(page, expression, *, seconds=120.0):
     """Wait until an expression is true; unlike wait_for_function, also under a policy that forbids evaluation."""
     end = time.monotonic() + seconds
     while not page.evaluate(f"Boolean({expression})"):

@@ -14,6 +14,7 @@ from faying.surface.estimators.windows import share_left, window_transfer
 from faying.surface.fractal import consistency, fit_all
 from faying.surface.selftest import self_test, stretch_of
 from faying.surface.synthesize import spectral, weierstrass_mandelbrot, with_missing, with_noise
+from faying.units import parse
 
 G = 1e-9
 
@@ -246,14 +247,14 @@ def test_a_plateau_of_long_waves_is_not_taken_for_the_power_law(D):
     assert fit.D_interval[0] < D < fit.D_interval[1]
     assert fit.band[1] < 65e-6
     told = next(w for w in fit.warnings if "roll-off at about" in w)
-    assert float(told.split("about ")[1].split()[0]) == pytest.approx(60e-6, rel=0.05)
+    assert parse(told.split("about ")[1].split(";")[0], "m") == pytest.approx(60e-6, rel=0.05)
 
 
 def test_the_roll_off_of_a_profile_is_found():
     fit = fit_fractal(spectral(2**15, spacing=1e-6, D=2.4, Rq=1e-6, longest=100e-6, seed=3))
     assert fit.D_interval[0] < 2.4 < fit.D_interval[1]
     told = next(w for w in fit.warnings if "roll-off at about" in w)
-    assert float(told.split("about ")[1].split()[0]) == pytest.approx(100e-6, rel=0.1)
+    assert parse(told.split("about ")[1].split(";")[0], "m") == pytest.approx(100e-6, rel=0.1)
 
 
 def test_a_plateau_without_a_power_law_beyond_it_is_called_one():

@@ -325,8 +325,8 @@ def _roll_off_in_words(spectrum: Spectrum, plateau: PowerLaw, law: PowerLaw) -> 
     level = float(np.mean(np.log(plateau.expected / plateau.used**turn)))
     corner = law.pivot * float(np.exp((law.log_level - turn * np.log(law.pivot) - level) / (law.slope + turn)))
     return (
-        f"the spectrum is a plateau beyond a roll-off at about {show(1 / corner, 'm', digits=3)}; D and G are those of the "
-        "waves below",
+        f"the spectrum is a plateau beyond a roll-off at about {show(1 / corner, 'm', digits=3)}; D and G are those "
+        "of the waves below",
     )
 
 
