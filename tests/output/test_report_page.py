@@ -10,6 +10,7 @@ import pytest
 from faying.output import report
 from faying.output.figures import response as curves
 from faying.result import Provenance, Receptance
+from tests.helpers.backbones import made
 from tests.helpers.browser import opened, until
 from tests.helpers.scenes import two_boxes
 from tests.output.test_scene import array
@@ -101,6 +102,35 @@ def test_curves_zoom_by_mouse_and_keyboard_and_both_together(page):
     assert page.evaluate(ends) == before
     page.keyboard.press("+")
     assert page.evaluate(ends)[0] != before[0]
+
+
+def test_backbones_zoom_over_amplitude_on_a_logarithmic_axis(browser, result, tmp_path):
+    curves = (
+        made(frequency=lambda a: 100 - a, damping=lambda a: 1e-3 * a),
+        replace(made(frequency=90.0, damping=0.01), friction=(0.4,)),
+    )
+    (tmp_path / "report.html").write_text(report.html(replace(result, backbones=curves)), encoding="utf-8")
+    with opened(browser, (tmp_path / "report.html").as_uri(), reduced_motion="reduce") as page:
+        until(page, "window.ready")
+        place = page.locator("[data-curves=backbones]")
+        charts = place.locator(".fc > svg")
+        assert charts.count() == 2
+        seen = [float(text) for text in charts.first.locator("text").all_text_contents()[:7]]
+        assert seen == [0.1, 0.2, 0.5, 1, 2, 5, 10]  # 0.1 to 20 m/s2
+        key = place.locator(".fc-key").first.inner_text()
+        assert "friction 0.2" in key
+        assert "friction 0.4" in key
+        # the middle of the axis is the geometric mean, and the curve is read there
+        box = charts.first.bounding_box()
+        page.mouse.move(box["x"] + box["width"] * (62 + (box["width"] - 74) / 2) / box["width"], box["y"] + 60)
+        read = re.search(r"friction 0.2: ([\d.]+) at ([\d.]+)", place.locator(".fc-key").first.inner_text())
+        assert float(read[2]) == pytest.approx(np.sqrt(0.1 * 20), rel=0.03)
+        assert float(read[1]) == pytest.approx(100 - float(read[2]), rel=1e-3)
+        charts.first.focus()
+        page.keyboard.press("+")
+        assert charts.nth(1).locator("text").first.text_content() != "0.1"  # both charts zoom
+        assert page.locator("figure.of-backbones").is_hidden()
+        assert page.locator("h2", has_text="Mode 1 over amplitude").count() == 2
 
 
 def test_the_packed_curves_are_the_accelerance(result):

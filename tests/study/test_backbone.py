@@ -10,6 +10,8 @@ import faying
 from faying.errors import InputError
 from faying.joint.epmc import Epmc
 from faying.joint.structure import Joint
+from faying.output.sections import sections
+from faying.result import Result
 from faying.study import Study, backbone_store
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.study import Study as StudyClass
@@ -205,6 +207,34 @@ harmonics = 1
 rest_damping = "law"
 slip = "coulomb"
 """
+
+
+def test_a_run_follows_the_mode_that_the_study_names(tmp_path):
+    text = (EXAMPLE / "study.toml").read_text().replace("model.inp", str(EXAMPLE / "model.inp"))
+    keys = '[backbone]\namplitude = ["300 m/s^2", "900 m/s^2"]\nharmonics = 1\nfriction = [0.1, 0.3]\n'
+    (tmp_path / "study.toml").write_text(text + keys)
+    said = []
+    found = faying.run(tmp_path / "study.toml", report=lambda stage, *_: said.append(stage))
+    assert said[-1] == "mode 1 over amplitude"
+    alone = faying.backbone(tmp_path / "study.toml", friction=[0.1, 0.3])
+    for curve, other in zip(found.backbones, alone, strict=True):
+        assert curve.preload == found.loads[-1]
+        assert curve.linear_frequency == pytest.approx(found.frequencies[-1, 0], rel=1e-3)
+        assert np.allclose(curve.frequency, other.frequency, rtol=1e-9)
+        assert np.allclose(curve.damping, other.damping, rtol=1e-6)
+    assert Result.load(found.to_netcdf(tmp_path / "result.nc")) == found
+    assert len(found.to_dict()["backbones"]) == 2
+    shown = [section.name for section in sections(found)]
+    assert shown.count("backbone") == shown.count("backbone bounds") == 2
+
+
+def test_a_run_without_friction_says_so_before_the_work(tmp_path):
+    text = (EXAMPLE / "study.toml").read_text().replace("model.inp", str(EXAMPLE / "model.inp"))
+    (tmp_path / "study.toml").write_text(text + "[backbone]\nmode = 2\n")
+    said = []
+    with pytest.raises(InputError, match="has no friction, without which nothing slips"):
+        faying.run(tmp_path / "study.toml", report=lambda stage, *_: said.append(stage))
+    assert said == []
 
 
 def test_the_study_says_which_curve(tmp_path):

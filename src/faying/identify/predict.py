@@ -15,7 +15,7 @@ from faying.notes import Note
 from faying.progress import Report
 from faying.study.parallel import Rows
 from faying.study.part_folder import fingerprint
-from faying.study.run import provenance
+from faying.study.provenance import provenance
 from faying.study.study import Study
 
 FEWEST, MOST = 8, 1_000_000  # samples

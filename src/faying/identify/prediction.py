@@ -14,7 +14,8 @@ from faying.identify.shares import Shares, shares
 from faying.identify.surrogate import Surrogate
 from faying.notes import Note
 from faying.result.fields import Recorded, declared, listed, read_whole, variable, write_whole
-from faying.result.result import Provenance, preload_slope
+from faying.result.provenance import Provenance
+from faying.result.result import preload_slope
 from faying.typing import Array
 
 LEVELS = (0.05, 0.5, 0.95)

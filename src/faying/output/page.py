@@ -29,7 +29,8 @@ summary{cursor:pointer;font-weight:600;margin:.6rem 0}code{font-size:.92em;overf
 #stage{height:min(45rem,94vh);min-height:30rem;
 border:1px solid var(--line);border-radius:6px;overflow:hidden;display:none}
 .live #stage{display:block}
-.live .static,.has-response .of-response,.has-test-frf .of-test-frf{display:none}
+.live .static,.has-response .of-response,.has-backbones .of-backbones,
+.has-test-frf .of-test-frf{display:none}
 button.link{font:inherit;color:var(--accent);background:none;border:0;padding:0;cursor:pointer;text-align:inherit;
 text-decoration:underline;text-decoration-color:transparent;font-variant-numeric:inherit}
 button.link:is(:hover,:focus-visible){text-decoration-color:currentcolor}
@@ -38,7 +39,8 @@ tr.now td{background:color-mix(in srgb,var(--accent) 12%,var(--back))}
 @media (prefers-color-scheme:dark){:root{--ink:#e3e8ee;--soft:#a3afbb;--line:#38424d;--head:#1a2027;--back:#14181d;
 --flag:#33291a;--accent:#63b0f0;color-scheme:dark}figure svg,figure img{border-radius:6px}}
 @media print{body{max-width:none;margin:0}#stage,.live #stage,[data-curves],#why{display:none}
-.live .static,.has-response .of-response,.has-test-frf .of-test-frf{display:block}figure{break-inside:avoid}
+.live .static,.has-response .of-response,.has-backbones .of-backbones,
+.has-test-frf .of-test-frf{display:block}figure{break-inside:avoid}
 tr.now td{background:none}
 button.link{color:inherit}}
 """
@@ -97,7 +99,7 @@ def facts(known: dict[str, Any]) -> str:
     return f'<table class="words">{rows}</table>'
 
 
-def curves(name: str, groups: list[dict[str, Any]]) -> str:
+def curves(name: str, groups: Any) -> str:
     """A place for curves that zoom, with their data; pictures of the class of-NAME stand in for them."""
     return f'<div data-curves="{name}"></div>{pages.data(json.dumps(groups), name)}'
 

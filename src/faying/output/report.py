@@ -9,7 +9,7 @@ from typing import Any
 from faying import __version__
 from faying.files import write_text
 from faying.output import page, report_measured
-from faying.output.figures import response, structure
+from faying.output.figures import backbone, response, structure
 from faying.output.figures.save import new_figure
 from faying.output.scene import of_result, pages, to_text
 from faying.output.sections import sections
@@ -30,8 +30,9 @@ def html(result: Result, pictures: dict[str, str] | None = None) -> str:
     body += _view(result, pictures)
     body += _tables(result, pictures)
     body += _response(result, pictures)
+    body += _backbones(result, pictures)
     body.append("<h2>Figures</h2>")
-    body += [_figure(name, text) for name, text in pictures.items() if name not in (*MOVING, "response")]
+    body += [_figure(name, text) for name, text in pictures.items() if name not in (*MOVING, "response", "backbones")]
     body += _contact(result)
     body += ["<h2>Sources</h2>", "<ul>", *(f"<li>{escape(line)}</li>" for line in result.sources), "</ul>"]
     body += _provenance(result)
@@ -82,6 +83,15 @@ def _response(result: Result, pictures: dict[str, str]) -> list[str]:
         return []
     still = [_figure("response", pictures["response"], "of-response")] if "response" in pictures else []
     return ["<h2>Frequency response</h2>", page.curves("response", response.curves(result)), *still]
+
+
+def _backbones(result: Result, pictures: dict[str, str]) -> list[str]:
+    """Curves over amplitude that zoom, and the picture that stands in for them."""
+    if not result.backbones:
+        return []
+    still = [_figure("backbones", pictures["backbones"], "of-backbones")] if "backbones" in pictures else []
+    head = f"<h2>Frequency and damping of mode {result.backbones[0].mode} over amplitude</h2>"
+    return [head, page.curves("backbones", backbone.zooming(result.backbones)), *still]
 
 
 def _provenance(result: Result) -> list[str]:
@@ -153,6 +163,11 @@ FIGURES = {
         caption="Stiffness per area over the pressures that the joints reach at the greatest preload.",
     ),
     "modes": ReportFigure(draw=structure.mode_shapes, caption="Mode shapes at the greatest preload."),
+    "backbones": ReportFigure(
+        draw=lambda result: backbone.figure(result.backbones),
+        caption="Frequency and damping ratio against amplitude, with the static cycle as circles.",
+        applies=lambda result: bool(result.backbones),
+    ),
     "mac": ReportFigure(
         draw=response.macs,
         caption="MAC of the modes at the first preload (rows) with those at another: modes that change places or mix.",

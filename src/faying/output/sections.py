@@ -1,5 +1,6 @@
 """The tables of a result in the order in which report and terminal show them, each with its title."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from faying.output import table
@@ -33,7 +34,7 @@ class Section:
 
 def sections(result: Result) -> list[Section]:
     """Return the tables that a result has."""
-    every = (*_modes(result), *_joints(result), *_tests(result))
+    every = (*_modes(result), *_joints(result), *_backbones(result), *_tests(result))
     return [section for section in every if section.rows]
 
 
@@ -115,6 +116,26 @@ def _joints(result: Result) -> tuple[Section, ...]:
             below=table.CLEAN,
         ),
     )
+
+
+def _backbones(result: Result) -> Iterator[Section]:
+    """Curves of a mode over its amplitude, and what coarser computations would change."""
+    for curve in result.backbones:
+        what = f"mode {curve.mode} over amplitude, {curve.preload / 1e3:g} kN, friction {curve.friction_text}"
+        at = ", ".join(f"{1e3 * x:.4g}" for x in curve.at)
+        yield Section(
+            name="backbone",
+            rows=table.backbone(curve),
+            title=f"{what[0].upper()}{what[1:]}",
+            line=f"{what}, at ({at}) mm; at rest {curve.linear_frequency:.3f} Hz; ends: {curve.reason}",
+            below=f"At ({at}) mm; at rest {curve.linear_frequency:.3f} Hz. Ends: {curve.reason}.",
+        )
+        yield Section(
+            name="backbone bounds",
+            rows=table.backbone_bounds(curve),
+            title=f"Error bounds of {what}",
+            line=f"error bounds of {what}",
+        )
 
 
 def _tests(result: Result) -> tuple[Section, ...]:

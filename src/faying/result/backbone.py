@@ -12,7 +12,7 @@ from faying.errors import InputError
 from faying.files import write_text
 from faying.notes import Note
 from faying.result.fields import Recorded, declared, in_units, listed, read_whole, variable, write_whole
-from faying.result.result import Provenance
+from faying.result.provenance import Provenance
 from faying.typing import Array, Index
 
 DECAY = 200  # points of a ring-down

@@ -116,6 +116,8 @@ def to_group(value: Any) -> Group:
                 variables[f"{f.name}.{k}"] = Variable(dims=dims, values=part)
         elif is_dataclass(item):
             groups[f.name] = to_group(item)
+        elif _is_recorded(item):
+            groups |= {f"{f.name}.{k}": to_group(part) for k, part in enumerate(item)}
         elif isinstance(item, str | int | float) and not isinstance(item, bool):
             attributes[f.name] = item if item != "" else " "  # an empty attribute is none
         else:
@@ -150,6 +152,10 @@ def _is_arrays(item: Any) -> bool:
     return isinstance(item, tuple) and bool(item) and all(isinstance(part, np.ndarray) for part in item)
 
 
+def _is_recorded(item: Any) -> bool:
+    return isinstance(item, tuple) and bool(item) and all(isinstance(part, Recorded) for part in item)
+
+
 def _jsonable(item: Any) -> Any:
     if is_dataclass(item):
         return {f.name: getattr(item, f.name) for f in fields(item)}
@@ -174,6 +180,10 @@ def from_group(kind: type[Whole], group: Group) -> Whole:
         elif f"{f.name}.0" in group.variables:
             count = sum(key.startswith(f"{f.name}.") for key in group.variables)
             given[f.name] = tuple(group.variables[f"{f.name}.{k}"].values for k in range(count))
+        elif f"{f.name}.0" in group.groups:
+            count = sum(key.startswith(f"{f.name}.") for key in group.groups)
+            kind_of_part = get_args(hint)[0]
+            given[f.name] = tuple(from_group(kind_of_part, group.groups[f"{f.name}.{k}"]) for k in range(count))
         elif f.name in group.groups:
             given[f.name] = from_group(hint, group.groups[f.name])
         elif f.name in group.attributes:

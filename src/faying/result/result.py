@@ -2,7 +2,6 @@
 
 import csv
 import io
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Self
@@ -16,8 +15,10 @@ from faying.joint.loads import preload_index
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse, ModelModes
 from faying.notes import Note
+from faying.result.backbone import Backbone
 from faying.result.bolts import BoltNumbers
 from faying.result.fields import Recorded, in_units, read_whole, variable, write_whole
+from faying.result.provenance import Provenance
 from faying.typing import Array, Complex, Index
 
 Point = tuple[float, float, float]
@@ -94,16 +95,6 @@ def _pairs(points: Array, directions: Array) -> tuple[tuple[Point, Point], ...]:
     return tuple((tuple(p), tuple(d)) for p, d in zip(points.tolist(), directions.tolist(), strict=True))
 
 
-@dataclass(frozen=True, kw_only=True)
-class Provenance:
-    """What a result was made from: the study's text, the SHA-256 of each file that it names, versions, date (UTC)."""
-
-    study: str = ""
-    files: Mapping[str, str] = field(default_factory=dict)
-    versions: Mapping[str, str] = field(default_factory=dict)
-    date: str = ""
-
-
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Result(Recorded):
     """What a study gives. Load [N] means the preload of the first bolt; modes are the elastic ones.
@@ -112,6 +103,7 @@ class Result(Recorded):
     every joint grown together, "free" those with the faces apart. `surfaces` and `laws` hold, per joint, what the law
     was made from and its own numbers. low and high: the frequencies at the ends of the range of stiffness that the laws
     state, None where none states one; `beside` names other laws, whose frequencies stand in `beside_frequencies`.
+    `backbones` are the curves over amplitude that the study asks for, at the greatest preload.
     `tightening` names the bolts in the order in which they were pulled, and is empty where all were pulled at once.
     `parts`, `faces`, `joint_faces` (the two faces of each joint), `supports` and `masses` say what the structure is
     made of; they and the fields that go with them are empty or None in files of earlier versions.
@@ -283,6 +275,7 @@ class Result(Recorded):
     comparison: Comparison | None = None
     hammer: ModalComparison | None = None
     bolt_numbers: BoltNumbers | None = None
+    backbones: tuple[Backbone, ...] = ()
     provenance: Provenance = field(default_factory=Provenance)
 
     def __repr__(self) -> str:
@@ -366,6 +359,8 @@ class Result(Recorded):
             out["bolt_numbers"] = in_units(self.bolt_numbers)
         if self.hammer is not None:
             out["hammer_test"] = self.hammer.to_dict()
+        if self.backbones:
+            out["backbones"] = [curve.to_dict() for curve in self.backbones]
         out["sources"] = list(self.sources)
         out["notes"] = [asdict(note) for note in self.notes]
         return out

@@ -164,14 +164,27 @@ def backbones(
     indices = list(range(len(study.loads))) if loads is None else list(loads)
     frictions = friction_of(study, choice)
     progress = _Progress(report, len(indices) * len(frictions))
+    progress.stage("surface and mesh", 0.0)
+    case = Case.of(study)
     file = None if out is None else Path(out)
     with CurveStore(file, fingerprint(study, choice, indices)) as store:
-        made = _curves(study, choice, indices, frictions, store, progress)
+        made = _curves(case, choice, indices, frictions, store, progress)
         if file is not None:
             for path, curve in zip(names(file, len(made)), made, strict=True):
                 curve.to_netcdf(path)
             store.finish()
     return tuple(made)
+
+
+def backbones_of(case: Case, choice: BackboneChoice, *, report: Report | None = None) -> tuple[Backbone, ...]:
+    """Curves for every friction of a choice, at the greatest preload of a case that is ready to be solved.
+
+    Raises: see `backbone`.
+    """
+    frictions = friction_of(case.study, choice)
+    progress = _Progress(report, len(frictions))
+    with CurveStore(None, "") as store:
+        return tuple(_curves(case, choice, [len(case.study.loads) - 1], frictions, store, progress))
 
 
 def names(out: Path, count: int) -> list[Path]:
@@ -214,15 +227,14 @@ class _Progress:
 
 
 def _curves(
-    study: Study,
+    case: Case,
     choice: BackboneChoice,
     indices: Sequence[int],
     frictions: Sequence[tuple[float, ...]],
     store: CurveStore,
     progress: _Progress,
 ) -> list[Backbone]:
-    progress.stage("surface and mesh", 0.0)
-    case = Case.of(study)
+    study = case.study
     bases = _bases(case, choice, indices, progress)
     prepared = [
         _Prepared(case=case, choice=choice, load=study.loads[k], basis=b) for k, b in zip(indices, bases, strict=True)

@@ -14,7 +14,7 @@ from faying.notes import Note
 from faying.result.backbone import Backbone, ErrorBounds, Witness
 from faying.study.case import Case
 from faying.study.keys.backbone import BackboneChoice
-from faying.study.run import provenance
+from faying.study.provenance import provenance
 from faying.study.solve import law_notes
 from faying.study.strength import pressure_notes
 from faying.typing import Array

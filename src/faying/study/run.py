@@ -1,10 +1,7 @@
 """From a study to its result."""
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import replace
-from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +16,8 @@ from faying.joint.structure import Structure, bond
 from faying.joint.support_check import RIGID_BELOW
 from faying.notes import Note
 from faying.progress import Report
-from faying.result import BoltNumbers, Comparison, Provenance, Receptance, Result
+from faying.result import BoltNumbers, Comparison, Receptance, Result
+from faying.study.backbone import backbones_of, friction_of
 from faying.study.beside import Beside, beside_fields, solve_beside
 from faying.study.beyond import stiff_as_bonded
 from faying.study.bolt_numbers import bolt_numbers, conductances
@@ -27,12 +25,12 @@ from faying.study.case import Case, Progress
 from faying.study.findings import against_exact_contact, falling
 from faying.study.form_band import form_band
 from faying.study.modes import modes_with
+from faying.study.provenance import provenance
 from faying.study.solve import State, solve
 from faying.study.study import Study
 from faying.study.tracks import compared, encounters, from_load_to_load, shapes_of, with_first
 from faying.typing import Array
 
-VERSIONS = ("faying", "numpy", "scipy", "netgen-mesher", "pypardiso", "mkl")
 NOT_ZERO = 1e-2  # Hz: a rigid motion above it is noted
 
 
@@ -51,6 +49,8 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         NotConverged: an iteration stops short.
     """
     study = Study.read(study)
+    if study.backbone is not None:
+        friction_of(study, study.backbone)  # raises, before the work, where nothing can slip
     progress = Progress(len(stages(study)), report)
     case = Case.of(study, progress)
     problem = case.structure.assembly(solver=study.modes.solver)
@@ -60,7 +60,14 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     free, bonded, notes = bounds(case)
     band, more = form_band(case, states)
     result = collect(case, states, (free, bonded), [*notes, *findings(case, states), *more], besides)
-    return result if band is None else replace(result, form_crowns=band.crowns, form_slopes=band.slopes)
+    if band is not None:
+        result = replace(result, form_crowns=band.crowns, form_slopes=band.slopes)
+    if study.backbone is None:
+        return result
+    progress.begin(f"mode {study.backbone.mode} over amplitude")
+    curves = backbones_of(case, study.backbone)
+    every = (*result.notes, *(note for curve in curves for note in curve.notes))
+    return replace(result, backbones=curves, notes=tuple(dict.fromkeys(every)))
 
 
 def findings(case: Case, states: Sequence[State]) -> list[Note]:
@@ -79,7 +86,8 @@ def stages(study: Study) -> list[str]:
         if study.hammer is not None and number == study.hammer.load:
             out.append("frequency response at the points of the test")
     out += [stage for _ in study.beside for load in loads for stage in (f"preload {load}", f"modes at {load}")]
-    return [*out, "modes free and bonded"]
+    out.append("modes free and bonded")
+    return out if study.backbone is None else [*out, f"mode {study.backbone.mode} over amplitude"]
 
 
 def bounds(case: Case) -> tuple[Array, Array, list[Note]]:
@@ -330,24 +338,3 @@ def _sources(case: Case) -> tuple[str, ...]:
     if study.hammer is not None:
         lines.append(f"test: {study.hammer.source or study.hammer.file.name}")
     return tuple(dict.fromkeys(lines))
-
-
-def provenance(study: Study) -> Provenance:
-    """The study's text, a hash of every file that it names, versions and the date."""
-    return Provenance(
-        study=study.text,
-        files={str(_below(file, study.folder)): hashlib.sha256(file.read_bytes()).hexdigest() for file in study.files},
-        versions={name: found for name in VERSIONS if (found := _version(name))},
-        date=datetime.now(UTC).isoformat(timespec="seconds"),
-    )
-
-
-def _below(file: Path, folder: Path) -> Path:
-    return file.relative_to(folder) if file.is_relative_to(folder) else file
-
-
-def _version(name: str) -> Any:
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return ""

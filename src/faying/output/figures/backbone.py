@@ -8,7 +8,10 @@ import numpy as np
 
 from faying.measured.ring_down import MeasuredBackbone
 from faying.output.figures.save import new_figure, plain
+from faying.output.scene.text import packed_backbones
 from faying.result.backbone import Backbone
+
+ROUNDING = 1e-9  # of the greatest damping: less is rounding
 
 
 def label(curve: Backbone, curves: Sequence[Backbone]) -> str:
@@ -72,6 +75,21 @@ def panel(ax: Any, curves: Sequence[Backbone], quantity: str, measured: Sequence
     ax.set(ylabel="damping ratio [%]", yscale="log")
     _readable(ax.yaxis)
     return ax
+
+
+def zooming(curves: Sequence[Backbone], points: int = 200) -> dict[str, Any]:
+    """Curves of one mode for a page: on one grid of accelerations, none beyond its own end."""
+    low = max(curve.acceleration[0] for curve in curves)
+    grid = np.geomspace(low, max(curve.acceleration[-1] for curve in curves), points)
+    found = {}
+    for curve in curves:
+        inside = grid <= curve.acceleration[-1] * (1 + 1e-9)
+        frequency, damping = (np.full(points, np.nan) for _ in range(2))
+        frequency[inside], damping[inside] = curve.at_acceleration(grid[inside])
+        damping[damping < ROUNDING * curve.damping.max()] = np.nan  # nothing slips yet
+        found[label(curve, curves)] = (frequency, 100 * damping)
+    at = ", ".join(f"{1e3 * x:.4g}" for x in curves[0].at)
+    return packed_backbones(f"acceleration at ({at}) mm [m/s²]", grid, found)
 
 
 def _readable(axis: Any) -> None:

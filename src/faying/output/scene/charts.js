@@ -1,8 +1,8 @@
 /* Curves that zoom, as SVG.
  *
- *   const found = chart(element, { x, series: [{ name, y }], xlabel, ylabel, log, title, range, onRange })
+ *   const found = chart(element, { x, series: [{ name, y }], xlabel, ylabel, log, logX, title, range, onRange })
  *
- * x and y are arrays of numbers; log draws y on a logarithmic axis. Drag across to zoom, double-click or Escape to see all;
+ * x and y are arrays of numbers, x rising; log and logX draw an axis logarithmically. Drag across to zoom, double-click or Escape to see all;
  * with the keyboard: plus and minus zoom, the arrows move along. found.show([low, high] | null) sets what is seen of x.
  */
 const CURVES = 7; // colours that stay apart for colour-blind readers, after Okabe and Ito
@@ -32,6 +32,17 @@ function ticks(low, high, count) {
   return out;
 }
 
+/** Places of 1, 2, 5, 10, ... within a range of decadic logarithms; powers of 10 alone where the others have no room. */
+function decadesOf([low, high], most) {
+  for (const steps of [[1, 2, 5], [1, 3], [1]]) {
+    const out = [];
+    for (let k = Math.floor(low); k <= high; k++) for (const step of steps) out.push(k + Math.log10(step));
+    const seen = out.filter((t) => t >= low - 1e-6 && t <= high + 1e-6);
+    if (seen.length > 1 && seen.length <= most) return seen;
+  }
+  return ticks(low, high, most / 2);
+}
+
 function svg(tag, given = {}, ...children) {
   const found = document.createElementNS("http://www.w3.org/2000/svg", tag);
   for (const [key, value] of Object.entries(given)) found.setAttribute(key, String(value));
@@ -42,12 +53,13 @@ function svg(tag, given = {}, ...children) {
 const short = (v) => (Math.abs(v) >= 1e6 || (v !== 0 && Math.abs(v) < 1e-3) ? v.toExponential(0).replace("e+", "e") : String(Number(v.toPrecision(5))));
 const look = (k) => ({ stroke: `var(--c${k % CURVES})`, "stroke-dasharray": DASHES[Math.floor(k / CURVES) % DASHES.length] });
 
-export function chart(element, { x, series, xlabel, ylabel, title, log = false, limits = null, height = 260, onRange }) {
+export function chart(element, { x: given, series, xlabel, ylabel, title, log = false, logX = false, limits = null, height = 260, onRange }) {
   if (chartStyled === null) {
     chartStyled = new CSSStyleSheet();
     chartStyled.replaceSync(CHART_STYLE);
     document.adoptedStyleSheets = [...document.adoptedStyleSheets, chartStyled];
   }
+  const x = logX ? Array.from(given, Math.log10) : given, shownX = logX ? (v) => 10 ** v : (v) => v;
   const all = [x[0], x[x.length - 1]], edge = { left: 62, right: 12, top: 10, bottom: 38 };
   let range = all, width = 600, drag = null, at = null;
   const box = document.createElement("div"), key = document.createElement("div");
@@ -93,9 +105,9 @@ export function chart(element, { x, series, xlabel, ylabel, title, log = false, 
     const [low, high] = bounds(first, last), bottom = height - edge.bottom, scale = log ? Math.log10 : (v) => v;
     const toY = (v) => bottom - ((scale(v) - scale(low)) / (scale(high) - scale(low))) * (bottom - edge.top);
     const right = width - edge.right, parts = [];
-    for (const t of ticks(range[0], range[1], width / 110)) {
+    for (const t of logX ? decadesOf(range, width / 70) : ticks(range[0], range[1], width / 110)) {
       parts.push(svg("line", { class: "grid", x1: toX(t), x2: toX(t), y1: edge.top, y2: bottom }));
-      parts.push(svg("text", { x: toX(t), y: bottom + 16, "text-anchor": "middle" }, short(t)));
+      parts.push(svg("text", { x: toX(t), y: bottom + 16, "text-anchor": "middle" }, short(Number(shownX(t).toPrecision(6)))));
     }
     const decades = log ? ticks(Math.log10(low), Math.log10(high), 5).filter((t) => Math.abs(t - Math.round(t)) < 1e-6).map((t) => 10 ** Math.round(t)) : [];
     for (const t of log && decades.length > 1 ? decades : log ? ticks(low, high, 4).filter((v) => v > 0) : ticks(low, high, 5)) {
@@ -121,7 +133,7 @@ export function chart(element, { x, series, xlabel, ylabel, title, log = false, 
     if (at !== null) parts.push(svg("line", { class: "cross", x1: toX(x[at]), x2: toX(x[at]), y1: edge.top, y2: bottom }));
     face.replaceChildren(...parts);
     series.forEach(({ name, y }, k) => {
-      values[k].textContent = at === null ? name : `${name}: ${Number(y[at].toPrecision(4))} at ${Number(x[at].toPrecision(6))}`;
+      values[k].textContent = at === null ? name : `${name}: ${Number(y[at].toPrecision(4))} at ${Number(shownX(x[at]).toPrecision(logX ? 4 : 6))}`;
     });
   }
 
@@ -131,7 +143,7 @@ export function chart(element, { x, series, xlabel, ylabel, title, log = false, 
     low = Math.min(Math.max(low, all[0]), all[1] - span);
     range = [low, low + span];
     draw();
-    if (!silent) onRange?.(wanted === null ? null : range);
+    if (!silent) onRange?.(wanted === null ? null : range); // in the decadic logarithm of x under logX
   }
 
   const place = (event) => {

@@ -61,6 +61,17 @@ async function curves(place, groups) {
   }
 }
 
+/** Frequency and damping of a mode over its amplitude; each curve has amplitudes of its own, so all are put on one grid. */
+async function backbones(place, { title, names, acceleration, frequency, damping }) {
+  const x = await unpacked(acceleration), of = async (given) => {
+    const y = await unpacked(given);
+    return names.map((name, curve) => ({ name, y: y.subarray(curve * x.length, (curve + 1) * x.length) }));
+  };
+  const both = [], common = { x, logX: true, xlabel: title, onRange: (range) => both.forEach((one) => one.show(range)) };
+  both.push(chart(place, { ...common, title: "Frequency over amplitude", series: await of(frequency), ylabel: "frequency [Hz]" }));
+  both.push(chart(place, { ...common, title: "Damping over amplitude", series: await of(damping), ylabel: "damping ratio [%]", log: true }));
+}
+
 try {
   const scene = read("scene");
   let follow = null;
@@ -74,7 +85,7 @@ try {
   document.getElementById("why").textContent = `This browser cannot show the moving view (${fault.message}); the pictures below stand in.`;
 }
 for (const place of document.querySelectorAll("[data-curves]")) {
-  await curves(place, read(place.dataset.curves));
+  await (place.dataset.curves === "backbones" ? backbones : curves)(place, read(place.dataset.curves));
   document.body.classList.add(`has-${place.dataset.curves}`);
 }
 window.ready = true;

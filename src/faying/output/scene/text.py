@@ -163,6 +163,17 @@ def packed(values: Any, kind: str, scale: float = 1.0) -> dict[str, Any]:
     return {"type": kind, "shape": list(small.shape), "scale": scale, "data": data}
 
 
+def packed_backbones(title: str, acceleration: Array, curves: dict[str, tuple[Array, Array]]) -> dict[str, Any]:
+    """Frequencies [Hz] and damping ratios [%] over accelerations [m/s2] (k,) by their names, for `report.js`."""
+    return {
+        "title": title,
+        "names": list(curves),
+        "acceleration": packed(acceleration, "f4"),
+        "frequency": packed(np.stack([frequency for frequency, _ in curves.values()]), "f4"),
+        "damping": packed(np.stack([damping for _, damping in curves.values()]), "f4"),
+    }
+
+
 def packed_curves(title: str, label: str, frequencies: Array, curves: dict[str, Any]) -> dict[str, Any]:
     """Complex curves over frequency [Hz] (f,) by their names, as `report.js` draws them; label: of their size."""
     both = np.stack([[values.real, values.imag] for values in curves.values()])  # curve, part, line
