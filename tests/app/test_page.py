@@ -7,8 +7,6 @@ import shutil
 import numpy as np
 import pytest
 
-from faying.app.project import Project
-from faying.app.server import Server
 from faying.study import template
 from faying.surface.synthesize import spectral
 from faying.surface.write import write_scan
@@ -29,16 +27,6 @@ def example(tmp_path_factory):
     return folder
 
 
-@pytest.fixture
-def served(tmp_path):
-    server = Server(Project.at(tmp_path))
-    thread = server.run_in_thread()
-    yield server
-    server.shutdown()
-    thread.join()
-    server.close()
-
-
 def page_at(browser, server, **how):
     origin = server.address.rsplit("/", 2)[0]
     return opened(browser, server.address, allowed=(origin, "data:", "blob:"), **how)
@@ -49,8 +37,8 @@ def set_text(page, text):
     until(page, "document.querySelector('#saved').textContent === 'saved'")
 
 
-def test_a_scan_is_dropped_and_read(browser, served, example, tmp_path):
-    with page_at(browser, served) as page:
+def test_a_scan_is_dropped_and_read(browser, server, example, tmp_path):
+    with page_at(browser, server) as page:
         page.set_input_files("#file", example / "surface.x3p")
         page.wait_for_selector("#scan-picture:not([hidden])", timeout=WAIT)
         facts = page.inner_text("#scan-facts")
@@ -61,11 +49,11 @@ def test_a_scan_is_dropped_and_read(browser, served, example, tmp_path):
     assert (tmp_path / "surface.x3p").read_bytes() == (example / "surface.x3p").read_bytes()
 
 
-def test_a_scan_without_units_asks_for_them_and_takes_them(browser, served, tmp_path):
+def test_a_scan_without_units_asks_for_them_and_takes_them(browser, server, tmp_path):
     heights = spectral((64, 64), spacing=1e-6, D=2.3, Rq=1e-7, longest=3e-5, seed=1).heights * 1e9
     rows = [f"{x} {y} {height:.3f}" for (y, x), height in np.ndenumerate(heights)]
     (tmp_path / "plain.xyz").write_text("\n".join(rows))
-    with page_at(browser, served) as page:
+    with page_at(browser, server) as page:
         page.wait_for_selector("#scan-units:not([hidden])", timeout=WAIT)
         assert "unit" in page.inner_text("#scan-fault")
         page.fill("#xy-unit", "um")
@@ -76,9 +64,9 @@ def test_a_scan_without_units_asks_for_them_and_takes_them(browser, served, tmp_
         assert page.is_hidden("#scan-fault")
 
 
-def test_faces_are_picked_into_a_joint(browser, served, example, tmp_path):
+def test_faces_are_picked_into_a_joint(browser, server, example, tmp_path):
     shutil.copy(example / "two-blocks.step", tmp_path)
-    with page_at(browser, served) as page:
+    with page_at(browser, server) as page:
         page.click("#tab-structure")
         until(page, "window.fayingView !== undefined")
         page.evaluate("window.fayingView.select('upper', 1)")
@@ -93,12 +81,12 @@ def test_faces_are_picked_into_a_joint(browser, served, example, tmp_path):
     assert "[[joint]]" in (tmp_path / "study.toml").read_text()
 
 
-def test_from_a_step_file_without_names_and_a_scan_to_a_result(browser, served, tmp_path_factory, tmp_path):
+def test_from_a_step_file_without_names_and_a_scan_to_a_result(browser, server, tmp_path_factory, tmp_path):
     """The newcomer's whole session: two files are dropped, nothing is typed."""
     given = tmp_path_factory.mktemp("given")
     lapped(given / "lap.step", size=(60, 30), holes=((15, 15), (45, 15)))
     write_scan(spectral((128, 128), spacing=5e-6, D=2.2, Rq=1e-6, longest=1e-4, seed=7), given / "surface.x3p")
-    with page_at(browser, served) as page:
+    with page_at(browser, server) as page:
         page.set_input_files("#file", [given / "surface.x3p", given / "lap.step"])
         until(page, "window.fayingView !== undefined")
         page.click("#propose")
@@ -118,14 +106,14 @@ def test_from_a_step_file_without_names_and_a_scan_to_a_result(browser, served, 
     assert (tmp_path / "results" / "result.nc").is_file()
 
 
-def test_faults_stand_at_their_lines_and_go(browser, served, example, tmp_path):
+def test_faults_stand_at_their_lines_and_go(browser, server, example, tmp_path):
     for name in ("study.toml", "two-blocks.step"):
         shutil.copy(example / name, tmp_path)
     good = (tmp_path / "study.toml").read_text()
     lines = good.splitlines()
     at = next(k for k, line in enumerate(lines) if line.startswith("preload"))
     lines[at] = "preload = 6000"
-    with page_at(browser, served) as page:
+    with page_at(browser, server) as page:
         set_text(page, "\n".join(lines))
         until(page, "document.querySelectorAll('#faults li').length > 0")
         assert f"line {at + 1}" in page.inner_text("#faults")
@@ -139,10 +127,10 @@ def test_faults_stand_at_their_lines_and_go(browser, served, example, tmp_path):
         assert page.locator("#gutter b").count() == 0
 
 
-def test_a_run_is_cancelled_and_leaves_nothing(browser, served, example, tmp_path):
+def test_a_run_is_cancelled_and_leaves_nothing(browser, server, example, tmp_path):
     for name in ("study.toml", "surface.x3p", "two-blocks.step"):
         shutil.copy(example / name, tmp_path)
-    with page_at(browser, served) as page:
+    with page_at(browser, server) as page:
         page.click("#tab-run")
         page.click("#start")
         until(page, "document.querySelector('#job-line').textContent.includes(' of ')")
@@ -153,28 +141,28 @@ def test_a_run_is_cancelled_and_leaves_nothing(browser, served, example, tmp_pat
     assert not list(tmp_path.glob("*.part"))
 
 
-def test_closing_the_page_loses_nothing(browser, served, example, tmp_path):
+def test_closing_the_page_loses_nothing(browser, server, example, tmp_path):
     for name in ("study.toml", "surface.x3p", "two-blocks.step"):
         shutil.copy(example / name, tmp_path)
-    with page_at(browser, served) as page:
+    with page_at(browser, server) as page:
         set_text(page, (example / "study.toml").read_text().replace("Two blocks", "Mine: two blocks"))
         page.click("#tab-run")
         page.click("#start")
         until(page, "document.querySelector('#job-line').textContent.includes(' of ')")
-    with page_at(browser, served) as page:  # the run went on
+    with page_at(browser, server) as page:  # the run went on
         assert "Mine: two blocks" in page.input_value("#text")
         page.wait_for_selector("#report:not([hidden])", timeout=WAIT)
         assert "Mine" in page.frame_locator("#report").locator("h1").inner_text()
 
 
-def test_scripts_in_names_and_texts_are_inert(browser, served, example, tmp_path):
+def test_scripts_in_names_and_texts_are_inert(browser, server, example, tmp_path):
     for name in ("surface.x3p", "two-blocks.step"):
         shutil.copy(example / name, tmp_path)
     evil = "<img src=x onerror=alert(1)></script><script>alert(2)</script>"
     text = (example / "study.toml").read_text().replace("Two blocks and a bolt", evil)
     (tmp_path / "<img src=x onerror=alert(3)>.x3p").write_bytes(b"")
     (tmp_path / "study.toml").write_text(text.replace('name = "joint"', f"name = '{evil}'"))
-    with page_at(browser, served) as page:
+    with page_at(browser, server) as page:
         said = []
         page.on("dialog", lambda dialog: (said.append(dialog.message), dialog.dismiss()))
         page.click("#tab-structure")
@@ -187,7 +175,7 @@ def test_scripts_in_names_and_texts_are_inert(browser, served, example, tmp_path
         assert said == []
 
 
-def test_the_report_in_the_page_cannot_ask_the_server(browser, served, example, tmp_path):
+def test_the_report_in_the_page_cannot_ask_the_server(browser, server, example, tmp_path):
     (tmp_path / "results").mkdir()
     script = (
         "fetch('../api/project').then(r => r.text()).then(t => document.title = t, e => document.title = 'refused')"
@@ -195,16 +183,16 @@ def test_the_report_in_the_page_cannot_ask_the_server(browser, served, example, 
     (tmp_path / "results" / "report.html").write_text(f"<!doctype html><h1>x</h1><script>{script}</script>")
     made = browser.new_context()
     page = made.new_page()
-    page.goto(served.address + "results/report.html")
+    page.goto(server.address + "results/report.html")
     until(page, "document.title !== ''")
     assert page.title() == "refused"
     made.close()
 
 
-def test_keyboard_alone_reaches_every_view(browser, served, example, tmp_path):
+def test_keyboard_alone_reaches_every_view(browser, server, example, tmp_path):
     for name in ("study.toml", "surface.x3p", "two-blocks.step"):
         shutil.copy(example / name, tmp_path)
-    with page_at(browser, served) as page:
+    with page_at(browser, server) as page:
         until(page, "document.querySelector('#text').value.length > 0")
         page.focus("#tab-surface")
         for name in ("structure", "run", "result", "surface"):
@@ -220,10 +208,10 @@ def test_keyboard_alone_reaches_every_view(browser, served, example, tmp_path):
 
 
 @pytest.mark.parametrize(("width", "height"), [(1280, 800), (800, 600), (640, 400)])  # the last: 1280 at 200 % zoom
-def test_nothing_is_cut_off(browser, served, example, tmp_path, width, height):
+def test_nothing_is_cut_off(browser, server, example, tmp_path, width, height):
     for name in ("study.toml", "surface.x3p", "two-blocks.step"):
         shutil.copy(example / name, tmp_path)
-    with page_at(browser, served, width=width, height=height) as page:
+    with page_at(browser, server, width=width, height=height) as page:
         for name in ("structure", "run", "result", "surface"):
             page.click(f"#tab-{name}")
             assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), name
@@ -233,11 +221,11 @@ def test_nothing_is_cut_off(browser, served, example, tmp_path, width, height):
             assert box["x"] + box["width"] <= width
 
 
-def test_a_server_that_is_gone_is_said_and_the_text_stays(browser, served, example, tmp_path):
+def test_a_server_that_is_gone_is_said_and_the_text_stays(browser, server, example, tmp_path):
     (tmp_path / "study.toml").write_text('title = "x"\n')
     made = browser.new_context()
     page = made.new_page()
-    page.goto(served.address)
+    page.goto(server.address)
     until(page, "document.querySelector('#text').value.length > 0")
     page.route("**/api/**", lambda route: route.abort())
     page.fill("#text", 'title = "precious"')
@@ -246,7 +234,7 @@ def test_a_server_that_is_gone_is_said_and_the_text_stays(browser, served, examp
     made.close()
 
 
-def test_the_page_does_what_the_command_line_does(served, example, tmp_path):
+def test_the_page_does_what_the_command_line_does(server, example, tmp_path):
     """The answers are those of the commands, word for word."""
     from faying.app.commands import answer
 

@@ -12,16 +12,6 @@ from faying.app.server import Server
 from faying.errors import InputError
 
 
-@pytest.fixture
-def server(tmp_path):
-    server = Server(Project.at(tmp_path))
-    thread = server.run_in_thread()
-    yield server
-    server.shutdown()
-    thread.join()
-    server.close()
-
-
 def ask(server, path, method="GET", body=None, headers=(), *, token=None):
     connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=10)
     given = {"Host": f"127.0.0.1:{server.server_port}"} | dict(headers)
