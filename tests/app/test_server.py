@@ -170,12 +170,23 @@ def test_only_listed_commands_run(server, tmp_path):
 
 def test_the_study_is_saved_as_it_was_typed(server, tmp_path):
     text = 'title = "<script>alert(1)</script> µm"\n'
-    assert ask(server, "api/study", "PUT", json.dumps({"text": text}))[0].status == 200
+    assert ask(server, "api/study", "PUT", json.dumps({"text": text, "before": ""}))[1] == '{"saved": true}'
     assert (tmp_path / "study.toml").read_text(encoding="utf-8") == text
     assert json.loads(ask(server, "api/project")[1])["text"] == text
-    assert ask(server, "api/study", "PUT", json.dumps({"text": "x" * (1 << 20) + "y"}))[1].startswith('{"fault"')
+    assert ask(server, "api/study", "PUT", json.dumps({"text": "x" * (1 << 20) + "y", "before": text}))[1].startswith(
+        '{"fault"'
+    )
     assert "no table of JSON" in ask(server, "api/study", "PUT", "[1]")[1]
     assert (tmp_path / "study.toml").read_text(encoding="utf-8") == text
+
+
+def test_what_another_editor_wrote_is_not_overwritten(server, tmp_path):
+    (tmp_path / "study.toml").write_text("theirs\n")
+    text = ask(server, "api/study", "PUT", json.dumps({"text": "mine", "before": "ours\n"}))[1]
+    assert "changed outside of this page" in json.loads(text)["fault"]
+    assert (tmp_path / "study.toml").read_text() == "theirs\n"
+    assert "saved" in ask(server, "api/study", "PUT", json.dumps({"text": "mine", "before": "theirs\n"}))[1]
+    assert (tmp_path / "study.toml").read_text() == "mine"
 
 
 def test_a_folder_with_several_studies_asks_which(tmp_path):

@@ -91,8 +91,13 @@ class Project:
         """The study's text; None where there is no study yet."""
         return self.study.read_text(encoding="utf-8", errors="replace") if self.study.is_file() else None
 
-    def save_text(self, text: str) -> None:
-        """Replace the study's text. Raises InputError where it is far too long."""
+    def save_text(self, text: str, before: str) -> None:
+        """Replace the study's text. Raises InputError where it is no longer what it was before, or far too long."""
+        if (self.text() or "") != before:
+            raise InputError(
+                f"{self.study_name} was changed outside of this page and is not replaced; copy what you typed, and "
+                "reload the page"
+            )
         if len(text.encode()) > LARGEST_STUDY:
             raise InputError(f"the study has more than {LARGEST_STUDY >> 20} MB; nothing was saved")
         write_text(self.study, text)

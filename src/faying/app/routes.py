@@ -73,10 +73,12 @@ class Session:
 
     def save(self, request: Request) -> dict[str, Any]:
         """Save the study's text."""
-        text = request.data().get("text")
-        if not isinstance(text, str):
-            raise InputError("the request lacks text")
-        self.project.save_text(text)
+        data = request.data()
+        text, before = data.get("text"), data.get("before")
+        if not isinstance(text, str) or not isinstance(before, str):
+            raise InputError("the request lacks text, or the text that it replaces")
+        with self._lock:
+            self.project.save_text(text, before)
         return {"saved": True}
 
     def check(self, request: Request) -> dict[str, Any]:

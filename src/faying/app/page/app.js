@@ -397,7 +397,7 @@ async function save() {
     return;
   }
   try {
-    await ask("PUT", "study", {}, JSON.stringify({ text }));
+    await ask("PUT", "study", {}, JSON.stringify({ text, before: state.saved }));
     state.saved = text;
     $("saved").textContent = "saved";
     if (state.project) state.project.text = text;
