@@ -1,6 +1,7 @@
 """What long work shows on stderr."""
 
 import json
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
@@ -8,7 +9,7 @@ from click.testing import CliRunner
 from faying.cli import progress
 from faying.cli.main import cli
 from faying.cli.progress import Shown
-from faying.study import Study, run, template
+from faying.study import Study, run
 from faying.study.run import stages
 
 
@@ -77,19 +78,20 @@ def test_durations(seconds, text):
     assert progress._duration(seconds) == text
 
 
-def test_a_run_reports_the_stages_that_it_plans(tmp_path):
-    template.write(tmp_path / "study.toml")
+EXAMPLE = Path(__file__).parents[2] / "examples" / "two-blocks" / "study.toml"
+
+
+def test_a_run_reports_the_stages_that_it_plans():
     said = []
-    plan = Study.read(tmp_path / "study.toml")
+    plan = Study.read(EXAMPLE)
     run(plan, report=lambda stage, done, total: said.append((stage, done, total)))
     assert [stage for stage, *_ in said] == stages(plan)
     assert [done for _, done, _ in said] == list(range(len(said)))
     assert {total for *_, total in said} == {len(said)}
 
 
-def test_options_choose_what_stderr_shows(tmp_path):
-    template.write(tmp_path / "study.toml")
-    study = str(tmp_path / "study.toml")
+def test_options_choose_what_stderr_shows():
+    study = str(EXAMPLE)
     found = {
         option: CliRunner().invoke(cli, ["run", study, "--no-files", *option.split()])
         for option in ("-q", "-v", "--progress json")

@@ -41,7 +41,7 @@ def test_without_the_measurement_it_says_where_to_get_it(folder):
 
 def test_the_joint_has_the_area_of_the_published_mesh(folder):
     """2921 mm2 in the reduced published mesh, whose holes are polygons: within 0.3 %."""
-    from faying.fe.geometry import read_step
+    from faying.fe.cad import read_step
 
     areas = {
         face.name: face.mass for solid in read_step(folder / "brake-reuss-beam.step").solids for face in solid.faces

@@ -69,7 +69,7 @@ BOLT = {"preload": "6 kN"}
         ({"part": "upper"}, r"joint\[1\].faces\[1\] names a part and nothing of its face; add normal"),
         (
             {"part": "upper", "normal": "up"},
-            r'normal = "up" should be one of \+x, \+y, \+z, -x, -y, -z, or three numbers',
+            r'normal = "up" should be one of \+x, -x, \+y, -y, \+z, -z, or three numbers',
         ),
         ({"part": "upper", "normal": [0, 0, 0]}, "has no length"),
         ({"part": "upper", "nearest": [0, 0, 5]}, "has no unit"),
