@@ -39,7 +39,8 @@ def checkout(tmp_path, monkeypatch):
     return tmp_path
 
 
-LONG = {"intervals.md"}  # a minute and more: tests/identify has the same in small
+# a minute and more: tests/identify, tests/measured and tests/halfspace have the same in small
+LONG = {"intervals.md", "hammer-test.md", "speed.md"}
 COMMANDED = [pytest.param(p, marks=[pytest.mark.slow] * (p.name in LONG), id=str(p.relative_to(ROOT))) for p in PAGES]
 
 
