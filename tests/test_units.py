@@ -103,3 +103,8 @@ def test_one_length_or_two():
     for text, why in (("4 x 3 mm", "no unit"), ("1 mm x 2 mm x 3 mm", "one length or two"), ("0 mm", "positive")):
         with pytest.raises(InputError, match=why):
             units.lengths(text)
+
+
+@pytest.mark.parametrize(("unit", "name"), [(unit, name) for unit, names in units.COMMON.items() for name in names])
+def test_common_units_are_those_of_pint(unit, name):
+    assert units.COMMON[unit][name] == pytest.approx(units._pint_factor(name, unit), rel=1e-15, abs=0)

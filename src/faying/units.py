@@ -37,6 +37,18 @@ _PREFIXES = (
 )
 
 
+# what most studies say, so that pint, which takes a second to load, stays out; a test compares each with pint
+COMMON = {
+    "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9},
+    "m^2": {"m^2": 1.0, "mm^2": 1e-6},
+    "N": {"N": 1.0, "kN": 1e3},
+    "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9},
+    "kg": {"kg": 1.0, "g": 1e-3},
+    "kg/m^3": {"kg/m^3": 1.0},
+    "Hz": {"Hz": 1.0, "kHz": 1e3},
+    "m/s^2": {"m/s^2": 1.0},
+}
+
 NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*", re.DOTALL)
 # a unit is names with whole powers, joined by * / . or a blank, maybe in brackets; "1/" may stand before one
 _NAME = r"[^\W\d_]+(?:_\w+)?(?:(?:\^|\*\*)-?[0-9]{1,2}|[²³])?"
@@ -53,6 +65,12 @@ def _registry() -> Any:
 @cache
 def _factor(text: str, unit: str) -> float | None:
     """How many SI `unit` one unit `text` is; None where it is of another dimension. InputError for no unit's name."""
+    if text in COMMON.get(unit, ()):
+        return COMMON[unit][text]
+    return _pint_factor(text, unit)
+
+
+def _pint_factor(text: str, unit: str) -> float | None:
     import pint
 
     if UNIT.fullmatch(text) is None or len(text) > 60:
