@@ -1,5 +1,7 @@
 """A server on an empty folder."""
 
+import threading
+
 import pytest
 
 from faying.app.project import Project
@@ -9,7 +11,8 @@ from faying.app.server import Server
 @pytest.fixture
 def server(tmp_path):
     server = Server(Project.at(tmp_path))
-    thread = server.run_in_thread()
+    thread = threading.Thread(target=server.serve_forever, daemon=True)
+    thread.start()
     yield server
     server.shutdown()
     thread.join()

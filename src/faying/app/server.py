@@ -3,8 +3,6 @@
 import hmac
 import secrets
 import sys
-import threading
-from functools import partial
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
@@ -51,7 +49,7 @@ class Server(ThreadingHTTPServer):
     def __init__(self, project: Project, port: int = 0) -> None:
         self.session, self.token = Session(project), secrets.token_urlsafe(24)
         try:
-            super().__init__((ADDRESS, port), partial(_Handler))
+            super().__init__((ADDRESS, port), _Handler)
         except OSError as fault:
             raise InputError(f"cannot listen on port {port}: {fault.strerror}; leave out --port") from None
         self.origins = {f"http://{name}:{self.server_port}" for name in (ADDRESS, "localhost")}
@@ -60,12 +58,6 @@ class Server(ThreadingHTTPServer):
     def address(self) -> str:
         """Where the page is; whoever knows it may use it."""
         return f"http://{ADDRESS}:{self.server_port}/{self.token}/"
-
-    def run_in_thread(self) -> threading.Thread:
-        """Serve in a thread until `shutdown`."""
-        thread = threading.Thread(target=self.serve_forever, daemon=True)
-        thread.start()
-        return thread
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Say nothing of a page that was closed while it was being answered; show every other fault."""

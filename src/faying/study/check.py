@@ -71,7 +71,7 @@ class _Findings:
 
     def add(self, level: Level, code: str, text: str, key: str = "") -> None:
         """Add one finding, once."""
-        found = Finding(level=level, code=code, text=text, key=key, line=line_of(key, dict(self.lines)))
+        found = Finding(level=level, code=code, text=text, key=key, line=line_of(key, self.lines))
         if found not in self.out:
             self.out.append(found)
 
@@ -135,12 +135,11 @@ def _read(file: Path, found: _Findings) -> Study | None:
         return Study.read(file)
     except StudyFaults as faults:
         for line in faults.lines:
-            found.add("fault", "keys", line, key_of(line, dict(found.lines)))
+            found.add("fault", "keys", line, key_of(line, found.lines))
     except InputError as fault:
         if not file.is_file():
             raise
-        found.add("fault", "toml", str(fault))
-        found.out[-1] = Finding(level="fault", code="toml", text=str(fault), line=_toml_line(file))
+        found.out.append(Finding(level="fault", code="toml", text=str(fault), line=_toml_line(file)))
     return None
 
 

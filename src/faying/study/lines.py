@@ -1,6 +1,7 @@
 """On which line of a study's text a key stands."""
 
 import re
+from collections.abc import Mapping
 
 _KEY = re.compile(r'\s*(?:"((?:[^"\\\n]|\\.)*)"|\'([^\'\n]*)\'|([A-Za-z0-9_-]+))\s*')
 
@@ -41,7 +42,7 @@ def lines_of(text: str) -> dict[str, int]:
     return found
 
 
-def line_of(key: str, found: dict[str, int]) -> int | None:
+def line_of(key: str, found: Mapping[str, int]) -> int | None:
     """The line of a key, else that of the nearest table or statement that holds it; None where there is none.
 
     A single table [bolt] counts as bolt[1].
@@ -57,7 +58,7 @@ def line_of(key: str, found: dict[str, int]) -> int | None:
     return None
 
 
-def key_of(fault: str, found: dict[str, int]) -> str:
+def key_of(fault: str, found: Mapping[str, int]) -> str:
     """The key that a fault begins with, "" where it begins with none.
 
     The longest path of the text, or of what a table of it may hold, that stands in front.

@@ -98,7 +98,9 @@ def _beside(
             if np.any(mask):
                 text = f"joint {joint.name!r}: {name} is outside its validity range at the mean pressure: {reason}"
                 yield "note", "validity", text, key
-    rims = [pressures for place, depth in bolts if (pressures := _rim(sketch, joint, place, depth)) is not None]
+    rims = [
+        pressures for place, depth in bolts if (pressures := _rim(sketch, place, depth, area / len(bolts))) is not None
+    ]
     text = f"joint {joint.name!r}: {show(force, 'N')} on {1e6 * area:.4g} mm2 press {show(mean, 'Pa', digits=3)} on it"
     highest = mean
     if rims:
@@ -131,15 +133,14 @@ def _through(sketch: Sketch, joint: JointChoice) -> list[tuple[BoltPlace | Solid
         beside = np.linalg.norm(arm - np.outer(depth, place.axis), axis=1)
         level = float(np.median(depth))
         ring = seat_ring(sketch.mesh, place) if isinstance(place, BoltPlace) else None
-        within = _inside(sketch, joint, place) or (ring is not None and beside.min() <= BESIDE * ring[1])
+        within = _inside(corners, place) or (ring is not None and beside.min() <= BESIDE * ring[1])
         if 0 < level < place.length and within:
             out.append((place, level))
     return out
 
 
-def _inside(sketch: Sketch, joint: JointChoice, place: BoltPlace | SolidPlace) -> bool:
-    """Whether the axis of a bolt runs within the box around a face of a joint, seen along the axis."""
-    corners = _corners(sketch, joint)
+def _inside(corners: Array, place: BoltPlace | SolidPlace) -> bool:
+    """Whether the axis of a bolt runs within the box around the corners of a face, seen along the axis."""
     helper = np.eye(3)[np.argmin(np.abs(place.axis))]
     one = np.cross(place.axis, helper)
     plane = np.stack([one / np.linalg.norm(one), np.cross(place.axis, one / np.linalg.norm(one))], axis=1)
@@ -152,14 +153,16 @@ def _corners(sketch: Sketch, joint: JointChoice) -> Array:
     return np.asarray(np.concatenate([sketch.mesh.points[rows.ravel()] for rows in sketch.mesh.face(joint.faces[0])]))
 
 
-def _rim(sketch: Sketch, joint: JointChoice, place: BoltPlace | SolidPlace, depth: float) -> tuple[float, float] | None:
-    """Mean pressure [Pa] in the cone of a bolt, and that at its hole; None where head and nut press no ring."""
+def _rim(sketch: Sketch, place: BoltPlace | SolidPlace, depth: float, mine: float) -> tuple[float, float] | None:
+    """Mean pressure [Pa] in the cone of a bolt, and that at its hole; None where head and nut press no ring.
+
+    mine: its share of the joint's area [m2].
+    """
     ring = None if isinstance(place, SolidPlace) else seat_ring(sketch.mesh, place)
     if ring is None:
         return None
     hole, seat = ring
     near = min(depth, place.length - depth)
-    mine = sum(contact.area for contact in sketch.contacts(joint.faces)) / max(len(_through(sketch, joint)), 1)
     outer = max(2 * float(np.sqrt(mine / pi + (hole / 2) ** 2)), seat)
     try:
         return cone_pressure(place.bolt.preload[-1], depth=near, length=place.length, seat=seat, hole=hole, outer=outer)
