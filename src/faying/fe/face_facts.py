@@ -140,7 +140,11 @@ class GeometryFacts:
 
 
 def read_facts(
-    path: Path, *, points: dict[str, tuple[str, Sequence[float]]] | None = None, overlaps: bool = False
+    path: Path,
+    *,
+    points: dict[str, tuple[str, Sequence[float]]] | None = None,
+    overlaps: bool = False,
+    touching: bool = True,
 ) -> GeometryFacts:
     """Read what the faces of a STEP file are, in a process of its own.
 
@@ -148,12 +152,13 @@ def read_facts(
         path: the STEP file.
         points: label -> (part, point [m]): the distance of each to the faces of its part is measured.
         overlaps: whether parts are searched for common volumes, which takes the kernel a while.
+        touching: whether contacts are sought.
 
     Raises:
         ReadError: the file cannot be read, or the kernel died on it.
     """
     check_head(path)
-    request = {"path": str(path.resolve()), "points": points or {}, "overlaps": overlaps}
+    request = {"path": str(path.resolve()), "points": points or {}, "overlaps": overlaps, "touching": touching}
     answer = ask(facts_answer, request, path=path)
     facts = answer.facts
     return GeometryFacts(
@@ -173,7 +178,7 @@ def facts_answer(request: dict[str, Any]) -> Answer:
     """Find what `read_facts` asks for; this runs in the process of its own."""
     path = Path(request["path"])
     held = read_parts(path)
-    found = facts_of(held.solids, held.names, path.name, request["points"])
+    found = facts_of(held.solids, held.names, path.name, request["points"], touching=request["touching"])
     facts: dict[str, Any] = {
         "parts": [asdict(part) for part in found.parts],
         "faces": [asdict(face) for face in found.faces],
