@@ -9,6 +9,14 @@ import pytest
 import faying
 from faying.fe.cad_process import Answer, ask
 
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(autouse=True)
+def _importable(monkeypatch):
+    """The tasks of this file are imported by name in the other process."""
+    monkeypatch.syspath_prepend(ROOT)
+
 
 def doubled(request):
     return Answer(facts={"pid": os.getpid()}, arrays={"twice": 2 * np.array(request["values"])})
