@@ -27,6 +27,7 @@ from .measured.frf import FRF
 from .measured.identify import identify_modes
 from .measured.model import ModelModes
 from .measured.records import frf_from_records
+from .measured.ring_down import MeasuredBackbone, ring_down, ring_down_of_frf
 from .measured.uff import read_uff
 from .measured.uff_write import write_uff
 from .result import Result, read_model_modes

@@ -41,7 +41,7 @@ def test_several_frictions_and_preloads_give_numbered_files(capsys, tmp_path):
     )
     assert not code, said.err
     assert sorted(path.name for path in tmp_path.iterdir()) == [f"curve-{k}.nc" for k in (1, 2, 3, 4)]
-    for words in ("mode 1, 1 kN, friction 0.2", "mode 1, 3 kN, friction 0.4", "error bounds", "ends: "):
+    for words in ("mode 1, 1 kN, JK, friction 0.2", "mode 1, 3 kN, JK, friction 0.4", "error bounds", "ends: "):
         assert words in said.out
 
 
@@ -58,6 +58,8 @@ def test_several_frictions_and_preloads_give_numbered_files(capsys, tmp_path):
         (("--friction", "0.2", "--rest-damping", "some"), "plain number"),
         (("--friction", "0.2", "--plot", "curve.xyz"), "figures can be written as"),
         (("--friction", "0.2", "--measured", "none.csv"), "none.csv"),
+        (("--friction", "0.2", "--law", "jk,j-q"), "no contact law 'j-q'"),
+        (("--friction", "0.2", "--law", "jk,gw"), "GW needs density"),
     ],
 )
 def test_faults_are_named(capsys, tmp_path, options, words):

@@ -71,6 +71,21 @@ def test_the_springs_follow_the_law_as_it_opens_and_closes(name):
         assert exact - 0.02 * max(exact, 3e6) <= p <= exact * (1 + 1e-6)
 
 
+@pytest.mark.parametrize("name", ["JK", "Hertz", "in proportion"])
+@pytest.mark.parametrize("share", [0.01, 0.03, 0.1, 0.3])
+def test_a_normal_motion_to_and_fro_meets_the_stiffness_of_the_law(name, share):
+    """What opening takes from a smooth law's stiffness closing gives back: the first harmonic is the law's."""
+    law = LAWS[name]
+    cut, (here,) = at_pressure(law, 3e6)
+    k = law.stiffness(np.array([3e6]))[0][0]
+    X = np.zeros((3, 1, 3))
+    X[0, 0, 0], X[1, 0, 0] = -here, share * 3e6 / k
+    found = cut.cycle(X, derivative=False, samples=256).traction[1, 0, 0]
+    wave = np.cos(2 * np.pi * np.arange(256) / 256)
+    exact = -2 * np.mean(law.pressure(here - X[1, 0, 0] * wave)[0] * wave)
+    assert found == pytest.approx(exact, rel=2e-3)
+
+
 def test_points_that_are_open_close_as_the_law_says():
     law = LAWS["JK"]
     top = law.approach(5e6)

@@ -134,6 +134,20 @@ def test_backbones_zoom_over_amplitude_on_a_logarithmic_axis(browser, result, tm
         assert page.locator("h2", has_text="Error bounds of mode 1 over amplitude").count() == 2
 
 
+def test_measured_points_are_marked_on_the_curves_of_a_backbone(browser, result, tmp_path):
+    points = {"measured_acceleration": [0.5, 5.0, 40.0], "measured_frequency": [98.0, 95.0, 80.0]}
+    curve = replace(made(frequency=lambda a: 100 - a, damping=0.01), **points, measured_damping=[0.01, np.nan, 0.02])
+    curve = replace(curve, measured_source="points.csv")
+    (tmp_path / "report.html").write_text(report.html(replace(result, backbones=(curve,))), encoding="utf-8")
+    with opened(browser, (tmp_path / "report.html").as_uri(), reduced_motion="reduce") as page:
+        until(page, "window.ready")
+        charts = page.locator("[data-curves=backbones] .fc")
+        circles = [charts.nth(k).locator("svg svg path").nth(1).get_attribute("d").count("a3.5") / 2 for k in (0, 1)]
+        assert circles == [3, 2]  # damping was measured at two of them
+        assert "measured (points.csv)" in charts.first.locator(".fc-key").inner_text()
+        assert page.locator("h2", has_text="Measured points beside mode 1").count() == 1
+
+
 def test_the_packed_curves_are_the_accelerance(result):
     (group,) = curves.curves(result)
     np.testing.assert_allclose(array(group["frequencies"]), LINES, rtol=1e-6)

@@ -10,10 +10,13 @@ import faying
 from faying.errors import InputError
 from faying.joint.epmc import Epmc
 from faying.joint.structure import Joint
+from faying.output import table
+from faying.output.figures.backbone import label
 from faying.output.sections import sections
 from faying.result import Result
 from faying.study import Study, backbone_store
 from faying.study.keys.backbone import BackboneChoice
+from faying.study.keys.law import LawChoice
 from faying.study.study import Study as StudyClass
 from tests.helpers.laws import Given
 
@@ -83,6 +86,44 @@ def test_a_list_of_frictions_gives_curves_from_one_basis(study, curve):
     assert [c.friction for c in both] == [(0.2,), (0.8,)]
     assert both[0].basis_size == both[1].basis_size
     assert np.all(both[1].damping < both[0].damping[: len(both[1].damping)])
+
+
+def test_a_list_of_laws_gives_curves_from_one_basis(study, curve):
+    """A law with 1.9 times the radius is stiffer: its curve in the common basis is that which it has alone."""
+    given = {"density": 2e10, "radius": 30e-6, "sigma": 0.4e-6}
+    stiff = LawChoice(model="gw", given=given)
+    mine = replace(study, joints=tuple(replace(joint, law=stiff) for joint in study.joints))
+    quick = {"mode": 1, "friction": 0.2, "amplitude": RANGE, "harmonics": 1}
+    jk, gw = faying.backbone(mine, **quick, law=["jk", "gw"])
+    assert (jk.laws, gw.laws) == (("JK",), ("GW",))
+    assert jk.basis_size == gw.basis_size
+    alone = faying.backbone(mine, **quick)
+    for found, own in ((jk, faying.backbone(study, **quick)), (gw, alone)):
+        assert found.linear_frequency == pytest.approx(own.linear_frequency, rel=1e-7)
+        f, z = found.at_acceleration(own.acceleration[:-1])
+        np.testing.assert_allclose(f, own.frequency[:-1], rtol=2e-5)
+        np.testing.assert_allclose(z, own.damping[:-1], rtol=0.02)
+    assert label(jk, (jk, gw)) == "JK"
+    assert any("tangential" in note.text for note in gw.notes)
+    assert not any("tangential" in note.text for note in jk.notes)
+
+
+def test_measured_points_of_the_study_stand_beside_the_curve(study, tmp_path):
+    file = tmp_path / "points.csv"
+    file.write_text("acceleration [m/s^2],frequency [Hz],damping [%]\n600,8727,.001\n9000,8725,.01\n", encoding="utf-8")
+    mine = replace(study, backbone=BackboneChoice(friction=(0.2,), amplitude=RANGE, harmonics=1, measured=file))
+    found = faying.backbone(mine)
+    assert found.measured.source == "points.csv"
+    assert found.measured.damping[0] == pytest.approx(1e-5)
+    frequency, damping = found.at_measured()
+    f, z = found.at_acceleration(600.0)
+    assert (frequency[0], damping[0]) == (pytest.approx(float(f)), pytest.approx(float(z)))
+    assert np.isnan(frequency[1])  # beyond the end of the curve
+    found.to_netcdf(tmp_path / "curve.nc")
+    assert faying.Backbone.load(tmp_path / "curve.nc") == found
+    rows = table.backbone_measured(found)
+    assert [row[0] for row in rows[1:]] == ["600", "9000"]
+    assert rows[2][2] == "-"
 
 
 def test_preload_stiffens_and_holds(study):
@@ -206,6 +247,7 @@ friction = [0.1, 0.2]
 harmonics = 1
 rest_damping = "law"
 slip = "coulomb"
+law = ["jk", "mb"]
 """
 
 
@@ -249,6 +291,7 @@ def test_the_study_says_which_curve(tmp_path):
         harmonics=1,
         rest_damping="law",
         slip="coulomb",
+        laws=(LawChoice(model="JK"), LawChoice(model="MB")),
     )
     with pytest.raises(InputError, match="lists friction 0.1, 0.2: give one"):
         faying.backbone(file)

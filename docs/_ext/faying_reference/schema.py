@@ -50,6 +50,7 @@ OWN: dict[str, dict[str, Any]] = {
     "tightening.order": listed(TEXT, 1),
     "backbone.amplitude": listed({"$ref": "#/$defs/quantity"}, 2, 2),
     "backbone.friction": {"anyOf": [NUMBER, listed(NUMBER, 1)]},
+    "backbone.law": {"anyOf": [TEXT, listed(TEXT, 1)]},
     "backbone.rest_damping": {"anyOf": [{"type": "number"}, {"const": "law"}]},
     "test.frequencies": listed(listed({"$ref": "#/$defs/quantity"}, 1), 1),
     "test.published": listed(listed({"$ref": "#/$defs/quantity"}, 1), 1),

@@ -18,6 +18,9 @@ from faying.cli.progress import Shown, progress_options
 @click.option("--at", metavar="POINT", help='Where, for example "10,0,5 mm" [where the mode moves most].')
 @click.option("--friction", metavar="MU[,MU]", help="Of all joints; several give several curves [that of the joints].")
 @click.option(
+    "--law", metavar="LAW[,LAW]", help="Contact law of all joints; several give several curves [that of the study]."
+)
+@click.option(
     "--preload", "preloads", multiple=True, help='One of the study, for example "8 kN" [the greatest], or all.'
 )
 @click.option("--harmonics", type=click.IntRange(1, 9), help="Highest harmonic of the motion; 1 is quick [3].")
@@ -74,7 +77,7 @@ def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
     from faying import units
     from faying.errors import InputError
     from faying.study.backbone import chosen, load_index
-    from faying.study.keys.backbone import accelerations
+    from faying.study.keys.backbone import accelerations, laws
 
     given: dict[str, Any] = {"mode": options["mode"], "harmonics": options["harmonics"]}
     if options["amplitude"] is not None:
@@ -86,6 +89,8 @@ def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
         given["rest_damping"] = "law" if rest == "law" else plain_number(rest, "--rest-damping")
     if options["coulomb"]:
         given["slip"] = "coulomb"
+    if options["law"] is not None:
+        given["laws"] = laws(options["law"].split(","), "--law")
     friction = None
     if options["friction"] is not None:
         friction = [plain_number(part, "--friction") for part in options["friction"].split(",")]
@@ -130,10 +135,12 @@ def text(curve: Any) -> str:
 
     at = ", ".join(f"{1e3 * x:.4g}" for x in curve.at)
     head = (
-        f"{curve.title}: mode {curve.mode}, {curve.preload / 1e3:g} kN, friction {curve.friction_text}; at ({at}) mm\n"
+        f"{curve.title}: {curve.what}; at ({at}) mm\n"
         f"{curve.unknowns:,} unknowns in {curve.basis_size} vectors, harmonics 0 to {curve.harmonics}; at rest "
         f"{curve.linear_frequency:.3f} Hz\n"
     )
     parts = [head, table.text(table.backbone(curve)), f"\nends: {curve.reason}\n"]
+    if curve.measured is not None:
+        parts += [f"measured points of {curve.measured_source}", table.text(table.backbone_measured(curve)), ""]
     parts += ["error bounds", table.text(table.backbone_bounds(curve)), ""]
     return "\n".join([*parts, *(f"note: {line}" for line in curve.warnings)])

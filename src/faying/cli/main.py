@@ -26,6 +26,7 @@ COMMANDS = {
     "modes": ("modes", "Real modes of a study or of assembled matrices, also over many machines."),
     "new": ("new", "Write a study of your own STEP file: joints, bolts, seats, mesh."),
     "predict": ("predict", "Intervals of the frequencies under scatter, and what causes them."),
+    "ring-down": ("ring_down", "Frequency and damping over amplitude from a free decay."),
     "run": ("run", "Run a study: from the surface and the preload to the modes."),
     "schema": ("schema", "JSON schema of a study, for editors that know TOML."),
     "sweep": ("sweep", "Many laws, surfaces and preloads on one structure, solved once."),

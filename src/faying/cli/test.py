@@ -6,6 +6,8 @@ from typing import Any
 
 import click
 
+from faying.cli.options import frequency_band
+
 TEXT = (".txt", ".csv", ".dat", ".asc")
 
 
@@ -63,7 +65,7 @@ def command(
     from faying.measured.poles import Rule
     from faying.measured.uff_write import write_uff
 
-    limits = _band(band)
+    limits = frequency_band(band) if band else None
     frf = read_frf(files, quantity, frequency_step, direction, length_unit, points)
     low, high = limits or (0.0, float("inf"))
     lines = int(((frf.frequency > 0) & (frf.frequency >= low) & (frf.frequency <= high)).sum())
@@ -112,19 +114,6 @@ def read_frf(
     if points:
         frf = replace(frf, positions=read_points(points))
     return frf.directed(direction) if direction else frf
-
-
-def _band(text: str | None) -> tuple[float, float] | None:
-    from faying import units
-    from faying.errors import InputError
-
-    if text is None:
-        return None
-    parts = text.split(":")
-    if len(parts) != 2:
-        raise InputError(f'--band "{text}": give two frequencies, for example "20 Hz:800 Hz"')
-    low, high = (units.parse(part, "Hz", name="--band") for part in parts)
-    return low, high
 
 
 def table(found: Any) -> str:

@@ -44,7 +44,8 @@ class EpmcPoint:
     amplitude: modal [m sqrt(kg)]; frequency: angular [rad/s]; damping: ratio to critical [-] of the joints alone;
     coordinates (1 + 2H, m): Fourier coefficients from the preload, mean, cos 1, sin 1, ...; level: what the observer
     sees [m/s2], or the amplitude where there is none; other_modes: share of them in the motion; slipping, open: shares
-    of the joints' area [-]; for each joint, by point: sliding [-] (q,), opening (q,) and dissipated [J/m2] (q,).
+    of the joints' area [-]; for each joint, by point: sliding [-] (q,), opening (q,), dissipated [J/m2] (q,), and
+    the coefficients of the traction (1 + 2H, q, 3) [Pa].
     """
 
     amplitude: float
@@ -58,6 +59,7 @@ class EpmcPoint:
     sliding: tuple[Array, ...]
     opening: tuple[Array, ...]
     dissipated: tuple[Array, ...]
+    traction: tuple[Array, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,6 +142,7 @@ class Epmc:
             sliding=(),
             opening=(),
             dissipated=(),
+            traction=(),
         )
 
     def solve(self, amplitude: float, known: Sequence[EpmcPoint] = ()) -> EpmcPoint:
@@ -331,6 +334,7 @@ class Epmc:
             sliding=tuple(np.asarray(cycle.slipping, dtype=float) for cycle in forces.cycles),
             opening=tuple(np.asarray(cycle.open, dtype=float) for cycle in forces.cycles),
             dissipated=tuple(np.asarray(cycle.dissipated, dtype=float) for cycle in forces.cycles),
+            traction=tuple(cycle.traction for cycle in forces.cycles),
         )
 
 

@@ -19,8 +19,9 @@ from faying.joint.pressure_curve import PressureCurve
 from faying.joint.sliders import Sliders, SliderState
 from faying.typing import Array
 
-FINEST = 3e-3  # of p/k_n at the preload: the least closing that has a spring of its own
-ABOVE = 4  # one spring in so many is added above the present approach
+FINEST = 3e-3  # of p/k_n at the preload: the least motion either way that has a spring of its own
+SHALLOW = 0.05  # of the greatest approach in the joint: a depth below it counts as so much
+ABOVE = 2  # one spring in so many is added above the present approach
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,7 +62,7 @@ class Microslip:
             law: of the joint.
             approach: (q,) [m] at each point under the preload; 0 or less: open.
             friction: coefficient [-], 0 or more.
-            springs: below the present approach; a quarter more are put above it for what closes in motion.
+            springs: below the present approach; half as many are put above it for what closes in motion.
             gap: (q,) [m] of the faces before any load; 0 where left out.
 
         Raises:
@@ -175,12 +176,13 @@ def _nodes(here: Array, depth: Array, top: float, below: int, above: int) -> Arr
     """Ends (q, 1 + below + above) of the cells of the curve, the present approach at column `below`.
 
     Geometric on both sides, measured from the present approach: from FINEST of depth = p/k_n to first touch below it,
-    above it to the greatest approach in the joint and twice the depth beyond.
+    above it to the greatest approach in the joint and twice the depth beyond. Both sides begin alike: were they not, a
+    small motion to and fro would soften the joint, where the rise of k on one side makes up for its fall on the other.
     """
     steps = np.linspace(0.0, 1.0, below)
     down = here[:, None] * (FINEST * depth / here)[:, None] ** steps
     down[:, 0] = here
-    first = 0.1 * np.maximum(depth, 0.05 * top)
+    first = FINEST * np.maximum(depth, SHALLOW * top)
     last = np.maximum(top - here, 0.0) + 2 * depth.max()
     up = first[:, None] * (last / first)[:, None] ** np.linspace(0.0, 1.0, above)
     return np.concatenate([here[:, None] - down, here[:, None], here[:, None] + up], axis=1)

@@ -75,75 +75,82 @@ def in_time(coefficients: Array, gap: Array, samples: int) -> CycleMotion:
 class MarchingSliders:
     """Sliders that are marched together: n of them, sorted by point.
 
-    owner, which: point and spring of each; k, reach as in Sliders; depth, limit (samples, n): closing beyond the onset
-    and greatest stretch; step: move since the instant before, begin: since the start (2 directions); stretch: what is
-    left of both, instant by instant.
+    owner, which: point and spring of each; onset, k, reach as in Sliders; points, many (p,): their points, and how many
+    of the sliders each has; begin: move since the start until the first instant (2 directions); stretch (samples, n):
+    what is left of the moves, instant by instant.
     """
 
     owner: Index
     which: Index
+    onset: Array
     k: Array
     reach: Array
-    depth: Array
-    limit: Array
-    step: tuple[Array, Array]
+    points: Index
+    many: Index
     begin: tuple[Array, Array]
     stretch: tuple[Array, Array]
 
     @classmethod
     def of(cls, sliders: Sliders, start: SliderState, motion: CycleMotion, owner: Index, which: Index) -> Self:
         """Sliders `which` of points `owner`, at their start."""
-        reach = sliders.reach[owner, which]
-        depth = motion.approach[:, owner]
-        depth -= sliders.onset[owner, which]
-        np.maximum(depth, 0.0, out=depth)
+        points, many = np.unique(owner, return_counts=True)
         return cls(
             owner=owner,
             which=which,
+            onset=sliders.onset[owner, which],
             k=sliders.k_t[owner, which],
-            reach=reach,
-            depth=depth,
-            limit=reach * depth,
-            step=_both(lambda i: np.diff(motion.slip[i], axis=0, prepend=motion.slip[i][-1:])[:, owner]),
+            reach=sliders.reach[owner, which],
+            points=points,
+            many=many,
             begin=_both(lambda i: (motion.slip[i][0] - start.slip[:, i])[owner] + start.stretch[owner, which, i]),
-            stretch=_both(lambda _: np.empty(depth.shape)),
+            stretch=_both(lambda _: np.empty((len(motion.to_time), len(owner)))),
         )
 
     def only(self, kept: Index) -> "MarchingSliders":
-        """Some of the sliders, where they are."""
+        """Some of the sliders, at the last instant of the cycle."""
 
         def part(pair: tuple[Array, Array]) -> tuple[Array, Array]:
-            return pair[0][..., kept], pair[1][..., kept]
+            last = _both(lambda _: np.empty((len(pair[0]), len(kept))))
+            for old, new in zip(pair, last, strict=True):
+                new[-1] = old[-1, kept]
+            return last
 
+        points, many = np.unique(self.owner[kept], return_counts=True)
         return MarchingSliders(
             owner=self.owner[kept],
             which=self.which[kept],
+            onset=self.onset[kept],
             k=self.k[kept],
             reach=self.reach[kept],
-            depth=self.depth[:, kept],
-            limit=self.limit[:, kept],
-            step=part(self.step),
-            begin=part(self.begin),
+            points=points,
+            many=many,
+            begin=(self.begin[0][kept], self.begin[1][kept]),
             stretch=part(self.stretch),
         )
 
     def turn(self, motion: CycleMotion, *, first: bool, memory: "Anchors | None") -> Mask:
         """Take them round the cycle once, the first time from the start; return which slid."""
         slid = np.zeros(len(self.k), dtype=bool)
-        for t in range(len(self.limit)):
+        approach = motion.approach[:, self.points]
+        steps = _both(lambda i: np.diff(motion.slip[i], axis=0, prepend=motion.slip[i][-1:])[:, self.points])
+        for t in range(len(approach)):
+            depth = np.repeat(approach[t], self.many)
+            depth -= self.onset
+            np.maximum(depth, 0.0, out=depth)
             one, two = self.stretch[0][t], self.stretch[1][t]
             if first and t == 0:
                 one[:], two[:] = self.begin
             else:
-                np.add(self.stretch[0][t - 1], self.step[0][t], out=one)
-                np.add(self.stretch[1][t - 1], self.step[1][t], out=two)
+                np.add(self.stretch[0][t - 1], np.repeat(steps[0][t], self.many), out=one)
+                np.add(self.stretch[1][t - 1], np.repeat(steps[1][t], self.many), out=two)
             size = one * one
             size += two * two
             np.sqrt(size, out=size)
-            left = self.limit[t] / np.maximum(size, TINY)
+            left = self.reach * depth
+            left /= np.maximum(size, TINY)
             slides = left < 1
             if memory is not None and slides.any():
-                memory.slide(t, np.flatnonzero(slides), (one, two), size, left, self.depth[t])
+                memory.slide(t, np.flatnonzero(slides), (one, two), size, left, depth)
             slid |= left < 1 - TOUCHES
             np.minimum(left, 1.0, out=left)
             one *= left

@@ -113,20 +113,20 @@ class SlipBasis:
         """Take vectors (unknowns, m) that were the basis of the same structure before, as they are."""
         self.basis.append(vectors)
 
-    def under(self, preload: PreloadState, springs: Sequence[Springs[Interface]]) -> "SlipBasis":
-        """The same structure under another preload, in the same basis."""
-        other = replace(self, preload=preload, springs=springs)
+    def under(self, structure: Structure, preload: PreloadState, springs: Sequence[Springs[Interface]]) -> "SlipBasis":
+        """The structure under another preload or other laws on its joints, in the same basis."""
+        other = replace(self, structure=structure, preload=preload, springs=springs)
         other.basis = self.basis
         return other
 
     def take_modes(self) -> None:
-        """Take the modes under this preload, where the factorisation is that under another."""
+        """Take the modes under this preload and these laws, where the factorisation is that under others."""
         rigid = self.structure.rigid_count
         _, shapes = nearby_modes(self.modes, self.joined, self.mass, rigid=rigid, count=self._trained, tolerance=NEARBY)
         self.basis.add(shapes)
 
     def modes_here(self) -> Modes:
-        """The modes under this preload, rigid motions first, with the factorisation that there is."""
+        """The modes under this preload and these laws, rigid motions first, with the factorisation that there is."""
         rigid = self.structure.rigid_count
         f, shapes = nearby_modes(self.modes, self.joined, self.mass, rigid=rigid, count=self.mode, tolerance=NEARBY)
         free = slice(0, rigid)
@@ -175,10 +175,9 @@ class SlipBasis:
             c, s = 2 * h - 1, 2 * h
             left[:, c] -= (h * w) ** 2 * inertia[:, c] + 2 * zeta * h * w**2 * inertia[:, s]
             left[:, s] -= (h * w) ** 2 * inertia[:, s] - 2 * zeta * h * w**2 * inertia[:, c]
-        for interface, joint in zip(self.basis.traces, epmc.model.joints, strict=True):
-            traction = joint.cycle(X, derivative=False, samples=epmc.samples).traction
-            traction[0] -= joint.at_rest[0]
-            traction *= joint.weights[:, None]
+        for interface, joint, found in zip(self.basis.traces, epmc.model.joints, point.traction, strict=True):
+            traction = found * joint.weights[:, None]
+            traction[0] -= joint.at_rest[0] * joint.weights[:, None]
             left = left + interface.relative.T @ traction.reshape(len(X), -1).T
         left[self.structure.fixed] = 0.0
         mend = self._answer(left)

@@ -8,6 +8,7 @@ import numpy as np
 
 from faying.columns import read_columns
 from faying.errors import InputError, ReadError
+from faying.files import write_text
 from faying.measured.frf import FRF, QUANTITIES
 from faying.typing import Array, Complex
 
@@ -16,7 +17,11 @@ RINGING = 3.0  # over the width of an edge: how long the ends of the record are 
 CYCLES = 20  # least length of the stretch that gives one point
 SCATTER = 0.05  # of ln amplitude about a stretch's parabola, beyond which it is noise or more than one mode
 LEAST = 5  # points without which there is no curve
-MOTIONS = {"displacement": 0, "velocity": 1, "acceleration": 2}  # how often displacement is differentiated
+Motion = Literal["displacement", "velocity", "acceleration"]
+MOTIONS: dict[Motion, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}  # derivatives of the displacement
+MOTION_UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s^2"}
+UNEVEN = 0.05  # of the time between two samples: digits that the file leaves out
+RECORD_FORM = "a record looks like: time [s],acceleration [m/s^2] and under it rows such as 0.0001,12.3"
 KNOWN = {"acceleration": "m/s^2", "displacement": "m", "frequency": "Hz", "damping": "1", "time": "s"}
 FORM = (
     "measured points look like: acceleration [m/s^2],frequency [Hz],damping [%] and under it rows such as 3,178.2,.21"
@@ -76,13 +81,46 @@ class MeasuredBackbone:
             source=str(path),
         )
 
+    def to_csv(self, path: str | Path) -> Path:
+        """Write the points as `read` takes them; the file appears complete or not at all."""
+        rows = [f"# {self.source}"] if self.source else []
+        rows.append("acceleration [m/s^2],frequency [Hz],damping [%]")
+        columns = zip(self.acceleration, self.frequency, 100 * self.damping, strict=True)
+        rows += [f"{a:.8g},{f:.8g},{z:.6g}" for a, f, z in columns]
+        return write_text(Path(path), "\n".join([*rows, ""]))
+
+
+def read_record(path: str | Path) -> tuple[Array, float, Motion]:
+    """Read the record of one sensor from a CSV file: time [s] and one motion, such as acceleration [m/s^2].
+
+    Returns:
+        The samples (n,) in SI units, the sampling rate [1/s], and what was measured.
+
+    Raises:
+        ReadError: with the file and the line, where it is no such record or its samples are not evenly spaced.
+    """
+    path = Path(path)
+    table = read_columns(path, {"time": "s", **MOTION_UNITS}, needed="time", form=RECORD_FORM)
+    found = [name for name in MOTIONS if name in table.values]
+    if len(found) != 1:
+        raise ReadError(f"{path}, line {table.head}: give one of the columns {', '.join(MOTIONS)}; {RECORD_FORM}")
+    time = table.values["time"]
+    if len(time) < 2:
+        raise ReadError(f"{path}: {len(time)} samples are no record; {RECORD_FORM}")
+    step = (time[-1] - time[0]) / (len(time) - 1)
+    apart = np.abs(np.diff(time) - step)
+    if not step > 0 or apart.max() > UNEVEN * step:
+        row = int(np.argmax(apart)) + 1
+        raise ReadError(f"{path}, line {table.lines[row]}: samples must follow each other evenly; resample the record")
+    return table.values[found[0]], 1 / step, found[0]
+
 
 def ring_down(
     signal: Any,
     sampling_rate: float,
     *,
     band: tuple[float, float],
-    quantity: Literal["acceleration", "velocity", "displacement"] = "acceleration",
+    quantity: Motion = "acceleration",
     cycles: int = CYCLES,
     start: float = 0.0,
 ) -> MeasuredBackbone:

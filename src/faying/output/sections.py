@@ -121,7 +121,7 @@ def _joints(result: Result) -> tuple[Section, ...]:
 def _backbones(result: Result) -> Iterator[Section]:
     """Curves of a mode over its amplitude, and what coarser computations would change."""
     for curve in result.backbones:
-        what = f"mode {curve.mode} over amplitude, {curve.preload / 1e3:g} kN, friction {curve.friction_text}"
+        what = curve.what.replace(",", " over amplitude,", 1)
         at = ", ".join(f"{1e3 * x:.4g}" for x in curve.at)
         yield Section(
             name="backbone",
@@ -130,6 +130,14 @@ def _backbones(result: Result) -> Iterator[Section]:
             line=f"{what}, at ({at}) mm; at rest {curve.linear_frequency:.3f} Hz; ends: {curve.reason}",
             below=f"At ({at}) mm; at rest {curve.linear_frequency:.3f} Hz. Ends: {curve.reason}.",
         )
+        if curve.measured is not None:
+            yield Section(
+                name="backbone measured",
+                rows=table.backbone_measured(curve),
+                title=f"Measured points beside {what}",
+                line=f"measured points of {curve.measured_source} beside {what}",
+                below=f"From {curve.measured_source}; a dozen at most, and what the curve has at their amplitude.",
+            )
         yield Section(
             name="backbone bounds",
             rows=table.backbone_bounds(curve),

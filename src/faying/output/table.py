@@ -4,6 +4,7 @@ from itertools import product
 
 import numpy as np
 
+from faying.measured.ring_down import MeasuredBackbone
 from faying.result import Result
 from faying.result.backbone import Backbone
 from faying.result.result import preload_slope
@@ -11,6 +12,7 @@ from faying.typing import Array
 
 Rows = list[list[str]]
 SHOWN = 2  # modes in the table of laws
+MOST_MEASURED = 12  # measured points in the table of a backbone
 SAME = 1e-4  # relative difference of two frequencies that is not shown
 
 
@@ -326,6 +328,37 @@ def backbone(curve: Backbone) -> Rows:
                 cell,
             ]
         )
+    return rows
+
+
+def backbone_measured(curve: Backbone) -> Rows:
+    """Measured points beside the curve at the same amplitude, a dozen at most over their range."""
+    frequency, damping = curve.at_measured()
+    rows: Rows = [["a [m/s2]", "measured [Hz]", "curve [Hz]", "difference", "measured [%]", "curve [%]", "ratio"]]
+    order = np.argsort(curve.measured_acceleration)
+    for k in order[np.unique(np.linspace(0, len(order) - 1, min(len(order), MOST_MEASURED)).round().astype(int))]:
+        measured = curve.measured_frequency[k], curve.measured_damping[k]
+        rows.append(
+            [
+                f"{curve.measured_acceleration[k]:.4g}",
+                f"{measured[0]:.3f}",
+                _or_dash(frequency[k], ".3f"),
+                _or_dash(frequency[k] / measured[0] - 1, "+.2%"),
+                _or_dash(100 * measured[1], ".3g"),
+                _or_dash(100 * damping[k], ".3g"),
+                _or_dash(damping[k] / measured[1], ".2f"),
+            ]
+        )
+    return rows
+
+
+def measured_backbone(points: MeasuredBackbone) -> Rows:
+    """One row per point of a free decay, with standard errors."""
+    rows: Rows = [["t [s]", "a [m/s2]", "f [Hz]", "+-", "damping [%]", "+-"]]
+    names = ("time", "acceleration", "frequency", "frequency_error", "damping", "damping_error")
+    for t, a, f, f_error, z, z_error in zip(*(getattr(points, name) for name in names), strict=True):
+        row = [f"{t:.4g}", f"{a:.4g}", f"{f:.3f}", f"{f_error:.1g}", f"{100 * z:.4g}", f"{100 * z_error:.1g}"]
+        rows.append(row)
     return rows
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.files import write_text
+from faying.measured.ring_down import MeasuredBackbone
 from faying.notes import Note
 from faying.result.fields import Recorded, declared, in_units, listed, read_whole, variable, write_whole
 from faying.result.provenance import Provenance
@@ -85,7 +86,7 @@ class Backbone(Recorded):
     The amplitude is that of the fundamental harmonic at the point `at` along `direction`. damping is the joints' ratio
     to critical plus `rest_damping`; friction is that of each joint; mode counts elastic modes from 1; preload [N] is
     that of the first bolt. code and reason say why the curve ends. shape_at [kg^-1/2]: what the mode at rest moves
-    at the point.
+    at the point. laws: name of the contact law of each joint; measured_source: file of the measured points.
     """
 
     title: str
@@ -124,6 +125,15 @@ class Backbone(Recorded):
     points: Array = variable("point", "axis", unit="m", long_name="points of the joints")
     weights: Array = variable("point", unit="m2", long_name="area of each point")
     joint_of_point: Index = variable("point", unit="1", long_name="joint of each point, from 0", dtype="i8")
+    measured_acceleration: Array = variable(
+        "measured", unit="m/s2", long_name="measured acceleration amplitude", default=()
+    )
+    measured_frequency: Array = variable("measured", unit="Hz", long_name="measured frequency", default=())
+    measured_damping: Array = variable(
+        "measured", unit="1", long_name="measured damping ratio; NaN where not measured", gaps=True, default=()
+    )
+    measured_source: str = ""
+    laws: tuple[str, ...] = ()
     witness: Witness | None = None
     bounds: ErrorBounds = field(default_factory=ErrorBounds)
     notes: tuple[Note, ...] = ()
@@ -131,7 +141,7 @@ class Backbone(Recorded):
 
     def __repr__(self) -> str:
         lines = [
-            f"Backbone {self.title!r}: mode {self.mode}, {self.preload / 1e3:g} kN, friction {self.friction_text}",
+            f"Backbone {self.title!r}: {self.what}",
             f"{'m/s2':>10}{'Hz':>12}{'damping':>10}{'slips':>8}",
         ]
         for a, f, z, s in zip(self.acceleration, self.frequency, self.damping, self.slipping, strict=True):
@@ -142,6 +152,35 @@ class Backbone(Recorded):
     def friction_text(self) -> str:
         """The friction of the joints, once where it is the same for all."""
         return ", ".join(f"{value:g}" for value in dict.fromkeys(self.friction))
+
+    @property
+    def what(self) -> str:
+        """Mode, preload, laws and friction in words."""
+        laws = "".join(f", {name}" for name in dict.fromkeys(self.laws))
+        return f"mode {self.mode}, {self.preload / 1e3:g} kN{laws}, friction {self.friction_text}"
+
+    @property
+    def measured(self) -> MeasuredBackbone | None:
+        """The measured points that the study names, None without."""
+        if not len(self.measured_acceleration):
+            return None
+        unknown = np.full(len(self.measured_acceleration), np.nan)
+        return MeasuredBackbone(
+            acceleration=self.measured_acceleration,
+            frequency=self.measured_frequency,
+            damping=self.measured_damping,
+            frequency_error=unknown,
+            damping_error=unknown,
+            time=unknown,
+            source=self.measured_source,
+        )
+
+    def at_measured(self) -> tuple[Array, Array]:
+        """Frequency [Hz] and damping ratio [-] of the curve at the measured accelerations, NaN beyond its end."""
+        inside = self.measured_acceleration <= self.acceleration[-1]
+        frequency, damping = (np.full(len(inside), np.nan) for _ in range(2))
+        frequency[inside], damping[inside] = self.at_acceleration(self.measured_acceleration[inside])
+        return frequency, damping
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -249,7 +288,8 @@ class Backbone(Recorded):
             name: getattr(self, name)
             for name in ("title", "mode", "harmonics", "basis_size", "unknowns", "code", "reason")
         }
-        out["friction"], out["joints"], out["bolts"] = (list(x) for x in (self.friction, self.joints, self.bolts))
+        for name in ("friction", "joints", "bolts", "laws"):
+            out[name] = list(getattr(self, name))
         for name, unit in (
             ("preload", "N"),
             ("linear_frequency", "Hz"),

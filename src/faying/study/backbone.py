@@ -22,8 +22,11 @@ from faying.progress import Report
 from faying.result.backbone import Backbone
 from faying.study.backbone_result import Curve, collected
 from faying.study.backbone_store import CurveStore
-from faying.study.case import Case
-from faying.study.keys.backbone import BackboneChoice, Point, check_friction
+from faying.study.beside import changed, study_beside
+from faying.study.case import Case, checked_laws, law_reasons, surfaces_of
+from faying.study.keys.backbone import BackboneChoice, Point, check_friction, laws
+from faying.study.keys.beside import BesideChoice
+from faying.study.keys.law import LawChoice
 from faying.study.modes import modes_of, settled
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
@@ -53,6 +56,7 @@ def backbone(
     load: float | None = ...,
     rest_damping: float | Literal["law"] | None = ...,
     slip: Literal["microslip", "coulomb"] | None = ...,
+    law: str | None = ...,
     out: str | Path | None = ...,
     report: Report | None = ...,
 ) -> Backbone: ...
@@ -70,6 +74,7 @@ def backbone(
     load: float | None = ...,
     rest_damping: float | Literal["law"] | None = ...,
     slip: Literal["microslip", "coulomb"] | None = ...,
+    law: str | Sequence[str] | None = ...,
     out: str | Path | None = ...,
     report: Report | None = ...,
 ) -> tuple[Backbone, ...]: ...
@@ -86,6 +91,7 @@ def backbone(
     load: float | None = None,
     rest_damping: float | Literal["law"] | None = None,
     slip: Literal["microslip", "coulomb"] | None = None,
+    law: str | Sequence[str] | None = None,
     out: str | Path | None = None,
     report: Report | None = None,
 ) -> Backbone | tuple[Backbone, ...]:
@@ -104,6 +110,8 @@ def backbone(
         load: Preload of the first bolt [N], one of the study's; the greatest by default.
         rest_damping: Ratio to critical [-] that is added to that of slip, or "law": what the laws lose without slip.
         slip: "microslip" (default) cuts the law's curve into springs with sliders; "coulomb" takes one slider a point.
+        law: Contact law of all joints, such as "jk", in place of the study's. A list gives a tuple of curves, from one
+            basis; the study's own law keeps its parameters.
         out: File (.nc) that the curve is written to. What is done is kept beside it until then: a computation that was
             killed goes on where it stopped. With several curves, their files are numbered.
         report: Called with a stage, the steps done, and how many there are.
@@ -118,14 +126,19 @@ def backbone(
     Source:
         Extended periodic motion concept: Krack 2015, doi:10.1016/j.compstruc.2015.03.008.
     """
-    many = isinstance(friction, Sequence)
+    several = isinstance(law, Sequence) and not isinstance(law, str)
+    many = isinstance(friction, Sequence) or several
     asked: dict[str, Any] = {"mode": mode, "amplitude": amplitude, "at": at, "harmonics": harmonics}
     asked |= {"rest_damping": rest_damping, "slip": slip}
+    asked["laws"] = None if law is None else laws([law] if isinstance(law, str) else list(law), "law")
     study = Study.read(study)
     choice = chosen(study, friction, asked)
     if not many and len(choice.friction) > 1:
         given = ", ".join(f"{value:g}" for value in choice.friction)
         raise InputError(f"[backbone] lists friction {given}: give one of them, or the list for a tuple of curves")
+    if not many and len(choice.laws) > 1:
+        given = ", ".join(one.model for one in choice.laws)
+        raise InputError(f"[backbone] lists the laws {given}: give one of them, or the list for a tuple of curves")
     curves = backbones(
         study, choice, loads=[len(study.loads) - 1 if load is None else load_index(study, load)], out=out, report=report
     )
@@ -157,14 +170,17 @@ def backbones(
     out: str | Path | None = None,
     report: Report | None = None,
 ) -> tuple[Backbone, ...]:
-    """Curves for every friction of a choice at some loads of a study (indices, all where None), from one basis.
+    """Curves for every law and friction of a choice at some loads of a study (indices, all where None), from one basis.
 
     Args, Raises: see `backbone`.
     """
     indices = list(range(len(study.loads))) if loads is None else list(loads)
     frictions = friction_of(study, choice)
-    progress = _Progress(report, len(indices) * len(frictions))
+    progress = _Progress(report, max(len(choice.laws), 1) * len(indices) * len(frictions))
     progress.stage("surface and mesh", 0.0)
+    for law in choice.laws:
+        other = study_beside(study, _beside(study, law))
+        checked_laws(other, surfaces_of(other))  # raises, before the mesh
     case = Case.of(study)
     file = None if out is None else Path(out)
     with CurveStore(file, fingerprint(study, choice, indices)) as store:
@@ -177,12 +193,12 @@ def backbones(
 
 
 def backbones_of(case: Case, choice: BackboneChoice, *, report: Report | None = None) -> tuple[Backbone, ...]:
-    """Curves for every friction of a choice, at the greatest preload of a case that is ready to be solved.
+    """Curves for every law and friction of a choice, at the greatest preload of a case that is ready to be solved.
 
     Raises: see `backbone`.
     """
     frictions = friction_of(case.study, choice)
-    progress = _Progress(report, len(frictions))
+    progress = _Progress(report, max(len(choice.laws), 1) * len(frictions))
     with CurveStore(None, "") as store:
         return tuple(_curves(case, choice, [len(case.study.loads) - 1], frictions, store, progress))
 
@@ -234,10 +250,12 @@ def _curves(
     store: CurveStore,
     progress: _Progress,
 ) -> list[Backbone]:
-    study = case.study
-    bases = _bases(case, choice, indices, progress)
+    cases = [_under(case, law) for law in choice.laws] or [case]
+    places = [(one, k) for one in cases for k in indices]
+    bases = _bases(places, choice, progress)
     prepared = [
-        _Prepared(case=case, choice=choice, load=study.loads[k], basis=b) for k, b in zip(indices, bases, strict=True)
+        _Prepared(case=one, choice=choice, load=one.study.loads[k], basis=b)
+        for (one, k), b in zip(places, bases, strict=True)
     ]
     vectors = store.basis()
     if vectors is not None:
@@ -264,12 +282,27 @@ def _curves(
     return out
 
 
-def _bases(case: Case, choice: BackboneChoice, indices: Sequence[int], progress: _Progress) -> list[SlipBasis]:
-    """The structure under each load, with one basis, which is empty yet."""
-    study, structure = case.study, case.structure
-    problem = structure.assembly(solver=study.modes.solver)
+def _beside(study: Study, law: LawChoice) -> BesideChoice:
+    """A law on all joints, with the parameters that the study gives it where all of them have it already."""
+    own = {study.law_of(joint).kind.label: study.law_of(joint) for joint in study.joints}
+    return BesideChoice(name=law.model, law=own[law.kind.label] if set(own) == {law.kind.label} else law)
+
+
+def _under(case: Case, law: LawChoice) -> Case:
+    """The case under another law, with what there is to say of it."""
+    other = changed(case, _beside(case.study, law))
+    kept = [note for note in case.notes if note not in law_reasons(case.structure, case.surfaces)]
+    return replace(other, notes=(*kept, *law_reasons(other.structure, other.surfaces)))
+
+
+def _bases(places: Sequence[tuple[Case, int]], choice: BackboneChoice, progress: _Progress) -> list[SlipBasis]:
+    """The structure of each case under one of its loads, with one basis, which is empty yet."""
     bases: list[SlipBasis] = []
-    for index in indices:
+    before: Case | None = None
+    for case, index in places:
+        study, structure = case.study, case.structure
+        if case is not before:
+            problem, before = structure.assembly(solver=study.modes.solver), case
         progress.stage(f"preload {study.loads[index] / 1e3:g} kN", 0.2)
         preload = settled(case, index, problem)
         springs = structure.springs(preload.pressures)
@@ -280,7 +313,7 @@ def _bases(case: Case, choice: BackboneChoice, indices: Sequence[int], progress:
                     'set tangential = "mindlin", or take another law'
                 )
         if bases:
-            bases.append(bases[0].under(preload, springs))
+            bases.append(bases[0].under(structure, preload, springs))
             continue
         progress.stage("modes", 0.4)
         bases.append(

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from faying.errors import NotConverged
 from faying.joint.epmc import Epmc, EpmcCurve, EpmcPoint
 from faying.joint.slip_basis import SlipBasis
 from faying.joint.slip_cycle import nearest, static_cycle
+from faying.measured.ring_down import MeasuredBackbone
 from faying.notes import Note
 from faying.result.backbone import Backbone, ErrorBounds, Witness
 from faying.study.case import Case
@@ -79,12 +81,23 @@ def collected(curve: Curve) -> Backbone:
         points=np.concatenate([i.positions for i in interfaces]),
         weights=np.concatenate([i.weights for i in interfaces]),
         joint_of_point=np.concatenate([np.full(len(i.weights), k) for k, i in enumerate(interfaces)]),
+        laws=tuple(joint.law.model.name for joint in structure.joints),
         witness=witness,
         bounds=replace(bounds, residual=float(max(residuals))),
         notes=tuple(_notes(curve, bounds, witness)),
         provenance=provenance(study),
         **_along(curve, points),
+        **_measured(curve.choice.measured),
     )
+
+
+def _measured(path: Path | None) -> dict[str, Any]:
+    """The measured points of a file, as the curve holds them."""
+    if path is None:
+        return {}
+    points = MeasuredBackbone.read(path)
+    found = {f"measured_{name}": getattr(points, name) for name in ("acceleration", "frequency", "damping")}
+    return {**found, "measured_source": path.name}
 
 
 def _along(curve: Curve, points: Sequence[EpmcPoint]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from faying.joint.epmc import EpmcPoint
 from faying.study.part_folder import Kept, load_arrays, save_arrays
 from faying.typing import Array
 
-LISTS = ("sliding", "opening", "dissipated")  # one array for each joint
+LISTS = ("sliding", "opening", "dissipated", "traction")  # one array for each joint
 
 
 class CurveStore(Kept):

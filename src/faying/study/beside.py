@@ -12,6 +12,7 @@ from faying.notes import Note
 from faying.study.case import Case, Progress, interface_of, joint_law, law_reasons, materials_at, surfaces_of
 from faying.study.keys.beside import BesideChoice
 from faying.study.solve import State, solve
+from faying.study.study import Study
 
 TOLD = ("open", "beyond-law", "outside-validity", "law-choice", "assumed")  # notes of the other law that are told
 
@@ -37,7 +38,7 @@ def solve_beside(case: Case, choice: BesideChoice, progress: Progress) -> Beside
     """Solve a case under another law on all joints, at all loads, without meshing anew."""
     done = progress.done
     try:
-        other = _changed(case, choice)
+        other = changed(case, choice)
         problem = other.structure.assembly(solver=case.study.modes.solver)
         states = tuple(_slim(solve(other, k, problem, progress, ranges=False)) for k in range(len(case.study.loads)))
     except FayingError as fault:
@@ -59,9 +60,8 @@ def _slim(state: State) -> State:
     return replace(state, modes=replace(state.modes, factorisation=Released(name=factor.name, memory=factor.memory)))
 
 
-def _changed(case: Case, choice: BesideChoice) -> Case:
-    """The case under another law or form, with the same mesh and what is assembled on it."""
-    study = case.study
+def study_beside(study: Study, choice: BesideChoice) -> Study:
+    """The study with another law, surface or form on all joints."""
     joints = tuple(
         replace(
             joint,
@@ -71,11 +71,16 @@ def _changed(case: Case, choice: BesideChoice) -> Case:
         )
         for joint in study.joints
     )
-    study = replace(study, joints=joints, response=None, hammer=None)
+    return replace(study, joints=joints, response=None, hammer=None)
+
+
+def changed(case: Case, choice: BesideChoice) -> Case:
+    """The case under another law or form, with the same mesh and what is assembled on it."""
+    study = study_beside(case.study, choice)
     surfaces = surfaces_of(study)
     mesh = case.structure.mesh
     placed = []
-    for joint, old, surface in zip(joints, case.structure.joints, surfaces, strict=True):
+    for joint, old, surface in zip(study.joints, case.structure.joints, surfaces, strict=True):
         law = joint_law(joint, study.law_of(joint), surface, *materials_at(study, mesh, joint))
         interface = old.interface if choice.form is None else interface_of(study, mesh, joint)[0]
         placed.append(replace(old, law=law, scan_area=surface.scan_area, interface=interface))

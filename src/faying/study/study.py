@@ -108,7 +108,11 @@ class Study:
         shared = top.table("surface")
         surface = None if shared is None else SurfaceChoice.of(shared)
         beside = tuple(BesideChoice.of(t, i) for i, t in enumerate(top.tables("beside")))
+        backbone = BackboneChoice.of(top.table("backbone"))
         _note_lacking(faults, joints, law, surface)
+        for named_law in backbone.laws if backbone is not None else ():
+            named = tuple(replace(joint, law=named_law) for joint in joints)
+            _note_lacking(faults, named, law, surface, "backbone.law: ")
         for number, other in enumerate(beside, start=1):
             changed = tuple(
                 replace(joint, law=other.law or joint.law, surface=other.surface or joint.surface) for joint in joints
@@ -126,7 +130,6 @@ class Study:
         modes = ModesChoice.of(top.table("modes"))
         order = read_order(top.table("tightening"), [bolt.name for bolt in bolts])
         response = ResponseChoice.of(top.table("response"))
-        backbone = BackboneChoice.of(top.table("backbone"))
         test, hammer = read_test(top, max((b.preload for b in bolts if b.preload), key=len, default=()))
         geometry = _with_selectors(geometry, faults)
         uncertain = _uncertain(top, inside, joints, bolts, materials, parts)

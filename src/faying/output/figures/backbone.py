@@ -15,8 +15,10 @@ ROUNDING = 1e-9  # of the greatest damping: less is rounding
 
 
 def label(curve: Backbone, curves: Sequence[Backbone]) -> str:
-    """What tells a curve from the others: friction and preload, where these differ."""
+    """What tells a curve from the others: law, friction and preload, where these differ."""
     parts = []
+    if len({other.laws for other in curves}) > 1:
+        parts.append(", ".join(dict.fromkeys(curve.laws)))
     if len({other.preload for other in curves}) > 1:
         parts.append(f"{curve.preload / 1e3:g} kN")
     if len({other.friction for other in curves}) > 1 or not parts:
@@ -27,9 +29,11 @@ def label(curve: Backbone, curves: Sequence[Backbone]) -> str:
 def panel(ax: Any, curves: Sequence[Backbone], quantity: str, measured: Sequence[MeasuredBackbone] = ()) -> Any:
     """Draw frequency [Hz] or damping [%] of curves over acceleration, the static cycle as circles.
 
-    quantity: "frequency" or "damping". Measured points are crosses.
+    quantity: "frequency" or "damping". Measured points, those of the curves' study first, are crosses.
     """
-    factor = 100.0 if quantity == "damping" else 1.0
+    own = curves[0].measured
+    measured = [*([] if own is None else [own]), *measured]
+    factor = _factor(quantity)
     for k, curve in enumerate(curves):
         color = f"C{k % 10}"
         ax.plot(
@@ -53,17 +57,32 @@ def panel(ax: Any, curves: Sequence[Backbone], quantity: str, measured: Sequence
                 label="static cycle" if k == 0 else None,
             )
     for k, points in enumerate(measured):
-        known = np.isfinite(getattr(points, quantity))
-        ax.plot(
-            points.acceleration[known],
-            factor * getattr(points, quantity)[known],
-            "xv+s"[k % 4],
-            color="0.25",
-            ms=4.5,
-            mew=1.1,
-            mfc="none",
-            label=plain(Path(points.source).stem if points.source else "measured"),
-        )
+        _marks(ax, points, quantity, k)
+    return _framed(ax, quantity)
+
+
+def _marks(ax: Any, points: MeasuredBackbone, quantity: str, k: int) -> None:
+    """Draw measured points, marked as the k-th of their kind."""
+    known = np.isfinite(getattr(points, quantity))
+    ax.plot(
+        points.acceleration[known],
+        _factor(quantity) * getattr(points, quantity)[known],
+        "xv+s"[k % 4],
+        color="0.25",
+        ms=4.5,
+        mew=1.1,
+        mfc="none",
+        label=plain(Path(points.source).stem if points.source else "measured"),
+    )
+
+
+def _factor(quantity: str) -> float:
+    """From SI to what is drawn."""
+    return 100.0 if quantity == "damping" else 1.0
+
+
+def _framed(ax: Any, quantity: str) -> Any:
+    """Scales, grid and names of the axes."""
     ax.set_xscale("log")
     _readable(ax.xaxis)
     ax.grid(which="major", alpha=0.3)
@@ -81,15 +100,24 @@ def zooming(curves: Sequence[Backbone], points: int = 200) -> dict[str, Any]:
     """Curves of one mode for a page: on one grid of accelerations, none beyond its own end."""
     low = max(curve.acceleration[0] for curve in curves)
     grid = np.geomspace(low, max(curve.acceleration[-1] for curve in curves), points)
+    measured, marked = curves[0].measured, ""
+    if measured is not None:
+        grid = np.unique(np.concatenate([grid, measured.acceleration]))
     found = {}
     for curve in curves:
-        inside = grid <= curve.acceleration[-1] * (1 + 1e-9)
-        frequency, damping = (np.full(points, np.nan) for _ in range(2))
+        inside = (grid >= low) & (grid <= curve.acceleration[-1] * (1 + 1e-9))
+        frequency, damping = (np.full(len(grid), np.nan) for _ in range(2))
         frequency[inside], damping[inside] = curve.at_acceleration(grid[inside])
         damping[damping < ROUNDING * curve.damping.max()] = np.nan  # nothing slips yet
         found[label(curve, curves)] = (frequency, 100 * damping)
+    if measured is not None:
+        place = np.searchsorted(grid, measured.acceleration)
+        frequency, damping = (np.full(len(grid), np.nan) for _ in range(2))
+        frequency[place], damping[place] = measured.frequency, 100 * measured.damping
+        marked = f"measured ({measured.source})"
+        found[marked] = (frequency, damping)
     at = ", ".join(f"{1e3 * x:.4g}" for x in curves[0].at)
-    return packed_backbones(f"acceleration at ({at}) mm [m/s²]", grid, found)
+    return packed_backbones(f"acceleration at ({at}) mm [m/s²]", grid, found, marked)
 
 
 def _readable(axis: Any) -> None:
@@ -118,4 +146,16 @@ def figure(curves: Sequence[Backbone], measured: Sequence[MeasuredBackbone] = ()
     lower.set_xlabel(f"acceleration at ({at}) mm [m/s²]")
     upper.set_title(f"{plain(first.title)}: mode {first.mode}", fontsize=10)
     upper.legend(fontsize=8)
+    return fig
+
+
+def measured(points: MeasuredBackbone) -> Any:
+    """Return the figure of measured points alone: frequency above, damping below."""
+    fig = new_figure(6.3, 6.2)
+    upper, lower = fig.subplots(2, 1, sharex=True)
+    for ax, quantity in ((upper, "frequency"), (lower, "damping")):
+        _marks(ax, points, quantity, 0)
+        _framed(ax, quantity)
+    lower.set_xlabel("acceleration [m/s²]")
+    upper.set_title(plain(points.source) or "free decay", fontsize=10)
     return fig

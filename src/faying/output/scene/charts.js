@@ -1,8 +1,8 @@
 /* Curves that zoom, as SVG.
  *
- *   const found = chart(element, { x, series: [{ name, y }], xlabel, ylabel, log, logX, title, range, onRange })
+ *   const found = chart(element, { x, series: [{ name, y, marks }], xlabel, ylabel, log, logX, title, range, onRange })
  *
- * x and y are arrays of numbers, x rising; log and logX draw an axis logarithmically. Drag across to zoom, double-click or Escape to see all;
+ * x and y are arrays of numbers, x rising; marks draws y as points; log and logX draw an axis logarithmically. Drag across to zoom, double-click or Escape to see all;
  * with the keyboard: plus and minus zoom, the arrows move along. found.show([low, high] | null) sets what is seen of x.
  */
 const CURVES = 7; // colours that stay apart for colour-blind readers, after Okabe and Ito
@@ -70,7 +70,8 @@ export function chart(element, { x: given, series, xlabel, ylabel, title, log = 
   element.append(box);
   const values = series.map((one, k) => {
     const span = document.createElement("span"), text = document.createElement("span");
-    span.append(svg("svg", { viewBox: "0 0 22 8", "aria-hidden": "true" }, svg("path", { d: "M0 4H22", ...look(k) })), text);
+    const sample = one.marks ? "M8 4a3 3 0 1 0 6 0a3 3 0 1 0 -6 0" : "M0 4H22";
+    span.append(svg("svg", { viewBox: "0 0 22 8", "aria-hidden": "true" }, svg("path", { d: sample, ...look(k) })), text);
     key.append(span);
     return text;
   });
@@ -118,13 +119,14 @@ export function chart(element, { x: given, series, xlabel, ylabel, title, log = 
     parts.push(svg("text", { x: (edge.left + right) / 2, y: height - 5, "text-anchor": "middle" }, xlabel));
     parts.push(svg("text", { x: 0, y: 0, "text-anchor": "middle", transform: `translate(13 ${(edge.top + bottom) / 2}) rotate(-90)` }, ylabel));
     const clip = svg("svg", { x: edge.left, y: edge.top, width: right - edge.left, height: bottom - edge.top, viewBox: `${edge.left} ${edge.top} ${right - edge.left} ${bottom - edge.top}` });
-    series.forEach(({ y, wraps }, k) => {
+    series.forEach(({ y, wraps, marks }, k) => {
       let d = "", pen = false;
       for (let j = first; j <= last; j++) {
         const seen = Number.isFinite(y[j]) && (!log || y[j] > 0);
         if (seen && pen && wraps && Math.abs(y[j] - y[j - 1]) > wraps) pen = false;
-        if (seen) d += `${pen ? "L" : "M"}${toX(x[j]).toFixed(1)} ${toY(y[j]).toFixed(1)}`;
-        pen = seen;
+        if (seen && marks) d += `M${toX(x[j]).toFixed(1)} ${toY(y[j]).toFixed(1)}m-3.5 0a3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0 -7 0`;
+        else if (seen) d += `${pen ? "L" : "M"}${toX(x[j]).toFixed(1)} ${toY(y[j]).toFixed(1)}`;
+        pen = seen && !marks;
       }
       clip.append(svg("path", { d, ...look(k) }));
     });
@@ -133,7 +135,7 @@ export function chart(element, { x: given, series, xlabel, ylabel, title, log = 
     if (at !== null) parts.push(svg("line", { class: "cross", x1: toX(x[at]), x2: toX(x[at]), y1: edge.top, y2: bottom }));
     face.replaceChildren(...parts);
     series.forEach(({ name, y }, k) => {
-      values[k].textContent = at === null ? name : `${name}: ${Number(y[at].toPrecision(4))} at ${Number(shownX(x[at]).toPrecision(logX ? 4 : 6))}`;
+      values[k].textContent = at === null || !Number.isFinite(y[at]) ? name : `${name}: ${Number(y[at].toPrecision(4))} at ${Number(shownX(x[at]).toPrecision(logX ? 4 : 6))}`;
     });
   }
 

@@ -62,10 +62,10 @@ async function curves(place, groups) {
 }
 
 /** Frequency and damping of a mode over its amplitude; each curve has amplitudes of its own, so all are put on one grid. */
-async function backbones(place, { title, names, acceleration, frequency, damping }) {
+async function backbones(place, { title, names, marked, acceleration, frequency, damping }) {
   const x = await unpacked(acceleration), of = async (given) => {
     const y = await unpacked(given);
-    return names.map((name, curve) => ({ name, y: y.subarray(curve * x.length, (curve + 1) * x.length) }));
+    return names.map((name, curve) => ({ name, marks: name === marked, y: y.subarray(curve * x.length, (curve + 1) * x.length) }));
   };
   const both = [], common = { x, logX: true, xlabel: title, onRange: (range) => both.forEach((one) => one.show(range)) };
   both.push(chart(place, { ...common, title: "Frequency over amplitude", series: await of(frequency), ylabel: "frequency [Hz]" }));

@@ -163,11 +163,17 @@ def packed(values: Any, kind: str, scale: float = 1.0) -> dict[str, Any]:
     return {"type": kind, "shape": list(small.shape), "scale": scale, "data": data}
 
 
-def packed_backbones(title: str, acceleration: Array, curves: dict[str, tuple[Array, Array]]) -> dict[str, Any]:
-    """Frequencies [Hz] and damping ratios [%] over accelerations [m/s2] (k,) by their names, for `report.js`."""
+def packed_backbones(
+    title: str, acceleration: Array, curves: dict[str, tuple[Array, Array]], marked: str = ""
+) -> dict[str, Any]:
+    """Frequencies [Hz] and damping ratios [%] over accelerations [m/s2] (k,) by their names, for `report.js`.
+
+    marked: name of the one that is drawn as points.
+    """
     return {
         "title": title,
         "names": list(curves),
+        "marked": marked,
         "acceleration": packed(acceleration, "f4"),
         "frequency": packed(np.stack([frequency for frequency, _ in curves.values()]), "f4"),
         "damping": packed(np.stack([damping for _, damping in curves.values()]), "f4"),

@@ -2,10 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Literal
 
 from faying import units
+from faying.contact.build import find
 from faying.errors import InputError
+from faying.measured.ring_down import MeasuredBackbone
+from faying.study.keys.law import LawChoice
 from faying.study.keys.reader import Table, number, point
 
 Point = tuple[float, float, float]
@@ -24,6 +28,8 @@ class BackboneChoice:
         harmonics: Highest harmonic of the motion, 1 to 9.
         rest_damping: Ratio to critical [-] that is added, or "law": what the laws lose without slip.
         slip: "microslip" cuts the law's own curve, "coulomb" takes one slider a point.
+        laws: Laws of all joints, each a curve; those of the joints where empty.
+        measured: CSV file of measured points that are drawn beside.
 
     Raises:
         InputError: One of them is out of range.
@@ -36,6 +42,8 @@ class BackboneChoice:
     harmonics: int = 3
     rest_damping: float | Literal["law"] = 0.0
     slip: Literal["microslip", "coulomb"] = "microslip"
+    laws: tuple[LawChoice, ...] = ()
+    measured: Path | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.mode, bool) or self.mode < 1:
@@ -69,7 +77,11 @@ class BackboneChoice:
             "harmonics": table.count("harmonics", 3),
             "rest_damping": table.take("rest_damping", _rest, 0.0),
             "slip": table.text("slip", "microslip", ("microslip", "coulomb")),
+            "laws": table.take("law", laws, ()),
+            "measured": table.file("measured", None),
         }
+        if given["measured"] is not None:
+            table.made(lambda: MeasuredBackbone.read(given["measured"]))  # a fault shows at once
         table.close()
         return table.made(lambda: cls(**given))
 
@@ -93,6 +105,16 @@ def frictions(value: Any, name: str) -> tuple[float, ...]:
     """Convert one coefficient of friction, or a list of them."""
     values: Sequence[Any] = value if isinstance(value, list) else [value]
     return tuple(number(one, name) for one in values)
+
+
+def laws(value: Any, name: str) -> tuple[LawChoice, ...]:
+    """Convert the name of one law, or a list of them. Raises InputError where there is no such law."""
+    values: Sequence[Any] = value if isinstance(value, list) else [value]
+    for one in values:
+        if not isinstance(one, str):
+            form = 'the name of a law, or a list of them, such as ["auto", "jk"]'
+            raise InputError(f"{name} = {value!r} should be {form}")
+    return tuple(LawChoice(model=find(one).label) for one in values)
 
 
 def _rest(value: Any, name: str) -> float | str:

@@ -1,0 +1,76 @@
+"""`faying ring-down RECORD --band LOW:HIGH`: the measured backbone of a mode from a free decay."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+
+from faying.cli.options import frequency_band, quantity
+
+
+@click.command()
+@click.argument("record", type=click.Path(path_type=Path))
+@click.option("--band", required=True, metavar="LOW:HIGH", help='Where the mode is alone, for example "150 Hz:180 Hz".')
+@click.option("--start", metavar="TIME", help='Of the free decay in a record, for example "0.02 s" [its beginning].')
+@click.option("--impulse", metavar="TEXT", help='Of the hit, where RECORD holds its FRF, for example "0.3 N s".')
+@click.option("--function", type=click.IntRange(1), help="Which FRF of a universal file, from 1 [the only one].")
+@click.option("--cycles", type=click.IntRange(3), default=20, show_default=True, help="Periods that give one point.")
+@click.option("--out", type=click.Path(dir_okay=False, path_type=Path), help="CSV file for faying backbone --measured.")
+@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw the points (svg, png, pdf).")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
+def command(record: Path, **options: Any) -> None:
+    """Frequency and damping of one mode against its amplitude, from the free decay in RECORD.
+
+    RECORD is a CSV file with the columns time [s] and acceleration [m/s^2] (or velocity [m/s], displacement [m]), or a
+    universal file with the FRF of a single hit. A band-pass filter and the Hilbert transform give the points.
+    """
+    from faying.output.figures import backbone as drawing
+    from faying.output.figures.save import check_figure, save
+    from faying.output.table import measured_backbone, text
+
+    if options["plot"]:
+        check_figure(options["plot"])
+    found = decay(record, options)
+    if options["out"]:
+        found.to_csv(options["out"])
+    if options["plot"]:
+        save(drawing.measured(found), options["plot"])
+    if options["as_json"]:
+        units = {"acceleration": "m/s2", "frequency": "Hz", "damping": "1", "time": "s"}
+        units |= {"frequency_error": "Hz", "damping_error": "1"}
+        click.echo(json.dumps({n: quantity(getattr(found, n).tolist(), u) for n, u in units.items()}, indent=2))
+        return
+    click.echo(text(measured_backbone(found)))
+
+
+def decay(record: Path, options: dict[str, Any]) -> Any:
+    """The measured points of a record, or of the FRF of a hit."""
+    from dataclasses import replace
+
+    from faying import units
+    from faying.errors import InputError
+    from faying.measured.ring_down import read_record, ring_down, ring_down_of_frf
+    from faying.measured.uff import read_uff
+
+    band, cycles = frequency_band(options["band"]), options["cycles"]
+    if record.suffix.lower() == ".csv":
+        if options["impulse"] is not None or options["function"] is not None:
+            raise InputError("--impulse and --function are for the FRF of a universal file; a record in time has none")
+        signal, rate, motion = read_record(record)
+        start = 0.0 if options["start"] is None else units.parse(options["start"], "s", name="--start")
+        found = ring_down(signal, rate, band=band, quantity=motion, cycles=cycles, start=start)
+        return replace(found, source=record.name)
+    if options["impulse"] is None:
+        raise InputError(f'{record}: an FRF says nothing of the strength of the hit; give --impulse "0.3 N s"')
+    if options["start"] is not None:
+        raise InputError("--start is for a record in time; an FRF begins with the hit")
+    frf = read_uff(record).frf()
+    both = [(o, i) for o in range(frf.values.shape[0]) for i in range(frf.values.shape[1])]
+    if (options["function"] is None and len(both) > 1) or (options["function"] or 1) > len(both):
+        named = ", ".join(f"{k}: {frf.outputs[o]} by {frf.inputs[i]}" for k, (o, i) in enumerate(both, start=1))
+        raise InputError(f"{record} holds {len(both)} FRFs; give one of them with --function ({named})")
+    output, by = both[(options["function"] or 1) - 1]
+    impulse = units.parse(options["impulse"], "N*s", name="--impulse")
+    found = ring_down_of_frf(frf, impulse=impulse, band=band, output=output, input=by, cycles=cycles)
+    return replace(found, source=record.name)

@@ -1,0 +1,97 @@
+"""faying ring-down: points of a free decay, from records and FRFs, and what it refuses."""
+
+import json
+import runpy
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from faying.cli import main
+from faying.measured.ring_down import MeasuredBackbone
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "ring-down"
+RATE, HZ, RATIO = 4096.0, 100.0, 0.003
+BAND = ("--band", "70 Hz:130 Hz")
+
+
+def call(capsys, *args):
+    with pytest.raises(SystemExit) as stop:
+        main(["ring-down", *map(str, args)])
+    return stop.value.code, capsys.readouterr()
+
+
+@pytest.fixture
+def record(tmp_path):
+    """Two seconds of a linear mode's decay in mm."""
+    t = np.arange(int(2 * RATE)) / RATE
+    x = 3e-3 * np.exp(-RATIO * 2 * np.pi * HZ * t) * np.cos(2 * np.pi * HZ * t)
+    rows = [f"{a:.9g},{1e3 * b:.9g}" for a, b in zip(t, x, strict=True)]
+    file = tmp_path / "decay.csv"
+    file.write_text("\n".join(["time [s],displacement [mm]", *rows]), encoding="utf-8")
+    return file
+
+
+def test_a_decay_becomes_points_that_a_backbone_takes(record, capsys, tmp_path):
+    out, plot = tmp_path / "points.csv", tmp_path / "points.svg"
+    code, said = call(capsys, record, *BAND, "--out", out, "--plot", plot, "--json")
+    assert not code, said.err
+    found = json.loads(said.out)
+    assert found["frequency"]["unit"] == "Hz"
+    points = MeasuredBackbone.read(out)
+    assert points.frequency == pytest.approx(HZ, rel=1e-6)
+    assert points.damping == pytest.approx(RATIO, rel=1e-3)
+    time = np.array(found["time"]["values"])
+    assert points.acceleration == pytest.approx(
+        3e-3 * (2 * np.pi * HZ) ** 2 * np.exp(-RATIO * 2 * np.pi * HZ * time), rel=1e-3
+    )
+    assert plot.stat().st_size > 1000
+
+
+def test_the_example_gives_back_what_it_was_made_of(capsys, tmp_path):
+    """Noise of .02 m/s2: .01 Hz and 5 % of the damping at 2.4 m/s2, where the record ends."""
+    made = runpy.run_path(str(EXAMPLE / "make_record.py"))
+    code, said = call(
+        capsys, EXAMPLE / "decay.csv", "--band", "80 Hz:120 Hz", "--cycles", "10", "--out", tmp_path / "points.csv"
+    )
+    assert not code, said.err
+    points = MeasuredBackbone.read(tmp_path / "points.csv")
+    assert points.acceleration[0] > 20
+    assert points.frequency == pytest.approx(made["frequency"](points.acceleration), abs=0.02)
+    assert points.damping == pytest.approx(made["damping"](points.acceleration), rel=0.08)
+
+
+def test_a_record_may_begin_before_the_decay(record, capsys):
+    code, said = call(capsys, record, *BAND, "--start", "0.5 s")
+    assert not code
+    assert float(said.out.splitlines()[1].split()[0]) > 0.5
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("time [s],force [N]\n0,1\n1,2\n", "unknown; known are time, displacement, velocity, acceleration"),
+        ("time [s]\n0\n1\n", "give one of the columns displacement, velocity, acceleration"),
+        ("time [s],velocity [m/s],displacement [m]\n0,1,1\n1,2,2\n", "give one of the columns"),
+        ("time [s],velocity [m/s]\n0,1\n", "1 samples are no record"),
+        ("time [s],velocity [m/s]\n0,1\n1,1\n2.5,1\n3,2\n", "line 4: samples must follow each other evenly"),
+        ("time [s],velocity [m/s]\n1,1\n0,1\n", "evenly"),
+    ],
+)
+def test_a_file_that_is_no_record_is_said(text, words, tmp_path, capsys):
+    (tmp_path / "record.csv").write_text(text, encoding="utf-8")
+    code, said = call(capsys, tmp_path / "record.csv", *BAND)
+    assert code == 1
+    assert words in said.err
+
+
+def test_what_an_frf_needs_is_said(record, capsys, tmp_path):
+    code, said = call(capsys, record, *BAND, "--impulse", "1 N s")
+    assert code == 1
+    assert "a record in time has none" in said.err
+    code, said = call(capsys, record, "--band", "70 Hz")
+    assert code == 1
+    assert "two frequencies" in said.err
+    code, said = call(capsys, tmp_path / "hit.uff", *BAND)
+    assert code == 1
+    assert '--impulse "0.3 N s"' in said.err
