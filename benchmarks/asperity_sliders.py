@@ -56,11 +56,9 @@ def asperities(law: JointLaw, approach: Array, *, friction: float, gap: Array | 
 def main(name: str) -> None:
     """Print fall of the frequency and damping at the published levels."""
 
-    def cut(
-        law: JointLaw, approach: Array, *, friction: float, springs: int = 0, gap: Array | None = None
-    ) -> Microslip:
+    def cut(law: JointLaw, approach: Array, *, springs: int = 0, **options: Any) -> Microslip:
         del springs  # as many as there are classes
-        return asperities(law, approach, friction=friction, gap=gap)
+        return asperities(law, approach, **options)
 
     with patch.object(Microslip, "cut", cut):
         curve = faying.backbone(EXAMPLE / f"{name}.toml", 1, FRICTION, RANGE, rest_damping=VISCOUS)
