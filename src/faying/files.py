@@ -5,10 +5,11 @@ import re
 import shutil
 import signal
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
+from zipfile import ZipFile
 
 from faying.errors import InputError, ReadError
 
@@ -30,6 +31,20 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
     finally:
         temporary.unlink(missing_ok=True)
     return path
+
+
+def write_arrays(path: Path, arrays: Mapping[str, Any]) -> Path:
+    """Write arrays in the form of `numpy.savez`, whole or not at all."""
+    import numpy as np
+
+    def fill(temporary: Path) -> None:
+        # not savez: on a full disk older versions of numpy leave the archive open, which complains when it is collected
+        with ZipFile(temporary, "w") as archive:
+            for name, array in arrays.items():
+                with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
+                    np.lib.format.write_array(file, np.asanyarray(array), allow_pickle=False)
+
+    return write_atomically(path, fill)
 
 
 def write_text(path: Path, text: str) -> Path:
