@@ -7,6 +7,7 @@ from typing import Any, Literal
 from faying import units
 from faying.errors import InputError
 from faying.study.keys.reader import Table, number, point
+from faying.study.keys.solution import MOST_MODES
 
 Point = tuple[float, float, float]
 RANGE = (0.1, 100.0)  # m/s2
@@ -62,11 +63,11 @@ class BackboneChoice:
         if table is None:
             return None
         given = {
-            "mode": table.count("mode", 1),
+            "mode": table.count("mode", 1, most=MOST_MODES),
             "amplitude": table.take("amplitude", accelerations, RANGE),
             "at": table.take("at", point, None),
             "friction": table.take("friction", frictions, ()),
-            "harmonics": table.count("harmonics", 3),
+            "harmonics": table.count("harmonics", 3, most=9),
             "rest_damping": table.take("rest_damping", _rest, 0.0),
             "slip": table.text("slip", "microslip", ("microslip", "coulomb")),
         }
