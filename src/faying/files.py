@@ -129,6 +129,20 @@ def uninterrupted() -> Iterator[None]:
         signal.raise_signal(number)
 
 
+def end_of(path: Path) -> tuple[str, ...]:
+    """A note where a text file's last line has no line break: it may have been cut short. None for other files.
+
+    A file that was cut where a line ends cannot be told from a shorter one (docs/decisions/0021-files-cut-short.md).
+    """
+    with path.open("rb") as handle:
+        head = handle.read(4096)
+        if not head or head[:2] == b"PK" or not all(b in b"\t\n\r\x0c\x1a" or b >= 32 for b in head):
+            return ()
+        handle.seek(-1, 2)
+        ended = handle.read(1) in b"\r\n\x1a"
+    return () if ended else (f"{path}: the last line has no line break; the file may be cut short",)
+
+
 _DECIMAL_COMMA = re.compile(r"(?<![\d.,])\d+,\d+(?:[eE][-+]?\d+)?(?=\s*[;\t]|[ ]+[-+.\d]|$)")
 
 

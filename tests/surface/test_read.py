@@ -342,6 +342,23 @@ def test_a_text_without_an_end_of_line_may_be_cut_short_and_fits_say_so(tmp_path
     assert back.notes[0] in fit_fractal(back).warnings
 
 
+@pytest.mark.parametrize("down", [False, True])
+@pytest.mark.parametrize("fast", ["x", "y"])
+def test_a_grid_cut_within_a_row_is_refused_whichever_way_it_runs(tmp_path, fast, down):
+    """7 x 5 points by rows or by columns, upwards or downwards; cut where a row ends, it is a smaller grid."""
+    steps = range(4, -1, -1) if down else range(5)
+    points = [(k, j) if fast == "x" else (j, k) for j in steps for k in range(7)]
+    lines = [f"{x},{y},{np.sin(x + y):.6f}\n" for x, y in points]
+    path = tmp_path / "a.csv"
+    for count in range(len(lines), 14, -1):
+        path.write_text("".join(lines[:count]))
+        if count % 7 == 0:
+            assert read_scan(path, "um", "nm").heights.size == count
+        else:
+            with pytest.raises(ReadError, match="cut off"):
+                read_scan(path, "um", "nm")
+
+
 @pytest.mark.parametrize("suffix", ["x3p", "csv"])
 def test_a_scan_cut_short_is_refused(rough, tmp_path, suffix):
     path = write_scan(rough, tmp_path / f"a.{suffix}", **({} if suffix == "x3p" else {"xy_unit": "mm", "z_unit": "um"}))
