@@ -35,6 +35,7 @@ def test_a_folder_that_is_not_there(tmp_path):
 
 LIMITED = """
 import resource, sys
+sys.dont_write_bytecode = True  # Python would leave cut files of bytecode, and the packages would be broken
 from faying.study import case
 
 def meshed(study, of=case.checked_mesh):

@@ -5,10 +5,11 @@ import re
 import shutil
 import signal
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
+from zipfile import ZipFile
 
 from faying.errors import InputError, ReadError
 
@@ -30,6 +31,20 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
     finally:
         temporary.unlink(missing_ok=True)
     return path
+
+
+def write_arrays(path: Path, arrays: Mapping[str, Any]) -> Path:
+    """Write arrays in the form of `numpy.savez`, whole or not at all."""
+    import numpy as np
+
+    def fill(temporary: Path) -> None:
+        # not savez: on a full disk older versions of numpy leave the archive open, which complains when it is collected
+        with ZipFile(temporary, "w") as archive:
+            for name, array in arrays.items():
+                with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
+                    np.lib.format.write_array(file, np.asanyarray(array), allow_pickle=False)
+
+    return write_atomically(path, fill)
 
 
 def write_text(path: Path, text: str) -> Path:
@@ -112,6 +127,20 @@ def uninterrupted() -> Iterator[None]:
             signal.signal(which, signal.SIG_DFL if handler is None else handler)
     for number in came[:1]:
         signal.raise_signal(number)
+
+
+def end_of(path: Path) -> tuple[str, ...]:
+    """A note where a text file's last line has no line break: it may have been cut short. None for other files.
+
+    A file that was cut where a line ends cannot be told from a shorter one (docs/decisions/0021-files-cut-short.md).
+    """
+    with path.open("rb") as handle:
+        head = handle.read(4096)
+        if not head or head[:2] == b"PK" or not all(b in b"\t\n\r\x0c\x1a" or b >= 32 for b in head):
+            return ()
+        handle.seek(-1, 2)
+        ended = handle.read(1) in b"\r\n\x1a"
+    return () if ended else (f"{path}: the last line has no line break; the file may be cut short",)
 
 
 _DECIMAL_COMMA = re.compile(r"(?<![\d.,])\d+,\d+(?:[eE][-+]?\d+)?(?=\s*[;\t]|[ ]+[-+.\d]|$)")

@@ -27,6 +27,16 @@ def available() -> float | None:
     return min(found) if found else None
 
 
+def require(needed: float, what: str, remedy: str) -> None:
+    """Raise InputError where work needs more memory [B] than there is; what: the work, remedy: what asks for less."""
+    free = available()
+    if free is not None and needed > free:
+        raise InputError(
+            f"{what} need about {needed / GB:.3g} GB and {free / GB:.3g} GB are free; {remedy}, or set FAYING_MEMORY "
+            "to the GB that may be taken"
+        )
+
+
 def _machine() -> float | None:
     try:
         for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():

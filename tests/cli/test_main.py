@@ -147,3 +147,15 @@ def test_completion_of_the_shell_knows_the_commands():
     assert {"plain,new", "plain,faces", "plain,check", "plain,schema", "plain,run"} <= set(there)
     options = asked(_FAYING_COMPLETE="bash_complete", COMP_WORDS="faying new --", COMP_CWORD="2").split()
     assert {"plain,--scan", "plain,--yes", "plain,--force"} <= set(options)
+
+
+def test_an_end_of_file_in_a_command_is_no_interruption(monkeypatch):
+    """click takes EOFError for the user's wish to stop; it is a fault of ours, which must show."""
+    from faying.cli import models
+
+    def ends(**_):
+        raise EOFError("marshal data too short")
+
+    monkeypatch.setattr(models.command, "callback", ends)
+    with pytest.raises(EOFError, match="too short"):
+        main(["models"])

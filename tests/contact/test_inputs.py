@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from faying import JK, RIGID, ContactPair, InputError, Material
+from faying.cli import main
 from faying.contact import SurfaceInputs, laws
 
 PAIR = ContactPair(Material(name="m", E=200e9, nu=0.3, yield_strength=355e6), RIGID)
@@ -99,3 +100,14 @@ def test_jk_of_a_surface() -> None:
         D=2.4, G=1e-10, scan_area=16e-6, m0=1e-12, m2=1e-3, m4=1e8, slope=0.045, h_rms=1e-6, shortest=1e-6
     )
     assert JK.from_surface(s, PAIR) == JK(D=2.4, G=1e-10, pair=PAIR, scan_area=16e-6)
+
+
+@pytest.mark.parametrize("model", ["mb", "wk", "yk"])
+@pytest.mark.parametrize("D", ["2.0001", "2.0003", "2.9999"])
+def test_a_dimension_beside_its_limits_is_answered_or_refused_in_words(model, D, capsys):
+    """Their critical areas are powers of 1 / (D - 2)."""
+    command = ["law", "--model", model, "--D", D, "--G", "1e-10 m", "--scan-area", "16 mm^2", "--pressure", "1 MPa"]
+    with pytest.raises(SystemExit) as stop:
+        main([*command, "--material", "45 steel"])
+    said = capsys.readouterr()
+    assert stop.value.code == 0 or said.err.startswith("faying: ")

@@ -148,7 +148,7 @@ def test_every_study_key_stands_in_the_reference_with_its_default(site):
     for row in (
         "search_distance quantity [m], positive",
         'tangential text, "law" or "mindlin"',
-        "harmonics whole number, 1 or more 3",
+        "harmonics whole number, 1 to 9 3",
         "cutoff number, between 0 and 1 0.01",
     ):
         assert row in re.sub(r" ,", ",", text.replace("”", '"').replace("“", '"')), row

@@ -170,7 +170,7 @@ def test_the_rank_of_the_masses_does_not_hang_on_rounding(size, blocks, scale):
     """Each block of ones has rank 1, so that as many modes exist as there are blocks; rounding makes none."""
     from scipy.sparse import block_diag, csr_array
 
-    mass = csr_array(block_diag([scale * (i + 1) * np.ones((size, size)) for i in range(blocks)]))
+    mass = csr_array(block_diag([csr_array(scale * (i + 1) * np.ones((size, size))) for i in range(blocks)]))
     springs = np.random.default_rng(size).uniform(1, 100, size * blocks)
     flexibility = (1 / springs).reshape(blocks, size).sum(axis=1) * scale * (1 + np.arange(blocks))
     found = lowest_modes(csr_array(np.diag(springs)), mass, blocks, shift_frequency=0.01)

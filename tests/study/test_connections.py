@@ -243,7 +243,7 @@ point = ["1 mm", "2 mm", "3 mm"]
         ('[[mass]]\nmass = "1 kg"', "on a face or at a point; give one of the two"),
         ('[[mass]]\nface = "a"', r"mass\[1\].mass is missing"),
         ('[tightening]\norder = ["bolt", "nut"]', "should name every bolt: 'bolt'"),
-        ('[tightening]\norder = ["bolt"]\npasses = 0', "whole number of 1 or more"),
+        ('[tightening]\norder = ["bolt"]\npasses = 0', "whole number from 1 to"),
         ("[tightening]\npasses = 2", "tightening.order is missing"),
     ],
 )

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import faying
+from faying.cli import main
 from faying.fe.selectors import Selector
 from faying.study import Study, build, case, run
 from faying.study.axes import axis_of
@@ -99,3 +100,22 @@ def test_frequencies_of_a_model_are_not_headed_test():
         ax = structure.comparison(new_figure(3, 3).add_subplot(), one)
         assert ax.get_ylabel() == f"error [% of the {heading}]"
         assert one.to_dict()["comparison"]["kind"] == kind
+
+
+@pytest.mark.parametrize("text", ["a = " + "[" * 5000 + "]" * 5000, "a = " + "9" * 5000], ids=["nested", "digits"])
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_a_text_that_toml_cannot_hold_is_refused_in_words(tmp_path, capsys, text, command):
+    (tmp_path / "s.toml").write_text(text)
+    with pytest.raises(SystemExit) as stop:
+        main([command, str(tmp_path / "s.toml")])
+    assert stop.value.code == 1
+    assert "is not TOML" in "".join(capsys.readouterr())
+
+
+def test_init_of_a_folder_asks_for_a_file(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for name in (".", str(tmp_path)):
+        with pytest.raises(SystemExit) as stop:
+            main(["init", name])
+        assert stop.value.code == 1
+        assert "is a folder; name the study's file" in capsys.readouterr().err

@@ -10,6 +10,7 @@ import pytest
 
 import faying
 from faying.study import Study, build, run
+from faying.study.case import Case
 from faying.study.keys.law import LawChoice
 from faying.study.keys.solution import ModesChoice
 from faying.study.keys.surface import SurfaceChoice
@@ -254,3 +255,16 @@ def test_a_law_in_proportion_to_pressure_carries_a_joint(study):
     found = structure.assembly().solve(6000 * bolt_load(structure, *study.bolts[0].faces))
     assert structure.joints[0].interface.weights @ found.pressures[0] == pytest.approx(6000, rel=1e-8)
     assert not structure.joints[0].law.predicts_loss
+
+
+def test_a_table_without_a_line_break_at_its_end_is_told(tmp_path):
+    """A number of its last line may have been cut in two; a scan's own reader says it, a table's has no one to tell."""
+    write(tmp_path / "study.toml")
+    table = tmp_path / "law.csv"
+    table.write_text("pressure [MPa],k_n [MPa/um],k_t [MPa/um]\n0.001,1,1\n100,1000,800\n")
+    plan = replace(Study.read(tmp_path / "study.toml"), files=(table,))
+    assert "file-end" not in {note.code for note in Case.of(plan).notes}
+    table.write_text(table.read_text().rstrip("\n"))
+    assert [note.text for note in Case.of(plan).notes if note.code == "file-end"] == [
+        f"{table}: the last line has no line break; the file may be cut short"
+    ]

@@ -73,7 +73,7 @@ BOLT = {"preload": "6 kN"}
         ),
         ({"part": "upper", "normal": [0, 0, 0]}, "has no length"),
         ({"part": "upper", "nearest": [0, 0, 5]}, "has no unit"),
-        ({"part": "upper", "number": 0}, "whole number of 1 or more"),
+        ({"part": "upper", "number": 0}, "whole number from 1 to"),
         ({"part": "upper", "number": 1, "within": "1 mm"}, "within goes with nearest"),
         ({"part": "upper", "touch": "lower"}, "did you mean touching"),
         ({"part": "upper", "number": 1, "all": "yes"}, "should be true or false"),

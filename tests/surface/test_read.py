@@ -252,6 +252,72 @@ def test_a_zip_archive_without_main_xml_is_no_damaged_x3p(tmp_path):
         read_scan(path.rename(tmp_path / "a.x3p"))
 
 
+def sensofar(path, heights):
+    """A .plux: micrometres, FOV_X and FOV_Y are the spacing."""
+    ny, nx = heights.shape
+    index = (
+        "<xml><GENERAL>"
+        f"<DATE>2024-01-02</DATE><IMAGE_SIZE_X>{nx}</IMAGE_SIZE_X><IMAGE_SIZE_Y>{ny}</IMAGE_SIZE_Y>"
+        "<FOV_X>2</FOV_X><FOV_Y>3</FOV_Y></GENERAL>"
+        "<LAYER_0><FILENAME_Z>LAYER_0.raw</FILENAME_Z></LAYER_0><INFO><SIZE>0</SIZE></INFO></xml>"
+    )
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("index.xml", index)
+        archive.writestr("LAYER_0.raw", (heights * 1e6).astype("<f4").tobytes())
+
+
+def mitutoyo(path, heights):
+    """A workbook of SurfTest: a line scan in columns E and F, mm along and um up."""
+    book = pytest.importorskip("openpyxl").Workbook()
+    data = book.active
+    data.title = "DATA"
+    data["A1"] = "Ra 0.5 um"
+    for k, height in enumerate(heights[0], 1):
+        data[f"E{k}"], data[f"F{k}"] = 0.002 * k, float(height * 1e6)
+    certificate = book.create_sheet("Certificate")
+    certificate["E2"], certificate["E48"] = "2 Jan 2024", "0.8mm"
+    book.save(path)
+
+
+def nmm(path, heights):
+    """A scan of the nanomeasuring machine: heights in metres, a pair of files for each line."""
+    ny, nx = heights.shape
+    rule = "-" * 42
+    field = {
+        "Number of scans": "1",
+        "Number of lines": str(ny),
+        "Scan line length": f"{2 * (nx - 1)} [um]",
+        "Scan field width": f"{3 * (ny - 1)} [um]",
+        "Distance beetween points": "2 [um]",
+        "Distance beetween lines": "3 [um]",
+    }
+    lines = [rule, "Scan procedure description file", "Creation time: 2024-01-02 10:11:12", rule, "1 Scan field"]
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("s.dsc", "\n".join([*lines, *(f"{k}: {v}" for k, v in field.items()), rule, ""]))
+        for k, row in enumerate(heights, 1):
+            about = f"{rule}\n0 : 10:11:12 : -Lz+Az : {nx} : height\n{rule}\n"
+            archive.writestr(f"s_1_{k}.dsc", about)
+            archive.writestr(f"s_1_{k}.dat", "".join(f"{h:.9e}\n" for h in row))
+
+
+@pytest.mark.parametrize(
+    ("write", "name"), [(sensofar, "a.plux"), (mitutoyo, "a.xlsx"), (nmm, "a.zip")], ids=["plux", "xlsx", "nmm"]
+)
+def test_other_zip_formats_come_in_through_the_same_door(tmp_path, write, name):
+    pytest.importorskip("SurfaceTopography")
+    heights = spectral((24, 36), spacing=(2e-6, 3e-6), D=2.4, Rq=1e-6).heights
+    write(tmp_path / name, heights)
+    scan = read_scan(tmp_path / name)
+    if scan.heights.ndim == 1:
+        heights = heights[0]
+        assert scan.spacing == pytest.approx(2e-6, rel=1e-3)
+    else:
+        assert scan.spacing == pytest.approx((2e-6, 3e-6), rel=1e-6)
+    assert scan.heights.shape == heights.shape
+    off = scan.heights - heights
+    assert np.ptp(off) < 1e-5 * np.ptp(heights)
+
+
 def test_another_version_of_zip_is_refused_in_words(rough, tmp_path):
     path = write_scan(rough, tmp_path / "a.x3p")
     blob = bytearray(path.read_bytes())
@@ -340,6 +406,23 @@ def test_a_text_without_an_end_of_line_may_be_cut_short_and_fits_say_so(tmp_path
     assert back.heights.size < 300
     assert "may be cut short" in back.notes[0]
     assert back.notes[0] in fit_fractal(back).warnings
+
+
+@pytest.mark.parametrize("down", [False, True])
+@pytest.mark.parametrize("fast", ["x", "y"])
+def test_a_grid_cut_within_a_row_is_refused_whichever_way_it_runs(tmp_path, fast, down):
+    """7 x 5 points by rows or by columns, upwards or downwards; cut where a row ends, it is a smaller grid."""
+    steps = range(4, -1, -1) if down else range(5)
+    points = [(k, j) if fast == "x" else (j, k) for j in steps for k in range(7)]
+    lines = [f"{x},{y},{np.sin(x + y):.6f}\n" for x, y in points]
+    path = tmp_path / "a.csv"
+    for count in range(len(lines), 14, -1):
+        path.write_text("".join(lines[:count]))
+        if count % 7 == 0:
+            assert read_scan(path, "um", "nm").heights.size == count
+        else:
+            with pytest.raises(ReadError, match="cut off"):
+                read_scan(path, "um", "nm")
 
 
 @pytest.mark.parametrize("suffix", ["x3p", "csv"])

@@ -83,7 +83,7 @@ def of_kind(key: Key) -> dict[str, Any]:
     if key.kind.startswith("true or false"):
         return {"type": "boolean"}
     if key.kind == "whole number":
-        return {"type": "integer", "minimum": 1}
+        return {"type": "integer", "minimum": 1, "maximum": int(key.allowed.rpartition(" ")[2].replace(",", ""))}
     if key.kind == "number":
         return dict(NUMBER)
     raise ValueError(f"{key.path}: no schema for {key.kind!r}; add it to OWN")

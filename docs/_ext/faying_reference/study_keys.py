@@ -15,7 +15,7 @@ from faying.errors import FayingError
 from faying.study import study as study_module
 from faying.study.keys import geometry
 from faying.study.keys.law import OF_SURFACE
-from faying.study.keys.reader import MISSING, Table
+from faying.study.keys.reader import MISSING, MOST, Table
 from faying.study.study import Study
 
 NAME = "NAME"  # stands for the names that a user gives to tables and keys
@@ -105,9 +105,9 @@ def recorder(found: dict[str, Key], model: str) -> type[Table]:
             self._note(key, "number", _default(default))
             return super().number(key, default)
 
-        def count(self, key: str, default: Any = MISSING) -> Any:
-            self._note(key, "whole number", _default(default), "1 or more")
-            return super().count(key, default)
+        def count(self, key: str, default: Any = MISSING, *, most: int = MOST) -> Any:
+            self._note(key, "whole number", _default(default), f"1 to {most:,}")
+            return super().count(key, default, most=most)
 
         def texts(self, key: str, size: int, default: Any = MISSING) -> Any:
             self._note(key, f"list of {size} names", _default(default))

@@ -65,7 +65,9 @@ from faying.decks.programs import SOLVERS
 @click.option("--dofs", type=click.Path(path_type=Path), help='With a .mtx: "node direction" of each row.')
 @click.option("--stiffness-unit", metavar="UNIT", help='Of the matrices, such as "N/mm".')
 @click.option("--mass-unit", metavar="UNIT", help='Of the matrices, such as "t".')
-@click.option("--modes", "count", default=10, show_default=True, help="With --matrices: how many.")
+@click.option(
+    "--modes", "count", type=click.IntRange(1, 10_000), default=10, show_default=True, help="With --matrices: how many."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
 def command(
     model: Path,

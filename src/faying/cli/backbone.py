@@ -11,7 +11,9 @@ from faying.cli.progress import Shown, progress_options
 
 @click.command()
 @click.argument("study", type=click.Path(path_type=Path))
-@click.option("--mode", type=click.IntRange(1), help="Elastic mode, counted from the lowest [that of the study, or 1].")
+@click.option(
+    "--mode", type=click.IntRange(1, 10_000), help="Elastic mode, counted from the lowest [that of the study, or 1]."
+)
 @click.option(
     "--amplitude", metavar="FIRST:LAST", help='Accelerations, for example "0.1 m/s^2:60 m/s^2" [0.1 to 100 m/s^2].'
 )

@@ -11,6 +11,8 @@ from faying.decks.programs import CONDENSED
 
 WORDS = ("x", "y", "z", "turn x", "turn y", "turn z")
 
+NUMBER = click.IntRange(1, 99_999_999)  # eight digits, the field of a bulk data card
+
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("study", type=click.Path(path_type=Path))
@@ -21,9 +23,9 @@ WORDS = ("x", "y", "z", "turn x", "turn y", "turn z")
 @click.option("--to", "solver", type=click.Choice(CONDENSED), help="The solver to write for.")
 @click.option("--unit", help='Unit of length of that model, such as "mm".')
 @click.option("--force-unit", default="N", show_default=True, help="Unit of force of that model.")
-@click.option("--node-a", type=int, default=900001, show_default=True, help="Number of the first point's node.")
-@click.option("--node-b", type=int, default=900002, show_default=True, help="Number of the second point's node.")
-@click.option("--element", type=int, default=900001, show_default=True, help="Number of the element and property.")
+@click.option("--node-a", type=NUMBER, default=900001, show_default=True, help="Number of the first point's node.")
+@click.option("--node-b", type=NUMBER, default=900002, show_default=True, help="Number of the second point's node.")
+@click.option("--element", type=NUMBER, default=900001, show_default=True, help="Number of the element and property.")
 @click.option("--out", type=click.Path(path_type=Path), help="Folder of the deck (default: joint/ beside the study).")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
 @progress_options

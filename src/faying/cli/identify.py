@@ -12,9 +12,11 @@ from faying.cli.progress import Form, Shown, progress_options
 @click.command()
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--leave-out", multiple=True, metavar="PRELOAD", help='Predicted and not used, for example "12 kN".')
-@click.option("--seed", type=int, default=0, show_default=True, help="Of all random numbers.")
-@click.option("--count", type=int, default=1000, show_default=True, help="Samples of the posterior.")
-@click.option("--jobs", type=click.IntRange(1), help="Processes on this machine [one for each core].")
+@click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, help="Of all random numbers.")
+@click.option(
+    "--count", type=click.IntRange(100, 1_000_000), default=1000, show_default=True, help="Samples of the posterior."
+)
+@click.option("--jobs", type=click.IntRange(1, 1024), help="Processes on this machine [one for each core].")
 @click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
 @click.option(
     "--out", type=click.Path(path_type=Path), help="NetCDF file (default: results/identification.nc beside the study)."

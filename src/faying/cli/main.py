@@ -76,7 +76,9 @@ def main(argv: list[str] | None = None) -> None:
     except FayingError as fault:
         click.echo(f"faying: {fault}", err=True)
         sys.exit(1)
-    except click.exceptions.Abort:
+    except click.exceptions.Abort as stop:
+        if isinstance(stop.__cause__, EOFError):  # click takes the end of any file for the user's wish
+            raise stop.__cause__ from None
         click.echo("faying: interrupted", err=True)
         sys.exit(1)
     except click.ClickException as fault:

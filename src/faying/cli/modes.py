@@ -17,7 +17,9 @@ import click
 @click.option("--mass", type=click.Path(path_type=Path), help="Beside --stiffness, where that file does not hold it.")
 @click.option("--stiffness-unit", default="N/m", show_default=True, help="Of the entries of the stiffness.")
 @click.option("--mass-unit", default="kg", show_default=True, help="Of the entries of the mass.")
-@click.option("--count", type=click.IntRange(1), default=20, show_default=True, help="Modes, rigid motions among them.")
+@click.option(
+    "--count", type=click.IntRange(1, 10_000), default=20, show_default=True, help="Modes, rigid motions among them."
+)
 @click.option("--shift", metavar="FREQUENCY", help='Of the shift of the spectrum, for example "100 Hz" [found].')
 @click.option("--slepc", is_flag=True, help="Solve with SLEPc and MUMPS over the processes of mpiexec.")
 @click.option(
@@ -82,8 +84,10 @@ def command(
 
 def _here(given: Any, count: int, shift: float) -> dict[str, Any]:
     from faying.decks.matrices import total_mass
+    from faying.fe.memory import check_modes
     from faying.fe.modes import lowest_modes, missed_modes
 
+    check_modes(count, given.stiffness.shape[0])
     modes = lowest_modes(given.stiffness, given.mass, count, shift_frequency=shift)
     missed = missed_modes(given.stiffness, given.mass, modes)
     return {

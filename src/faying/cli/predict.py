@@ -11,9 +11,11 @@ from faying.cli.progress import Form, Shown, progress_options
 
 @click.command()
 @click.argument("study", type=click.Path(path_type=Path))
-@click.option("--samples", type=int, default=1024, show_default=True, help="Points of Sobol's sequence.")
-@click.option("--seed", type=int, default=0, show_default=True, help="Of the points.")
-@click.option("--jobs", type=click.IntRange(1), help="Processes on this machine [one for each core].")
+@click.option(
+    "--samples", type=click.IntRange(8, 1_000_000), default=1024, show_default=True, help="Points of Sobol's sequence."
+)
+@click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, help="Of the points.")
+@click.option("--jobs", type=click.IntRange(1, 1024), help="Processes on this machine [one for each core].")
 @click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
 @click.option(
     "--out", type=click.Path(path_type=Path), help="NetCDF file (default: results/prediction.nc beside the study)."

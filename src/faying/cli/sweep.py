@@ -23,7 +23,7 @@ from faying.cli.progress import Form, Shown, progress_options
     "--out", type=click.Path(path_type=Path), help="NetCDF file (default: results/sweep.nc beside the study)."
 )
 @click.option("--tolerance", type=float, default=4e-6, show_default=True, help="Relative error of a frequency.")
-@click.option("--jobs", type=click.IntRange(1), default=1, show_default=True, help="Processes on this machine.")
+@click.option("--jobs", type=click.IntRange(1, 1024), default=1, show_default=True, help="Processes on this machine.")
 @click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw one axis or two (svg, png, pdf).")
 @click.option("--json", "as_json", is_flag=True, help="Print a summary as JSON.")

@@ -81,7 +81,7 @@ class HalfSpace(ContactLaw):
         "stiffness": Parameter(TEXT, "direction in which k_n is taken", choices=("unloading", "loading")),
         "area": Parameter(TEXT, "real area, freed of the points' size or as counted", choices=("corrected", "counted")),
         "shear_ratio": Parameter("", "tangential load over friction times normal load", 0, 1, "[)"),
-        "points": Parameter("", "pressures at which the contact is solved", 4, ends="[)", whole=True),
+        "points": Parameter("", "pressures at which the contact is solved", 4, 200, "[]", whole=True),
         "lowest": Parameter("Pa", "least pressure covered", 0),
         "highest": Parameter("Pa", "greatest pressure covered, above the least and below the hardness", 0),
         "tol": Parameter("", "error bound asked of every contact", 0, 1),

@@ -16,7 +16,7 @@ from typing import Any, Protocol, final
 import numpy as np
 
 from faying.errors import InputError, NotConverged
-from faying.files import write_atomically
+from faying.files import write_arrays
 from faying.halfspace.solution import HalfSpaceContact
 from faying.halfspace.solve import halved_map
 from faying.typing import Array
@@ -231,13 +231,9 @@ def cached(make: Callable[[], Ladder], folder: Path | None, key: Mapping[str, ob
     arrays = {f"value_{name}": value for name, value in ladder.values.items()}
     arrays |= {name: getattr(ladder, name) for name in ("pressure", "points", "change", "window")}
 
-    def store(temporary: Path) -> None:
-        with temporary.open("wb") as stream:
-            np.savez(stream, allow_pickle=False, **arrays)
-
     try:
         place.mkdir(exist_ok=True)
-        write_atomically(file, store)
+        write_arrays(file, arrays)
     except (InputError, OSError):  # a folder that cannot be written: the ladder is solved anew next time
         pass
     return ladder

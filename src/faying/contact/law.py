@@ -155,7 +155,13 @@ class ContactLaw(ABC):
     def _grid(self) -> tuple[Array, Array]:
         """Parameter and ln(pressure) on a grid fine enough to bracket any root."""
         u = np.linspace(0.0, 1.0, TABLE_POINTS)
-        log_p = np.log(self._pressure_at(self._from_parameter(u)))
+        try:
+            log_p = np.log(self._pressure_at(self._from_parameter(u)))
+        except ArithmeticError:  # powers of 1 / (D - 2) and the like leave the range of floating point
+            raise NotConverged(
+                f"{self.name}: its numbers leave the range of floating point with these parameters; D near 2 or 3 does "
+                "that, take one between"
+            ) from None
         if not np.all(np.isfinite(log_p)) or np.any(np.diff(log_p) <= 0):
             raise NotConverged(
                 f"{self.name}: pressure does not grow with closure over {self.closure_range}; "

@@ -3,7 +3,7 @@
 import numpy as np
 
 from faying.errors import InputError
-from faying.memory import GB, available
+from faying.memory import GB, available, require
 
 # entries of a factor over unknowns^(4/3), as nested dissection of a compact solid grows (George 1973,
 # doi:10.1137/0710032);
@@ -32,3 +32,9 @@ def check(needed: float, unknowns: int, solver: str) -> None:
         f"{solver} needs {needed / GB:.3g} GB to factorise {unknowns:,} unknowns and {free / GB:.3g} GB are free; "
         f"choose {', or '.join(advice)}; or set FAYING_MEMORY to the GB that may be taken"
     )
+
+
+def check_modes(count: int, unknowns: int) -> None:
+    """Raise InputError where the shapes of so many modes, with what finds them, need more memory than there is."""
+    # about two vectors for each mode, and their products with the mass
+    require(4 * 8.0 * count * unknowns, f"{count:,} modes of {unknowns:,} unknowns", "ask for fewer modes")

@@ -8,6 +8,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.damped import DampedModes
 from faying.fe.modes import Modes
+from faying.memory import require
 from faying.typing import Array, Complex
 
 
@@ -75,6 +76,12 @@ def frequency_response(
     frequencies = np.asarray(frequencies, dtype=float)
     if frequencies.ndim != 1 or not len(frequencies) or frequencies[0] <= 0 or np.any(np.diff(frequencies) <= 0):
         raise InputError("the frequencies of a response must be positive and rise, for example from 10 Hz to 5000 Hz")
+    count = modes.shapes.shape[1] + 2 * damped.shapes.shape[1] + forces.shape[1]
+    require(
+        2 * 16.0 * len(frequencies) * (count + outputs.shape[1]) * forces.shape[1],
+        f"responses at {len(frequencies):,} frequencies, {outputs.shape[1]} outputs and {forces.shape[1]} inputs",
+        "ask for fewer frequencies",
+    )
     mass = vibration.mass
     # without what the known modes answer, which is all but the last digits of it where a body is free
     rest = forces - (mass @ modes.shapes) @ (modes.shapes.T @ forces)

@@ -317,7 +317,7 @@ class FittedBolt:
         second = np.cross(self.axis, helper)
         second /= np.linalg.norm(second)
         frame = np.stack([self.axis, second, np.cross(self.axis, second)])
-        return csr_array(block_diag([frame] * 4) @ vstack(self.ends))
+        return csr_array(block_diag([csr_array(frame)] * 4) @ vstack(self.ends))
 
     @property
     def seats(self) -> Array:

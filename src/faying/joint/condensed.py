@@ -215,7 +215,7 @@ def _rigid(
             raise InputError(f"a support holds some of the face {face!r}, which rigid ties would move")
     tied = np.concatenate([(3 * nodes[:, None] + np.arange(3)).ravel() for nodes in face_nodes])
     free = np.setdiff1d(np.arange(mesh.unknowns), tied)
-    blocks = [carried(mesh.points[nodes] - joint.point).reshape(-1, 6) for nodes in face_nodes]
+    blocks = [csr_array(carried(mesh.points[nodes] - joint.point).reshape(-1, 6)) for nodes in face_nodes]
     rows = csr_array((np.ones(len(tied)), (tied, np.arange(len(tied)))), shape=(mesh.unknowns, len(tied)))
     tie = hstack([eye_array(mesh.unknowns, format="csc")[:, free], rows @ csr_array(block_diag(blocks))]).tocsr()
     turn = np.concatenate([-np.eye(6), np.eye(6)], axis=1)

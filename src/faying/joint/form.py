@@ -26,7 +26,7 @@ PARAMETERS = {
     "wave": Parameter("m", "wave along the longer side, from trough to crest; nearest in the middle where positive"),
     "wave_length": Parameter("m", "length of the wave", 0),
     "flatness": Parameter("m", "flatness tolerance of each face, of which a random form is drawn", 0, ends="[)"),
-    "seed": Parameter("", "which random form is drawn", 0, ends="[)", whole=True),
+    "seed": Parameter("", "which random form is drawn", 0, 1e15, "[]", whole=True),
 }
 TOLERANCE_SHARE = 2 / 3, 1 / 6  # mean and sd of the flatness drawn over the tolerance, a normal cut off at 2 sd
 DEGREES = 2, 3, 4  # total degrees of the polynomials of a random form: crowns and twist, and two orders above

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError, ReadError
-from faying.files import refuse_decimal_comma
+from faying.files import end_of, refuse_decimal_comma
 from faying.measured.frf import FRF, Dof
 from faying.typing import Array, Complex
 
@@ -28,9 +28,8 @@ def read_frf_text(
     rows: list[Complex] = []
     for name in files:
         path = Path(name)
-        own, values, ended = _read(path, frequency_step)
-        if not ended:
-            notes.append(f"{path}: the last line has no line break; the file may be cut short")
+        own, values = _read(path, frequency_step)
+        notes += end_of(path)
         if frequency is not None and (own.shape != frequency.shape or not np.allclose(own, frequency, rtol=1e-6)):
             raise InputError(f"{path}: its frequencies are not those of {files[0]}; give files of one test")
         frequency = own
@@ -48,13 +47,12 @@ def read_frf_text(
     )
 
 
-def _read(path: Path, step: float | None) -> tuple[Array, Complex, bool]:
-    """Frequencies, values (functions, frequencies), and whether the last line is ended."""
+def _read(path: Path, step: float | None) -> tuple[Array, Complex]:
+    """Frequencies, and values (functions, frequencies)."""
     try:
         text = path.read_text(encoding="utf-8-sig", errors="replace")
     except OSError as fault:
         raise ReadError(f"{path}: cannot be read ({fault.strerror or fault})") from None
-    ended = text.endswith(("\n", "\r", "\x1a"))
     lines = [line.strip() for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
     if lines and not re.match(r"[-+(.\d]", lines[0]):
         lines = lines[1:]  # names of the columns
@@ -67,7 +65,7 @@ def _read(path: Path, step: float | None) -> tuple[Array, Complex, bool]:
                 '--frequency-step "1 Hz"'
             )
         values = [_number(complex, path, line.replace("i", "j").replace(" ", "").strip("()")) for line in lines]
-        return np.arange(len(values), dtype=float) * step, np.array([values], dtype=np.complex128), ended
+        return np.arange(len(values), dtype=float) * step, np.array([values], dtype=np.complex128)
     for line in lines:
         refuse_decimal_comma(line, str(path))
     table = [[_number(float, path, cell) for cell in re.split(r"[,;\s]+", line)] for line in lines]
@@ -77,7 +75,7 @@ def _read(path: Path, step: float | None) -> tuple[Array, Complex, bool]:
             f"{path}: lines of {len(table[0])} numbers; expected frequency, then real and imaginary part of each FRF"
         )
     data = np.array(table)
-    return data[:, 0], (data[:, 1::2] + 1j * data[:, 2::2]).T, ended
+    return data[:, 0], (data[:, 1::2] + 1j * data[:, 2::2]).T
 
 
 def _number(kind: Any, path: Path, text: str) -> Any:

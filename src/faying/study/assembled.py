@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from faying.decks.matrices import read_pair
-from faying.files import together, write_atomically, write_text
+from faying.files import together, write_arrays, write_text
 from faying.joint.support_check import checked_preload
 from faying.study.case import build
 from faying.study.study import Study
@@ -54,17 +54,15 @@ class Assembled:
 
     def write(self, folder: Path) -> list[Path]:
         """Write stiffness.npz, mass.npz (SciPy) and dofs.txt, all or none of them."""
-        from scipy.sparse import csr_matrix, save_npz
+        from scipy.sparse import csr_matrix
 
         out = []
         with together(folder, "give another with --export") as hidden:
             for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
-
-                def fill(temporary: Path, matrix: Any = matrix) -> None:
-                    with temporary.open("wb") as file:  # a file, since save_npz adds .npz to names
-                        save_npz(file, csr_matrix(matrix), compressed=False)
-
-                out.append(write_atomically(hidden / f"{name}.npz", fill))
+                csr = csr_matrix(matrix)
+                arrays = {"format": b"csr", "shape": csr.shape}  # as scipy.sparse.save_npz has them
+                arrays |= {part: getattr(csr, part) for part in ("indices", "indptr", "data")}
+                out.append(write_arrays(hidden / f"{name}.npz", arrays))
             text = "\n".join(f"{node}.{axis}" for node, axis in self.dofs) + "\n"
             out.append(write_text(hidden / "dofs.txt", text))
         return [folder / file.name for file in out]

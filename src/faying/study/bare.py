@@ -8,6 +8,7 @@ from faying.decks.matrices import arranged, read_matrices
 from faying.errors import InputError
 from faying.fe.damped import DampedModes, damped_modes
 from faying.fe.elasticity import rigid_motions
+from faying.fe.memory import check_modes
 from faying.fe.modes import lowest_modes
 from faying.study.attach import Attachment
 
@@ -45,5 +46,6 @@ def modes_with_joint(
         )
     speeds = [(m.E / (m.density or np.inf)) ** 0.5 for m in attachment.materials.values()]
     shift = 0.02 * max(speeds) / mesh.size
+    check_modes(count + still + SPARE, K.shape[0])
     found = lowest_modes(K, M, count + still + SPARE, shift_frequency=shift, solver=solver)
     return damped_modes(found, K, M, C, rigid=still, count=count), still

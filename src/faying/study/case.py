@@ -8,6 +8,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
+from faying.files import end_of
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Joint, Structure
 from faying.materials import Material
@@ -76,6 +77,10 @@ class Case:
         progress.begin("mesh")
         structure = structure_of(study, checked_mesh(study), surfaces, laws)
         notes = [Note(code="surface", text=text) for surface in surfaces for text in surface.warnings]
+        told = {note.text for note in notes}
+        tables = [file for file in study.files if file != study.geometry.file]  # readers of meshes look for themselves
+        ends = [text for file in tables for text in end_of(file)]
+        notes += [Note(code="file-end", text=text) for text in ends if text not in told]
         size = structure.mesh.size
         if not SIZES[0] <= size <= SIZES[1]:
             text = (

@@ -147,7 +147,7 @@ def _toml_line(file: Path) -> int | None:
     """The line at which a file stops being TOML."""
     try:
         tomllib.loads(file.read_text(encoding="utf-8", errors="replace"))
-    except tomllib.TOMLDecodeError as fault:
+    except (ValueError, RecursionError) as fault:  # nested without end, a number of thousands of digits
         at = re.search(r"at line (\d+)", str(fault))
         return int(at[1]) if at else None
     return None

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from faying.fe.interface import Interface
+from faying.fe.memory import check_modes
 from faying.fe.modes import Modes, lowest_modes
 from faying.joint.equilibrium import PreloadState
 from faying.joint.preload import PreloadProblem
@@ -28,10 +29,12 @@ def modes_of(case: Case, springs: Sequence[Springs[Interface]], count: int | Non
 
 def modes_with(case: Case, stiffness: Any, mass: Any, count: int | None = None) -> Modes:
     """Real modes of any stiffness [N/m] and mass [kg], by the solver and the shift of a case."""
+    count = count or case.mode_count
+    check_modes(count, stiffness.shape[0])
     return lowest_modes(
         stiffness,
         mass,
-        count or case.mode_count,
+        count,
         shift_frequency=case.shift_frequency,
         solver=case.study.modes.solver,
     )

@@ -12,7 +12,7 @@ import numpy as np
 
 from faying import __version__
 from faying.errors import FayingError, InputError
-from faying.files import write_atomically, write_text
+from faying.files import write_arrays, write_text
 from faying.study.study import Study
 
 
@@ -138,9 +138,4 @@ def load_arrays(file: Path) -> dict[str, Any] | None:
 
 def save_arrays(path: Path, arrays: dict[str, Any]) -> None:
     """Write arrays, whole or not at all."""
-
-    def write(temporary: Path) -> None:
-        with temporary.open("wb") as file:  # a file, since savez adds .npz to names
-            np.savez(file, **arrays)
-
-    write_atomically(path, write)
+    write_arrays(path, arrays)

@@ -110,14 +110,7 @@ class Study:
         beside = tuple(BesideChoice.of(t, i) for i, t in enumerate(top.tables("beside")))
         backbone = BackboneChoice.of(top.table("backbone"))
         _note_lacking(faults, joints, law, surface)
-        for named_law in backbone.laws if backbone is not None else ():
-            named = tuple(replace(joint, law=named_law) for joint in joints)
-            _note_lacking(faults, named, law, surface, "backbone.law: ")
-        for number, other in enumerate(beside, start=1):
-            changed = tuple(
-                replace(joint, law=other.law or joint.law, surface=other.surface or joint.surface) for joint in joints
-            )
-            _note_lacking(faults, changed, law, surface, f"beside[{number}]: ")
+        _note_lacking_beside(faults, joints, (law, surface), beside, () if backbone is None else backbone.laws)
         read = [read_bolt(t, i, materials) for i, t in enumerate(top.tables("bolt", required=True))]
         bolts = tuple(bolt for bolt in read if bolt is not None)
         supports = [read_support(t) for t in top.tables("support")]
@@ -186,6 +179,21 @@ def _uncertain(
         parts=parts,
     )
     return read_uncertain(None if table is None else table.data, inside, known, top.faults)
+
+
+def _note_lacking_beside(
+    faults: Faults,
+    joints: tuple[JointChoice, ...],
+    shared: tuple[LawChoice, SurfaceChoice | None],
+    beside: tuple[BesideChoice, ...],
+    laws: tuple[LawChoice, ...],
+) -> None:
+    """Note what the laws of [[beside]] and [backbone] do not find in the surfaces."""
+    changes = [(f"beside[{number}]: ", other.law, other.surface) for number, other in enumerate(beside, start=1)]
+    changes += [("backbone.law: ", law, None) for law in laws]
+    for where, law, surface in changes:
+        changed = tuple(replace(j, law=law or j.law, surface=surface or j.surface) for j in joints)
+        _note_lacking(faults, changed, *shared, where)
 
 
 def _note_lacking(

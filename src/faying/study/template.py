@@ -157,6 +157,8 @@ def surface(path: Path) -> None:
 
 def write(study: Path, *, force: bool = False) -> list[Path]:
     """Write the study, its geometry and its scan; InputError where a file of other content exists, unless `force`."""
+    if not study.name or study.is_dir():
+        raise InputError(f"{study} is a folder; name the study's file, for example {study / 'study.toml'}")
     step, scan = study.with_name("two-blocks.step"), study.with_name("surface.x3p")
     text = TEXT.format(name=study.name, step=step.name, scan=scan.name)
     kept = not force and step.exists() and _solids(step) == _solids(None)

@@ -12,6 +12,10 @@ from faying.errors import FayingError, InputError, ReadError
 from faying.surface.scan import Instrument, Profile, Scan, check_points
 from faying.units import scale
 
+_BROKEN = (
+    "SurfaceTopography, which reads formats of instruments, is installed but does not start ({fault}); install a "
+    "version that goes with the numpy that is here"
+)
 Steps = Callable[[int, int], tuple[float, float]]
 
 
@@ -21,8 +25,12 @@ def _library() -> Any:
             warnings.simplefilter("ignore")
             import SurfaceTopography
             import SurfaceTopography.IO
-    except ImportError:
-        return None
+    except ModuleNotFoundError as fault:
+        if fault.name == "SurfaceTopography":
+            return None
+        raise ReadError(_BROKEN.format(fault=fault)) from fault
+    except ImportError as fault:
+        raise ReadError(_BROKEN.format(fault=fault)) from fault
     return SurfaceTopography
 
 

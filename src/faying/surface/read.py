@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from faying.errors import FayingError, InputError, ReadError
+from faying.files import end_of
 from faying.surface.scan import Profile, Scan
 from faying.surface.text import Layout
 
@@ -94,21 +95,7 @@ def read_scan(
         scan = _text_or_other(file, xy_unit, z_unit, lateral)
     scan = _resized(scan, lateral)
     plausible(scan)
-    return replace(scan, notes=(*scan.notes, *_about_the_end(file, head)))
-
-
-def _about_the_end(file: Path, head: bytes) -> tuple[str, ...]:
-    """A note on a text file whose last line has no end: it may have been cut short."""
-    if b"\0" in head or head[:2] == b"PK" or not _is_text(head):
-        return ()
-    with file.open("rb") as handle:
-        handle.seek(-1, 2)
-        ended = handle.read(1) in b"\r\n\x1a"
-    return () if ended else (f"{file}: the last line has no line break; the file may be cut short",)
-
-
-def _is_text(head: bytes) -> bool:
-    return sum(b in b"\t\n\r\x0c" or b >= 32 for b in head) == len(head)
+    return replace(scan, notes=(*scan.notes, *end_of(file)))
 
 
 def _head(file: Path) -> bytes:

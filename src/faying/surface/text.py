@@ -148,7 +148,9 @@ def _grid(path: Path, data: Array, x: float, y: float, z: float) -> Scan:
         raise ReadError(
             f"{path}: {len(data)} points do not fill a grid of {nx} x {ny} once each; the file is cut off or damaged"
         )
-    if int((iy == iy.max()).sum()) < nx <= int((iy == 0).sum()) and len(data) < nx * ny:
+    row, length = (iy, nx) if iy[0] == iy[1] else (ix, ny)  # in the order of the file, whichever way it runs
+    ends = ((row, row[0], row[-1], length), (iy, 0, ny - 1, nx))
+    if any(np.sum(of == last) < full <= np.sum(of == first) for of, first, last, full in ends):
         raise ReadError(f"{path}: the last row holds fewer points than the others; the file is cut off")
     heights = np.full(nx * ny, np.nan)
     heights[cells] = data[:, 2]

@@ -11,6 +11,7 @@ from faying.errors import InputError
 from faying.measured.ring_down import MeasuredBackbone
 from faying.study.keys.law import LawChoice
 from faying.study.keys.reader import Table, number, point
+from faying.study.keys.solution import MOST_MODES
 
 Point = tuple[float, float, float]
 RANGE = (0.1, 100.0)  # m/s2
@@ -70,11 +71,11 @@ class BackboneChoice:
         if table is None:
             return None
         given = {
-            "mode": table.count("mode", 1),
+            "mode": table.count("mode", 1, most=MOST_MODES),
             "amplitude": table.take("amplitude", accelerations, RANGE),
             "at": table.take("at", point, None),
             "friction": table.take("friction", frictions, ()),
-            "harmonics": table.count("harmonics", 3),
+            "harmonics": table.count("harmonics", 3, most=9),
             "rest_damping": table.take("rest_damping", _rest, 0.0),
             "slip": table.text("slip", "microslip", ("microslip", "coulomb")),
             "laws": table.take("law", laws, ()),

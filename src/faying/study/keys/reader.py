@@ -11,6 +11,8 @@ from faying.contact.parameter import FILE, Parameter
 from faying.errors import InputError
 from faying.fe.selectors import Selector
 
+MOST = 1_000_000  # of what is counted, where a key says no less
+
 
 class StudyFaults(InputError):
     """All faults of a study file; `lines` holds them one by one, each with its key in front."""
@@ -83,9 +85,9 @@ class Table:
         """Take a plain number (of a quantity without dimension)."""
         return self.take(key, number, default)
 
-    def count(self, key: str, default: Any = MISSING) -> Any:
-        """Take a whole number of 1 or more."""
-        return self.take(key, _count, default)
+    def count(self, key: str, default: Any = MISSING, *, most: int = MOST) -> Any:
+        """Take a whole number from 1 to `most`."""
+        return self.take(key, lambda value, name: _count(value, name, most), default)
 
     def texts(self, key: str, size: int, default: Any = MISSING) -> Any:
         """Take a list of `size` texts."""
@@ -206,9 +208,9 @@ def number(value: Any, name: str) -> float:
     return float(value)
 
 
-def _count(value: Any, name: str) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-        raise InputError(f"{name} = {value!r} should be a whole number of 1 or more")
+def _count(value: Any, name: str, most: int) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
+        raise InputError(f"{name} = {value!r} should be a whole number from 1 to {most:,}")
     return value
 
 

@@ -7,6 +7,7 @@ from typing import Any, Literal
 from faying.errors import InputError
 from faying.study.keys.reader import Table, direction, point
 
+MOST_MODES, MOST_POINTS, MOST_PASSES = 10_000, 1_000_000, 100
 Point = tuple[float, float, float]
 
 
@@ -25,7 +26,7 @@ class ModesChoice:
         if table is None:
             return cls()
         choice = cls(
-            count=table.count("count", 10),
+            count=table.count("count", 10, most=MOST_MODES),
             damping=table.text("damping", "hysteretic", ("hysteretic", "viscous")),
             solver=table.text("solver", None, ("pardiso", "mumps", "cholmod", "superlu")),
             shift_frequency=table.quantity("shift_frequency", "Hz", None),
@@ -65,7 +66,7 @@ class ResponseChoice:
             outputs=sides[1],
             first=first,
             last=last,
-            points=table.count("points", 1000),
+            points=table.count("points", 1000, most=MOST_POINTS),
             structural_loss=table.number("structural_loss", 0.0),
         )
         table.close()
@@ -82,6 +83,6 @@ def read_order(table: Table | None, names: Sequence[str]) -> tuple[int, ...] | N
             raise InputError(f"{name} = {value!r} should name every bolt: {', '.join(map(repr, names))}")
         return tuple(names.index(v) for v in value)
 
-    found, passes = table.take("order", order), table.count("passes", 1)
+    found, passes = table.take("order", order), table.count("passes", 1, most=MOST_PASSES)
     table.close()
     return None if found is None else found * passes
