@@ -44,9 +44,10 @@ def main():
 
     from faying.identify.ensemble import Ensemble
     from faying.identify.evaluate import Reduced
-    from faying.identify.identify import identify_model
+    from faying.identify.identify import identify_model, points_for
     from faying.identify.noise import DISCREPANCY_SD, TEST_SD
     from faying.identify.of_study import StudyModel, _Stage
+    from faying.identify.points import at_shares, sobol
     from faying.study import Study
 
     study = Study.read(given.study)
@@ -55,8 +56,11 @@ def main():
     ensemble = Ensemble.of(study, 8, given.seed)
     model = Kept(StudyModel(ensemble, Reduced(ensemble, report=stage), stage))
     print(f"bases: {time.process_time() - began:.0f} CPU s", flush=True)
-    rng = np.random.default_rng(given.seed)
-    loads, size = np.array(study.loads), len(model.names)
+    # the points over the priors come first: they settle which modes are the test's
+    size = len(model.names)
+    model.frequencies(at_shares(model.priors, sobol(size, points_for(size), given.seed)))
+    rng = np.random.default_rng([given.seed, 1])
+    loads = np.array(study.loads)
     ranks, started = [], time.process_time()
     while len(ranks) < given.truths:
         truth = np.array([float(prior.quantile(rng.random())) for prior in model.priors])
