@@ -19,12 +19,13 @@ def test_modes_that_change_their_order_keep_their_names():
     assert by_name(values, names) == pytest.approx(np.array([[20, np.nan, 10], [11, 21, 31]]), nan_ok=True)
 
 
-def test_the_nearest_sample_says_which_modes_are_the_tests():
-    """One sample far off pairs by frequency alone and is wrong; the names of the nearest hold for it, too."""
+def test_the_nearest_samples_say_which_modes_are_the_tests():
+    """Most samples are far off and pair by frequency alone, wrongly; the names of the nearest hold for them, too."""
     test = np.array([[200.0, 300.0]])
-    frequencies = np.array([[[100.0, 201.0, 299.0]], [[150.0, 290.0, 420.0]], [[np.nan] * 3]])
-    rows = {"named": frequencies, "modes": np.array([[1.0, 2.0], [0.0, 1.0], [np.nan, np.nan]])}
-    names = settled(test, rows)
+    near, far = [100.0, 201.0, 299.0], [150.0, 290.0, 420.0]
+    frequencies = np.array([[near]] * 8 + [[far]] * 40 + [[[np.nan] * 3]])
+    modes = np.array([[1.0, 2.0]] * 7 + [[1.0, 0.0]] + [[0.0, 1.0]] * 40 + [[np.nan, np.nan]])
+    names = settled(test, {"named": frequencies, "modes": modes})
     assert names.tolist() == [1, 2]
-    assert paired(frequencies, names)[1].tolist() == [[290.0, 420.0]]
-    assert settled(test, {"named": frequencies[2:], "modes": rows["modes"][2:]}).tolist() == [-1, -1]
+    assert paired(frequencies, names)[-2].tolist() == [[290.0, 420.0]]
+    assert settled(test, {"named": frequencies[-1:], "modes": modes[-1:]}).tolist() == [-1, -1]

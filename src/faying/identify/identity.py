@@ -1,10 +1,11 @@
 """Which mode of a sample is which: that of the median whose shape it has; and which of them are those of the test.
 
 To pair every sample with the test by itself would be a choice that jumps: where frequencies fall far, the mode above
-takes the place of the one that is meant. So a mode keeps its name over all samples, by its shape. The sample that comes
-nearest to the test says which names the test's modes have, and they have them in every sample.
+takes the place of the one that is meant. So a mode keeps its name over all samples, by its shape. The samples that come
+nearest to the test say which names the test's modes have, and they have them in every sample.
 """
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -16,6 +17,7 @@ from faying.study.parallel import Rows
 from faying.typing import Array, Index
 
 LIKE = 0.5  # MAC with the median's mode below which a mode has no name
+NEAREST, FEWEST = 0.1, 8  # share of the samples, and their number, that say which modes are the test's
 
 
 def named(reference: Sequence[Any], shapes: Sequence[Any], mass: Array) -> Index:
@@ -41,20 +43,23 @@ def by_name(values: Array, names: Index) -> Array:
 
 
 def settled(test: Array, rows: Rows) -> Index:
-    """Names (t,) of the test's modes, -1 for none: as the sample pairs them that comes nearest to the test.
+    """Names (t,) of the test's modes, -1 for none: as most of the samples pair them that come nearest to the test.
 
     test: frequencies [Hz] (load, t); rows: `named` (n, load, m) and `modes` (n, t), the names by which each sample
     pairs the test, NaN where a sample has no answer.
     """
-    best, names = np.inf, np.full(test.shape[1], -1)
+    misfits, all_names = [], []
     for frequencies, modes in zip(rows["named"], rows["modes"], strict=True):
         if np.isnan(modes).any():
             continue
         apart = np.log(paired(frequencies[None], modes.astype(np.int64))[0] / test)
-        misfit = float(np.mean(np.where(np.isnan(apart), np.log1p(FARTHEST), apart) ** 2))
-        if misfit < best:
-            best, names = misfit, modes.astype(np.int64)
-    return names
+        misfits.append(float(np.mean(np.where(np.isnan(apart), np.log1p(FARTHEST), apart) ** 2)))
+        all_names.append(tuple(modes.astype(np.int64).tolist()))
+    if not misfits:
+        return np.full(test.shape[1], -1)
+    nearest = np.argsort(misfits, kind="stable")[: max(FEWEST, int(NEAREST * len(misfits)))]
+    votes = Counter(all_names[k] for k in nearest)
+    return np.array(votes.most_common(1)[0][0], dtype=np.int64)
 
 
 def paired(values: Array, names: Index) -> Array:
