@@ -95,11 +95,11 @@ def test_ten_twins_of_another_mesh_law_and_form(tmp_path):
     """Eight of ten truths or more lie in the intervals of 90 %: E, and the frequencies of the load that was left out.
 
     The twins have finer meshes, another law than the study, a twist that the study knows, and moduli and factors on the
-    stiffness that fill their priors. What the study calls the factor on the stiffness has to take the law's place. The
-    friction changes nothing that the test sees, and is told to.
+    stiffness that fill their priors. What the study calls the factor on the stiffness has to take the law's place. A
+    preload known to 2 % is told no better by the test, which every identification says. Ten CPU minutes or so.
     """
     known = '[joint.form]\ntwist = "1 um"\n'
-    more = SCATTER.replace('joint.form.twist = "0 um to 2 um"\n', 'preload = {scatter = "5 %"}\n')
+    more = SCATTER.replace('joint.form.twist = "0 um to 2 um"\n', 'preload = {scatter = "2 %"}\n')
     plan = study_of(tmp_path, more)
     path = tmp_path / "study.toml"
     text = path.read_text().replace("[uncertain]", known + "[uncertain]")
