@@ -44,9 +44,10 @@ def main():
 
     from faying.identify.ensemble import Ensemble
     from faying.identify.evaluate import Reduced
-    from faying.identify.identify import identify_model
+    from faying.identify.identify import identify_model, points_for
     from faying.identify.noise import DISCREPANCY_SD, TEST_SD
     from faying.identify.of_study import StudyModel, _Stage
+    from faying.identify.points import at_shares, sobol
     from faying.study import Study
 
     study = Study.read(given.study)
@@ -55,12 +56,16 @@ def main():
     ensemble = Ensemble.of(study, 8, given.seed)
     model = Kept(StudyModel(ensemble, Reduced(ensemble, report=stage), stage))
     print(f"bases: {time.process_time() - began:.0f} CPU s", flush=True)
-    rng = np.random.default_rng(given.seed)
-    loads, size = np.array(study.loads), len(model.names)
+    # the points over the priors come first: they settle which modes are the test's
+    size = len(model.names)
+    model.frequencies(at_shares(model.priors, sobol(size, points_for(size), given.seed)))
+    rng = np.random.default_rng([given.seed, 1])
+    loads = np.array(study.loads)
     ranks, started = [], time.process_time()
-    while len(ranks) < given.truths:
-        truth = np.array([float(prior.quantile(rng.random())) for prior in model.priors])
-        sd, bias = (float(prior.quantile(rng.random())) for prior in (TEST_SD, DISCREPANCY_SD))
+    # truths fill the priors evenly: what a test does not see has the rank that its truth has in the prior
+    priors = (*model.priors, TEST_SD, DISCREPANCY_SD)
+    for row in at_shares(priors, sobol(len(priors), given.truths, given.seed + 1)):
+        truth, (sd, bias) = row[:size], row[size:]
         found, reasons = model.model.frequencies(truth[None])
         if reasons[0] or not np.isfinite(found).all():
             print(f"no answer at {truth}: {reasons[0]}", flush=True)
@@ -71,11 +76,11 @@ def main():
         print(len(ranks), " ".join(f"{rank:.2f}" for rank in ranks[-1]), flush=True)
     ranks = np.array(ranks)
     inside = (ranks > 0.05) & (ranks < 0.95)
-    expected = given.truths / BINS
+    expected = len(ranks) / BINS
     for name, column, within in zip((*model.names, "test scatter", "discrepancy"), ranks.T, inside.T, strict=True):
         counts = np.histogram(column, bins=BINS, range=(0, 1))[0]
         print(f"{name:<28} inside {within.mean():.2f}  chi-square {((counts - expected) ** 2 / expected).sum():.1f}")
-    print(f"all: inside {inside.mean():.3f}; {(time.process_time() - started) / given.truths:.1f} CPU s a truth")
+    print(f"all: inside {inside.mean():.3f}; {(time.process_time() - started) / len(ranks):.1f} CPU s a truth")
 
 
 if __name__ == "__main__":

@@ -360,6 +360,16 @@ def test_numbers_for_json(chain):
     assert held["notes"][0]["code"] == "not-told"
 
 
+def test_an_identification_is_one_page(chain):
+    from faying.output.report_predicted import identified
+
+    page = identified(chain, "a <chain>", "made by the model")
+    assert "a &lt;chain&gt;: identification" in page
+    assert "The test tells nothing of unseen" in page
+    assert "contact.c" in page
+    assert page.count("<figure>") == 1
+
+
 def test_the_table_fits_a_terminal(chain):
     lines = chain.table().splitlines()
     assert max(map(len, lines)) <= 80

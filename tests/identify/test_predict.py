@@ -1,5 +1,6 @@
 """Predictions of a small study: against full runs, against what the inputs are, and what is said where they fail."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -90,6 +91,31 @@ def test_a_prediction_is_written_and_read(found, tmp_path):
         assert data.frequencies.dims == ("sample", "load", "mode")
         assert list(data.input.values) == list(found.names)
     assert found.to_xarray().frequencies.shape == found.frequencies.shape
+
+
+def test_a_prediction_is_one_page(found):
+    """The page has every table, the notes and figures, and asks for nothing beyond itself."""
+    from faying.output.report_predicted import predicted
+
+    page = predicted(found)
+    for words in ("What scatters", "Frequencies, 5% .. median .. 95%", "What makes the scatter", found.notes[0].text):
+        assert words in page
+    assert page.count("<figure>") == 3
+    assert not re.search(r'(src|href)="https?:', page)
+    middle = found.quantiles().frequencies[1, 0, 0]
+    assert f"{middle:.1f}" in page
+
+
+def test_a_run_says_that_nothing_scatters_in_it(tmp_path):
+    path = tmp_path / "study.toml"
+    write(path)
+    path.write_text(path.read_text().replace("[[joint]]", '[[joint]]\nfriction = "0.1 to 0.6"', 1))
+    study = Study.read(path)
+    sizes = {name: 2 * size for name, size in study.geometry.face_size.items()}
+    coarse = replace(study.geometry, size=2 * study.geometry.size, face_size=sizes)
+    notes = run(replace(study, geometry=coarse, modes=ModesChoice(count=2))).notes
+    (note,) = [note for note in notes if note.code == "uncertain"]
+    assert f"of joint.{study.joints[0].name}.friction the median is taken" in note.text
 
 
 def test_the_same_seed_gives_the_same_samples(plan, found):

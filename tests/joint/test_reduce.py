@@ -94,6 +94,27 @@ def test_the_reduced_model_travels(trained):
     assert there.frequencies == pytest.approx(reduction.evaluate(laws, force, [None]).frequencies, rel=1e-9)
 
 
+@pytest.mark.parametrize("friction", [None, 0.05])
+def test_groups_of_points_give_the_same_answers(trained, monkeypatch, friction):
+    """Groups give starts, tangents and the span of the modes, and no answer: those stay, with sliding as well."""
+    from faying.joint import reduced
+
+    monkeypatch.setattr(reduced, "MANY", 2)
+    model = trained[1].model
+    grouped = model.grouped()
+    static = grouped.groups[0][0]
+    assert len(static.weights) < len(model.weights[0])
+    assert static.weights.sum() == pytest.approx(model.weights[0].sum())
+    assert static.mean(np.full(len(model.weights[0]), 3.0)) == pytest.approx(np.full(len(static.weights), 3.0))
+    for D, G, F in [(2.41, 1e-10, 900.0), (2.33, 5e-11, 2100.0)]:
+        one, other = (m.evaluate([law(D, G)], np.array([F]), [friction]) for m in (model, grouped))
+        assert other.frequencies == pytest.approx(one.frequencies, rel=1e-7)
+        assert other.loss_factors == pytest.approx(one.loss_factors, rel=1e-4)
+        assert other.preload.pressures[0] == pytest.approx(
+            one.preload.pressures[0], abs=1e-6 * one.preload.pressures[0].max()
+        )
+
+
 def test_wrong_number_of_forces(trained):
     with pytest.raises(faying.InputError, match="2 bolt forces for 1 bolts"):
         trained[1].evaluate([law()], np.array([1.0, 2.0]), [None])

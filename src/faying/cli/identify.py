@@ -22,6 +22,7 @@ from faying.cli.progress import Form, Shown, progress_options
     "--out", type=click.Path(path_type=Path), help="NetCDF file (default: results/identification.nc beside the study)."
 )
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw priors, posteriors, frequencies.")
+@click.option("--html", type=click.Path(dir_okay=False, path_type=Path), help="Write table and figure as one page.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was found as JSON.")
 @progress_options
 def command(
@@ -33,6 +34,7 @@ def command(
     dask: str | None,
     out: Path | None,
     plot: Path | None,
+    html: Path | None,
     as_json: bool,
     progress: Form | None,
 ) -> None:
@@ -40,10 +42,11 @@ def command(
 
     What is done is kept beside the output; the same command goes on after an interruption.
     """
-    from faying.files import new_folder
+    from faying.files import new_folder, write_text
     from faying.identify.of_study import identify
     from faying.output.figures import identification as drawing
     from faying.output.figures.save import check_figure, save
+    from faying.output.report_predicted import identified
     from faying.study import Study
 
     if plot:
@@ -62,6 +65,8 @@ def command(
             report=report,
         )
     files = [out] + ([save(drawing.figure(found), plot)] if plot else [])
+    if html:
+        files.append(write_text(html, identified(found, plan.title, plan.test.source if plan.test else "")))
     if as_json:
         click.echo(json.dumps(found.to_dict() | {"files": [str(file) for file in files]}, indent=2))
         return

@@ -23,6 +23,7 @@ from faying.cli.progress import Form, Shown, progress_options
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw the intervals (svg, png, pdf).")
 @click.option("--tornado", type=click.Path(dir_okay=False, path_type=Path), help="Draw the shares of the variance.")
 @click.option("--scatter", type=click.Path(dir_okay=False, path_type=Path), help="Draw inputs against frequencies.")
+@click.option("--html", type=click.Path(dir_okay=False, path_type=Path), help="Write tables and figures as one page.")
 @click.option("--json", "as_json", is_flag=True, help="Print the quantiles and shares as JSON.")
 @progress_options
 def command(
@@ -35,6 +36,7 @@ def command(
     plot: Path | None,
     tornado: Path | None,
     scatter: Path | None,
+    html: Path | None,
     as_json: bool,
     progress: Form | None,
 ) -> None:
@@ -42,11 +44,12 @@ def command(
 
     What is done is kept beside the output; the same command goes on after an interruption.
     """
-    from faying.files import new_folder
+    from faying.files import new_folder, write_text
     from faying.identify.predict import check, predict
     from faying.output.figures import prediction as drawing
     from faying.output.figures.save import check_figure, save
     from faying.output.prediction import text
+    from faying.output.report_predicted import predicted
     from faying.study import Study
 
     figures = {drawing.intervals: plot, drawing.tornado: tornado, drawing.scatter_matrix: scatter}
@@ -67,6 +70,8 @@ def command(
             report=report,
         )
     files = [out, *(save(draw(found), file) for draw, file in figures.items() if file)]
+    if html:
+        files.append(write_text(html, predicted(found)))
     if as_json:
         click.echo(json.dumps(found.to_dict() | {"files": [str(file) for file in files]}, indent=2))
         return

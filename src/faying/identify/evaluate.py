@@ -10,7 +10,9 @@ import numpy as np
 
 from faying.errors import FayingError
 from faying.identify.ensemble import Ensemble
+from faying.identify.identity import by_name, named
 from faying.identify.store import Store
+from faying.joint.joint_law import JointLaw
 from faying.joint.reduced import ReducedModel, Variant
 from faying.joint.structure import Structure
 from faying.measured.mac import mac
@@ -20,7 +22,7 @@ from faying.study.keys.test import TestChoice
 from faying.study.parallel import Rows, each
 from faying.study.recipe import Recipe, contact_shares
 from faying.study.trainer import FAR, Trainer
-from faying.typing import Array
+from faying.typing import Array, Complex, Index
 
 TOLERANCE = 1e-4  # relative error of a frequency that the bases are made for: far below the scatter of any test
 CHUNK = 32  # samples evaluated in one go
@@ -37,12 +39,14 @@ class Evaluator:
         recipe: Makes laws, forces, gaps and scales; its design is the ensemble.
         seen: What the points of the test see of the basis (k, d) and of the rigid motions (k, r) along its direction.
         test: The test; None where the study has none.
+        median: Shapes of the modes of the median at each load (d, m), after which those of samples are named.
     """
 
     model: ReducedModel
     recipe: Recipe
     seen: tuple[Array, Array] | None = None
     test: TestChoice | None = None
+    median: tuple[Complex, ...] = ()
 
     @property
     def ensemble(self) -> Ensemble:
@@ -54,13 +58,15 @@ class Evaluator:
         """Rows of some samples, counted without those for training; NaN where there is no answer, and `reasons`."""
         ensemble, count = self.ensemble, self.model.count
         modes = ensemble.loads, count
-        tested = ensemble.loads, 0 if self.test is None else len(self.test.frequencies[0])
+        tested = 0 if self.test is None else len(self.test.frequencies[0])
         rows: dict[str, list[Any]] = {}
         for sample in samples:
             row: dict[str, Any] = {
                 "frequencies": np.full(modes, np.nan),
                 "loss_factors": np.full(modes, np.nan),
-                "paired": np.full(tested, np.nan),
+                "named": np.full(modes, np.nan),
+                "named_loss": np.full(modes, np.nan),
+                "modes": np.full(tested, np.nan),
                 "estimate": np.nan,
                 "open_share": np.full(ensemble.loads, np.nan),
                 "beyond_share": np.full(ensemble.loads, np.nan),
@@ -74,45 +80,67 @@ class Evaluator:
                 rows.setdefault(name, []).append(value)
         return {name: np.array(values) for name, values in rows.items()}
 
-    def _one(self, sample: int) -> dict[str, Any]:
+    def solved(self, sample: int) -> tuple[ReducedModel, list[Variant], list[JointLaw]]:
+        """One sample at all loads, with the model under its form and scales, and its laws."""
         ensemble, recipe = self.ensemble, self.recipe
         first = (ensemble.training + sample) * ensemble.loads
         model = self.model.with_gaps(recipe.gaps(first)).with_scales(recipe.scales(first))
         found: list[Variant] = []
-        shares: list[tuple[float, float]] = []
-        weights = np.concatenate(model.weights)
         for index in range(first, first + ensemble.loads):
             laws, forces, friction = recipe.laws(index)
             start = found[-1].preload.displacement if found else None
             found.append(model.evaluate(laws, forces, friction, start))
-            shares.append(contact_shares(weights, laws, found[-1].preload.pressures))
+        return model, found, laws
+
+    def with_median(self) -> "Evaluator":
+        """The same, with the shapes of the median, or of the first sample that has an answer."""
+        for sample in range(-self.ensemble.training, self.ensemble.count):
+            try:
+                return replace(self, median=tuple(one.shapes for one in self.solved(sample)[1]))
+            except FayingError:
+                continue
+        return self
+
+    def _one(self, sample: int) -> dict[str, Any]:
+        ensemble = self.ensemble
+        model, found, laws = self.solved(sample)
+        weights = np.concatenate(model.weights)
+        shares = [contact_shares(weights, laws, one.preload.pressures) for one in found]
+        frequencies = np.stack([one.frequencies for one in found])
+        loss = np.stack([one.loss_factors for one in found])
+        names = named(self.median, [one.shapes for one in found], model.matrices[2])
         lossless = not any(law.predicts_loss for law in laws)
         nothing = np.full((ensemble.loads, model.count), np.nan)
+        loss = nothing if lossless else loss
         return {
-            "frequencies": np.stack([one.frequencies for one in found]),
-            "loss_factors": nothing if lossless else np.stack([one.loss_factors for one in found]),
-            "paired": self._paired(model, found),
+            "frequencies": frequencies,
+            "loss_factors": loss,
+            "named": by_name(frequencies, names),
+            "named_loss": by_name(loss, names),
+            "modes": self._modes(model, found, names),
             "estimate": max(float(one.estimate.max()) for one in found),
             "open_share": np.array([share for share, _ in shares]),
             "beyond_share": np.array([share for _, share in shares]),
         }
 
-    def _paired(self, model: ReducedModel, found: Sequence[Variant]) -> Array:
-        """Frequencies [Hz] (load, t) of the modes that are the test's, NaN where a mode has no partner."""
+    def _modes(self, model: ReducedModel, found: Sequence[Variant], names: Index) -> Array:
+        """Names (t,) of the modes that this sample pairs with the test's, -1 where one has no partner."""
         if self.test is None or self.seen is None:
-            return np.zeros((len(found), 0))
+            return np.zeros(0)
         mass = model.matrices[2]
         shapes = [one.shapes for one in found]
         rows = self.seen[0]
         if model.scales is not None and model.shares is not None:
             rows = rows + self.seen[1] @ model.shares.motion(model.scales)
-        return pair_over_loads(
+        modes = pair_over_loads(
             np.array(self.test.frequencies),
             [one.frequencies for one in found],
             [np.abs(rows @ _real(shape, mass)).max(axis=0) for shape in shapes],
             [mac(a.T, b.T, mass) for a, b in pairwise(shapes)],
             threshold=self.test.threshold,
-        ).predicted
+        ).modes
+        called = {int(index): name for name, index in enumerate(names[0]) if index >= 0}
+        return np.array([called.get(int(mode), -1) for mode in modes], dtype=float)
 
 
 def _real(shapes: Any, mass: Array) -> Array:
@@ -212,8 +240,8 @@ class Reduced:
     def _evaluated(self, ensemble: Ensemble, chunks: Sequence[Sequence[int]]) -> Iterable[tuple[Sequence[int], Rows]]:
         """Evaluate chunk by chunk, as they come."""
         recipe = replace(self.trainer.recipe, design=ensemble)
-        work = Evaluator(model=self.model, recipe=recipe, seen=self.seen, test=ensemble.study.test)
-        return each(partial(_rows, work), chunks, self.jobs, self.dask)
+        work = Evaluator(model=self.model.grouped(), recipe=recipe, seen=self.seen, test=ensemble.study.test)
+        return each(partial(_rows, work.with_median()), chunks, self.jobs, self.dask)
 
 
 def _put(out: Rows, count: int, indices: Sequence[int], rows: Rows) -> None:

@@ -69,7 +69,7 @@ def identify_model(
     test, loads = np.asarray(test, dtype=float), np.asarray(loads, dtype=float)
     wanted, left_out = _what_counts(test, loads, leave_out)
     size = len(model.names)
-    chosen = at_shares(model.priors, sobol(size, evaluations or _evaluations(size), seed))
+    chosen = at_shares(model.priors, sobol(size, evaluations or points_for(size), seed))
     points = _Points.at(model, chosen, test.shape, report)
     answered = int(np.isfinite(points.frequencies).any(axis=(1, 2)).sum())
     if answered < 2 * (size + 1):
@@ -114,8 +114,8 @@ def _what_counts(test: Array, loads: Array, leave_out: Sequence[int]) -> tuple[M
     return wanted, left_out
 
 
-def _evaluations(size: int) -> int:
-    """A power of 2 that has four points for each coefficient of a quadratic."""
+def points_for(size: int) -> int:
+    """How many points of the priors: a power of 2 that has four for each coefficient of a quadratic."""
     return int(min(max(FEWEST, 2 ** ceil(log2(2 * (size + 1) * (size + 2)))), MOST))
 
 

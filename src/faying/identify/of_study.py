@@ -12,6 +12,7 @@ from faying.identify.ensemble import Ensemble, scattering
 from faying.identify.evaluate import TOLERANCE, Reduced
 from faying.identify.identification import Identification, mixed
 from faying.identify.identify import identify_model
+from faying.identify.identity import paired, settled
 from faying.identify.noise import DISCREPANCY_SD, TEST_SD
 from faying.identify.predict import check, cut_notes
 from faying.identify.store import Store
@@ -20,7 +21,7 @@ from faying.progress import Report, silent
 from faying.study.keys.uncertain import UncertainChoice
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
-from faying.typing import Array
+from faying.typing import Array, Index
 
 COUNT = 1000  # samples of the posterior
 
@@ -33,13 +34,18 @@ class StudyModel:
         self.names, self.priors = ensemble.inputs.names, ensemble.inputs.priors
         self.units = tuple(column.unit for column in ensemble.inputs.columns)
         self.calls = 0
+        self.modes: Index | None = None  # of the bases that are the test's
 
     def frequencies(self, values: Array, report: Report | None = None) -> tuple[Array, list[str]]:
         """Frequencies of the test's modes (n, load, mode) [Hz] at values (n, d), and why a sample has none."""
         self.calls += 1
         self.stage.begin(f"evaluations{self.label}", report)
         rows = self.reduced.rows(self.ensemble.with_values(values), f"{self.calls:03d}")
-        return rows["paired"], [str(reason) for reason in rows["reasons"]]
+        test = self.ensemble.study.test
+        assert test is not None
+        if self.modes is None:
+            self.modes = settled(np.array(test.frequencies), rows)
+        return paired(rows["named"], self.modes), [str(reason) for reason in rows["reasons"]]
 
 
 class _Stage:

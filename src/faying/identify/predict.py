@@ -9,6 +9,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.identify.ensemble import Ensemble, by_reason
 from faying.identify.evaluate import TOLERANCE, Reduced
+from faying.identify.identity import paired, settled
 from faying.identify.prediction import Prediction
 from faying.identify.store import Store
 from faying.notes import Note
@@ -88,7 +89,12 @@ def predicted(study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, se
     test = study.test
     tested: dict[str, Any] = {}
     if test is not None:
-        tested = {"paired": rows["paired"], "test": np.array(test.frequencies), "test_source": test.source}
+        names = settled(np.array(test.frequencies), rows)
+        tested = {
+            "paired": paired(rows["named"], names),
+            "test": np.array(test.frequencies),
+            "test_source": test.source,
+        }
     found = Prediction(
         title=study.title,
         inputs=ensemble.inputs,

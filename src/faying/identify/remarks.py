@@ -53,7 +53,8 @@ def of_posterior(names: Sequence[str], priors: Sequence[Distribution], samples: 
     out = []
     for name, prior, values in zip(names, priors, samples.T, strict=True):
         of_noise = name in (SCATTER, DISCREPANCY)
-        told = float(values.std(ddof=1) / prior.sd)
+        # of ln x for a lognormal: pressed against its upper end, x itself scatters by more than before
+        told = float(prior.standardised(values).std(ddof=1) / prior.sd_standardised)
         if told > UNSEEN and not of_noise:
             text = f"The test tells nothing of {name}: its posterior sd is {told:.0%} of its prior's."
             out.append(Note(code="not-told", text=text))

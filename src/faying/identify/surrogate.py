@@ -11,7 +11,8 @@ import numpy as np
 from faying.errors import InputError
 from faying.typing import Array, Index, Mask
 
-POINTS_PER_COEFFICIENT = 1.5
+POINTS_PER_COEFFICIENT = 2.0
+HIGHEST = 7  # degree that is tried
 FLATNESS = (1.0, 0.75, 0.5)  # of the norm that limits the terms: 1 is the total degree, .5 leaves few mixed terms
 DEPENDENT = 1e-10  # relative pivot below which a column of the design says nothing new
 
@@ -30,7 +31,7 @@ class Surrogate:
         bounded: which inputs have Legendre polynomials (d,).
         terms: the degree of each term in each input (p, d).
         coefficients: of each term in each output (p, m).
-        error: root mean square of the error at points left out one at a time (m,).
+        error: root mean square of the error at points left out one at a time, corrected for their number (m,).
         degree: the highest degree of each output's terms (m,).
         points: how many points each output was fitted to (m,).
     """
@@ -43,11 +44,11 @@ class Surrogate:
     points: Index
 
     @classmethod
-    def fit(cls, x: Array, y: Array, *, degree: int = 3, bounded: Sequence[bool] | None = None) -> Self:
+    def fit(cls, x: Array, y: Array, *, degree: int = HIGHEST, bounded: Sequence[bool] | None = None) -> Self:
         """Fit by least squares; the terms of each output are those with the least leave-one-out error.
 
         Terms are those of a total degree up to `degree`, or fewer mixed ones (a hyperbolic truncation), with at least
-        1.5 points for each coefficient.
+        2 points for each coefficient.
 
         Args:
             x: standardised inputs (n, d).
@@ -59,7 +60,8 @@ class Surrogate:
             InputError: an output has fewer than 2 points.
 
         Source: orthonormal polynomials and leave-one-out error from the hat matrix: Blatman and Sudret 2011,
-            doi:10.1016/j.jcp.2010.12.021, eqs. (6), (20), (29).
+            doi:10.1016/j.jcp.2010.12.021, eqs. (6), (20), (29); the correction for few points: Chapelle, Vapnik and
+            Bengio 2002, doi:10.1023/A:1013943418833.
         """
         x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
         limited = np.zeros(x.shape[1], dtype=bool) if bounded is None else np.asarray(bounded, dtype=bool)
@@ -188,4 +190,7 @@ def _least_squares(columns: Array, y: Array) -> tuple[Array, Array]:
     if left.min() <= DEPENDENT:  # a point that alone fixes a coefficient: nothing is known of its error
         return np.zeros((columns.shape[1], y.shape[1])), np.full(y.shape[1], np.inf)
     error = (y - q @ projected) / left[:, None]
-    return np.linalg.solve(r, projected), np.sqrt(np.mean(error**2, axis=0))
+    # terms are chosen by this error, so that it must not favour many of them
+    count, size = columns.shape
+    few = count / max(count - size, 1) * (1 + np.sum(np.linalg.inv(r) ** 2))
+    return np.linalg.solve(r, projected), np.sqrt(few * np.mean(error**2, axis=0))

@@ -221,11 +221,19 @@ class Equilibrium(ABC):
             out.append((trace, trace.weights * k_n, trace.weights[:, None, None] * grip.tangent(move[:, 1:])))
         return out
 
-    def _line_search(self, u: Array, step: Array, load: Array, grips: list[StickSlip]) -> float:
-        """Step length at which the slope of the energy has fallen to a fraction.
+    def _line_search(self, u: Array, step: Array, load: Array, grips: list[StickSlip]) -> Array:
+        """The displacement along a step at which the slope of the energy has fallen to a fraction.
 
-        The energy is convex along the line.
+        The energy is convex along the line. The state of the joints there is kept where the search ends at it.
         """
+        ahead: list[tuple[Array, Array, Array]] = []
+
+        def at(length: float, *, known: bool = True) -> Array:
+            found = u + length * step
+            if known:
+                self._known = found, ahead
+            return np.asarray(found)
+
         stretch = self.stiffness @ step
         linear = float(step @ (load - self.stiffness @ u))
         quadratic = float(step @ stretch)
@@ -233,11 +241,14 @@ class Equilibrium(ABC):
         here = self._state(u)
 
         def slope(length: float) -> float:
-            total = length * quadratic - linear
-            for (trace, law), by, (move, p, _), grip in zip(self.joints, local, here, grips, strict=True):
+            nonlocal ahead
+            total, ahead = length * quadratic - linear, []
+            for (trace, law), by, (move, p, k_n), grip in zip(self.joints, local, here, grips, strict=True):
                 if length:
-                    p, _ = law.pressure(-(trace.gap + move[:, 0] + length * by[:, 0]))
-                shear = grip.shear(move[:, 1:] + length * by[:, 1:])
+                    move = move + length * by
+                    p, k_n = law.pressure(-(trace.gap + move[:, 0]))
+                ahead.append((move, p, k_n))
+                shear = grip.shear(move[:, 1:])
                 work = -p * by[:, 0] + np.einsum("qi,qi->q", shear, by[:, 1:])
                 total += float(trace.weights @ work)
             return total
@@ -251,7 +262,7 @@ class Equilibrium(ABC):
             )
         end = slope(1.0)
         if abs(end) <= 0.5 * abs(start):
-            return 1.0
+            return at(1.0)
         low, high = (0.0, 1.0) if end > 0 else (1.0, 2.0)
         while end < 0 and high < 64:
             end = slope(high)
@@ -260,9 +271,9 @@ class Equilibrium(ABC):
             middle = (low + high) / 2
             value = slope(middle)
             if abs(value) <= 0.3 * abs(start):
-                return middle
+                return at(middle)
             low, high = (middle, high) if value < 0 else (low, middle)
-        return (low + high) / 2
+        return at((low + high) / 2, known=False)
 
 
 @dataclass
@@ -306,13 +317,12 @@ class _Newton:
             # as exact as Newton's own convergence asks, and no more than the tolerance does
             accuracy = max(min(FAR_OFF, 0.1 * self.size), 0.3 * tolerance / self.size)
             step, count = balance._direction(u, force, grips, accuracy=accuracy)
-            length = balance._line_search(u, step, load, grips)
-            u = u + length * step
+            u = balance._line_search(u, step, load, grips)
             if self.size > SETTLED:  # far off, k_t follows at once; near the end it is kept so that Newton converges
                 grips = balance._grips(u)
             self.steps, self.inner = self.steps + 1, self.inner + count
             if self.report:
-                self.report(f"Newton {self.steps}: imbalance {self.size:.1e}, {count} inner steps, step {length:.3g}")
+                self.report(f"Newton {self.steps}: imbalance {self.size:.1e}, {count} inner steps")
 
 
 def _grip_change(new: StickSlip, old: StickSlip) -> float:

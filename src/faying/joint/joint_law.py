@@ -13,7 +13,7 @@ from faying.joint.pressure_curve import PressureCurve, fade
 from faying.joint.springs import Motion, Springs
 from faying.typing import Array
 
-FEW = 200  # pressures up to which a law is inverted exactly; more are read from the table between its points
+FEW = 200  # pressures that take no longer to invert than a table to make
 LEAST_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p(approach) goes on as a power
 
 
@@ -33,6 +33,7 @@ class JointLaw:
         scale: of both stiffnesses [-], 1 unless a study of sensitivity asks otherwise.
         end: "low" or "high" takes that end of the range of k_n that the law states, and moves k_t with it.
         reason: why this law was taken, where the user named none.
+        few: pressures up to which a law is inverted exactly; more are read from the table between its points.
 
     Raises:
         InputError: where the law gives no k_n, or no k_t and tangential = "law".
@@ -45,6 +46,7 @@ class JointLaw:
     points: int = 2000
     end: Literal["low", "high"] | None = None
     reason: str = ""
+    few: int = FEW
     _unscaled: "JointLaw | None" = field(default=None, repr=False, compare=False)  # the same law, with tables to share
 
     def scaled(self, factor: float) -> Self:
@@ -124,6 +126,8 @@ class JointLaw:
     @cached_property
     def _curve(self) -> PressureCurve:
         """Pressure over approach on loading."""
+        if self._unscaled is not None:
+            return self._unscaled._curve.scaled(self.scale / self._unscaled.scale)
         p, k = self._grid, self._loading
         if np.any(k <= 0):
             raise InputError(f"{self.model.name}: no stiffness on loading at {p[np.argmax(k <= 0)]:.4g} Pa")
@@ -161,7 +165,7 @@ class JointLaw:
 
     def answer(self, pressure: Array) -> Response:
         """What the law says at pressures [Pa]; beyond its ends, what it says there."""
-        return self.model.at_pressure(self._within(pressure), exact=False if np.size(pressure) > FEW else None)
+        return self.model.at_pressure(self._within(pressure), exact=False if np.size(pressure) > self.few else None)
 
     def _within(self, pressure: Array) -> Array:
         """Pressures brought within the law; 0 stays 0."""
@@ -173,7 +177,7 @@ class JointLaw:
         0 where the pressure is 0, constant beyond the end of the law.
         """
         within = self._within(pressure)
-        if np.size(pressure) > FEW:
+        if np.size(pressure) > self.few:
             log_p, (log_n, log_t), _ = self._samples
             x = np.log(np.where(within > 0, within, 1.0))
             k_n, k_t = (np.where(within > 0, np.exp(np.interp(x, log_p, y)), 0.0) for y in (log_n, log_t))
@@ -188,7 +192,7 @@ class JointLaw:
     def loss(self, pressure: Array) -> tuple[Array, Array]:
         """Loss factors normal and tangential [-]; 0, as far as an equation asks, where the law predicts none."""
         within = self._within(pressure)
-        if np.size(pressure) <= FEW:
+        if np.size(pressure) <= self.few:
             return self._ask_loss(within)
         log_p, _, losses = self._samples
         x = np.log(np.where(within > 0, within, 1.0))

@@ -1,6 +1,6 @@
 """Pressure as a function of approach, from a stiffness known at many pressures."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Self
 
@@ -26,6 +26,11 @@ class PressureCurve:
     log_w: Array
     log_p: Array
     slope: Array
+    _unscaled: "PressureCurve | None" = field(default=None, repr=False, compare=False)
+
+    def scaled(self, factor: float) -> "PressureCurve":
+        """The curve of a stiffness that is `factor` times as great at every pressure."""
+        return PressureCurve(self.log_w - np.log(factor), self.log_p, self.slope, self)
 
     @classmethod
     def of(cls, p: Array, k: Array) -> Self:
@@ -45,10 +50,13 @@ class PressureCurve:
         return float(np.exp(self.log_w[-1]))
 
     @cached_property
-    def _cubic(self) -> Any:
+    def _cubic(self) -> Array:
+        """Coefficients (4, cells) of ln p in ln w from the beginning of a cell; a shift of ln w leaves them."""
         from scipy.interpolate import CubicHermiteSpline
 
-        return CubicHermiteSpline(self.log_w, self.log_p, self.slope)
+        if self._unscaled is not None:
+            return self._unscaled._cubic
+        return np.asarray(CubicHermiteSpline(self.log_w, self.log_p, self.slope).c)
 
     @cached_property
     def _inverse(self) -> Any:
@@ -63,7 +71,7 @@ class PressureCurve:
         x = np.log(np.where(shut, approach, self.end))
         inside = np.clip(x, log_w[0], log_w[-1])
         cell = np.clip(np.searchsorted(log_w, inside, side="right") - 1, 0, len(log_w) - 2)
-        cubic = self._cubic.c[:, cell]
+        cubic = self._cubic[:, cell]
         dx = inside - log_w[cell]
         value = ((cubic[0] * dx + cubic[1]) * dx + cubic[2]) * dx + cubic[3]
         steep = (3 * cubic[0] * dx + 2 * cubic[1]) * dx + cubic[2]

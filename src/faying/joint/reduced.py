@@ -5,7 +5,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ import numpy as np
 from faying.errors import InputError, NotConverged
 from faying.fe.damped import followers
 from faying.joint.equilibrium import Equilibrium, PreloadState, StickSlip
+from faying.joint.groups import Groups
 from faying.joint.joint_law import JointLaw
 from faying.joint.part_shares import ReducedShares, Scales
 from faying.joint.springs import Springs
@@ -22,16 +23,32 @@ _SINGLE = ("static_stiffness", "static_loads", "dynamic_stiffness", "dynamic_mas
 _OF_JOINTS = ("weights", "gaps", "static_relative", "dynamic_relative")
 BALANCED = 1e-8  # imbalance at which the pressure is right to far more digits than a sweep gives
 BLOCK = 36  # real modes beyond those wanted that meet them exactly under the loss
+SPAN = 10  # modes in seven digits beyond those wanted, with which they span what the modes are sought in
+KEPT = 0.1  # of the force out of balance: a tangent that leaves less serves once more
+NEAR = 3e-3  # imbalance of the groups at which all points go on
+MANY = 400  # points of a joint from which groups pay
 SLIGHT = 1e-6  # relative error of an eigenvalue up to which first order is enough for the higher modes
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReducedMotion:
-    """Relative motion at the points of a joint from coefficients of a basis: relative (3q, m), dense."""
+    """Relative motion at the points of a joint from coefficients of a basis: relative (3q, m), dense.
+
+    groups: of the points, which then stand for them in tangents.
+    """
 
     weights: Array
     gap: Array
     relative: Array
+    groups: Groups | None = None
+
+    @property
+    def coarse(self) -> "ReducedMotion":
+        """The groups as points; itself where there are none."""
+        groups = self.groups
+        if groups is None:
+            return self
+        return ReducedMotion(weights=groups.weights, gap=groups.mean(self.gap), relative=groups.relative)
 
     def springs(self, k_n: Array, k_t: Array) -> Array:
         """Stiffness (m, m) [N/m] of springs per area k_n, k_t [Pa/m] (q,)."""
@@ -94,7 +111,10 @@ def _sprung(relative: Array, springs: Array) -> Array:
 
 
 class ReducedEquilibrium(Equilibrium):
-    """Equilibrium in a basis: dense Newton."""
+    """Equilibrium in a basis: dense Newton, for one load."""
+
+    _tangent: Any = None
+    _size = 0.0  # of the last force out of balance [N]
 
     def _start(self, load: Array) -> Array:
         """Every joint at one common pressure, by springs tangent to p(approach) there."""
@@ -114,10 +134,15 @@ class ReducedEquilibrium(Equilibrium):
     def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> tuple[Array, int]:
         from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
+        size = float(np.linalg.norm(force))
+        falls, self._size = size < KEPT * self._size, size
+        if falls and self._tangent is not None:  # near the end the last tangent does as well
+            return np.asarray(cho_solve(self._tangent, force)), 0
         matrix = self.stiffness.copy()
         for trace, k_n, k_t in self._tangents(u, grips):
             if not k_t[:, 0, 1].any():  # nothing slides
-                matrix += _sprung(trace.relative, np.stack([k_n, k_t[:, 0, 0], k_t[:, 1, 1]], axis=1))
+                sprung = partial(_sprung, trace.relative) if trace.groups is None else trace.groups.sprung
+                matrix += sprung(np.stack([k_n, k_t[:, 0, 0], k_t[:, 1, 1]], axis=1))
                 continue
             local = trace.relative.reshape(len(k_n), 3, -1)
             scaled = np.empty_like(local)
@@ -126,7 +151,8 @@ class ReducedEquilibrium(Equilibrium):
             scaled[:, 2] = k_t[:, 1, 0, None] * local[:, 1] + k_t[:, 1, 1, None] * local[:, 2]
             matrix += trace.relative.T @ scaled.reshape(trace.relative.shape)
         try:
-            return np.asarray(cho_solve(cho_factor(matrix), force)), 0
+            self._tangent = cho_factor(matrix)
+            return np.asarray(cho_solve(self._tangent, force)), 0
         except LinAlgError:
             raise NotConverged("preload: the joint opens wholly on the way; load it in smaller steps") from None
 
@@ -138,7 +164,8 @@ class ReducedModel:
     weights [m2], gaps [m]: (q,) of each joint; static_*: stiffness (s, s), loads (s, bolts) of 1 N each, relative
     motion at the points of each joint (3q, s); dynamic_*: stiffness, mass (d, d), relative motion (3q, d); count: modes
     that are given; coarse: how many leading vectors of the dynamic basis make the coarser one of the estimate; shares:
-    of the parts that may be scaled; scales: of those parts, all 1 where None.
+    of the parts that may be scaled; scales: of those parts, all 1 where None; groups: of the points of each joint in
+    both bases, None where points are few: `grouped`.
     """
 
     weights: Sequence[Array]
@@ -153,6 +180,15 @@ class ReducedModel:
     coarse: int
     shares: ReducedShares | None = None
     scales: Scales | None = None
+    groups: Sequence[tuple[Groups, Groups] | None] = ()
+
+    def grouped(self) -> "ReducedModel":
+        """The same model with the points of large joints in groups: it gives the same answers sooner."""
+        found = [
+            (Groups.of(w, static), Groups.of(w, dynamic)) if len(w) >= MANY else None
+            for w, static, dynamic in zip(self.weights, self.static_relative, self.dynamic_relative, strict=True)
+        ]
+        return replace(self, groups=found)
 
     def arrays(self) -> dict[str, Array]:
         """All of it by name, to be kept in a file; `from_arrays` gives it back, without scales."""
@@ -191,9 +227,11 @@ class ReducedModel:
         """The same structure with other gaps [m] (q,) of its joints before any load; itself where None."""
         return self if gaps is None else replace(self, gaps=gaps)
 
-    def _motions(self, relative: Sequence[Array]) -> list[ReducedMotion]:
-        found = zip(self.weights, self.gaps, relative, strict=True)
-        return [ReducedMotion(weights=w, gap=gap, relative=motion) for w, gap, motion in found]
+    def _motions(self, relative: Sequence[Array], basis: int) -> list[ReducedMotion]:
+        """The joints in the basis for equilibrium, 0, or vibration, 1."""
+        groups = [None if pair is None else pair[basis] for pair in self.groups or [None] * len(self.weights)]
+        found = zip(self.weights, self.gaps, relative, groups, strict=True)
+        return [ReducedMotion(weights=w, gap=gap, relative=motion, groups=group) for w, gap, motion, group in found]
 
     def equilibrium(
         self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None = None
@@ -202,21 +240,31 @@ class ReducedModel:
 
         start: coefficients found before, maybe in fewer vectors.
         """
-        joints = list(zip(self._motions(self.static_relative), laws, strict=True))
-        load = self.static_loads @ forces
+        motions, load = self._motions(self.static_relative, 0), self.static_loads @ forces
         if start is not None:
-            padded = np.concatenate([start, np.zeros(len(load) - len(start))])
+            start = np.concatenate([start, np.zeros(len(load) - len(start))])
+        if any(motion.groups is not None for motion in motions):
             try:
-                balance = ReducedEquilibrium(self.matrices[0], joints, friction=friction)
-                return balance.solve(load, start=padded, tolerance=BALANCED)
+                near = self._balance([motion.coarse for motion in motions], laws, friction)
+                start = near.solve(load, start=start, tolerance=NEAR).displacement
             except NotConverged:
                 pass
-        balance = ReducedEquilibrium(self.matrices[0], joints, friction=friction)
-        return balance.solve(load, tolerance=BALANCED)
+        if start is not None:
+            try:
+                return self._balance(motions, laws, friction).solve(load, start=start, tolerance=BALANCED)
+            except NotConverged:
+                pass
+        exact = [replace(motion, groups=None) for motion in motions]
+        return self._balance(exact, laws, friction).solve(load, tolerance=BALANCED)
+
+    def _balance(
+        self, motions: Sequence[ReducedMotion], laws: Sequence[JointLaw], friction: Sequence[float | None]
+    ) -> ReducedEquilibrium:
+        return ReducedEquilibrium(self.matrices[0], list(zip(motions, laws, strict=True)), friction=friction)
 
     def springs(self, laws: Sequence[JointLaw], pressures: Sequence[Array]) -> list[Springs[ReducedMotion]]:
         """Springs of all joints under pressures [Pa], one array for each joint."""
-        motions = self._motions(self.dynamic_relative)
+        motions = self._motions(self.dynamic_relative, 1)
         return [law.springs(motion, p) for motion, law, p in zip(motions, laws, pressures, strict=True)]
 
     def modes(
@@ -228,6 +276,8 @@ class ReducedModel:
         """
         from scipy.linalg import eigh
 
+        if any(s.interface.groups is not None for s in springs):
+            return self._spanned(springs)
         _, K, M = self.matrices
         K = K + sum(s.stiffness() for s in springs)
         real, shapes = eigh(K, M)
@@ -239,6 +289,47 @@ class ReducedModel:
         loss = sum(s.loss() for s in springs)
         values, inner = _complex_modes(real, shapes.T @ loss @ shapes, self.count, slight)
         return values, shapes @ inner, estimate
+
+    @cached_property
+    def _normal(self) -> tuple[Array, Array]:
+        """A transformation (d, d) that makes the mass the identity, and the parts' stiffness (d, d) under it."""
+        from scipy.linalg import cholesky, solve_triangular
+
+        _, K, M = self.matrices
+        turn = solve_triangular(cholesky(M), np.eye(len(M)))
+        return turn, turn.T @ K @ turn
+
+    def _spanned(self, springs: Sequence[Springs[ReducedMotion]]) -> tuple[Complex, Complex, Array]:
+        """`modes` in the span of those by seven digits; the energy in full errs by the square of what it lacks."""
+        from scipy.linalg import eigh, eigvalsh
+
+        turn, K = self._normal
+        lossy = any(np.any(s.loss_n) or np.any(s.loss_t) for s in springs)
+        rough, wanted = K, min(self.count + (BLOCK if lossy else SPAN), len(K))
+        for s in springs:
+            groups = s.interface.groups
+            if groups is None:
+                rough = rough + turn.T @ s.stiffness() @ turn
+            else:
+                w = s.interface.weights[:, None]
+                rough = rough + turn.T @ groups.sprung(w * np.stack([s.k_n, s.k_t, s.k_t], axis=1)) @ turn
+        near, shapes = eigh(rough, subset_by_index=[0, wanted - 1])
+        # the leading vectors of the basis are those of the first columns of `turn`, which is triangular
+        cut = slice(0, self.coarse)
+        coarser = eigvalsh(rough[cut, cut], subset_by_index=[0, self.count - 1])
+        estimate = np.abs(coarser / near[: self.count] - 1) / 2
+        small, loss = shapes.T @ K @ shapes, np.zeros((wanted, wanted))
+        span = turn @ shapes
+        for s in springs:
+            here = replace(s, interface=replace(s.interface, relative=s.interface.relative @ span, groups=None))
+            small = small + here.stiffness()
+            if lossy:
+                loss = loss + here.loss()
+        real, inner = eigh(small)
+        if not lossy:
+            return real[: self.count].astype(complex), (span @ inner[:, : self.count]).astype(complex), estimate
+        values, mixed = _complex_modes(real, inner.T @ loss @ inner, self.count)
+        return values, span @ (inner @ mixed), estimate
 
     def evaluate(
         self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None = None

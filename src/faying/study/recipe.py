@@ -1,7 +1,7 @@
 """What makes the laws, forces, gaps and scales of one point of a sweep or of an ensemble."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -124,7 +124,9 @@ class Recipe:
             if key not in self._lately:
                 if len(self._lately) >= LATELY:
                     self._lately.pop(next(iter(self._lately)))
-                self._lately[key] = joint_law(joint, choice, surface, *self.pairs[number])
+                made = joint_law(joint, choice, surface, *self.pairs[number])
+                # asked hundreds of times, so that its table pays however few points the joint has
+                self._lately[key] = replace(made, few=0)
             law, factor = self._lately[key], point.stiffness.get(joint.name, 1.0)
             laws.append(law if factor == 1 else law.scaled(factor))
         return laws, point.forces, [joint.friction for joint in point.study.joints]

@@ -314,6 +314,14 @@ def _response(study: Study, states: Sequence[State]) -> Receptance | None:
 
 def _closing_notes(study: Study, rigid: Array) -> list[Note]:
     out = []
+    if study.uncertain is not None:
+        within = [column.key for column in study.uncertain.inputs if column.within]
+        taken = f"; of {', '.join(within)} the median is taken" if within else ""
+        text = (
+            f"the numbers under [uncertain] do not scatter here: this is the answer at those that the study "
+            f"gives{taken}; faying predict gives intervals"
+        )
+        out.append(Note(code="uncertain", text=text))
     if len(rigid) and rigid.max() > NOT_ZERO:
         text = f"a rigid-body motion comes out at {rigid.max():.2g} Hz instead of 0: the solution has lost digits"
         out.append(Note(code="rigid", text=text))

@@ -1,0 +1,75 @@
+"""Cheap stand-ins for the many points of a joint: groups of them that move alike, and seven digits of their motion.
+
+They are never the answer. An equilibrium starts from the groups and takes its tangents from the seven digits, and modes
+take their span from these. The force balance and the energy of the modes, asked of all points in full, make the answer.
+"""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faying.typing import Array, Index
+
+SIZE = 8  # most points of a group
+SEEN = 6  # of the motions of a joint, strongest first, by which points are alike
+
+
+@dataclass(frozen=True, kw_only=True)
+class Groups:
+    """Groups of the q points of one joint, g of them.
+
+    order: the points, group by group (q,); starts: where each group begins in `order` (g,); weights: area of each
+    group [m2] (g,); shares: of each point of `order` in the area of its group (q,); relative: mean motion (3g, m);
+    light: the motion of all points (3q, m) in seven digits.
+    """
+
+    order: Index
+    starts: Index
+    weights: Array
+    shares: Array
+    relative: Array
+    light: NDArray[np.float32]
+
+    @classmethod
+    def of(cls, weights: Array, relative: Array) -> Self:
+        """Group points of areas `weights` [m2] (q,) by their relative motion (3q, m): halves of halves."""
+        motion = relative.reshape(len(weights), -1)
+        left, size, _ = np.linalg.svd(motion - motion.mean(axis=0), full_matrices=False)
+        seen = left[:, :SEEN] * size[:SEEN]
+        groups, left_over = [], [np.arange(len(weights))]
+        while left_over:
+            here = left_over.pop()
+            if len(here) <= SIZE:
+                groups.append(here)
+                continue
+            widest = int(np.argmax(np.ptp(seen[here], axis=0)))
+            ranked = here[np.argsort(seen[here, widest], kind="stable")]
+            left_over += [ranked[: len(here) // 2], ranked[len(here) // 2 :]]
+        order = np.concatenate(groups)
+        starts = np.cumsum([0, *map(len, groups[:-1])])
+        area = np.add.reduceat(weights[order], starts)
+        shares = weights[order] / np.repeat(area, np.diff(np.append(starts, len(order))))
+        mean = np.add.reduceat(shares[:, None] * motion[order], starts, axis=0)
+        width = relative.shape[1]
+        return cls(
+            order=order,
+            starts=starts,
+            weights=area,
+            shares=shares,
+            relative=mean.reshape(-1, width),
+            light=relative.astype(np.float32),
+        )
+
+    def sprung(self, springs: Array) -> Array:
+        """Stiffness (m, m) of springs (q, 3) [N/m], normal and both tangential, of all points, to six digits or so."""
+        from scipy.linalg.blas import ssyrk
+
+        roots = np.sqrt(springs).astype(np.float32).reshape(-1, 1)
+        lower = ssyrk(1.0, (roots * self.light).T, lower=1).astype(float)
+        return np.asarray(lower + np.tril(lower, -1).T)
+
+    def mean(self, values: Array) -> Array:
+        """Means (g,) by area of values (q,)."""
+        return np.add.reduceat(self.shares * values[self.order], self.starts)
