@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import faying
+
 EXAMPLE = Path(__file__).parent.parent.parent / "examples" / "t-specimen"
 
 
@@ -124,3 +126,17 @@ def test_files(outcome):
         "pressure.svg",
         "modes.png",
     } <= names
+
+
+@pytest.mark.slow
+def test_the_backbone_of_mode_3_has_a_witness():
+    """Harmonic balance and the static cycle within 2 % of the damping, or the curve says where they part."""
+    curve = faying.backbone(EXAMPLE / "study.toml", mode=3, friction=0.2, amplitude=(20.0, 500.0))
+    assert curve.code == "amplitude"
+    assert np.all(np.diff(curve.damping) > 0)
+    apart = np.abs(curve.witness.damping_change) > 0.02
+    assert np.count_nonzero(apart) == sum(note.code == "backbone-witness" for note in curve.notes)
+    assert abs(curve.witness.damping_change[-1]) < 0.05
+    assert np.all(np.abs(curve.witness.frequency_change) < 1e-3)
+    assert abs(curve.bounds.points_damping) < 0.02
+    assert curve.bounds.residual < 0.01

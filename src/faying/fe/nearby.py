@@ -14,7 +14,14 @@ LEAST = 1e-10  # share of a new vector that must be new
 
 
 def nearby_modes(
-    modes: Modes, stiffness: Any, mass: Any, *, rigid: int, count: int, tolerance: float = 1e-7
+    modes: Modes,
+    stiffness: Any,
+    mass: Any,
+    *,
+    rigid: int,
+    count: int,
+    tolerance: float = 1e-7,
+    more: Array | None = None,
 ) -> tuple[Array, Array]:
     """Find the modes under another stiffness without another factorisation.
 
@@ -28,6 +35,7 @@ def nearby_modes(
         rigid: how many of the modes are rigid motions.
         count: how many elastic modes are wanted, at most those that `modes` has.
         tolerance: of the estimated relative error of the squared frequencies.
+        more: vectors (n, k) that are likely to be near the new modes, such as those of another stiffness between.
 
     Returns:
         Frequencies [Hz] (count,) and shapes (n, count), mass-normalised.
@@ -38,6 +46,8 @@ def nearby_modes(
     from scipy.linalg import eigh
 
     span = Span(mass, stiffness, modes.shapes)
+    if more is not None and more.shape[1]:
+        span.add(more / np.sqrt(np.einsum("ij,ij->j", more, mass @ more)), least=LEAST)
     for _ in range(ROUNDS):
         values, inner = eigh(span.small[0])
         order = np.argsort(np.abs(values))[rigid : rigid + count]

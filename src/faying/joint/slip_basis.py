@@ -96,6 +96,7 @@ class SlipBasis:
         rigid = self.structure.rigid_count
         self.basis.add(self.modes.shapes[:, rigid:])
         kinds = [("k_t", factor) for factor in TANGENTIAL] + [("k_n", factor) for factor in NORMAL]
+        found = None
         for name, factor in kinds:
             if report is not None:
                 report(f"basis: {name} x {factor:g}")
@@ -103,10 +104,11 @@ class SlipBasis:
             stiffness, _ = self.structure.joined(softened)
             try:
                 _, shapes = nearby_modes(
-                    self.modes, stiffness, self.mass, rigid=rigid, count=self._trained, tolerance=ROUGH
+                    self.modes, stiffness, self.mass, rigid=rigid, count=self._trained, tolerance=ROUGH, more=found
                 )
             except NotConverged:
                 continue  # too soft for these modes to go by; the residual tells whether that matters
+            found = shapes
             self.basis.add(shapes, least=SMALL * float(self._energy(self.shape)))
 
     def restore(self, vectors: Array) -> None:
@@ -181,7 +183,7 @@ class SlipBasis:
             left = left + interface.relative.T @ traction.reshape(len(X), -1).T
         left[self.structure.fixed] = 0.0
         mend = self._answer(left)
-        size = float(np.einsum("ij,ij->", motion, self.joined @ motion))
+        size = float(np.einsum("ij,jk,ik->", X, epmc.model.linear, X))
         return float(np.sqrt(max(np.einsum("ij,ij->", left, mend), 0.0) / size)), mend
 
     def _answer(self, right: Array) -> Array:

@@ -11,6 +11,7 @@ from faying.output.figures.save import new_figure, plain
 from faying.output.scene.text import packed_backbones
 from faying.result.backbone import Backbone
 
+AROUND = 1.05  # room beside measured points, as a factor of the acceleration
 ROUNDING = 1e-9  # of the greatest damping: less is rounding
 
 
@@ -102,7 +103,8 @@ def zooming(curves: Sequence[Backbone], points: int = 200) -> dict[str, Any]:
     grid = np.geomspace(low, max(curve.acceleration[-1] for curve in curves), points)
     measured, marked = curves[0].measured, ""
     if measured is not None:
-        grid = np.unique(np.concatenate([grid, measured.acceleration]))
+        ends = measured.acceleration.min() / AROUND, measured.acceleration.max() * AROUND
+        grid = np.unique(np.concatenate([grid, measured.acceleration, ends]))
     found = {}
     for curve in curves:
         inside = (grid >= low) & (grid <= curve.acceleration[-1] * (1 + 1e-9))
