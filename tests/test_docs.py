@@ -51,9 +51,8 @@ def test_commands(page, checkout):
     for line in commands(page):
         if line.startswith("run ") and any(study in line for study in ELSEWHERE):
             continue
-        if line == "run study.toml" and page.name != "README.md":  # a minute long, and the same there
+        if line == "run study.toml":  # a minute long: tests/cli/test_main.py runs it
             assert "init study.toml" in commands(page)
-            assert line in commands(ROOT / "README.md")
             continue
         if line == "app":  # it serves until it is ended; tests/app has it
             continue

@@ -48,6 +48,7 @@ needs_scan = pytest.mark.skipif(not SCAN.exists(), reason="the synthetic scan of
 
 
 @needs_scan
+@pytest.mark.slow  # docs/which-law.md has the same command
 def test_one_scan_all_models(tmp_path: Path) -> None:
     figure, table = tmp_path / "all.svg", tmp_path / "all.csv"
     out = run(
