@@ -20,7 +20,7 @@ from faying.study.keys.geometry import mesh_of
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import NO_SURFACE, Surface, SurfaceChoice
-from faying.study.strength import bolt_notes
+from faying.study.strength import bolt_notes, material_notes
 from faying.study.study import Study
 from faying.typing import Array
 from faying.units import show
@@ -89,7 +89,8 @@ class Case:
                 "is wrong"
             )
             notes.append(Note(code="size", text=text))
-        notes += (*law_reasons(structure, surfaces), *structure.notes, *bolt_notes(structure))
+        notes += (*law_reasons(structure, surfaces), *structure.notes)
+        notes += (*material_notes(structure), *bolt_notes(structure))
         return cls(
             study=study,
             structure=structure,

@@ -25,7 +25,7 @@ from faying.study.keys.reader import StudyFaults
 from faying.study.lines import key_of, line_of, lines_of
 from faying.study.reach import law_findings
 from faying.study.sketch import Sketch
-from faying.study.strength import SolidPlace, bolt_notes
+from faying.study.strength import SolidPlace, bolt_notes, material_notes
 from faying.study.study import Study
 from faying.units import show
 
@@ -307,6 +307,7 @@ def _bolts(sketch: Sketch, found: _Findings) -> Sketch:
         _notes(found, made.notes, f"bolt[{k}].seat")
     sketch = replace(sketch, fitted_bolts=tuple(places))
     keys = {bolt.name: f"bolt[{k}].preload" for k, bolt in enumerate(sketch.study.bolts, 1)}
+    _notes(found, material_notes(sketch), "part")
     for note in bolt_notes(sketch):
         key = next((key for name, key in keys.items() if note.text.startswith(f"bolt {name!r}")), "bolt")
         found.add("note", note.code, note.text, key)
