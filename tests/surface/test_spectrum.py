@@ -289,3 +289,10 @@ def test_the_structure_function_is_the_mean_over_all_pairs(ny, nx, dx, dy):
     np.testing.assert_allclose(sf.lag, expected[:, 0], rtol=1e-9)
     np.testing.assert_allclose(sf.value, expected[:, 1], rtol=1e-6)
     np.testing.assert_allclose(sf.pairs, expected[:, 2], rtol=1e-9)
+
+
+def test_lags_end_at_an_eighth_of_the_shorter_side():
+    """A longer lag has few independent pairs: the mean of its squared differences scatters with single waves."""
+    z = np.random.default_rng(3).standard_normal((160, 240))
+    lag = structure_function(Scan(heights=z, spacing=(3e-6, 2e-6))).lag
+    assert 0.9 * 320e-6 / 8 < lag[-1] < 320e-6 / 8
