@@ -9,6 +9,7 @@ from faying.errors import InputError
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.files import end_of
+from faying.joint.attachments import nearest_node
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Joint, Structure
 from faying.materials import Material
@@ -76,6 +77,8 @@ class Case:
         laws = checked_laws(study, surfaces)
         progress.begin("mesh")
         structure = structure_of(study, checked_mesh(study), surfaces, laws)
+        for k, point in enumerate(study.test.points if study.test else (), 1):
+            nearest_node(structure.mesh, point, f"test.points[{k}]")
         notes = [Note(code="surface", text=text) for surface in surfaces for text in surface.warnings]
         told = {note.text for note in notes}
         tables = [file for file in study.files if file != study.geometry.file]  # readers of meshes look for themselves
