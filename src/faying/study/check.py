@@ -311,7 +311,7 @@ def _bolts(sketch: Sketch, found: _Findings) -> Sketch:
     found.tried("bolt", "bolt", lambda: each_in_its_place([one for one in places if isinstance(one, BoltPlace)]))
     sketch = replace(sketch, fitted_bolts=tuple(places))
     keys = {bolt.name: f"bolt[{k}].preload" for k, bolt in enumerate(sketch.study.bolts, 1)}
-    _notes(found, material_notes(sketch), "part")
+    _notes(found, tuple(material_notes(sketch)), "part")
     for note in bolt_notes(sketch):
         key = next((key for name, key in keys.items() if note.text.startswith(f"bolt {name!r}")), "bolt")
         found.add("note", note.code, note.text, key)
