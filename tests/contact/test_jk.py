@@ -413,6 +413,18 @@ def test_every_sign_of_leaving_the_ground_is_reported() -> None:
     assert "D outside" in reasons(LAW.with_(D=2.05), 1e-10)
 
 
+def test_a_loss_that_no_loop_can_have_is_outside_of_the_ground() -> None:
+    """The least loads deform all asperities plastically: dissipated over stored energy grows without limit."""
+    pressure = np.geomspace(1e-6, 1e6, 40)
+    response = LAW.at_pressure(pressure)
+    assert response.loss_n is not None
+    assert response.loss_t is not None
+    greatest = np.maximum(response.loss_n, response.loss_t)
+    assert greatest[0] > 1e4
+    assert greatest[-1] < 0.05
+    assert response.valid.tolist() == (greatest <= 4 / pi).tolist()
+
+
 def test_flags_begin_at_their_limits() -> None:
     """Each flag one part in a million on either side of the value that the docstring states."""
 

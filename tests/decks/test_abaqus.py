@@ -105,6 +105,7 @@ def fault(tmp_path, text, match, kind=faying.ReadError):
         ("*NSET, NSET=x, GENERATE\n9, 1\n", "a range from 9 to 1"),
         ("*NSET, NSET=x, GENERATE\n1, 9, 0\n", "a range from 1 to 9 by 0"),
         ("*NSET, NSET=x\nx\n", "names the set 'x', which the file does not hold or is part of it"),
+        ("*ELEMENT, TYPE=C3D8I\n", "0 numbers do not make elements of 8 nodes; is the file whole"),
         ("*ELEMENT, TYPE=C3D4,", "the file ends in a keyword that goes on; is it whole?"),
         ("*SURFACE, TYPE=CUTTING SURFACE, NAME=x\n1, S1\n", r"\*SURFACE of this type is not known"),
     ],
@@ -138,6 +139,14 @@ def test_a_deck_without_an_end_of_line_is_noted(tmp_path, blocks):
     mesh = faying.read_mesh(written(tmp_path, meshfiles.abaqus(blocks)[:-1], "m.inp"), unit="mm")
     assert ["it may be cut short" in note.text for note in mesh.notes] == [True]
     assert not faying.read_mesh(written(tmp_path, meshfiles.abaqus(blocks), "m.inp"), unit="mm").notes
+
+
+@pytest.mark.parametrize("keyword", ["NSET, NSET=x", "ELSET, ELSET=x", "SURFACE, NAME=x", "NODE"])
+def test_a_keyword_without_its_data_is_noted(tmp_path, blocks, keyword):
+    """What a deck cut between keyword and data looks like."""
+    text = meshfiles.abaqus(blocks) + f"*{keyword}\n"
+    mesh = faying.read_mesh(written(tmp_path, text, "m.inp"), unit="mm")
+    assert ["has no data lines: the file may be cut short" in note.text for note in mesh.notes] == [True]
 
 
 def test_includes_without_end(tmp_path, blocks):

@@ -134,6 +134,8 @@ def plain(numbers, places):
         (["GRID,90001,,1.E+999,2.,3."], "node 90001 has no three finite coordinates"),
         (["GRID,1" + 25 * "0" + ",,1.,2.,3."], "is none of a node or an element"),
         (["INCLUDE 'm.bdf'"], "includes itself"),
+        (["CTRIA3"], "CTRIA3  has no 3 corners"),
+        (["CQUAD8,7,1,100,,103,106,109"], "CQUAD8 7 has no 4 corners"),
     ],
 )
 def test_faults(tmp_path, blocks, more, match):

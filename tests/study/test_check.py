@@ -13,7 +13,7 @@ from faying.cli.main import cli, main
 from faying.fe.face_facts import read_facts
 from faying.fe.geometry import mesh_step
 from faying.joint.vdi2230 import cone_angle, cone_pressure
-from faying.study import Study, new
+from faying.study import Study, new, template
 from faying.study.check import check
 from faying.study.expected import MEASURED, Expected, unknowns_of
 from tests.helpers.boxes import row
@@ -135,6 +135,18 @@ def test_gaps_overlaps_and_odd_bolts(tmp_path):
     lapped(tmp_path / "gap.step", gap=-0.2, names=("lower", "upper"))
     overlap = next(one for one in check(tmp_path / "s.toml").faults if one.code == "overlap")
     assert "share 100 x 40 x 0.2 mm" in overlap.text
+
+
+def test_a_joint_or_a_bolt_twice_is_a_fault(tmp_path):
+    """As for run, which doubled stiffness and preload once."""
+    template.write(tmp_path / "s.toml")
+    text = (tmp_path / "s.toml").read_text()
+    joint = '[[joint]]\nname = "k"\nfaces = ["lower.joint", "upper.joint"]\n'
+    bolt = '[[bolt]]\nname = "c"\nfaces = ["upper.seat", "lower.seat"]\npreload = ["2 kN", "6 kN"]\n'
+    (tmp_path / "s.toml").write_text(text + joint + bolt)
+    told = " ".join(one.text for one in check(tmp_path / "s.toml").faults)
+    assert "joints 'joint' and 'k' join the same faces" in told
+    assert "bolts 'bolt' and 'c' run through one place" in told
 
 
 def test_the_mean_pressure_beside_the_end_of_the_law(folder):

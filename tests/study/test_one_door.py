@@ -11,10 +11,13 @@ from click.testing import CliRunner
 import faying
 from faying.cli.law import command as law_command
 from faying.contact.build import AUTO, build, kinds
+from faying.decks.included import included
 from faying.study import Study
 from faying.study.case import Case
 from faying.study.keys.surface import SurfaceChoice
 from faying.study.part_folder import fingerprint
+from tests.helpers import meshfiles
+from tests.helpers.boxes import row
 from tests.helpers.studies import write
 
 STEEL = faying.CATALOGUE["45 steel"]
@@ -101,6 +104,25 @@ def test_a_sweep_depends_on_every_file_that_a_key_names(folder):
         assert fingerprint(plan, [], 1e-6) != before, file.name
         file.write_bytes(content)
     assert fingerprint(plan, [], 1e-6) == before
+
+
+def test_a_sweep_depends_on_the_files_that_a_mesh_includes(tmp_path):
+    """A deck names its nodes, these name more: what changes in any of them is another model."""
+    mesh = row([0.05, 0.04], [2, 1], kinds=("hex8", "hex8"), sections=((2, 1), (2, 1)), width=0.02, height=0.01)
+    head, _, rest = meshfiles.abaqus(mesh).partition("*Element")
+    nodes = head[head.index("\n", head.index("*Node")) + 1 :]
+    (tmp_path / "study.toml").write_text(meshfiles.STUDY)
+    (tmp_path / "model.inp").write_text("*Include,\n input=all.inp\n*Element" + rest)
+    (tmp_path / "all.inp").write_text("*Node, INPUT=nodes.txt\n")
+    (tmp_path / "nodes.txt").write_text(nodes)
+    plan = Study.read(tmp_path / "study.toml")
+    assert {file.name for file in plan.files} == {"model.inp", "all.inp", "nodes.txt"}
+    before = fingerprint(plan, [], 1e-6)
+    (tmp_path / "nodes.txt").write_text(nodes.replace("0, 0, 0", "0, 0, 0.0", 1))
+    assert fingerprint(plan, [], 1e-6) != before
+    (tmp_path / "a.bdf").write_text("BEGIN BULK\nINCLUDE 'b.bdf'\n")
+    (tmp_path / "b.bdf").write_text("include a.bdf\n")
+    assert [file.name for file in included(tmp_path / "a.bdf")] == ["b.bdf"]
 
 
 def test_documented_laws_are_public_names():

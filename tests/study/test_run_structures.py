@@ -144,3 +144,11 @@ def test_a_point_far_from_the_structure(folder):
     given["response"]["input"][0]["point"] = ["4 m", "0 mm", "0 mm"]
     with pytest.raises(faying.InputError, match="point of the response: the nearest node to"):
         run(Study.from_dict(given, folder=folder))
+
+
+def test_a_point_of_the_test_far_from_the_structure(folder):
+    given = data(folder)
+    rows = [["1 kHz"]] * len(given["bolt"][0]["preload"])
+    given["test"] = {"source": "s", "direction": [1, 0, 0], "points": [["80 m", "0 mm", "0 mm"]], "frequencies": rows}
+    with pytest.raises(faying.InputError, match=r"test.points\[1\]: the nearest node to .* check the point"):
+        run(Study.from_dict(given, folder=folder))

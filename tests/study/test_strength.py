@@ -10,7 +10,7 @@ import pytest
 import faying
 from faying.joint.joint_law import JointLaw
 from faying.study import Study, build
-from faying.study.strength import bolt_notes, pressure_notes
+from faying.study.strength import bolt_notes, material_notes, pressure_notes
 from faying.study.template import write
 from tests.helpers.laws import Given
 
@@ -106,6 +106,22 @@ def test_preloads_whose_unit_looks_wrong(made):
     assert "is less than the 5.3" in bolt_notes(made("1 uN"))[0].text or "5.4" in bolt_notes(made("1 uN"))[0].text
     assert codes(made("1 MN")) == ["seat-yield", "seat-yield"]
     assert codes(made("6 kN")) == []
+
+
+def test_a_material_whose_units_look_wrong(made):
+    """7.8 g/cm^3 as 7.8 kg/m^3, or GPa in place of MPa: sound at 160 km/s. Diamond, 18 km/s, passes."""
+    structure = made("6 kN")
+    assert material_notes(structure) == []
+    for E, density, odd in ((200e9, 7.8, True), (200e12, 7800.0, True), (1140e9, 3515.0, False)):
+        one = faying.Material(name="one", E=E, nu=0.1, density=density)
+        notes = material_notes(replace(structure, materials=dict.fromkeys(structure.materials, one)))
+        assert [note.code for note in notes] == ["odd-material"] * (2 if odd else 0)
+    assert (
+        "part 'upper': E = 2e+05 GPa"
+        in material_notes(
+            replace(structure, materials={"upper": faying.Material(name="one", E=200e12, nu=0.3, density=7800.0)})
+        )[0].text
+    )
 
 
 def test_pressure_beyond_yield_states_its_share_of_the_area(made):

@@ -203,6 +203,12 @@ def test_faults_of_a_grid(plan):
         ("bolt.nobody.preload=1 kN,2 kN", "no bolt is called 'nobody'"),
         ("surface.D=1.5:2.5:3", "must be between 2 and 3"),
         ("bolt.preload=-1 kN:2 kN:3", "must be positive"),
+        ("joint.friction=-1:1:3", "friction = -1; it must be at least 0"),
+        ("joint.friction=0:1e9:3", "friction = 1000000000; it must be at least 0 and below"),
+        ("law.model=nope,jk", "no contact law 'nope'"),
+        ("law.counterbody=x", "counterbody = 'x'; allowed is"),
+        ("law.cutoff=0:1:3", "cutoff = 0; it must be between 0 and 1"),
+        ("surface.D=2.2:2.6:1000000000", "whole number from 2 to 1,000,000"),
     ):
         with pytest.raises(faying.InputError, match=message):
             Grid(study=plan, surfaces=surfaces, axes=axes(text))

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from faying import NotConverged, Scan
 from faying.surface import powerlaw
 from faying.surface.convention import cut_factor, density, structure_coefficient
+from faying.surface.fractal import fit_fractal
 from faying.surface.lines import find_lines
 from faying.surface.scan import Profile
 from faying.surface.spectrum import (
@@ -289,3 +290,17 @@ def test_the_structure_function_is_the_mean_over_all_pairs(ny, nx, dx, dy):
     np.testing.assert_allclose(sf.lag, expected[:, 0], rtol=1e-9)
     np.testing.assert_allclose(sf.value, expected[:, 1], rtol=1e-6)
     np.testing.assert_allclose(sf.pairs, expected[:, 2], rtol=1e-9)
+
+
+def test_lags_end_at_an_eighth_of_the_shorter_side():
+    """A longer lag has few independent pairs: the mean of its squared differences scatters with single waves."""
+    z = np.random.default_rng(3).standard_normal((160, 240))
+    lag = structure_function(Scan(heights=z, spacing=(3e-6, 2e-6))).lag
+    assert 0.9 * 320e-6 / 8 < lag[-1] < 320e-6 / 8
+
+
+def test_a_scan_without_any_usable_wave_is_called_too_short():
+    """6 cycles on 20 points are 3.3 points a cycle, and 4 are needed. It ended in a warning and a band turned round."""
+    scan = spectral((20, 20), spacing=1e-5, D=2.4, Rq=1e-6)
+    with pytest.raises(NotConverged, match="too short for a spectrum: waves from 40 um up .* from 33.33 um up"):
+        fit_fractal(scan, method="psd")

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
+from math import pi
 from typing import Self
 
 import numpy as np
@@ -23,6 +24,10 @@ UNITS = {
     "k_n_high": "Pa/m",
 }
 
+# A loop of force over motion fills at most its box, 4 F x; a spring to its corner stores F x/2.
+MOST_LOSS = 4 / pi
+TOO_LOSSY = "loss factor above 4/pi, which no loop of force over motion has"
+
 
 @dataclass(frozen=True, kw_only=True)
 class Response:
@@ -33,7 +38,8 @@ class Response:
     first loading where it is not k_n, because asperities yield; k_n_low, k_n_high [Pa/m], the range of k_n where
     the law states one. A loss factor is the energy dissipated in a cycle over 2 pi times the greatest energy stored in
     it. A quantity that the model does not define is None.
-    valid tells where the model is within its validity range; `reasons` names, per way of leaving it, where.
+    valid tells where the model is within its validity range; `reasons` names, per way of leaving it, where. A loss
+    factor above 4/pi is such a way for every law.
     """
 
     pressure: Array
@@ -48,6 +54,12 @@ class Response:
     k_n_low: Array | None = None
     k_n_high: Array | None = None
     reasons: Mapping[str, Mask] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        losses = [np.asarray(loss) for loss in (self.loss_n, self.loss_t) if loss is not None]
+        if losses:
+            beyond = np.any([loss > MOST_LOSS for loss in losses], axis=0)
+            object.__setattr__(self, "reasons", {**self.reasons, TOO_LOSSY: np.asarray(beyond)})
 
     @property
     def valid(self) -> Mask:

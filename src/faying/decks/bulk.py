@@ -135,6 +135,8 @@ class Bulk:
         elif name in _SKINS:
             few, many = _SKINS[name]
             nodes = [int(word) for word in fields[2 : 2 + many] if word]
+            if not all(fields[2 : 2 + few]) or len(fields) < 2 + few:
+                raise ReadError(f"{where}: {name} {fields[0]} has no {few} corners; is the file whole?")
             self.skins.setdefault(f"face{fields[1] or fields[0]}", []).append(
                 nodes if len(nodes) == many else nodes[:few]
             )

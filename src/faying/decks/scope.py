@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from faying.decks.keywords import Block
+from faying.decks.keywords import DATA, Block
 from faying.decks.raw import index, ranged
 from faying.errors import ReadError
 from faying.typing import Array, Index
@@ -46,6 +46,8 @@ class Scope:
 def take(block: Block, scope: Scope) -> None:
     """Note what a keyword and its lines say. Raises ReadError, naming both, where they cannot be read."""
     options, keyword = block.options, block.keyword
+    if keyword in DATA and not block.words():
+        scope.notes.append(f"{block.where}: *{keyword} has no data lines: the file may be cut short")
     try:
         if keyword == "NODE":
             _nodes(block, scope)
@@ -161,7 +163,7 @@ def _elements(block: Block, scope: Scope) -> None:
             f"{', '.join(_SOLID)} with their variants, and triangles and quadrangles as faces"
         )
     words = block.words()
-    if len(words) % (count + 1):
+    if not words or len(words) % (count + 1):
         raise ReadError(
             f"{block.where}: {len(words)} numbers do not make elements of {count} nodes; is the file whole?"
         )

@@ -1,5 +1,6 @@
 """Bolts: the force they pull with, and the shank, head, nut and washers that move with the structure."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
@@ -267,6 +268,26 @@ class BoltPlace:
         return _seat_notes(self.bolt, self.ring)
 
 
+def _meet(one: "BoltPlace | FittedBolt", other: "BoltPlace | FittedBolt") -> bool:
+    """Whether two bolts run through one place: parallel, on a common face, closer than their shanks are thick."""
+    arm = other.point - one.point
+    apart = float(np.linalg.norm(arm - (arm @ one.axis) * one.axis))
+    thick = ((one.bolt.diameter or 0.0) + (other.bolt.diameter or 0.0)) / 2 or 1e-3 * one.length
+    parallel = abs(float(one.axis @ other.axis)) > 0.9
+    return apart < thick and parallel and bool({*one.bolt.faces} & {*other.bolt.faces})
+
+
+def each_in_its_place(bolts: "Sequence[BoltPlace | FittedBolt]") -> None:
+    """Raise InputError where two bolts run through one place."""
+    for k, one in enumerate(bolts):
+        for other in bolts[:k]:
+            if _meet(one, other):
+                raise InputError(
+                    f"bolts {other.bolt.name!r} and {one.bolt.name!r} run through one place; give each a point on "
+                    "its own axis as `at`, or leave one out"
+                )
+
+
 def _seat_notes(bolt: Bolt, ring: tuple[float, float] | None) -> tuple[Note, ...]:
     if ring is None or bolt.seat is not None or bolt.washers:
         return ()
@@ -296,17 +317,6 @@ class FittedBolt:
     def notes(self) -> tuple[Note, ...]:
         """What was chosen for want of a seat."""
         return _seat_notes(self.bolt, self.ring)
-
-    def meets(self, other: "FittedBolt") -> bool:
-        """Whether two bolts run through one place: parallel, on a common face, closer than their shanks are thick."""
-        arm = other.point - self.point
-        apart = float(np.linalg.norm(arm - (arm @ self.axis) * self.axis))
-        thick = ((self.bolt.diameter or 0.0) + (other.bolt.diameter or 0.0)) / 2 or 1e-3 * self.length
-        return (
-            apart < thick
-            and abs(float(self.axis @ other.axis)) > 0.9
-            and bool({*self.bolt.faces} & {*other.bolt.faces})
-        )
 
     @cached_property
     def motion(self) -> Any:

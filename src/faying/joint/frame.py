@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from faying.errors import InputError
 from faying.fe.constraint import constrain, free_motions
 from faying.fe.elasticity import Solid, assemble, rigid_motions
 from faying.fe.mesh import Mesh
 from faying.joint.attachments import PointMass, Support
-from faying.joint.bolt import Bolt, FittedBolt
+from faying.joint.bolt import Bolt, FittedBolt, each_in_its_place
 from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.typing import Array, Index
 
@@ -53,14 +52,7 @@ class Frame:
             bolt.fitted(self.mesh) if isinstance(bolt, Bolt) else bolt.fitted(self.mesh, self.matrices[0], joined)
             for bolt in self.bolts
         )
-        beams = [bolt for bolt in fitted if isinstance(bolt, FittedBolt)]
-        for k, one in enumerate(beams):
-            for other in beams[:k]:
-                if one.meets(other):
-                    raise InputError(
-                        f"bolts {other.bolt.name!r} and {one.bolt.name!r} run through one place; give each a point on "
-                        "its own axis as `at`, or leave one out"
-                    )
+        each_in_its_place([bolt for bolt in fitted if isinstance(bolt, FittedBolt)])
         return fitted
 
     @cached_property

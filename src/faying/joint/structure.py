@@ -72,6 +72,18 @@ class Joint:
         return replace(scans, pressure=at_nodes, k_n=scans.k_n * per_area, k_t=scans.k_t * per_area)
 
 
+def each_pair_once(joints: Mapping[str, tuple[str, str]]) -> None:
+    """Raise InputError where two joints, name -> faces, join the same faces."""
+    met: dict[frozenset[str], str] = {}
+    for name, faces in joints.items():
+        other = met.setdefault(frozenset(faces), name)
+        if other != name:
+            raise InputError(
+                f"joints {other!r} and {name!r} join the same faces {' and '.join(map(repr, sorted(faces)))}, which "
+                "would double the stiffness; leave one out"
+            )
+
+
 @dataclass(frozen=True, kw_only=True)
 class Structure:
     """A bolted structure.
@@ -126,13 +138,7 @@ class Structure:
             again = sorted({name for name in names if names.count(name) > 1})
             if again:
                 raise InputError(f"two {what} are called {again[0]!r}; give each a name of its own")
-        pairs = [frozenset(joint.faces) for joint in self.joints]
-        for k, pair in enumerate(pairs):
-            if pair in pairs[:k]:
-                raise InputError(
-                    f"joints {self.joints[pairs.index(pair)].name!r} and {self.joints[k].name!r} join the same faces "
-                    f"{' and '.join(map(repr, sorted(pair)))}, which would double the stiffness; leave one out"
-                )
+        each_pair_once({joint.name: joint.faces for joint in self.joints})
         frame = Frame(
             mesh=self.mesh,
             materials=self.materials,

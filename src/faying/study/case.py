@@ -9,6 +9,7 @@ from faying.errors import InputError
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.files import end_of
+from faying.joint.attachments import nearest_node
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Joint, Structure
 from faying.materials import Material
@@ -20,7 +21,7 @@ from faying.study.keys.geometry import mesh_of
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import NO_SURFACE, Surface, SurfaceChoice
-from faying.study.strength import bolt_notes
+from faying.study.strength import bolt_notes, material_notes
 from faying.study.study import Study
 from faying.typing import Array
 from faying.units import show
@@ -76,6 +77,8 @@ class Case:
         laws = checked_laws(study, surfaces)
         progress.begin("mesh")
         structure = structure_of(study, checked_mesh(study), surfaces, laws)
+        for k, point in enumerate(study.test.points if study.test else (), 1):
+            nearest_node(structure.mesh, point, f"test.points[{k}]")
         notes = [Note(code="surface", text=text) for surface in surfaces for text in surface.warnings]
         told = {note.text for note in notes}
         tables = [file for file in study.files if file != study.geometry.file]  # readers of meshes look for themselves
@@ -89,7 +92,8 @@ class Case:
                 "is wrong"
             )
             notes.append(Note(code="size", text=text))
-        notes += (*law_reasons(structure, surfaces), *structure.notes, *bolt_notes(structure))
+        notes += (*law_reasons(structure, surfaces), *structure.notes)
+        notes += (*material_notes(structure), *bolt_notes(structure))
         return cls(
             study=study,
             structure=structure,

@@ -14,8 +14,9 @@ from faying.fe.mesh import Mesh
 from faying.fe.mesh_facts import mesh_facts
 from faying.fe.quality import quality
 from faying.fe.selectors import TOUCHING, chosen, points_of
-from faying.joint.bolt import Bolt, BoltPlace
+from faying.joint.bolt import Bolt, BoltPlace, each_in_its_place
 from faying.joint.solid_bolt import SolidBolt
+from faying.joint.structure import each_pair_once
 from faying.memory import available
 from faying.notes import Note
 from faying.study.case import SIZES, name_faults
@@ -25,7 +26,7 @@ from faying.study.keys.reader import StudyFaults
 from faying.study.lines import key_of, line_of, lines_of
 from faying.study.reach import law_findings
 from faying.study.sketch import Sketch
-from faying.study.strength import SolidPlace, bolt_notes
+from faying.study.strength import SolidPlace, bolt_notes, material_notes
 from faying.study.study import Study
 from faying.units import show
 
@@ -250,6 +251,8 @@ def _minutes(seconds: float) -> str:
 def _contacts(sketch: Sketch, found: _Findings) -> None:
     """Whether the faces of each joint meet, and how far apart they lie."""
     spec, size = sketch.study.geometry, sketch.facts.size
+    joints = {joint.name: joint.faces for joint in sketch.study.joints}
+    found.tried("contact", "joint", lambda: each_pair_once(joints))
     for k, joint in enumerate(sketch.study.joints, 1):
         key = f"joint[{k}].faces"
         parts = [sketch.mesh.face_part[face] for face in joint.faces]
@@ -305,8 +308,10 @@ def _bolts(sketch: Sketch, found: _Findings) -> Sketch:
         ring = "whole faces" if made.ring is None else f"a ring of {' to '.join(show(d, 'm') for d in made.ring)}"
         found.add("ok", "bolt", f"bolt {bolt.name!r} clamps {length} between seats that are {ring}", f"bolt[{k}].faces")
         _notes(found, made.notes, f"bolt[{k}].seat")
+    found.tried("bolt", "bolt", lambda: each_in_its_place([one for one in places if isinstance(one, BoltPlace)]))
     sketch = replace(sketch, fitted_bolts=tuple(places))
     keys = {bolt.name: f"bolt[{k}].preload" for k, bolt in enumerate(sketch.study.bolts, 1)}
+    _notes(found, tuple(material_notes(sketch)), "part")
     for note in bolt_notes(sketch):
         key = next((key for name, key in keys.items() if note.text.startswith(f"bolt {name!r}")), "bolt")
         found.add("note", note.code, note.text, key)

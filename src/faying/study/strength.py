@@ -18,6 +18,7 @@ from faying.typing import Array
 from faying.units import show
 
 GRAVITY = 9.81  # m/s2
+FASTEST = 20e3  # m/s; the speed sqrt(E/density) of diamond, the fastest of all solids, is 18 km/s
 USED = 0.9  # share of its proof load that a bolt is usually tightened to at most
 
 
@@ -92,6 +93,21 @@ def bolt_notes(structure: Bolted) -> list[Note]:
             out += _shank(bolt, greatest)
         if isinstance(fitted, FittedBolt | BoltPlace):
             out += _seats(structure, fitted, greatest)
+    return out
+
+
+def material_notes(structure: Bolted) -> list[Note]:
+    """Say which materials no solid can be, by sqrt(E/density) as by a density in g/cm^3 that was given as kg/m^3."""
+    out = []
+    for part, material in structure.materials.items():
+        speed = (material.E / material.density) ** 0.5 if material.density else 0.0
+        if speed > FASTEST:
+            E, density = show(material.E, "Pa"), show(material.density or 0.0, "kg/m^3")
+            text = (
+                f"part {part!r}: E = {E} and a density of {density} make a speed of sound of {show(speed, 'm/s')}, "
+                "which no solid has; are their units right?"
+            )
+            out.append(Note(code="odd-material", text=text))
     return out
 
 

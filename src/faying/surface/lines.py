@@ -51,6 +51,6 @@ def find_lines(scan: Scan, power: Array, frequency: Array) -> Mask:
     total = np.bincount(rings, power[inner])
     in_peaks = np.bincount(rings, np.where(marked, power, 0.0)[inner], len(total))
     filled = total > 0
-    if np.mean(in_peaks[filled] > 0.5 * total[filled]) > LARGEST:
+    if filled.any() and np.mean(in_peaks[filled] > 0.5 * total[filled]) > LARGEST:
         marked[:] = False
     return marked

@@ -241,7 +241,13 @@ def supported_band(spectrum: Spectrum, *, resolution: float | None = None) -> tu
     high = 0.5 * spectrum.nyquist
     if resolution:
         high = min(high, 1 / resolution)
-    return 6 * spectrum.lowest, high
+    low = 6 * spectrum.lowest
+    if high <= low:
+        raise NotConverged(
+            f"the scan is too short for a spectrum: waves from {show(1 / high, 'm')} up can be resolved, and from "
+            f"{show(1 / low, 'm')} up they are fewer than 6 on its shortest side; scan a longer piece, or more finely"
+        )
+    return low, high
 
 
 def fit_band(spectrum: Spectrum, low: float, high: float, *, fixed: bool = False) -> tuple[PowerLaw, tuple[str, ...]]:

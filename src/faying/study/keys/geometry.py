@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from faying.decks.included import included
 from faying.errors import InputError
 from faying.fe.mesh import Mesh
 from faying.fe.mesh_facts import mesh_facts
@@ -68,6 +69,8 @@ def _faces(table: Table) -> dict[str, Selector]:
 
 def _meshed(table: Table) -> GeometryChoice:
     mesh = table.file("mesh")
+    if mesh is not None:
+        table.faults.files += included(mesh)
     if "unit" not in table.data:
         table.faults.add('geometry.unit is missing: a mesh file does not say its unit; write for example unit = "mm"')
     unit = table.text("unit", None)
