@@ -20,8 +20,8 @@ study = next(
 curve = faying.backbone(study, mode=1, friction=0.03, amplitude=(300.0, 4000.0), harmonics=1)
 
 # %%
-# Damping is that of slip alone: it rises with the amplitude, the frequency falls. That the frequency wavers by 1e-4 at
-# small amplitude comes from the few points of this coarse joint; the error lines of ``faying backbone`` say so.
+# Damping is that of slip alone: it rises with the amplitude, the frequency falls. How much of that hangs on the few
+# points of this coarse joint stands in the error lines of ``faying backbone``.
 
 fig, (left, right) = plt.subplots(1, 2, figsize=(8.4, 3.6), layout="constrained")
 left.semilogx(curve.acceleration, curve.frequency, ".-")

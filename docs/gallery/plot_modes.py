@@ -1,0 +1,41 @@
+"""
+Modes that move
+===============
+
+Two blocks pressed together, and the viewer of ``report.html`` with their modes.
+"""
+
+from html import escape
+from pathlib import Path
+
+import faying
+from faying.output import scene
+
+study = next(
+    path / "examples" / "two-blocks" / "study.toml"
+    for path in Path.cwd().parents
+    if (path / "examples" / "two-blocks").is_dir()
+)
+result = faying.run(study)
+
+# %%
+# A page of one file that asks for nothing: drag to turn, choose a mode and a preload, colour by motion or pressure.
+# ``faying view`` writes the same page.
+
+page = scene.page(scene.of_result(result))
+
+
+class Viewer:
+    """Shows a page within this one."""
+
+    def _repr_html_(self):
+        return f'<iframe srcdoc="{escape(page)}" style="width:100%;height:640px;border:0" title="modes"></iframe>'
+
+
+Viewer()
+
+# %%
+# The joint opens and closes in the first mode: its frequency rises with the preload, which stiffens it.
+
+print(result.frequencies[:, 0])
+assert result.frequencies[1, 0] > 1.02 * result.frequencies[0, 0]
