@@ -5,7 +5,7 @@ Modes that move
 Two blocks pressed together, and the viewer of ``report.html`` with their modes.
 """
 
-from html import escape
+from base64 import b64encode
 from pathlib import Path
 
 import faying
@@ -29,7 +29,9 @@ class Viewer:
     """Shows a page within this one."""
 
     def _repr_html_(self):
-        return f'<iframe srcdoc="{escape(page)}" style="width:100%;height:640px;border:0" title="modes"></iframe>'
+        data = b64encode(page.encode()).decode("ascii")
+        shape = "width:100%;height:640px;border:0"
+        return f'<iframe src="data:text/html;base64,{data}" style="{shape}" title="modes"></iframe>'
 
 
 Viewer()
