@@ -37,7 +37,7 @@ class Viewer:
 Viewer()
 
 # %%
-# The joint opens and closes in the first mode: its frequency rises with the preload, which stiffens it.
+# The first mode bends across the joint: its frequency rises with the preload, which stiffens the joint.
 
 print(result.frequencies[:, 0])
 assert result.frequencies[1, 0] > 1.02 * result.frequencies[0, 0]
