@@ -14,8 +14,12 @@ from faying.cli.options import frequency_band, quantity
 @click.option("--band", required=True, metavar="LOW:HIGH", help='Where the mode is alone, for example "150 Hz:180 Hz".')
 @click.option("--start", metavar="TIME", help='Of the free decay in a record, for example "0.02 s" [its beginning].')
 @click.option("--impulse", metavar="TEXT", help='Of the hit, where RECORD holds its FRF, for example "0.3 N s".')
-@click.option("--function", type=click.IntRange(1, 10_000), help="Which FRF of a universal file, from 1 [the only one].")
-@click.option("--cycles", type=click.IntRange(3, 10_000), default=20, show_default=True, help="Periods that give one point.")
+@click.option(
+    "--function", type=click.IntRange(1, 10_000), help="Which FRF of a universal file, from 1 [the only one]."
+)
+@click.option(
+    "--cycles", type=click.IntRange(3, 10_000), default=20, show_default=True, help="Periods that give one point."
+)
 @click.option("--out", type=click.Path(dir_okay=False, path_type=Path), help="CSV file for faying backbone --measured.")
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw the points (svg, png, pdf).")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
