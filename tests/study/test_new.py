@@ -47,7 +47,7 @@ def test_three_m8_in_two_nameless_plates(made):
         assert bolt.preload[0] == pytest.approx(0.7 * proof, rel=5e-3)
     assert len(study.joints) == 1
     assert study.parts == {"part1": "S355", "part2": "S355"}
-    assert study.surface.scan.name == "surface.x3p"
+    assert study.surface.scan.name == "milled-surface.x3p"
     for word in ("S355 steel", "synthetic milled", "70% of the proof load", "M8 for a hole of 9 mm", "no support"):
         assert word in out
     text = path.read_text()
@@ -70,15 +70,15 @@ def test_json_tells_what_was_found(lap, tmp_path):
 
 def test_nothing_is_overwritten_or_half_written(lap, tmp_path):
     out = tmp_path / "s.toml"
-    (tmp_path / "surface.x3p").write_text("mine")
-    with pytest.raises(faying.InputError, match=r"surface.x3p exists already; .*--force"):
+    (tmp_path / "milled-surface.x3p").write_text("mine")
+    with pytest.raises(faying.InputError, match=r"milled-surface.x3p exists already; .*--force"):
         call("new", lap, "--yes", "--out", out)
     assert not out.exists()
     with pytest.raises(faying.InputError, match="no scan"):
         call("new", lap, "--yes", "--out", out, "--scan", tmp_path / "none.x3p")
     call("new", lap, "--yes", "--out", out, "--force")
     assert out.exists()
-    assert (tmp_path / "surface.x3p").read_bytes()[:2] == b"PK"
+    assert (tmp_path / "milled-surface.x3p").read_bytes()[:2] == b"PK"
 
 
 def test_without_a_terminal_it_asks_for_yes(lap, tmp_path):
@@ -191,7 +191,7 @@ def test_the_newcomers_path(tmp_path):
     faying.write_scan(scan, tmp_path / "mine.x3p")
     study = tmp_path / "study.toml"
     assert call("new", path, "--scan", tmp_path / "mine.x3p", "--yes", "--out", study).exit_code == 0
-    assert not (tmp_path / "surface.x3p").exists()
+    assert not (tmp_path / "milled-surface.x3p").exists()
     result = faying.run(study)
     elastic = result.frequencies[0]
     assert np.all(elastic > result.free * (1 - 1e-6))

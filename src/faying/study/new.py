@@ -16,7 +16,7 @@ from faying.study.template import SCHEMA, surface
 from faying.units import show
 
 STEEL = "S355"
-SCAN = "surface.x3p"
+SCAN = "milled-surface.x3p"
 
 
 @dataclass(frozen=True, kw_only=True)
