@@ -1,13 +1,18 @@
 import json
+import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 import faying
 from faying.cli import main
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def call(*args):
@@ -159,3 +164,17 @@ def test_an_end_of_file_in_a_command_is_no_interruption(monkeypatch):
     monkeypatch.setattr(models.command, "callback", ends)
     with pytest.raises(EOFError, match="too short"):
         main(["models"])
+
+
+def test_a_name_beyond_ascii_runs_in_the_plain_locale(tmp_path):
+    """LANG=C, without Python's own way round: what is printed and written keeps the name."""
+    shutil.copytree(EXAMPLES / "two-blocks", tmp_path / "study", ignore=shutil.ignore_patterns("results"))
+    path = tmp_path / "study" / "study.toml"
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace('title = "', 'title = "Träger, ', 1), encoding="utf-8")
+    plain = {**os.environ, "LC_ALL": "C", "LANG": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"}
+    done = subprocess.run(
+        [sys.executable, "-m", "faying", "run", str(path)], env=plain, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert "Träger" in (tmp_path / "study" / "results" / "report.html").read_text(encoding="utf-8")

@@ -160,3 +160,21 @@ def test_the_estimate_of_the_size_of_a_mesh():
         elements, unknowns = len(mesh.Elements3D()), 3 * len(mesh.Points())
         assert 0.5 < ELEMENTS * 72000 / size**3 / elements < 2
         assert 0.5 < UNKNOWNS * elements / unknowns < 2
+
+
+def test_a_mesher_that_gives_up_is_a_fault_of_the_file(tmp_path, monkeypatch):
+    """Netgen raises an exception of its own that Python cannot name (NgException)."""
+    from netgen.occ import Box, OCCGeometry, Pnt
+
+    from faying.fe import geometry
+
+    def stopped(*_, **__):
+        raise RuntimeError("Stop in surface meshing")
+
+    path = step(tmp_path, named(Box(Pnt(0, 0, 0), Pnt(10, 10, 10)), "box"))
+    monkeypatch.setattr(OCCGeometry, "GenerateMesh", stopped)
+    request = geometry._Request(path=str(path), size=5e-3, local_size={}, selectors={}, snap=0.0)
+    with pytest.raises(
+        faying.InputError, match=r"parts.step cannot be meshed with size 5 mm \(Stop in surface"
+    ):
+        geometry._mesh_here(request)
