@@ -27,14 +27,10 @@ def published(path: Path) -> MeasuredBackbone:
     """The curve in a published file: lines of names and lists of numbers."""
     rows = dict(line.split(":", 1) for line in path.read_text().splitlines() if ":" in line)
     found = {name.strip(): np.array([float(v) for v in text.strip(" []").split(",")]) for name, text in rows.items()}
-    nothing = np.full(len(found["frequency_rad_per_s"]), np.nan)
-    return MeasuredBackbone(
-        acceleration=found["acceleration_amplitude"],
-        frequency=found["frequency_rad_per_s"] / (2 * np.pi),
-        damping=found["damping_factor_frac_crit"],
-        frequency_error=nothing,
-        damping_error=nothing,
-        time=nothing,
+    return MeasuredBackbone.of_points(
+        found["acceleration_amplitude"],
+        found["frequency_rad_per_s"] / (2 * np.pi),
+        found["damping_factor_frac_crit"],
         source="published.yaml",
     )
 

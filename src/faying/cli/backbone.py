@@ -137,7 +137,7 @@ def text(curve: Any) -> str:
 
     at = ", ".join(f"{1e3 * x:.4g}" for x in curve.at)
     head = (
-        f"{curve.title}: {curve.what}; at ({at}) mm\n"
+        f"{curve.title}: mode {curve.mode}, {curve.settings}; at ({at}) mm\n"
         f"{curve.unknowns:,} unknowns in {curve.basis_size} vectors, harmonics 0 to {curve.harmonics}; at rest "
         f"{curve.linear_frequency:.3f} Hz\n"
     )

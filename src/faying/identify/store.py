@@ -1,8 +1,9 @@
 """What a prediction or an identification keeps on disk: the bases, and every chunk of samples as it is done."""
 
+from faying.files import write_arrays
 from faying.joint.reduced import ReducedModel
 from faying.study.parallel import Rows
-from faying.study.part_folder import Kept, load_arrays, save_arrays
+from faying.study.part_folder import Kept, load_arrays
 from faying.study.sweep_files import kept_model
 from faying.typing import Array
 
@@ -32,8 +33,8 @@ class Store(Kept):
     def keep_model(self, model: ReducedModel, seen: tuple[Array, Array] | None) -> None:
         """Keep the bases."""
         if self.folder is not None:
-            save_arrays(self.folder / "seen.npz", {} if seen is None else {"basis": seen[0], "rigid": seen[1]})
-            save_arrays(self.folder / "model.npz", model.arrays())
+            write_arrays(self.folder / "seen.npz", {} if seen is None else {"basis": seen[0], "rigid": seen[1]})
+            write_arrays(self.folder / "model.npz", model.arrays())
 
     def rows(self, what: str, number: int) -> Rows | None:
         """A chunk of samples that was kept; None where it is missing or damaged."""
@@ -43,4 +44,4 @@ class Store(Kept):
         """Keep a chunk of samples."""
         if self.folder is not None:
             plain = {name: values.astype(str) if name == "reasons" else values for name, values in rows.items()}
-            save_arrays(self.folder / f"{what}-{number:06d}.npz", plain)
+            write_arrays(self.folder / f"{what}-{number:06d}.npz", plain)

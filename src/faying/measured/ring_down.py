@@ -69,16 +69,30 @@ class MeasuredBackbone:
                     f'{path}, line {lines[row]}: {table.given(name, row)} in the column "{name}" must be positive'
                 )
         frequency = found["frequency"]
-        unknown = np.full(len(lines), np.nan)
         shift = (2 * np.pi * frequency) ** 2
+        amplitude = found["acceleration"] if "acceleration" in found else found["displacement"] * shift
+        return cls.of_points(amplitude, frequency, found.get("damping"), time=found.get("time"), source=str(path))
+
+    @classmethod
+    def of_points(
+        cls,
+        acceleration: Array,
+        frequency: Array,
+        damping: Array | None = None,
+        *,
+        time: Array | None = None,
+        source: str = "",
+    ) -> Self:
+        """Return points (n,) whose errors are not known, nor what is None."""
+        unknown = np.full(len(frequency), np.nan)
         return cls(
-            acceleration=found["acceleration"] if "acceleration" in found else found["displacement"] * shift,
+            acceleration=acceleration,
             frequency=frequency,
-            damping=found.get("damping", unknown),
+            damping=unknown if damping is None else damping,
             frequency_error=unknown,
             damping_error=unknown,
-            time=found.get("time", unknown),
-            source=str(path),
+            time=unknown if time is None else time,
+            source=source,
         )
 
     def to_csv(self, path: str | Path) -> Path:

@@ -121,7 +121,7 @@ def _joints(result: Result) -> tuple[Section, ...]:
 def _backbones(result: Result) -> Iterator[Section]:
     """Curves of a mode over its amplitude, and what coarser computations would change."""
     for curve in result.backbones:
-        what = curve.what.replace(",", " over amplitude,", 1)
+        what = f"mode {curve.mode} over amplitude, {curve.settings}"
         at = ", ".join(f"{1e3 * x:.4g}" for x in curve.at)
         yield Section(
             name="backbone",

@@ -141,7 +141,7 @@ class Backbone(Recorded):
 
     def __repr__(self) -> str:
         lines = [
-            f"Backbone {self.title!r}: {self.what}",
+            f"Backbone {self.title!r}: mode {self.mode}, {self.settings}",
             f"{'m/s2':>10}{'Hz':>12}{'damping':>10}{'slips':>8}",
         ]
         for a, f, z, s in zip(self.acceleration, self.frequency, self.damping, self.slipping, strict=True):
@@ -154,25 +154,17 @@ class Backbone(Recorded):
         return ", ".join(f"{value:g}" for value in dict.fromkeys(self.friction))
 
     @property
-    def what(self) -> str:
-        """Mode, preload, laws and friction in words."""
-        laws = "".join(f", {name}" for name in dict.fromkeys(self.laws))
-        return f"mode {self.mode}, {self.preload / 1e3:g} kN{laws}, friction {self.friction_text}"
+    def settings(self) -> str:
+        """Preload, laws and friction in words."""
+        return ", ".join([f"{self.preload / 1e3:g} kN", *dict.fromkeys(self.laws), f"friction {self.friction_text}"])
 
     @property
     def measured(self) -> MeasuredBackbone | None:
         """The measured points that the study names, None without."""
         if not len(self.measured_acceleration):
             return None
-        unknown = np.full(len(self.measured_acceleration), np.nan)
-        return MeasuredBackbone(
-            acceleration=self.measured_acceleration,
-            frequency=self.measured_frequency,
-            damping=self.measured_damping,
-            frequency_error=unknown,
-            damping_error=unknown,
-            time=unknown,
-            source=self.measured_source,
+        return MeasuredBackbone.of_points(
+            self.measured_acceleration, self.measured_frequency, self.measured_damping, source=self.measured_source
         )
 
     def at_measured(self) -> tuple[Array, Array]:

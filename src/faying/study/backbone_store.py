@@ -4,8 +4,9 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+from faying.files import write_arrays
 from faying.joint.epmc import EpmcPoint
-from faying.study.part_folder import Kept, load_arrays, save_arrays
+from faying.study.part_folder import Kept, load_arrays
 from faying.typing import Array
 
 LISTS = ("sliding", "opening", "dissipated", "traction")  # one array for each joint
@@ -25,7 +26,7 @@ class CurveStore(Kept):
     def keep_basis(self, vectors: Array) -> None:
         """Keep the basis in which the points are."""
         if self.folder is not None:
-            save_arrays(self.folder / "basis.npz", {"vectors": vectors})
+            write_arrays(self.folder / "basis.npz", {"vectors": vectors})
 
     def points(self, curve: int) -> list[EpmcPoint]:
         """The points of a curve that were kept, in rising amplitude, up to the first that is damaged."""
@@ -49,7 +50,7 @@ class CurveStore(Kept):
                 arrays |= {f"{f.name}.{k}": part for k, part in enumerate(value)}
             else:
                 arrays[f.name] = value
-        save_arrays(self._file(curve, number), arrays)
+        write_arrays(self._file(curve, number), arrays)
 
     def _file(self, curve: int, number: int) -> Path:
         assert self.folder is not None

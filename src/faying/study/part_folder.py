@@ -12,7 +12,7 @@ import numpy as np
 
 from faying import __version__
 from faying.errors import FayingError, InputError
-from faying.files import write_arrays, write_text
+from faying.files import write_text
 from faying.study.study import Study
 
 
@@ -134,8 +134,3 @@ def load_arrays(file: Path) -> dict[str, Any] | None:
             return {name: data[name] for name in data.files}
     except (OSError, ValueError, EOFError, KeyError, BadZipFile, zlib.error):
         return None
-
-
-def save_arrays(path: Path, arrays: dict[str, Any]) -> None:
-    """Write arrays, whole or not at all."""
-    write_arrays(path, arrays)

@@ -8,10 +8,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from faying import netcdf
+from faying.files import write_arrays
 from faying.joint.reduced import ReducedModel
 from faying.netcdf import Variable
 from faying.study.axes import Axis, Grid
-from faying.study.part_folder import Kept, load_arrays, save_arrays
+from faying.study.part_folder import Kept, load_arrays
 from faying.typing import Array
 
 BEYOND = 0.1  # share of the contact beyond the end of the law from which a point is told
@@ -111,12 +112,12 @@ class Store(Kept):
     def keep(self, indices: Sequence[int], rows: dict[str, Array]) -> None:
         """Note rows and write them, whole or not at all."""
         self._take(np.asarray(indices), rows)
-        save_arrays(self.kept / f"chunk-{self.number:06d}.npz", {"indices": np.asarray(indices), **rows})
+        write_arrays(self.kept / f"chunk-{self.number:06d}.npz", {"indices": np.asarray(indices), **rows})
         self.number += 1
 
     def keep_model(self, model: ReducedModel) -> None:
         """Write the reduced model."""
-        save_arrays(self.kept / "model.npz", model.arrays())
+        write_arrays(self.kept / "model.npz", model.arrays())
 
     def model(self) -> ReducedModel | None:
         """Return the reduced model that an interrupted sweep left, if it came that far."""
