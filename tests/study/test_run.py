@@ -166,12 +166,13 @@ def test_any_continuation_beyond_the_law_lies_in_the_bracket(study, factor):
     from faying.fe.modes import lowest_modes
     from faying.study.beyond import bonded_beyond
     from faying.study.case import Case, Progress
+    from faying.study.modes import SharedModes
     from faying.study.solve import solve
 
     small = replace(study, bolts=(replace(study.bolts[0], preload=(5e5,)),), modes=ModesChoice(count=4))
     case = Case.of(small)
     structure = case.structure
-    state = solve(case, 0, structure.assembly(), Progress(0))
+    state = solve(case, 0, structure.assembly(), SharedModes(), Progress(0))
     springs = state.springs[0]
     past = springs.pressure > structure.joints[0].law.model.greatest_pressure
     assert 0 < past.mean() < 1

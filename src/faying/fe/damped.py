@@ -77,10 +77,15 @@ def damped_modes(
         found = modes.factorisation.solve(np.asfortranarray(forces))
         return np.asarray(found - rigid_shapes @ (rigid_momentum.T @ found))
 
+    if not loss.count_nonzero():
+        return DampedModes(
+            frequencies=modes.frequencies[rigid : rigid + count],
+            loss_factors=np.zeros(count),
+            error=modes.error[rigid : rigid + count],
+            shapes=elastic[:, :count].astype(complex),
+        )
     span = Span(mass, stiffness, elastic, others=[loss])
-    lossless = not loss.count_nonzero()
-    if not lossless:
-        _enrich(span, answered(loss @ elastic), least=0.0)
+    _enrich(span, answered(loss @ elastic), least=0.0)
     error = np.full(count, np.inf)
     for _ in range(ROUNDS):
         squared, root, inner = _eigen(span.small, count, kind)
@@ -90,9 +95,9 @@ def damped_modes(
             miss = _times(span.force, inner) + 1j * lost - moved * squared
         else:
             miss = _times(span.force, inner) + lost * root + moved * root**2
-        parts = miss.real if lossless else np.concatenate([miss.real, miss.imag], axis=1)
+        parts = np.concatenate([miss.real, miss.imag], axis=1)
         solved = answered(parts)
-        energy = np.einsum("ij,ij->j", parts, solved).reshape(-1, count).sum(axis=0)
+        energy = np.einsum("ij,ij->j", parts, solved).reshape(2, count).sum(axis=0)
         size = np.abs(squared) * np.einsum("im,im->m", vectors.conj(), moved).real
         error = np.abs(energy) / size
         if error.max() < tolerance:
@@ -102,7 +107,7 @@ def damped_modes(
                 error=error,
                 shapes=vectors / np.sqrt(np.einsum("im,im->m", vectors, moved)),
             )
-        if not _enrich(span, solved / np.sqrt(np.tile(size, solved.shape[1] // count)), least=0.01 * tolerance):
+        if not _enrich(span, solved / np.sqrt(np.tile(size, 2)), least=0.01 * tolerance):
             break
     raise NotConverged(
         f"complex modes: the estimated error stays at {error.max():.1e} (tolerance {tolerance:.0e}); the loss "

@@ -22,12 +22,16 @@ TOLERANCE = 1e-8  # residual of A^-1 M x = theta x over theta; the error of thet
 class Modes:
     """Lowest modes in rising order: frequencies [Hz] (m,), mass-normalised shapes (unknowns, m), what solved them.
 
-    frequencies below zero do not occur: a rigid motion that rounding makes slightly negative is given as its size.
+    frequencies below zero do not occur: a rigid motion that rounding makes slightly negative is given as its size. The
+    factorisation is that of `factorised` + shift x mass, a stiffness [N/m] near the one of the modes. error (m,):
+    estimated relative error of the squared frequencies, 0 for rigid motions, NaN for modes that came along.
     """
 
     frequencies: Array
     shapes: Array
+    error: Array
     factorisation: Factorisation
+    factorised: Any
     shift: float
 
 
@@ -38,20 +42,22 @@ def lowest_modes(
     *,
     shift_frequency: float,
     solver: str | None = None,
+    factor: Factorisation | None = None,
 ) -> Modes:
     """Find the `count` lowest modes by block Lanczos iteration with a negative shift.
 
     stiffness [N/m], mass [kg]: sparse and symmetric; shift_frequency [Hz] sets the shift -(2 pi f)^2, at which
-    K + |shift| M is positive definite even for free bodies. Raises InputError where more modes are asked for than there
-    are masses, the shift is above every mode, the structure is unstable, or memory is short, and NotConverged where the
-    iteration stops short.
+    K + |shift| M is positive definite even for free bodies; factor: of that matrix, made here where None. Raises
+    InputError where more modes are asked for than there are masses, the shift is above every mode, the structure is
+    unstable, or memory is short, and NotConverged where the iteration stops short.
     """
     _check_shift(stiffness, mass, shift_frequency)
     shift = (2 * np.pi * shift_frequency) ** 2
     most = int(np.count_nonzero(mass.diagonal() > 0))
     if not 0 < count <= most:
         raise InputError(f"{count} modes of a structure with {most} unknowns that have mass; ask for 1 to {most}")
-    factor = factorise((stiffness + shift * mass).tocsr(), solver)
+    if factor is None:
+        factor = factorise((stiffness + shift * mass).tocsr(), solver)
     inverse, shapes = _krylov(factor, mass, count, min(WIDTH, stiffness.shape[0]))
     if len(inverse) < count:
         raise InputError(f"{count} modes of a structure whose masses allow {len(inverse)}; ask for 1 to {len(inverse)}")
@@ -65,7 +71,9 @@ def lowest_modes(
     return Modes(
         frequencies=np.sqrt(np.abs(values[order])) / (2 * np.pi),
         shapes=shapes[:, order],
+        error=np.full(count, TOLERANCE),
         factorisation=factor,
+        factorised=stiffness,
         shift=shift,
     )
 

@@ -43,7 +43,7 @@ def _in_blocks(matrix: Any) -> bool:
 
 
 class Pardiso:
-    """A factor of a symmetric positive definite CSR matrix with sorted indices.
+    """A factor of a symmetric positive definite CSR matrix with sorted indices, in double or in single precision.
 
     pypardiso's own call converts the indices and refines every solution in two more passes over the factor; here the
     indices are converted once and nothing is refined: those who iterate on it see their own residuals.
@@ -51,8 +51,8 @@ class Pardiso:
 
     name = "PARDISO"
 
-    def __init__(self, matrix: Any, kind: int = POSITIVE) -> None:
-        self._kind = kind
+    def __init__(self, matrix: Any, kind: int = POSITIVE, *, single: bool = False) -> None:
+        self._kind, self._type = kind, np.dtype(np.float32 if single else np.float64)
         matrix.sum_duplicates()  # and sorts the indices
         self._size = matrix.shape[0]
         self._block = BLOCK if _in_blocks(matrix) else 1
@@ -67,13 +67,14 @@ class Pardiso:
         counts = np.bincount(rows[self._kept], minlength=len(blocks.indptr) - 1)
         self._starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
         self._columns = blocks.indices[self._kept].astype(np.int32)
-        self._values = np.asarray(blocks.data[self._kept], dtype=float).ravel()
+        self._values = np.asarray(blocks.data[self._kept], dtype=self._type).ravel()
         del blocks, rows
         self._state, self._iparm = np.zeros(64, dtype=np.int64), np.zeros(64, dtype=np.int32)
         iparm = self._iparm
         iparm[0] = 1  # the values below, not the library's
         iparm[1] = 3  # nested dissection (METIS)
         iparm[17] = -1  # report the entries of the factor
+        iparm[27] = int(single)
         iparm[34] = 1  # indices from 0
         iparm[36] = self._block if self._block > 1 else 0  # blocks of one node: a third of the graph to order
         self._call(ANALYSE)
@@ -87,14 +88,14 @@ class Pardiso:
 
     def solve(self, right: Array) -> Array:
         """Solve for one right-hand side (n,) or several (n, m)."""
-        b = np.asfortranarray(right, dtype=float)
+        b = np.asfortranarray(right, dtype=self._type)
         x: Array = np.empty_like(b, order="F")
         self._call(SOLVE, b, x)
-        return x
+        return x.astype(float, copy=False)
 
     def again(self, matrix: Any) -> "Pardiso":
         """Factorise another matrix of the same pattern, indices sorted; the analysis is kept."""
-        self._values = np.asarray(self._in_nodes(matrix).data[self._kept], dtype=float).ravel()
+        self._values = np.asarray(self._in_nodes(matrix).data[self._kept], dtype=self._type).ravel()
         self._call(FACTORISE)
         return self
 

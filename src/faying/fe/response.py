@@ -8,8 +8,11 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.damped import DampedModes
 from faying.fe.modes import Modes
+from faying.fe.solve import conjugate_gradients
 from faying.memory import require
 from faying.typing import Array, Complex
+
+STATIC = 1e-8  # accuracy of the response at the shift
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,7 +88,9 @@ def frequency_response(
     mass = vibration.mass
     # without what the known modes answer, which is all but the last digits of it where a body is free
     rest = forces - (mass @ modes.shapes) @ (modes.shapes.T @ forces)
-    static = modes.factorisation.solve(np.asfortranarray(rest))
+    static = conjugate_gradients(
+        lambda x: vibration.stiffness @ x + modes.shift * (mass @ x), modes.factorisation, rest, accuracy=STATIC
+    )
     columns = np.concatenate([modes.shapes, damped.shapes.real, damped.shapes.imag, static], axis=1)
     basis = _orthonormal(columns, mass, leading=modes.shapes.shape[1])
     small, basis = _projected(vibration, basis)

@@ -174,6 +174,39 @@ def factorise(matrix: Any, name: str | None = None) -> Factorisation:
     return _BACKENDS[chosen(name)](matrix)
 
 
+def conjugate_gradients(
+    product: Callable[[Array], Array], factor: Factorisation, right: Array, *, accuracy: float, limit: int = 200
+) -> Array:
+    """Solve for several right-hand sides (n, m) by conjugate gradients, each on its own.
+
+    Args:
+        product: the symmetric matrix, positive on what the right-hand sides reach, times vectors (n, m).
+        factor: of a matrix near it; one of the very matrix asks for one step.
+        right: (n, m).
+        accuracy: of the residual relative to the right-hand side.
+        limit: steps.
+
+    Raises:
+        NotConverged: the residual stays above the accuracy.
+    """
+    found, rest = np.zeros_like(right), np.array(right)
+    target = accuracy * np.linalg.norm(right, axis=0)
+    step, slope = np.zeros_like(right), np.ones(right.shape[1])
+    for _ in range(limit):
+        if np.all(np.linalg.norm(rest, axis=0) <= target):
+            return found
+        ahead = factor.solve(rest)
+        fall = np.einsum("ij,ij->j", rest, ahead)
+        step = ahead + step * np.where(slope > 0, fall / np.where(slope > 0, slope, 1.0), 0.0)
+        slope = fall
+        force = product(step)
+        bend = np.einsum("ij,ij->j", step, force)
+        length = np.where(bend > 0, fall / np.where(bend > 0, bend, 1.0), 0.0)
+        found += step * length
+        rest -= force * length
+    raise NotConverged(f"conjugate gradients: the residual stays above {accuracy:.0e} after {limit} steps")
+
+
 def negative_eigenvalues(matrix: Any, name: str | None = None) -> int:
     """Count the negative eigenvalues of a sparse symmetric matrix by the signs of its pivots (Sylvester).
 

@@ -25,12 +25,12 @@ def extension(new: Array, basis: Array, image: Array, operator: Any, *, least: f
         Columns (n, r), orthonormal in the operator with each other and with the basis, the largest share of what is new
         last, and operator @ columns.
     """
-    new = without(new, basis, image)
+    new = new - basis @ (image.T @ new)
     gram = new.T @ (operator @ new)
     squares, turn = np.linalg.eigh((gram + gram.T) / 2)
     keep = squares > max(least, ROUNDING * squares.max(initial=0.0))
     new = new @ (turn[:, keep] / np.sqrt(squares[keep]))
-    new = new - basis @ (image.T @ new)
+    new = new - basis @ (image.T @ new)  # what rounding leaves of the first pass
     return new, np.asarray(operator @ new)
 
 
@@ -52,8 +52,23 @@ class Span:
 
     def __init__(self, mass: Any, stiffness: Any, first: Array, others: Sequence[Any] = ()) -> None:
         self.mass, self.operators = mass, (stiffness, *others)
-        self.vectors, self.momentum, self.force = first, np.asarray(mass @ first), np.asarray(stiffness @ first)
+        self._columns = [_Columns(one) for one in (first, mass @ first, stiffness @ first)]
         self.small = [first.T @ self.force, *(first.T @ (operator @ first) for operator in others)]
+
+    @property
+    def vectors(self) -> Array:
+        """The vectors (n, m)."""
+        return self._columns[0].values
+
+    @property
+    def momentum(self) -> Array:
+        """Mass @ vectors (n, m)."""
+        return self._columns[1].values
+
+    @property
+    def force(self) -> Array:
+        """Stiffness @ vectors (n, m)."""
+        return self._columns[2].values
 
     def add(self, new: Array, *, least: float = 0.0) -> int:
         """Add what is new in columns (n, k), as `extension` does; return how many vectors that makes."""
@@ -63,7 +78,26 @@ class Span:
             image = force if i == 0 else operator @ new
             corner, side = new.T @ image, self.vectors.T @ image
             self.small[i] = np.block([[self.small[i], side], [side.T, (corner + corner.T) / 2]])
-        self.vectors = np.concatenate([self.vectors, new], axis=1)
-        self.momentum = np.concatenate([self.momentum, momentum], axis=1)
-        self.force = np.concatenate([self.force, force], axis=1)
+        for kept, more in zip(self._columns, (new, momentum, force), strict=True):
+            kept.add(more)
         return int(new.shape[1])
+
+
+class _Columns:
+    """Columns (n, m) of a matrix that grows, without a copy of all of it for each that comes."""
+
+    def __init__(self, first: Array) -> None:
+        self._room, self._used = np.asfortranarray(first), first.shape[1]
+
+    @property
+    def values(self) -> Array:
+        return self._room[:, : self._used]
+
+    def add(self, new: Array) -> None:
+        used = self._used + new.shape[1]
+        if used > self._room.shape[1]:
+            room = np.empty((len(new), used + used // 2), order="F")
+            room[:, : self._used] = self.values
+            self._room = room
+        self._room[:, self._used : used] = new
+        self._used = used

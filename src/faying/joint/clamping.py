@@ -16,6 +16,7 @@ from faying.fe.faces import NamedFaces, face_centre
 from faying.fe.interface import Interface
 from faying.fe.modes import Modes
 from faying.fe.sides import nodes_of
+from faying.fe.solve import conjugate_gradients
 from faying.joint.bolt import BoltPlace, FittedBolt
 from faying.joint.solid_bolt import FittedSolidBolt
 from faying.joint.springs import Springs
@@ -23,7 +24,7 @@ from faying.joint.structure import Structure
 from faying.joint.vdi2230 import cone_compliance
 from faying.typing import Array
 
-ACCURACY = 1e-10  # of the residual of a solution
+ACCURACY = 1e-8  # of the residual of a solution; the compliance is right to its square
 MOST_STEPS = 2000
 ROUND = 0.03  # of the area of a ring between its least and greatest radius: a face that differs by more is none
 BESIDE = 1.5  # outer diameters of the seat within which a joint belongs to a bolt
@@ -86,17 +87,14 @@ def clamping(structure: Structure, stiffness: Any, modes: Modes, springs: Sequen
 
 def _solved(stiffness: Any, load: Array, structure: Structure, modes: Modes, name: str) -> Array:
     """K^-1 f for a load that balances, by conjugate gradients with the shifted factorisation of the modes."""
-    from scipy.sparse.linalg import LinearOperator, cg
-
-    n = len(load)
-    rigid = np.linalg.qr(structure.rigid)[0] if structure.rigid.size else np.zeros((n, 0))
-    operator = LinearOperator((n, n), matvec=modes.factorisation.solve, dtype=float)
-    motion, stopped = cg(
-        stiffness, load - rigid @ (rigid.T @ load), rtol=ACCURACY, maxiter=MOST_STEPS, M=operator, atol=0.0
-    )
-    if stopped:
-        raise NotConverged(f"bolt {name!r}: the parts that it clamps have no stiffness against its force")
-    return np.asarray(motion)
+    rigid = np.linalg.qr(structure.rigid)[0] if structure.rigid.size else np.zeros((len(load), 0))
+    balanced = (load - rigid @ (rigid.T @ load))[:, None]
+    try:
+        return conjugate_gradients(
+            lambda x: stiffness @ x, modes.factorisation, balanced, accuracy=ACCURACY, limit=MOST_STEPS
+        )[:, 0]
+    except NotConverged:
+        raise NotConverged(f"bolt {name!r}: the parts that it clamps have no stiffness against its force") from None
 
 
 def _work(structure: Structure, springs: Sequence[Springs[Interface]], fitted: FittedSolidBolt, motion: Array) -> float:

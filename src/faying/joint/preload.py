@@ -23,6 +23,7 @@ AGED = 40  # conjugate-gradient steps after which a new factorisation is cheaper
 # faces lie about where they end up: between these decades of imbalance, above this rate, a new one pays
 EARLY, LATE, SLOW = -0.5, -3.5, 4.8
 
+ROUGH = 1e-2  # accuracy of the start of Newton's iteration where it is found by conjugate gradients
 FLAT = 1e-9  # curvature over that of the factor below which a direction costs no energy
 
 
@@ -84,15 +85,26 @@ class PreloadProblem(Equilibrium):
             # a spring that is tangent to p(approach) at the mean pressure, in place of the curve
             offset = mean - k_n * (law.approach(float(mean)) + joint.gap)
             push = push + joint.forces(np.asarray(offset), np.zeros((len(joint.weights), 2)))
+        push = self._admissible(push)
+        if self.factor is not None:  # of a like state, taken from elsewhere
+            found, count = self._conjugate_gradients(lambda x: self._held(springs @ x), push, ROUGH)
+            if count < AGED:
+                return found
         self._factorise(springs)
         assert self.factor is not None
-        return self.factor.solve(self._admissible(push))
+        return self.factor.solve(push)
 
     def _factorise(self, matrix: Any) -> None:
-        self.factor = None
+        self.factor = None  # one at a time in memory
         self.factor = factorise(constrain(matrix.tocsr(), self.fixed), self.solver)
         self.factorisations += 1
         self._rate = 0.0
+
+    def _held(self, force: Array) -> Array:
+        """A force with nothing on the unknowns that supports fix."""
+        if len(self.fixed):
+            force[self.fixed] = 0.0
+        return np.asarray(force)
 
     def _admissible(self, force: Array) -> Array:
         if self._rigid.size:
@@ -111,9 +123,7 @@ class PreloadProblem(Equilibrium):
                 move = self._move(trace, x)
                 local = np.concatenate([k_n[:, None] * move[:, :1], np.einsum("qij,qj->qi", k_t, move[:, 1:])], axis=1)
                 y = y + trace.relative.T @ local.ravel()
-            if len(self.fixed):
-                y[self.fixed] = 0.0
-            return np.asarray(y)
+            return self._held(y)
 
         if self.factor is None or self._worn(force):
             self._renew(tangents)

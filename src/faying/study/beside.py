@@ -11,6 +11,7 @@ from faying.fe.solve import Released
 from faying.notes import Note
 from faying.study.case import Case, Progress, interface_of, joint_law, law_reasons, materials_at, surfaces_of
 from faying.study.keys.beside import BesideChoice
+from faying.study.modes import SharedModes
 from faying.study.solve import State, solve
 from faying.study.study import Study
 
@@ -34,13 +35,19 @@ class Beside:
     notes: tuple[Note, ...]
 
 
-def solve_beside(case: Case, choice: BesideChoice, progress: Progress) -> Beside:
-    """Solve a case under another law on all joints, at all loads, without meshing anew."""
+def solve_beside(case: Case, choice: BesideChoice, shared: SharedModes, progress: Progress) -> Beside:
+    """Solve a case under another law on all joints, at all loads, without meshing anew.
+
+    shared: the modes of the case under its own law, whose factorisation serves here, too.
+    """
     done = progress.done
     try:
         other = changed(case, choice)
         problem = other.structure.assembly(solver=case.study.modes.solver)
-        states = tuple(_slim(solve(other, k, problem, progress, ranges=False)) for k in range(len(case.study.loads)))
+        if shared.factorisation is not None:
+            problem.take(shared.factorisation, case.shift_frequency)
+        loads = range(len(case.study.loads))
+        states = tuple(_slim(solve(other, k, problem, shared, progress, ranges=False)) for k in loads)
     except FayingError as fault:
         progress.done = done + 2 * len(case.study.loads)
         text = f"{choice.name} beside: no answer: {fault}"

@@ -44,11 +44,10 @@ def form_band(case: Case, states: Sequence[State]) -> tuple[FormBand | None, lis
     if given or apart or len(states) < 2 or not _crowned(case, 0.0):
         return None, []
     last = states[-1]
-    stiffness, _ = structure.joined(last.springs)
     reduction = Reduction(
         structure,
         factor=last.modes.factorisation,
-        reference=(stiffness + last.modes.shift * structure.vibrating[1]).tocsr(),
+        reference=(last.modes.factorised + last.modes.shift * structure.vibrating[1]).tocsr(),
         state=last.preload.displacement,
         shapes=last.modes.shapes[:, case.rigid_count :],
         count=study.modes.count,

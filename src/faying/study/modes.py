@@ -3,14 +3,21 @@
 from collections.abc import Sequence
 from typing import Any
 
+from faying.errors import NotConverged
 from faying.fe.interface import Interface
 from faying.fe.memory import check_modes
 from faying.fe.modes import Modes, lowest_modes
+from faying.fe.nearby import NearbyModes, refined_modes
+from faying.fe.solve import Factorisation
 from faying.joint.equilibrium import PreloadState
 from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
 from faying.joint.support_check import checked_preload
 from faying.study.case import Case
+
+EXACT = 1e-8  # of the squared frequencies: 5e-9 of a frequency, 1e-4 of a shape
+FEW = 6  # rounds of enrichment that cost about what a factorisation and its modes do
+KEPT = 6  # times the modes of one state: what the basis keeps
 
 
 def settled(case: Case, number: int, problem: PreloadProblem) -> PreloadState:
@@ -23,8 +30,60 @@ def modes_of(case: Case, springs: Sequence[Springs[Interface]], count: int | Non
 
     count: rigid motions included; those of the case where None.
     """
-    stiffness, loss = case.structure.joined(springs, viscous=case.study.modes.damping == "viscous")
+    stiffness, loss = joined(case, springs)
     return modes_with(case, stiffness, case.structure.vibrating[1], count), stiffness, loss
+
+
+def joined(case: Case, springs: Sequence[Springs[Interface]]) -> tuple[Any, Any]:
+    """Stiffness of a case with springs on its joints, and their loss, hysteretic or viscous as the study asks."""
+    return case.structure.joined(springs, viscous=case.study.modes.damping == "viscous")
+
+
+class SharedModes:
+    """Real modes of a case under one set of springs after another, by one factorisation where that will do.
+
+    The first springs give the factorisation and the basis; those that differ so much that the basis does not reach them
+    in a few rounds are solved anew, and what comes later starts there.
+    """
+
+    def __init__(self) -> None:
+        self._near: NearbyModes | None = None
+
+    def of(self, case: Case, springs: Sequence[Springs[Interface]]) -> tuple[Modes, Any, Any]:
+        """Real modes, and the stiffness and loss that they belong to, as `modes_of` gives them."""
+        stiffness, loss = joined(case, springs)
+        return self.under(case, stiffness), stiffness, loss
+
+    def under(self, case: Case, stiffness: Any, *, tolerance: float = EXACT) -> Modes:
+        """Real modes under a stiffness [N/m] that leaves the rigid motions of the case free.
+
+        tolerance: of the squared frequencies, relative.
+        """
+        count = case.study.modes.count
+        if self._near is not None:
+            try:
+                return self._near.under(
+                    stiffness, count, tolerance=tolerance, spare=case.mode_count - case.rigid_count - count, rounds=FEW
+                )
+            except NotConverged:
+                self._near = None  # before the next factorisation: one at a time in memory
+        mass = case.structure.vibrating[1]
+        check_modes(case.mode_count, stiffness.shape[0])
+        modes = refined_modes(
+            stiffness,
+            mass,
+            case.mode_count,
+            rigid=case.structure.rigid,
+            shift_frequency=case.shift_frequency,
+            solver=case.study.modes.solver,
+        )
+        self._near = NearbyModes(modes, stiffness, mass, rigid=case.rigid_count, most=KEPT * len(modes.frequencies))
+        return modes
+
+    @property
+    def factorisation(self) -> Factorisation | None:
+        """The factorisation that is shared; None before there is one."""
+        return None if self._near is None else self._near.modes.factorisation
 
 
 def modes_with(case: Case, stiffness: Any, mass: Any, count: int | None = None) -> Modes:

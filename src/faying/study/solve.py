@@ -7,7 +7,6 @@ from typing import Literal
 from faying.fe.damped import DampedModes, damped_modes
 from faying.fe.interface import Interface
 from faying.fe.modes import Modes
-from faying.fe.nearby import nearby_modes
 from faying.joint.equilibrium import PreloadState
 from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
@@ -17,7 +16,7 @@ from faying.measured.model import FullResponse
 from faying.notes import Note
 from faying.study.beyond import Beyond, bonded_beyond, past_end
 from faying.study.case import Case, Progress
-from faying.study.modes import modes_of, settled
+from faying.study.modes import SharedModes, settled
 from faying.study.response import LoadedStructure, ResponseAtLoad
 from faying.study.strength import pressure_notes
 from faying.typing import Array, Mask
@@ -63,8 +62,16 @@ class State:
 RANGE_ERROR = 1e-5  # of the squared frequencies at the ends of a range
 
 
-def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress, *, ranges: bool = True) -> State:
-    """Solve a case at one of its loads, counted from 0; the preload problem starts from the load before.
+def solve(
+    case: Case,
+    number: int,
+    problem: PreloadProblem,
+    shared: SharedModes,
+    progress: Progress,
+    *,
+    ranges: bool = True,
+) -> State:
+    """Solve a case at one of its loads, counted from 0; preload problem and modes start from the load before.
 
     ranges: whether to find the frequencies at the ends of the laws' ranges. Raises InputError where a part is held by
     nothing, NotConverged where the preload stops short.
@@ -76,7 +83,7 @@ def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress, 
     springs = structure.springs(preload.pressures)
     progress.begin(f"modes at {load / 1e3:g} kN")
     mass = structure.vibrating[1]
-    modes, stiffness, loss = modes_of(case, springs)
+    modes, stiffness, loss = shared.of(case, springs)
     check_motions(structure, modes)
     problem.take(modes.factorisation, case.shift_frequency)
     damped = damped_modes(
@@ -99,8 +106,8 @@ def solve(case: Case, number: int, problem: PreloadProblem, progress: Progress, 
         springs=springs,
         modes=modes,
         damped=damped,
-        low=_at_end("low", case, preload, modes) if ranges else None,
-        high=_at_end("high", case, preload, modes) if ranges else None,
+        low=_at_end("low", case, preload, shared) if ranges else None,
+        high=_at_end("high", case, preload, shared) if ranges else None,
         response=response,
         test_response=test_response,
         beyond=beyond,
@@ -141,7 +148,7 @@ def _share(springs: Sequence[Springs[Interface]], masks: Sequence[Mask]) -> floa
     return held / sum(s.interface.area for s in springs)
 
 
-def _at_end(end: Literal["low", "high"], case: Case, preload: PreloadState, modes: Modes) -> Array | None:
+def _at_end(end: Literal["low", "high"], case: Case, preload: PreloadState, shared: SharedModes) -> Array | None:
     """Frequencies [Hz] with every law that states a range at one end of it, under the same pressures."""
     structure = case.structure
     if not any(joint.law.has_range for joint in structure.joints):
@@ -149,10 +156,8 @@ def _at_end(end: Literal["low", "high"], case: Case, preload: PreloadState, mode
     joints = [replace(j, law=replace(j.law, end=end)) if j.law.has_range else j for j in structure.joints]
     changed = replace(structure, joints=tuple(joints))
     stiffness, _ = changed.joined(changed.springs(preload.pressures))
-    mass = structure.vibrating[1]
-    return nearby_modes(
-        modes, stiffness, mass, rigid=case.rigid_count, count=case.study.modes.count, tolerance=RANGE_ERROR
-    )[0]
+    elastic = slice(case.rigid_count, case.rigid_count + case.study.modes.count)
+    return shared.under(case, stiffness, tolerance=RANGE_ERROR).frequencies[elastic]
 
 
 def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[Note]:

@@ -1,0 +1,125 @@
+"""A factorisation in single precision and modes refined from it, against double precision."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import faying
+from faying.errors import NotConverged
+from faying.fe.constraint import constrain
+from faying.fe.elasticity import assemble, rigid_motions
+from faying.fe.interface import join
+from faying.fe.modes import lowest_modes
+from faying.fe.nearby import NearbyModes, refined_modes
+from faying.fe.single import Single
+from faying.fe.solve import available, conjugate_gradients, factorise
+from tests.helpers.boxes import stack
+
+STEEL = faying.CATALOGUE["45 steel"]
+SHIFT = 100.0
+S = (2 * np.pi * SHIFT) ** 2
+needs_pardiso = pytest.mark.skipif("pardiso" not in available(), reason="only PARDISO factorises in single precision")
+
+
+@pytest.fixture(scope="module")
+def bars():
+    """A slender free bar of two parts: mesh, matrices of the parts, joint."""
+    mesh = stack([0.25, 0.25], [10, 10], width=0.02, height=0.015, sections=[(2, 2), (2, 2)])
+    K, M = assemble(mesh, dict.fromkeys(mesh.parts, STEEL))
+    return mesh, K, M, join(mesh, "p0.right", "p1.left")
+
+
+def sprung(bars, k_n, k_t):
+    _, K, M, joint = bars
+    ones = np.ones(len(joint.weights))
+    return (K + joint.springs(k_n * ones, k_t * ones)).tocsr(), M
+
+
+@needs_pardiso
+def test_rigid_motions_are_answered_exactly_and_the_rest_to_some_digits(bars):
+    """Single precision alone would lose the rigid motions: their stiffness is 1e-9 of the others'."""
+    K, M = sprung(bars, 1e13, 1e13)
+    rigid = rigid_motions(bars[0].points)
+    factor = Single(K, M, S, rigid)
+    force = M @ rigid
+    assert factor.solve(force) * S == pytest.approx(rigid, abs=1e-6 * np.abs(rigid).max())
+    bend = M @ np.sin(np.arange(K.shape[0]))[:, None]
+    exact = factorise((K + S * M).tocsr()).solve(bend)
+    assert np.linalg.norm(factor.solve(bend) - exact) < 0.05 * np.linalg.norm(exact)
+
+
+@needs_pardiso
+def test_a_factor_takes_half_of_the_memory(bars):
+    K, M = sprung(bars, 1e13, 1e13)
+    half = Single(K, M, S, rigid_motions(bars[0].points)).memory
+    assert half < 0.6 * factorise((K + S * M).tocsr(), "pardiso").memory
+
+
+@needs_pardiso
+def test_digits_that_are_not_there_are_noticed(bars):
+    """Without its rigid motions and at a millionth of the shift, the matrix is singular in single precision."""
+    K, M = sprung(bars, 1e13, 1e13)
+    with pytest.raises(NotConverged):
+        Single(K, M, 1e-12 * S, np.zeros((K.shape[0], 0)))
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_refined_modes_are_those_of_double_precision(bars, held):
+    K, M = sprung(bars, 1e13, 5e12)
+    mesh, *_ = bars
+    rigid = rigid_motions(mesh.points)
+    if held:
+        fixed = (3 * mesh.face_nodes("p0.left")[:, None] + np.arange(3)).ravel()
+        K, M, rigid = constrain(K, fixed), constrain(M, fixed, 0.0), rigid[:, :0]
+    wanted = lowest_modes(K, M, 20, shift_frequency=SHIFT)
+    found = refined_modes(K, M, 20, rigid=rigid, shift_frequency=SHIFT)
+    elastic = slice(rigid.shape[1], None)
+    assert found.frequencies[elastic] == pytest.approx(wanted.frequencies[elastic], rel=1e-8)
+    overlap = found.shapes[:, elastic].T @ (M @ wanted.shapes[:, elastic])
+    # modes that are nearly as high as each other may turn among themselves
+    assert np.linalg.norm(overlap, axis=0)[:12] == pytest.approx(np.ones(12), abs=1e-6)
+    assert np.nanmax(found.error) <= 1e-8
+
+
+@pytest.mark.parametrize("solver", available())
+def test_every_solver_gives_refined_modes(bars, solver):
+    K, M = sprung(bars, 1e13, 5e12)
+    found = refined_modes(K, M, 10, rigid=rigid_motions(bars[0].points), shift_frequency=SHIFT, solver=solver)
+    wanted = lowest_modes(K, M, 10, shift_frequency=SHIFT)
+    assert found.frequencies[6:] == pytest.approx(wanted.frequencies[6:], rel=1e-8)
+
+
+@settings(max_examples=8, deadline=None)
+@given(factors=st.lists(st.floats(-1.5, 1.5), min_size=2, max_size=4))
+def test_one_factorisation_gives_the_modes_under_one_spring_after_another(bars, factors):
+    """Springs softer and stiffer by up to thirty: none of the modes below the last is missed."""
+    K, M = sprung(bars, 1e12, 5e11)
+    near = NearbyModes(lowest_modes(K, M, 18, shift_frequency=SHIFT), K, M, rigid=6, most=60)
+    for factor in factors:
+        changed, _ = sprung(bars, 1e12 * 10**factor, 5e11 * 10**factor)
+        found = near.under(changed, 10, tolerance=1e-9)
+        wanted = lowest_modes(changed, M, 16, shift_frequency=SHIFT)
+        assert found.frequencies[6:] == pytest.approx(wanted.frequencies[6:], rel=1e-7)
+
+
+def test_what_asks_for_too_many_rounds_is_given_up_early(bars):
+    K, M = sprung(bars, 1e9, 1e9)
+    near = NearbyModes(lowest_modes(K, M, 18, shift_frequency=SHIFT), K, M, rigid=6)
+    solves = []
+    solve = near.modes.factorisation.solve
+    near.modes.factorisation.solve = lambda right: solves.append(right.shape) or solve(right)
+    with pytest.raises(NotConverged, match="changed springs"):
+        near.under(sprung(bars, 1e17, 1e17)[0], 10, tolerance=1e-12, rounds=6)
+    assert len(solves) < 6
+
+
+def test_conjugate_gradients_reach_their_accuracy_for_every_right_hand_side(bars):
+    K, M = sprung(bars, 1e13, 5e12)
+    A = (K + S * M).tocsr()
+    factor = factorise((sprung(bars, 1e12, 1e12)[0] + S * M).tocsr())
+    right = np.random.default_rng(3).standard_normal((K.shape[0], 3)) * [1.0, 1e6, 0.0]
+    found = conjugate_gradients(lambda x: A @ x, factor, right, accuracy=1e-9)
+    assert np.all(np.linalg.norm(A @ found - right, axis=0) <= 1e-8 * np.linalg.norm(right, axis=0))
+    with pytest.raises(NotConverged, match="after 2 steps"):
+        conjugate_gradients(lambda x: A @ x, factor, right, accuracy=1e-14, limit=2)
