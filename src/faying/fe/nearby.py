@@ -7,7 +7,7 @@ import numpy as np
 
 from faying.errors import NotConverged
 from faying.fe.modes import Modes, lowest_modes
-from faying.fe.single import single
+from faying.fe.single import Single, factorise_roughly
 from faying.fe.span import Span
 from faying.typing import Array, Index
 
@@ -136,10 +136,11 @@ def refined_modes(
     Raises:
         InputError, NotConverged: as `lowest_modes` does.
     """
-    factor = single(stiffness, mass, (2 * np.pi * shift_frequency) ** 2, rigid, solver)
+    shift = (2 * np.pi * shift_frequency) ** 2
+    factor = factorise_roughly((stiffness + shift * mass).tocsr(), mass, shift, rigid=rigid, solver=solver)
     modes = lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, solver=solver, factor=factor)
     still = rigid.shape[1]
-    if factor is None or count <= still:
+    if not isinstance(factor, Single) or count <= still:
         return modes
     try:
         return NearbyModes(modes, stiffness, mass, rigid=still).under(stiffness, count - still, tolerance=REFINED)

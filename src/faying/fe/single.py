@@ -11,7 +11,7 @@ import numpy as np
 
 from faying.errors import NotConverged
 from faying.fe.pardiso import Pardiso
-from faying.fe.solve import Factorisation, chosen
+from faying.fe.solve import Factorisation, chosen, factorise
 from faying.typing import Array
 
 POOR = 0.2  # relative error of a solution beyond which double precision is due
@@ -22,10 +22,10 @@ class Single:
     """A factor of K + s M in single precision, as a `Factorisation`.
 
     Args:
-        stiffness: K [N/m], sparse (n, n), which leaves the rigid motions free.
+        matrix: K + s M, sparse CSR (n, n).
         mass: M [kg], sparse (n, n).
         shift: s [1/s2], above 0.
-        rigid: motions (n, r) that the stiffness leaves free, r = 0 where there are none.
+        rigid: motions (n, r) that the stiffness K leaves free, r = 0 where there are none.
 
     Raises:
         NotConverged: the factor has too few digits of this matrix, or none.
@@ -33,11 +33,10 @@ class Single:
 
     name = "PARDISO"
 
-    def __init__(self, stiffness: Any, mass: Any, shift: float, rigid: Array) -> None:
+    def __init__(self, matrix: Any, mass: Any, shift: float, rigid: Array) -> None:
         gram = rigid.T @ (mass @ rigid)
         self._rigid = rigid @ np.linalg.inv(np.linalg.cholesky((gram + gram.T) / 2)).T
         self._momentum, self._shift = np.asarray(mass @ self._rigid), shift
-        matrix = (stiffness + shift * mass).tocsr()
         self._factor = Pardiso(matrix, single=True)
         self.memory = self._factor.memory
         # a motion of all wave lengths, as the softest of the elastic modes are the worst
@@ -58,11 +57,22 @@ class Single:
         raise RuntimeError("a factorisation in single precision is made anew")
 
 
-def single(stiffness: Any, mass: Any, shift: float, rigid: Array, solver: str | None) -> Single | None:
-    """A factorisation in single precision; None where the solver has none, or where it would have too few digits."""
-    if chosen(solver) != "pardiso":
-        return None
-    try:
-        return Single(stiffness, mass, shift, rigid)
-    except NotConverged:
-        return None
+def factorise_roughly(
+    matrix: Any, mass: Any, shift: float, *, rigid: Array, solver: str | None = None
+) -> Factorisation:
+    """Factorise in single precision where the solver can and the matrix allows, else in double.
+
+    Args:
+        matrix, mass, shift, rigid: as `Single` takes them.
+        solver: name of the factorisation, as `factorise` takes it.
+
+    Raises:
+        NotConverged: the matrix is singular.
+        InputError: memory is short.
+    """
+    if chosen(solver) == "pardiso":
+        try:
+            return Single(matrix, mass, shift, rigid)
+        except NotConverged:
+            pass  # before the other is made, this one is gone
+    return factorise(matrix, solver)

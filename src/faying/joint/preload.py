@@ -12,7 +12,8 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.constraint import constrain
 from faying.fe.interface import Interface
-from faying.fe.solve import Factorisation, factorise
+from faying.fe.single import factorise_roughly
+from faying.fe.solve import Factorisation
 from faying.joint.equilibrium import Equilibrium, StickSlip
 from faying.joint.joint_law import JointLaw
 from faying.typing import Array, Index
@@ -49,7 +50,8 @@ class PreloadProblem(Equilibrium):
         self.solver = solver
         self.fixed = np.zeros(0, dtype=np.int64) if fixed is None else fixed
         self.shift_frequency = shift_frequency
-        self.mass_shift = (2 * np.pi * shift_frequency) ** 2 * mass
+        self._mass, self._shift = mass, (2 * np.pi * shift_frequency) ** 2
+        self.mass_shift = self._shift * mass
         self._rigid = np.linalg.qr(rigid)[0] if rigid.size else rigid
         self.factor: Factorisation | None = None
         self._rate = 0.0  # conjugate-gradient steps for each decade of the residual, with this factorisation
@@ -96,7 +98,9 @@ class PreloadProblem(Equilibrium):
 
     def _factorise(self, matrix: Any) -> None:
         self.factor = None  # one at a time in memory
-        self.factor = factorise(constrain(matrix.tocsr(), self.fixed), self.solver)
+        self.factor = factorise_roughly(
+            constrain(matrix.tocsr(), self.fixed), self._mass, self._shift, rigid=self._rigid, solver=self.solver
+        )
         self.factorisations += 1
         self._rate = 0.0
 

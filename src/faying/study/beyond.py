@@ -14,7 +14,7 @@ from faying.joint.springs import Springs
 from faying.joint.structure import Joint, Structure
 from faying.notes import Note
 from faying.study.case import Case, materials_at
-from faying.study.modes import modes_of
+from faying.study.modes import joined, modes_with
 from faying.typing import Array, Mask
 
 STIFF = 1e3  # times the stiffness of the parts over their size: what counts as bonded
@@ -43,11 +43,12 @@ def bonded_beyond(case: Case, load: float, springs: Sequence[Springs[Interface]]
         return None
     parts = stiff_as_bonded(structure)
     bonded = [_bonded(s, mask, parts) for s, mask in zip(springs, past, strict=True)]
-    modes, stiffness, loss = modes_of(case, bonded)
+    stiffness, loss = joined(case, bonded)
+    mass = structure.vibrating[1]
     found = damped_modes(
-        modes,
+        modes_with(case, stiffness, mass, rigid=structure.rigid),
         stiffness,
-        structure.vibrating[1],
+        mass,
         loss,
         rigid=case.rigid_count,
         count=study.modes.count,

@@ -14,6 +14,7 @@ from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
 from faying.joint.support_check import checked_preload
 from faying.study.case import Case
+from faying.typing import Array
 
 EXACT = 1e-8  # of the squared frequencies: 5e-9 of a frequency, 1e-4 of a shape
 FEW = 6  # rounds of enrichment that cost about what a factorisation and its modes do
@@ -68,15 +69,7 @@ class SharedModes:
             except NotConverged:
                 self._near = None  # before the next factorisation: one at a time in memory
         mass = case.structure.vibrating[1]
-        check_modes(case.mode_count, stiffness.shape[0])
-        modes = refined_modes(
-            stiffness,
-            mass,
-            case.mode_count,
-            rigid=case.structure.rigid,
-            shift_frequency=case.shift_frequency,
-            solver=case.study.modes.solver,
-        )
+        modes = modes_with(case, stiffness, mass, rigid=case.structure.rigid)
         self._near = NearbyModes(modes, stiffness, mass, rigid=case.rigid_count, most=KEPT * len(modes.frequencies))
         return modes
 
@@ -86,14 +79,15 @@ class SharedModes:
         return None if self._near is None else self._near.modes.factorisation
 
 
-def modes_with(case: Case, stiffness: Any, mass: Any, count: int | None = None) -> Modes:
-    """Real modes of any stiffness [N/m] and mass [kg], by the solver and the shift of a case."""
+def modes_with(case: Case, stiffness: Any, mass: Any, count: int | None = None, *, rigid: Array | None = None) -> Modes:
+    """Real modes of any stiffness [N/m] and mass [kg], by the solver and the shift of a case.
+
+    rigid: the motions (n, r) that the stiffness leaves free, with which a factorisation in single precision will do;
+    None where they are not known.
+    """
     count = count or case.mode_count
     check_modes(count, stiffness.shape[0])
-    return lowest_modes(
-        stiffness,
-        mass,
-        count,
-        shift_frequency=case.shift_frequency,
-        solver=case.study.modes.solver,
-    )
+    frequency, solver = case.shift_frequency, case.study.modes.solver
+    if rigid is None:
+        return lowest_modes(stiffness, mass, count, shift_frequency=frequency, solver=solver)
+    return refined_modes(stiffness, mass, count, rigid=rigid, shift_frequency=frequency, solver=solver)

@@ -106,7 +106,8 @@ def _bonded(case: Case) -> tuple[Modes, list[Note]]:
     merge = structure.bonded()
     if merge is not None and not len(structure.fixed):
         K, M = ((merge.T @ matrix @ merge).tocsr() for matrix in (K, M))
-        return modes_with(case, K, M), []
+        rigid = (merge.T @ structure.rigid) / np.asarray(merge.sum(axis=0)).ravel()[:, None]
+        return modes_with(case, K, M, rigid=rigid), []
     apart = [joint.name for joint in structure.joints if bond(structure.mesh, [joint.faces]) is None]
     why = f"the faces of {', '.join(apart)} do not match node for node" if apart else "supports hold some of the nodes"
     text = f"{why}: the bonded modes use springs a thousand times as stiff as the parts in place of bonded faces"
@@ -114,7 +115,7 @@ def _bonded(case: Case) -> tuple[Modes, list[Note]]:
     for joint in structure.joints:
         springs = joint.interface.springs(*2 * (np.full(len(joint.interface.weights), stiff),))
         K = K + constrain(springs, structure.fixed, 0.0)
-    return modes_with(case, K, M), [Note(code="bonded-by-springs", text=text)]
+    return modes_with(case, K, M, rigid=structure.rigid), [Note(code="bonded-by-springs", text=text)]
 
 
 def collect(
