@@ -136,11 +136,12 @@ def end_of(path: Path) -> tuple[str, ...]:
     """
     with path.open("rb") as handle:
         head = handle.read(4096)
-        if not head or head[:2] == b"PK" or not all(b in b"\t\n\r\x0c\x1a" or b >= 32 for b in head):
-            return ()
-        handle.seek(-1, 2)
-        ended = handle.read(1) in b"\r\n\x1a"
-    return () if ended else (f"{path}: the last line has no line break; the file may be cut short",)
+        handle.seek(-min(path.stat().st_size, 4096), 2)
+        tail = handle.read()
+    # instruments write numbers behind a head of text
+    if not head or head[:2] == b"PK" or not all(b in b"\t\n\r\x0c\x1a" or b >= 32 for b in head + tail):
+        return ()
+    return () if tail[-1:] in b"\r\n\x1a" else (f"{path}: the last line has no line break; the file may be cut short",)
 
 
 _DECIMAL_COMMA = re.compile(r"(?<![\d.,])\d+,\d+(?:[eE][-+]?\d+)?(?=\s*[;\t]|[ ]+[-+.\d]|$)")
