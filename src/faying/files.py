@@ -29,7 +29,8 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
     except OSError as fault:
         raise InputError(f"cannot write {path}: {fault.strerror or fault}") from None
     finally:
-        temporary.unlink(missing_ok=True)
+        with suppress(OSError):  # on a read-only disk nothing was made, and nothing can be removed
+            temporary.unlink(missing_ok=True)
     return path
 
 
@@ -96,7 +97,10 @@ def together(folder: Path, remedy: str) -> Iterator[Path]:
         hidden = folder / name if folder.is_dir() else folder.with_name(name)
         if folder.exists() and not folder.is_dir():
             raise InputError(f"cannot make the folder {folder}: a file has this name; {remedy}")
-        make_folder(hidden, remedy)
+        try:
+            hidden.mkdir()
+        except OSError as fault:
+            raise InputError(f"cannot write in {hidden.parent}: {fault.strerror}; {remedy}") from None
         try:
             try:
                 yield hidden
