@@ -33,6 +33,16 @@ def test_a_full_disk_leaves_the_old_file(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["result.nc"]
 
 
+def test_a_file_is_on_the_disk_before_it_takes_its_name(tmp_path, monkeypatch):
+    """A power cut after the renaming would otherwise find a file of the right name without its content."""
+    did = []
+    sync, move = os.fsync, os.replace
+    monkeypatch.setattr(os, "fsync", lambda number: did.append(os.fstat(number).st_size) or sync(number))
+    monkeypatch.setattr(os, "replace", lambda *names: did.append("renamed") or move(*names))
+    write_atomically(tmp_path / "x", lambda path: path.write_text("12345"))
+    assert did == [5, "renamed"]
+
+
 def test_a_folder_that_is_not_there(tmp_path):
     with pytest.raises(faying.InputError, match="make it first"):
         write_atomically(tmp_path / "none" / "x", lambda p: p.write_text("x"))
