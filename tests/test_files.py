@@ -1,7 +1,10 @@
 """Files appear whole or not at all, also where the disk is full."""
 
+import builtins
 import errno
+import io
 import os
+import pathlib
 import signal
 import subprocess
 import sys
@@ -9,8 +12,10 @@ import sys
 import pytest
 
 import faying
+from faying.cli.main import main
 from faying.errors import ReadError
 from faying.files import read_numbers, together, uninterrupted, write_atomically
+from faying.study import template
 from tests.helpers.studies import write
 
 
@@ -26,6 +31,16 @@ def test_a_full_disk_leaves_the_old_file(tmp_path):
         write_atomically(target, fill)
     assert target.read_text() == "old"
     assert [p.name for p in tmp_path.iterdir()] == ["result.nc"]
+
+
+def test_a_file_is_on_the_disk_before_it_takes_its_name(tmp_path, monkeypatch):
+    """A power cut after the renaming would otherwise find a file of the right name without its content."""
+    did = []
+    sync, move = os.fsync, os.replace
+    monkeypatch.setattr(os, "fsync", lambda number: did.append(os.fstat(number).st_size) or sync(number))
+    monkeypatch.setattr(os, "replace", lambda *names: did.append("renamed") or move(*names))
+    write_atomically(tmp_path / "x", lambda path: path.write_text("12345"))
+    assert did == [5, "renamed"]
 
 
 def test_a_folder_that_is_not_there(tmp_path):
@@ -180,3 +195,76 @@ def test_a_run_that_is_stopped_while_it_writes_leaves_what_was_there(tmp_path, n
     assert said.endswith("faying: interrupted\n")
     assert "Traceback" not in said
     assert files_of(out) == {"result.nc": "old"}
+
+
+LAW = ["law", "--D", "2.39", "--G", "1.53e-10 m", "--scan-area", "16 mm^2", "--material", "45 steel"]
+COMMANDS = {
+    "init": lambda here, there: ["init", str(there / "study.toml")],
+    "new": lambda here, there: ["new", str(here / "two-blocks.step"), "--yes", "--out", str(there / "study.toml")],
+    "law --plot": lambda here, there: [*LAW, "--plot", str(there / "law.png")],
+    "law --csv": lambda here, there: [*LAW, "--csv", str(there / "law.csv")],
+    "surface --plot": lambda here, there: ["surface", str(here / "surface.x3p"), "--plot", str(there / "s.png")],
+    "run": lambda here, there: ["run", str(here / "study.toml"), "--out", str(there / "results")],
+    "run in a folder": lambda here, there: ["run", str(here / "study.toml"), "--out", str(there)],
+    "sweep": lambda here, there: [
+        *["sweep", str(here / "study.toml"), "--set", "joint.friction=0.1:0.2:2", "--out", str(there / "sweep.nc")]
+    ],
+}
+
+
+@pytest.fixture(scope="module")
+def here(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("here")
+    template.write(folder / "study.toml")
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("command", "reason"),
+    [
+        *((name, "EROFS") for name in COMMANDS),
+        *((name, "ENOSPC") for name in COMMANDS if name != "run"),
+        ("new", "EACCES"),
+    ],
+)
+def test_a_folder_that_cannot_be_written(here, tmp_path, monkeypatch, capsys, command, reason):
+    """As a read-only mount answers, a full disk and a folder of somebody else: all makes and moves in it fail."""
+    there = tmp_path / "there"
+    there.mkdir()
+    (there / "mine.txt").write_text("mine")
+    number = getattr(errno, reason)
+    full = reason == "ENOSPC"
+
+    def refusing(do, moves):
+        def done(path, *rest, **named):
+            inside = isinstance(path, str | os.PathLike) and there in pathlib.Path(path).parents
+            writes = moves or bool(rest[:1] and isinstance(rest[0], str) and set(rest[0]) & set("wax+"))
+            writes = writes or bool(rest[:1] and isinstance(rest[0], int) and rest[0] & (os.O_WRONLY | os.O_RDWR))
+            if inside and writes:
+                raise OSError(number, os.strerror(number), str(path))
+            return do(path, *rest, **named)
+
+        return done
+
+    for where, name, moves in (
+        (os, "mkdir", True),
+        (os, "replace", True),
+        (os, "rename", True),
+        # what was made on a full disk can be removed
+        *(((os, "unlink", True), (os, "rmdir", True)) if not full else ()),
+        (io, "open", False),
+        (os, "open", False),
+        (builtins, "open", False),
+    ):
+        if not (full and name == "mkdir"):
+            monkeypatch.setattr(where, name, refusing(getattr(where, name), moves))
+    with pytest.raises(SystemExit) as stop:
+        main(COMMANDS[command](here, there))
+    monkeypatch.undo()
+    assert stop.value.code == 1
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert said.startswith("faying: cannot ")
+    assert os.strerror(number) in said
+    assert ".part" not in said.replace("sweep.nc.part", "")
+    kept = {"sweep.nc.part"} if full and command == "sweep" else set()  # from which it goes on
+    assert {path.name for path in there.iterdir()} == {"mine.txt"} | kept

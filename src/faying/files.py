@@ -29,7 +29,8 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
     except OSError as fault:
         raise InputError(f"cannot write {path}: {fault.strerror or fault}") from None
     finally:
-        temporary.unlink(missing_ok=True)
+        with suppress(OSError):  # on a read-only disk nothing was made, and nothing can be removed
+            temporary.unlink(missing_ok=True)
     return path
 
 
@@ -96,7 +97,10 @@ def together(folder: Path, remedy: str) -> Iterator[Path]:
         hidden = folder / name if folder.is_dir() else folder.with_name(name)
         if folder.exists() and not folder.is_dir():
             raise InputError(f"cannot make the folder {folder}: a file has this name; {remedy}")
-        make_folder(hidden, remedy)
+        try:
+            hidden.mkdir()
+        except OSError as fault:
+            raise InputError(f"cannot write in {hidden.parent}: {fault.strerror}; {remedy}") from None
         try:
             try:
                 yield hidden
@@ -136,11 +140,12 @@ def end_of(path: Path) -> tuple[str, ...]:
     """
     with path.open("rb") as handle:
         head = handle.read(4096)
-        if not head or head[:2] == b"PK" or not all(b in b"\t\n\r\x0c\x1a" or b >= 32 for b in head):
-            return ()
-        handle.seek(-1, 2)
-        ended = handle.read(1) in b"\r\n\x1a"
-    return () if ended else (f"{path}: the last line has no line break; the file may be cut short",)
+        handle.seek(-min(path.stat().st_size, 4096), 2)
+        tail = handle.read()
+    # instruments write numbers behind a head of text
+    if not head or head[:2] == b"PK" or not all(b in b"\t\n\r\x0c\x1a" or b >= 32 for b in head + tail):
+        return ()
+    return () if tail[-1:] in b"\r\n\x1a" else (f"{path}: the last line has no line break; the file may be cut short",)
 
 
 _DECIMAL_COMMA = re.compile(r"(?<![\d.,])\d+,\d+(?:[eE][-+]?\d+)?(?=\s*[;\t]|[ ]+[-+.\d]|$)")

@@ -127,3 +127,16 @@ def test_csv_and_figure(tmp_path: Path) -> None:
 def test_faults_are_told(words: list[str], message: str) -> None:
     with pytest.raises(InputError, match=message):
         run(*words)
+
+
+def test_a_law_on_a_scan_shows_what_the_surface_says(tmp_path: Path) -> None:
+    """D and G with the intervals that `faying surface` prints, and its remarks."""
+    from faying import fit_fractal, read_scan
+    from faying.study import template
+
+    template.surface(tmp_path / "s.x3p")
+    fit = fit_fractal(read_scan(tmp_path / "s.x3p"))
+    said = " ".join(run("--scan", str(tmp_path / "s.x3p"), "--material", "45 steel", "--model", "jk").split())
+    low, high = fit.D_interval
+    assert f"D {fit.D:.4g} [{low:.4g}, {high:.4g}]" in said
+    assert "do not belong together" in said

@@ -134,6 +134,64 @@ def test_faults(model, tmp_path):
     refused("cannot be read", path)
 
 
+@pytest.mark.parametrize(
+    ("node", "match"),
+    [
+        ("-50.1", "line 1: .-50.1. should be a node and a direction"),
+        ("0.1", "line 1: node 0 direction 1; nodes are numbered from 1"),
+        (f"{10**13}.1", "line 1: node 10000000000000 direction 1; nodes are numbered from 1"),
+        ("9" * 5000 + ".1", "line 1: .9+. should be a node and a direction"),
+        ("50.0", "directions from 1 to 6"),
+        ("50.-1", "should be a node and a direction"),
+        ("50.7", "directions from 1 to 6"),
+        ("1e3.1", "should be a node and a direction"),
+        ("\N{SUPERSCRIPT TWO}.1", "should be a node and a direction"),
+    ],
+    ids=["negative", "zero", "huge", "endless", "no direction", "negative direction", "seventh", "real", "superscript"],
+)
+def test_numbers_of_nodes_that_cannot_be(model, tmp_path, node, match):
+    path = calculix(tmp_path, *model[2])
+    dofs = path.with_suffix(".dof")
+    dofs.write_text("\n".join([node, *dofs.read_text().splitlines()[1:]]) + "\n", encoding="utf-8")
+    refused(match, path)
+
+
+@pytest.mark.parametrize("suffix", [".sti", ".mas"])
+@pytest.mark.parametrize(
+    ("place", "match"),
+    [
+        ("-1 1", "has the row or column -1; there are 36 unknowns, numbered from 1"),
+        ("1 0", "has the row or column 0"),
+        ("1 37", "has the row or column 37"),
+        ("1 1e300", r"has the row or column 1e\+300"),
+        ("1.7 2", "has the row or column 1.7"),
+        ("nan 2", "has the row or column nan"),
+    ],
+)
+def test_rows_and_columns_that_cannot_be(model, tmp_path, suffix, place, match):
+    path = calculix(tmp_path, *model[2]).with_suffix(suffix)
+    first, *others = path.read_text().splitlines()
+    path.write_text("\n".join([f"{place} {first.split()[2]}", *others]) + "\n")
+    refused(match, tmp_path / "job.sti")
+
+
+@pytest.mark.parametrize("suffix", [".sti", ".mas", ".dof"])
+@pytest.mark.parametrize("turned", [False, True])
+def test_what_is_given_twice(model, tmp_path, suffix, turned):
+    """An entry and itself, or its mirror image; a list of unknowns knows no mirror."""
+    path = calculix(tmp_path, *model[2]).with_suffix(suffix)
+    lines = path.read_text().splitlines()
+    if suffix == ".dof":
+        lines[1] = lines[0]
+        match = "is listed twice"
+    else:
+        entry = next(line.split() for line in lines if line.split()[0] != line.split()[1])
+        lines.append(" ".join([entry[1], entry[0], entry[2]] if turned else entry))
+        match = f"row {entry[0]}, column {entry[1]} is given twice"
+    path.write_text("\n".join(lines) + "\n")
+    refused(match, tmp_path / "job.sti")
+
+
 @pytest.mark.parametrize("kind", ["sti", "mas", "dof", "mtx", "dmig", "dmig all"])
 def test_a_file_cut_short_is_refused_or_whole(model, tmp_path, kind):
     """Cut at the end of every line, and inside some: an error, or all that was written."""

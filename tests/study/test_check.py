@@ -1,6 +1,7 @@
 """faying check: what it finds in studies with one thing wrong, and what it expects beside what a run finds."""
 
 import json
+import re
 from math import pi
 from pathlib import Path
 
@@ -14,8 +15,10 @@ from faying.fe.face_facts import read_facts
 from faying.fe.geometry import mesh_step
 from faying.joint.vdi2230 import cone_angle, cone_pressure
 from faying.study import Study, new, template
+from faying.study.case import Case
 from faying.study.check import check
 from faying.study.expected import MEASURED, Expected, unknowns_of
+from faying.study.places import _within
 from tests.helpers.boxes import row
 from tests.helpers.laps import lapped
 from tests.helpers.meshfiles import STUDY, abaqus
@@ -147,6 +150,73 @@ def test_a_joint_or_a_bolt_twice_is_a_fault(tmp_path):
     told = " ".join(one.text for one in check(tmp_path / "s.toml").faults)
     assert "joints 'joint' and 'k' join the same faces" in told
     assert "bolts 'bolt' and 'c' run through one place" in told
+
+
+TABLES = {
+    "test": """[test]
+source = "s"
+direction = [0, 0, 1]
+points = [[{}]]
+frequencies = [["1 kHz"], ["1 kHz"]]
+""",
+    "response": """[response]
+from = "5 kHz"
+to = "20 kHz"
+points = 4
+[[response.input]]
+point = [{}]
+direction = [0, 0, 1]
+[[response.output]]
+point = [{}]
+direction = [0, 0, 1]
+""",
+    "mass": """[[mass]]
+mass = "1 g"
+point = [{}]
+""",
+    "backbone": """[backbone]
+mode = 1
+amplitude = ["1 m/s^2", "2 m/s^2"]
+at = [{}]
+""",
+}
+
+
+@pytest.mark.parametrize("table", TABLES)
+@pytest.mark.parametrize(
+    ("place", "near"),
+    [('"80 m", "0 mm", "0 mm"', False), ('"90 mm", "22 mm", "-50 mm"', False), ('"40 mm", "15 mm", "-15 mm"', True)],
+)
+def test_points_far_from_the_structure(tmp_path, table, place, near):
+    """In the words of `faying run`, which meshes first; check has no nodes and measures from the faces."""
+    template.write(tmp_path / "s.toml")
+    text = (tmp_path / "s.toml").read_text() + TABLES[table].replace("{}", place)
+    (tmp_path / "s.toml").write_text(text)
+    told = [one.text for one in check(tmp_path / "s.toml").faults]
+    assert near == (told == []), told
+    study = Study.read(tmp_path / "s.toml")
+    if near:
+        Case.of(study)
+        return
+    with pytest.raises(faying.InputError) as fault:
+        Case.of(study)
+    before, said, after = r"(?P<a>.*nearest node to )", told[0], r" mm away; (?P<b>.*)"
+    shapes = [re.match(before + r"(?P<p>\(.*?\) mm is) (?P<d>\S+)" + after, t) for t in (said, str(fault.value))]
+    assert shapes[0] is not None
+    assert [shapes[0][k] for k in "apb"] == [shapes[1][k] for k in "apb"]
+    assert float(shapes[0]["d"]) <= float(shapes[1]["d"]) <= 1.05 * float(shapes[0]["d"]) + 10
+
+
+def test_a_point_deep_inside_a_part_is_on_the_structure():
+    """A ball of chords: the middle is a radius from every face, and within; beside it is without."""
+    angle, turn = np.meshgrid(np.linspace(0, np.pi, 13), np.linspace(0, 2 * np.pi, 25), indexing="ij")
+    ball = np.stack([np.sin(angle) * np.cos(turn), np.sin(angle) * np.sin(turn), np.cos(angle)], axis=-1)
+    a, b, c, d = ball[:-1, :-1], ball[1:, :-1], ball[1:, 1:], ball[:-1, 1:]
+    corners = np.concatenate([np.stack(three, axis=2).reshape(-1, 3, 3) for three in ((a, b, c), (a, c, d))])
+    for x in (0.0, 0.3, 0.9):
+        assert _within(np.array([x, 0.1, 0.2]), corners)
+    for x in (1.05, 1.2, 40.0):
+        assert not _within(np.array([x, 0.1, 0.2]), corners)
 
 
 def test_the_mean_pressure_beside_the_end_of_the_law(folder):

@@ -1,12 +1,15 @@
 """Files in and out: X3P, text, units, faults."""
 
 import hashlib
+import importlib.util
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from faying import InputError, ReadError, Scan, fit_fractal, read_scan
+from faying.files import end_of
 from faying.surface.read import plausible
 from faying.surface.scan import Profile
 from faying.surface.synthesize import spectral, with_missing
@@ -395,6 +398,121 @@ def test_a_scan_too_large_for_the_memory_is_refused_before_it_is_unpacked(rough,
         read_scan(path)
     monkeypatch.setenv("FAYING_MEMORY", "1")
     assert read_scan(path).shape == rough.shape
+
+
+def test_heights_listed_in_the_xml_are_held_against_the_memory(rough, tmp_path, monkeypatch):
+    """64 MB of list took 44 s and gigabytes: a listed height takes more than one in a block, and this is said first."""
+    good = write_scan(rough, tmp_path / "good.x3p")
+    text = xml_of(good)
+    listed = "<DataList>" + "".join(f"<Datum>{v!r}</Datum>" for v in map(float, rough.heights.ravel())) + "</DataList>"
+    start, end = text.index("<DataLink>"), text.index("</DataLink>") + len("</DataLink>")
+    path = repacked(good, tmp_path / "listed.x3p", main_xml=text[:start] + listed + text[end:])
+    monkeypatch.setenv("FAYING_MEMORY", str(1.5 * 160 * rough.heights.size / 1e9))
+    assert read_scan(good).shape == rough.shape
+    with pytest.raises(ReadError, match="points need about .* GB are free"):
+        read_scan(path)
+    monkeypatch.setenv("FAYING_MEMORY", str(3 * 160 * rough.heights.size / 1e9))
+    assert read_scan(path).shape == rough.shape
+
+
+@pytest.mark.parametrize("matrix", [True, False])
+def test_a_text_too_large_for_the_memory_is_refused_before_it_is_read(tmp_path, monkeypatch, matrix):
+    rng = np.random.default_rng(3)
+    path = tmp_path / "a.txt"
+    n = 60
+    if matrix:
+        np.savetxt(path, rng.standard_normal((n, n)), fmt="%.5f")
+    else:
+        x, y = np.meshgrid(np.arange(n), np.arange(n))
+        np.savetxt(path, np.column_stack([x.ravel(), y.ravel(), rng.standard_normal(n * n)]), fmt="%.5f")
+    given = {"z_unit": "um", "size": 1e-3} if matrix else {"xy_unit": "um", "z_unit": "um"}
+    assert read_scan(path, **given).shape == (n, n)
+    monkeypatch.setenv("FAYING_MEMORY", str(160 * n * n / 1e9))
+    monkeypatch.setattr(np, "loadtxt", None)
+    monkeypatch.setattr(Path, "read_text", None)
+    with pytest.raises(ReadError, match=r"points need about .* GB are free; crop the scan"):
+        read_scan(path, **given)
+
+
+@pytest.mark.parametrize("delimiter", [",", ";", " ", "\t", ", "])
+@pytest.mark.parametrize("words", [{}, {7: "nan"}, {7: "---", 11: "bad"}, {7: "1e-3"}])
+def test_reading_in_one_go_and_line_by_line_agree(tmp_path, monkeypatch, delimiter, words):
+    x, y = np.meshgrid(np.arange(5.0), np.arange(4.0))
+    rows = [
+        [f"{a:g}", f"{b:g}", words.get(k, f"{k / 7:.6f}")] for k, (a, b) in enumerate(zip(x.flat, y.flat, strict=True))
+    ]
+    path = tmp_path / "a.csv"
+    path.write_text("# points\n\n" + "".join(delimiter.join(row) + "\n" for row in rows), encoding="utf-8-sig")
+    quick = read_scan(path, "um", "um")
+    monkeypatch.setattr("faying.surface.text._quickly", lambda *_: None)
+    slow = read_scan(path, "um", "um")
+    assert np.array_equal(quick.heights, slow.heights, equal_nan=True)
+    assert slow.missing == sum(word in ("nan", "---", "bad") for word in words.values())
+
+
+@pytest.mark.parametrize("language", [("Width", "Height"), ("Breite", "H\u00f6he")])
+def test_the_comments_of_gwyddion_state_size_and_unit(tmp_path, language):
+    """As its text export writes them; without them, three columns of heights would be x, y and z."""
+    heights = np.array([[1.0, 1.5, 3.0], [-2.0, -3.0, -6.0], [0.0, 0.0, 0.0], [9.0, 9.0, 9.0]])
+    path = tmp_path / "a.txt"
+    head = f"# Channel: My name\n# {language[0]}: 12.34 \u00b5m\n# {language[1]}: 5678.9 nm\n# Value units: nm\n"
+    path.write_text(head + "".join(" ".join(f"{z:g}" for z in row) + "\n" for row in heights), encoding="utf-8")
+    scan = read_scan(path)
+    assert scan.size == pytest.approx((12.34e-6, 5.6789e-6))
+    assert scan.heights == pytest.approx(heights * 1e-9)
+    with pytest.raises(InputError, match="the file states its units"):
+        read_scan(path, xy_unit="um", z_unit="um")
+    with pytest.raises(InputError, match="the file states its size"):
+        read_scan(path, size=4e-3)
+    path.write_text(path.read_text("utf-8").replace("12.34", "nan"), encoding="utf-8")
+    with pytest.raises(ReadError, match="write a positive number"):
+        read_scan(path)
+
+
+def test_positions_rounded_in_the_file_are_still_even(tmp_path):
+    """Steps of 0.0995712 um in six decimals: mostly .0001 mm, at times .000099, so that the median is .4 % too long."""
+    step, n = 9.957e-5, 4001
+    x = np.arange(n) * step
+    z = np.sin(x)
+    path = tmp_path / "a.txt"
+    np.savetxt(path, np.column_stack([x, z]), fmt="%.6f")
+    line = read_scan(path, "mm", "um")
+    assert line.heights.shape == (n,)
+    assert line.spacing == pytest.approx(step * 1e-3, rel=1e-4)
+
+
+def test_numbers_behind_a_head_of_text_are_not_cut_short(tmp_path):
+    path = tmp_path / "a.di"
+    path.write_bytes(b"*File list\r\n" * 400 + bytes(range(256)) * 20)
+    assert end_of(path) == ()
+    path.write_bytes(b"1 2 3\r\n" * 400 + b"1 2")
+    assert len(end_of(path)) == 1
+
+
+@pytest.mark.skipif(importlib.util.find_spec("SurfaceTopography") is None, reason="SurfaceTopography is not installed")
+def test_the_ending_helps_where_the_content_deceives(tmp_path, monkeypatch):
+    """One of two .nms of the same instrument begins as MATLAB's files do; the library then finds no data in it."""
+    from SurfaceTopography.IO import NMS
+
+    path = tmp_path / "a.nms"
+    path.write_bytes(np.array([2, 1, 0, 65535, 0], "<i4").tobytes() + bytes(5000))
+    with pytest.raises(ReadError, match="of no format that can be read"):
+        read_scan(path)
+    asked = []
+    monkeypatch.setattr(NMS.NMSReader, "__init__", lambda *_, **__: asked.append(True))
+    with pytest.raises(ReadError, match="of no format that can be read"):
+        read_scan(path)
+    assert asked
+
+
+@pytest.mark.skipif(importlib.util.find_spec("SurfaceTopography") is None, reason="SurfaceTopography is not installed")
+def test_an_archive_of_several_files_is_to_be_unpacked(tmp_path):
+    path = tmp_path / "container.zip"
+    with zipfile.ZipFile(path, "w") as archive:
+        for name in ("a.txt", "b.txt", "c.txt", "d.txt"):
+            archive.writestr(name, "nothing")
+    with pytest.raises(ReadError, match=r"zip archive of 4 files \(a.txt, b.txt, c.txt, ...\): unpack it and give one"):
+        read_scan(path)
 
 
 def test_a_text_without_an_end_of_line_may_be_cut_short_and_fits_say_so(tmp_path):

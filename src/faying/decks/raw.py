@@ -14,6 +14,7 @@ from faying.typing import Array, Index
 
 GREATEST = 10**12  # number of a node or an element
 MOST = 20_000_000  # numbers of a range
+DIGITS = 30  # of a number of a node or a direction, zeros in front included
 
 Matrices: TypeAlias = tuple[Any, Any, Index]
 """Stiffness and mass (n, n), sparse, and dofs (n, 2): number of the node, direction 1, 2, 3."""
@@ -193,7 +194,13 @@ def read_dofs(path: Path) -> Index:
         words = line.replace(".", " ").split()
         if not words:
             continue
-        if len(words) != 2 or not all(word.isdigit() for word in words):
-            raise ReadError(f'{path}, line {k}: "{line.strip()}" should be a node and a direction, such as 12.1')
-        out.append((int(words[0]), int(words[1])))
+        if len(words) != 2 or not all(word.isdecimal() and len(word) <= DIGITS for word in words):
+            raise ReadError(f'{path}, line {k}: "{line.strip()[:60]}" should be a node and a direction, such as 12.1')
+        node, axis = int(words[0]), int(words[1])
+        if not (1 <= node <= GREATEST and 1 <= axis <= 6):
+            raise ReadError(
+                f"{path}, line {k}: node {node} direction {axis}; nodes are numbered from 1 to {GREATEST:,} and "
+                "directions from 1 to 6"
+            )
+        out.append((node, axis))
     return np.array(out, dtype=np.int64).reshape(-1, 2)

@@ -47,7 +47,7 @@ def mesh_facts(mesh: Mesh, points: Mapping[str, tuple[str, Sequence[float]]] | N
     places = np.concatenate(corners) if corners else np.zeros((0, 3, 3))
     face_of = np.concatenate(owner) if owner else np.zeros(0, dtype=np.int64)
     distances = {
-        label: [_distance(np.array(at), places[face_of == k]) for k, face in enumerate(faces) if face.part == part]
+        label: [distance_to(np.array(at), places[face_of == k]) for k, face in enumerate(faces) if face.part == part]
         for label, (part, at) in (points or {}).items()
     }
     return GeometryFacts(
@@ -72,7 +72,7 @@ def _part(mesh: Mesh, part: str) -> PartFacts:
     return PartFacts(name=part, volume=volume, area=area, low=low, high=high)  # type: ignore[arg-type]
 
 
-def _distance(point: Array, corners: Array) -> float:
+def distance_to(point: Array, corners: Array) -> float:
     """Distance [m] of a point to the nearest of some triangles (t, 3, 3)."""
     a, b, c = corners.transpose(1, 0, 2)
     normal = np.cross(b - a, c - a)

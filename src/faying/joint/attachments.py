@@ -9,7 +9,7 @@ from faying.errors import InputError
 from faying.fe.attach import mean_motion
 from faying.fe.faces import face_centre, sampled
 from faying.fe.mesh import Mesh
-from faying.typing import Index
+from faying.typing import Array, Index
 
 AXES: dict[str, int] = {"x": 0, "y": 1, "z": 2}
 NEAR = 0.02  # of the structure's size: farther from any node than this, a point of the study is taken for a mistake
@@ -110,10 +110,14 @@ def nearest_node(mesh: Mesh, point: tuple[float, float, float], what: str) -> in
     distance = np.linalg.norm(mesh.points - np.array(point), axis=1)
     node = int(np.argmin(distance))
     if distance[node] > NEAR * mesh.size:
-        raise InputError(
-            f"{what}: the nearest node to ({', '.join(f'{1e3 * x:.4g}' for x in point)}) mm is "
-            f"{1e3 * distance[node]:.3g} mm away; the structure lies between "
-            f"({', '.join(f'{1e3 * x:.4g}' for x in mesh.points.min(axis=0))}) and "
-            f"({', '.join(f'{1e3 * x:.4g}' for x in mesh.points.max(axis=0))}) mm; check the point and its unit"
-        )
+        raise InputError(too_far(what, point, float(distance[node]), mesh.points.min(axis=0), mesh.points.max(axis=0)))
     return node
+
+
+def too_far(what: str, point: tuple[float, float, float], distance: float, low: Array, high: Array) -> str:
+    """What is said of a point [m] at some distance [m] from a structure between two corners [m]."""
+    at, first, last = (", ".join(f"{1e3 * x:.4g}" for x in corner) for corner in (point, low, high))
+    return (
+        f"{what}: the nearest node to ({at}) mm is {1e3 * distance:.3g} mm away; the structure lies between ({first}) "
+        f"and ({last}) mm; check the point and its unit"
+    )

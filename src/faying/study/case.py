@@ -9,7 +9,6 @@ from faying.errors import InputError
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.files import end_of
-from faying.joint.attachments import nearest_node
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Joint, Structure
 from faying.materials import Material
@@ -21,6 +20,7 @@ from faying.study.keys.geometry import mesh_of
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import NO_SURFACE, Surface, SurfaceChoice
+from faying.study.places import named_points, on_structure
 from faying.study.strength import bolt_notes, material_notes
 from faying.study.study import Study
 from faying.typing import Array
@@ -77,8 +77,8 @@ class Case:
         laws = checked_laws(study, surfaces)
         progress.begin("mesh")
         structure = structure_of(study, checked_mesh(study), surfaces, laws)
-        for k, point in enumerate(study.test.points if study.test else (), 1):
-            nearest_node(structure.mesh, point, f"test.points[{k}]")
+        for _, what, point in named_points(study):
+            on_structure(what, point, structure.mesh)
         notes = [Note(code="surface", text=text) for surface in surfaces for text in surface.warnings]
         told = {note.text for note in notes}
         tables = [file for file in study.files if file != study.geometry.file]  # readers of meshes look for themselves

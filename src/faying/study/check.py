@@ -24,6 +24,7 @@ from faying.study.expected import Expected, unknowns_of
 from faying.study.keys.geometry import mesh_of
 from faying.study.keys.reader import StudyFaults
 from faying.study.lines import key_of, line_of, lines_of
+from faying.study.places import named_points, on_structure
 from faying.study.reach import law_findings
 from faying.study.sketch import Sketch
 from faying.study.strength import SolidPlace, bolt_notes, material_notes
@@ -125,6 +126,8 @@ def check(path: str | Path) -> Checked:
         fitted_bolts=(),
     )
     _contacts(sketch, found)
+    for key, what, point in named_points(study):
+        found.tried("point", key, lambda what=what, point=point: on_structure(what, point, mesh or facts))  # type: ignore[misc]
     sketch = _bolts(sketch, found)
     for level, code, words, key in law_findings(sketch):
         found.add(level, code, words, key)

@@ -9,7 +9,7 @@ from pathlib import Path
 from faying.errors import InputError
 from faying.fe.face_facts import read_facts
 from faying.fe.selectors import AXES, Selector
-from faying.files import together
+from faying.files import together, write_atomically, write_text
 from faying.materials import CATALOGUE
 from faying.study.proposal import GRADE, SHARE, BoltProposal, Proposal, propose
 from faying.study.template import SCHEMA, surface
@@ -72,9 +72,9 @@ def write(proposal: Proposal, step: Path, out: Path, answers: Answers, *, force:
         raise InputError(f"{there[0]} exists already; name another study with --out, or replace it with --force")
     text, assumed = study_text(proposal, step, out, answers)
     with together(out.parent, "give another place with --out") as folder:
-        (folder / out.name).write_text(text, encoding="utf-8")
+        write_text(folder / out.name, text)
         if answers.scan is None:
-            surface(folder / SCAN)
+            write_atomically(folder / SCAN, surface)
     return Written(files=tuple(out.parent / name for name in made), proposal=proposal, assumed=tuple(assumed))
 
 

@@ -112,7 +112,10 @@ def locked(folder: Path, what: str) -> IO[str]:
 
     Raises InputError where another process holds it. Windows has no such lock: there it holds nothing.
     """
-    file = (folder / "lock").open("w", encoding="utf-8")
+    try:
+        file = (folder / "lock").open("w", encoding="utf-8")
+    except OSError as fault:
+        raise InputError(f"cannot write in {folder}: {fault.strerror}; choose another output with --out") from None
     try:
         import fcntl
     except ImportError:

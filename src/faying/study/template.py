@@ -6,7 +6,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from faying.errors import FayingError, InputError
-from faying.files import write_atomically, write_text
+from faying.files import together, write_atomically, write_text
 from faying.surface.scan import Scan
 
 # first line of a study, for editors that know TOML (Taplo, Even Better TOML); `faying schema` writes the file
@@ -172,11 +172,15 @@ def write(study: Path, *, force: bool = False) -> list[Path]:
             raise InputError(
                 f"{path} exists already, with other content; name another file, or replace it with --force"
             )
-    return [
-        step if kept else write_atomically(step, blocks),
-        scan if measured else write_atomically(scan, surface),
-        write_text(study, text),
-    ]
+    if not study.parent.is_dir():
+        raise InputError(f"no folder {study.parent} to write {study.name} in; make it first")
+    with together(study.parent, "name a file elsewhere") as folder:
+        if not kept:
+            write_atomically(folder / step.name, blocks)
+        if not measured:
+            write_atomically(folder / scan.name, surface)
+        write_text(folder / study.name, text)
+    return [step, scan, study]
 
 
 def _same_heights(scan: Path) -> bool:

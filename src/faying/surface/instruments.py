@@ -1,6 +1,7 @@
 """All other instrument formats, through SurfaceTopography (extra "instruments"; MIT licence)."""
 
 import warnings
+import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -96,30 +97,51 @@ def _content(file: Path) -> _Content:
             f"{file}: neither X3P nor x,y,z text; for other instrument formats install SurfaceTopography "
             "(pip install SurfaceTopography)"
         )
+    by_name = [
+        kind.format() for kind in library.IO.readers if file.suffix.lower().lstrip(".") in kind.file_extensions()
+    ]
+    faults: list[Exception] = []
+    for kind in (None, *by_name):  # what the content seems to be; a .nms may seem to be MATLAB's, without any data
+        try:
+            return _opened(file, library, kind)
+        except FayingError:
+            raise
+        except Exception as fault:  # a reader of thirty formats fails in as many ways
+            faults.append(fault)
+    first = str(faults[0]).strip().splitlines()
+    reason = first[0] if first else type(faults[0]).__name__
+    raise ReadError(
+        f"{file}: of no format that can be read, or damaged ({type(faults[0]).__name__}: {reason}){_packed(file)}"
+    ) from faults[0]
+
+
+def _opened(file: Path, library: Any, kind: str | None) -> _Content:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        with library.open_topography(str(file), format=kind) as reader:
+            channel = reader.default_channel
+            stated = channel.physical_sizes is not None
+            _check_size(file, channel.nb_grid_pts)
+            topography = channel.topography(**({} if stated else {"physical_sizes": channel.nb_grid_pts}))
+            heights: Any = np.ma.filled(np.ma.asarray(topography.heights(), float), np.nan)
+            return _Content(
+                heights=heights,
+                sizes=topography.physical_sizes if stated else None,
+                unit=topography.unit,
+                info=dict(topography.info or {}),
+                positions=None if topography.is_uniform else np.asarray(topography.positions(), float),
+            )
+
+
+def _packed(file: Path) -> str:
+    """What a zip archive of no known format holds, in words; "" for other files."""
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            with library.open_topography(str(file)) as reader:
-                channel = reader.default_channel
-                stated = channel.physical_sizes is not None
-                _check_size(file, channel.nb_grid_pts)
-                topography = channel.topography(**({} if stated else {"physical_sizes": channel.nb_grid_pts}))
-                heights: Any = np.ma.filled(np.ma.asarray(topography.heights(), float), np.nan)
-                return _Content(
-                    heights=heights,
-                    sizes=topography.physical_sizes if stated else None,
-                    unit=topography.unit,
-                    info=dict(topography.info or {}),
-                    positions=None if topography.is_uniform else np.asarray(topography.positions(), float),
-                )
-    except FayingError:
-        raise
-    except Exception as fault:  # a reader of thirty formats fails in as many ways
-        first = str(fault).strip().splitlines()
-        reason = first[0] if first else type(fault).__name__
-        raise ReadError(
-            f"{file}: of no format that can be read, or damaged ({type(fault).__name__}: {reason})"
-        ) from fault
+        with zipfile.ZipFile(file) as archive:
+            names = archive.namelist()
+    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError):
+        return ""
+    shown = ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")
+    return f"; it is a zip archive of {len(names)} files ({shown}): unpack it and give one of them"
 
 
 def _check_size(file: Path, points: Any) -> None:

@@ -154,7 +154,7 @@ def _scales(
     if layout.units is not None:
         x, y, z = layout.units
         return x, y, z
-    if layout.columns > 3:
+    if layout.matrix:
         if not lateral or z_unit is None:
             raise InputError(
                 f"{file}: a matrix of heights states neither its size nor a unit; give size or spacing in metres and "

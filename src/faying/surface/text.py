@@ -1,6 +1,7 @@
 """Text files of points: x, y, z on a regular grid (Nanovea and the like), x, z of a line, or a matrix of heights."""
 
 import re
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,13 +10,15 @@ import numpy as np
 
 from faying.errors import ReadError
 from faying.files import refuse_decimal_comma
-from faying.surface.scan import Profile, Scan
+from faying.surface.scan import BYTES, Profile, Scan, check_points
 from faying.typing import Array
 from faying.units import scale
 
 Steps = Callable[[int, int], tuple[float, float]]
 _COLUMN = re.compile(r"([xyzXYZ])\s*[\[(]\s*([^\])]+?)\s*[\])]")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$")
+_SIZE = re.compile(r"#\s*(?:Width|Breite|Height|Höhe):\s*(\S+)\s*(\S+)\s*$")
+_HEIGHTS = re.compile(r"#\s*Value units:\s*(\S+)\s*$")
 _MISSING = {"", "nan", "na", "n/a", "bad", "---", "***", "*"}
 
 
@@ -38,24 +41,31 @@ def _row(line: str) -> list[float] | None:
 @dataclass(frozen=True, kw_only=True)
 class Layout:
     """How a text file is laid out: numbers in a row (2: x,z; 3: x,y,z; more: a matrix of heights), lines of heading,
-    and metres per unit of x, y and z where the heading states them."""
+    and metres per unit of x, y and z where the heading states them; size (x, y) [m] of a matrix that states it."""
 
     columns: int
     heading: int
     units: tuple[float, float, float] | None = None
+    size: tuple[float, float] | None = None
+
+    @property
+    def matrix(self) -> bool:
+        """Whether the numbers are heights alone."""
+        return self.columns > 3 or self.size is not None
 
 
 def layout(path: Path) -> Layout | None:
     """Return the layout of a text of numbers, None for any other file.
 
-    A heading is one line such as "x [mm],y [mm],z [um]"; a matrix has none and four numbers in a row or more. Raises
-    ReadError for decimal commas.
+    A heading is one line such as "x [mm],y [mm],z [um]"; a matrix has none and four numbers in a row or more, or the
+    comments of Gwyddion, which state size and unit. Raises ReadError for decimal commas.
     """
     with path.open("rb") as handle:
         head = handle.read(65536)
     if not head.strip() or b"\0" in head:
         return None
     lines = [line for line in head.decode("utf-8-sig", "replace").splitlines() if line.strip()]
+    stated = _comments([line for line in lines if line.lstrip().startswith("#")], path)
     lines = [line for line in lines if not line.lstrip().startswith("#")]
     units = _heading(lines[0], path) if lines else None
     rows = lines[1:] if units else lines
@@ -64,6 +74,9 @@ def layout(path: Path) -> Layout | None:
     found = [_row(line) for line in (rows[:-1] or rows)[:31]]
     if not found or found[0] is None:
         return None
+    if stated is not None:
+        size, unit = stated
+        return Layout(columns=len(found[0]), heading=0, units=(1.0, 1.0, unit), size=size)
     if units is not None:
         return Layout(columns=len(found[0]), heading=1, units=units)
     if any(row is not None and len(row) in (2, 3) for row in found):
@@ -72,6 +85,22 @@ def layout(path: Path) -> Layout | None:
     if len(rows) > 2 and len(found[0]) > 3 and alike > len(found) / 2:
         return Layout(columns=len(found[0]), heading=0)
     return None
+
+
+def _comments(lines: list[str], path: Path) -> tuple[tuple[float, float], float] | None:
+    """Size (x, y) [m] and metres per unit of the heights from the comments of Gwyddion, None where there are none."""
+    sizes = [found for line in lines if (found := _SIZE.match(line.strip()))]
+    heights = [found for line in lines if (found := _HEIGHTS.match(line.strip()))]
+    if len(sizes) != 2 or len(heights) != 1:
+        return None
+
+    def metres(number: str, unit: str) -> float:
+        value = _value(number)
+        if value is None or not value > 0:
+            raise ReadError(f"{path}: a size of {number} {unit} in its head; write a positive number such as 12.5 um")
+        return value * scale(unit.replace("µ", "u").replace("μ", "u"), "m", name=f"{path}, head")
+
+    return (metres(sizes[0][1], sizes[0][2]), metres(sizes[1][1], sizes[1][2])), metres("1", heights[0][1])
 
 
 def _heading(line: str, path: Path) -> tuple[float, float, float] | None:
@@ -93,16 +122,49 @@ def read(path: Path, how: Layout, scales: tuple[float, float, float], steps: Ste
     """
     data = _table(path, how)
     x, y, z = scales
-    if how.columns > 3:
+    if how.matrix:
         ny, nx = data.shape
-        return Scan(heights=data * z, spacing=steps(nx, ny), source=str(path))
+        spacing = steps(nx, ny) if how.size is None else (how.size[0] / nx, how.size[1] / ny)
+        return Scan(heights=data * z, spacing=spacing, source=str(path))
     return _line(path, data, x, z) if how.columns == 2 else _grid(path, data, x, y, z)
 
 
 def _table(path: Path, how: Layout) -> Array:
+    """Every row of numbers (n, columns). Raises ReadError that names the first line that is none."""
+    size = path.stat().st_size
+    with path.open("rb") as handle:
+        lengths = [len(line) for line in handle.readlines(65536)]
+    points = size * len(lengths) / sum(lengths) * (how.columns if how.matrix else 1)
+    check_points(str(path), points + 4 * size / BYTES)
+    table = _quickly(path, how)
+    return _line_by_line(path, how) if table is None else table
+
+
+def _quickly(path: Path, how: Layout) -> Array | None:
+    """All rows in one go; None where something is to be said of one, or some words are no numbers."""
+    skip, heading, first = 0, how.heading, ""
+    with path.open(encoding="utf-8-sig", errors="replace") as handle:
+        for line in handle:
+            if line.strip() and not line.lstrip().startswith("#"):
+                if not heading:
+                    first = line
+                    break
+                heading -= 1
+            skip += 1
+    delimiter = next((mark for mark in ";," if mark in first), None)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            table = np.loadtxt(path, delimiter=delimiter, comments=None, skiprows=skip, ndmin=2, encoding="utf-8-sig")
+    except (ValueError, Warning):
+        return None
+    return table if table.shape[1] == how.columns and len(table) > 3 and np.isfinite(table).all() else None
+
+
+def _line_by_line(path: Path, how: Layout) -> Array:
     rows: list[list[float]] = []
     skip = how.heading
-    expected = "x,y,z (or x,z)" if how.columns < 4 else f"a row of {how.columns} heights"
+    expected = f"a row of {how.columns} heights" if how.matrix else "x,y,z (or x,z)"
     for number, line in enumerate(path.read_text(encoding="utf-8-sig", errors="replace").splitlines(), 1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
@@ -115,7 +177,7 @@ def _table(path: Path, how: Layout) -> Array:
             shown = line.strip()[:40]
             raise ReadError(f'{path}: line {number} "{shown}" is not {expected} in numbers; the file is damaged')
         rows.append(values)
-    if len(rows) < (4 if how.columns < 4 else 2):
+    if len(rows) < (2 if how.matrix else 4):
         raise ReadError(f"{path}: {len(rows)} points; a scan needs at least 2 x 2, the file is empty or cut off")
     return np.array(rows)
 
@@ -131,10 +193,13 @@ def _axis(values: Array, path: Path, name: str) -> tuple[Array, float]:
     if gaps.size == 0:
         raise ReadError(f"{path}: all {name} are the same ({low:g}); this is a single line, give x,z in two columns")
     step = float(np.median(gaps))
-    count = round(span / step)
-    step = span / count
-    index = np.rint((values - low) / step)
-    if np.abs(values - low - index * step).max() > 0.2 * step:
+    # positions rounded in the file have a median gap that is a little off: where none is missing, their number counts
+    for count in (round(span / step), len(ordered) - 1):
+        step = span / count
+        index = np.rint((values - low) / step)
+        if np.abs(values - low - index * step).max() <= 0.2 * step:
+            break
+    else:
         raise ReadError(f"{path}: the {name} are not evenly spaced (step {step:g}); export the scan on a regular grid")
     return index.astype(np.int64), step
 

@@ -117,6 +117,7 @@ def read(path: Path) -> Scan | Profile:
         xml = _member(archive, "main.xml", LARGEST_XML, path)
         if b"<!DOCTYPE" in xml or b"<!ENTITY" in xml:
             raise ReadError(f"{path}: main.xml declares a document type or entities, which X3P does not need; refused")
+        check_points(str(path), float(xml.count(b"<")))  # a listed height has two tags, and takes as much as two points
         try:
             root = ElementTree.fromstring(xml)
         except (ElementTree.ParseError, ValueError, LookupError) as fault:
@@ -186,8 +187,9 @@ def _heights(archive: zipfile.ZipFile, root: ElementTree.Element, path: Path) ->
                 raise ReadError(f"{path}: {mask} marks {bits.size} points of {nx * ny}; the file is cut off")
             missing = bits[: nx * ny].reshape(ny, nx) == 0
         return z, missing
-    lists = _walk(root, "Record3", "DataList")
-    texts = [(found.text or "").strip() for part in lists for found in part if _strip(found.tag) == "Datum"]
+    lists = list(_walk(root, "Record3", "DataList"))
+    datum = {tag for tag in {found.tag for part in lists for found in part} if _strip(tag) == "Datum"}
+    texts = [(found.text or "").strip() for part in lists for found in part if found.tag in datum]
     if len(texts) != nx * ny:
         raise ReadError(f"{path}: main.xml lists {len(texts)} heights where {nx} x {ny} are due")
     try:
