@@ -102,10 +102,10 @@ class NearbyModes:
         )
 
     def _keep(self, inner: Array) -> None:
-        """Keep the lowest half of what the basis may hold, in the span of the last modes, where it holds too much."""
+        """Keep the lowest three quarters of what the basis may hold, in the span of the last modes, where it holds too much."""
         span = self._span
         if self._most is not None and span.vectors.shape[1] > self._most:
-            self._span = Span(span.mass, span.operators[0], span.vectors @ inner[:, : self._most // 2])
+            self._span = Span(span.mass, span.operators[0], span.vectors @ inner[:, : 3 * self._most // 4])
 
 
 def _rounds_left(error: float, first: float, tolerance: float, done: int) -> float:
