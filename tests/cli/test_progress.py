@@ -9,6 +9,7 @@ from click.testing import CliRunner
 from faying.cli import progress
 from faying.cli.main import cli
 from faying.cli.progress import Shown
+from faying.progress import duration
 from faying.study import Study, run
 from faying.study.run import stages
 
@@ -75,7 +76,7 @@ def test_a_bar_fits_80_columns_and_is_wiped(clock, capsys):
 
 @pytest.mark.parametrize(("seconds", "text"), [(8, "8 s"), (119, "119 s"), (121, "2 min"), (9000, "2.5 h")])
 def test_durations(seconds, text):
-    assert progress._duration(seconds) == text
+    assert duration(seconds) == text
 
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "two-blocks" / "study.toml"

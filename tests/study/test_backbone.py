@@ -133,7 +133,8 @@ def test_preload_stiffens_and_holds(study):
 
 
 def test_loads_share_a_basis(study):
-    from faying.study.backbone import backbones, chosen
+    from faying.study.backbone import backbones
+    from faying.study.backbone_choice import chosen
 
     choice = chosen(study, 0.2, {"amplitude": RANGE, "harmonics": 1})
     loose, tight = backbones(study, choice)

@@ -45,7 +45,8 @@ def command(study: Path, **options: Any) -> None:
     from faying.output.figures import backbone as drawing
     from faying.output.figures.save import check_figure, save
     from faying.study import Study
-    from faying.study.backbone import backbones, names
+    from faying.study.backbone import backbones
+    from faying.study.backbone_choice import names
 
     plot, out = options["plot"], options["out"]
     if plot:
@@ -78,7 +79,7 @@ def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
     """The choice of the study with the options in place of it, and the indices of its loads."""
     from faying import units
     from faying.errors import InputError
-    from faying.study.backbone import chosen, load_index
+    from faying.study.backbone_choice import chosen, load_index
     from faying.study.keys.backbone import accelerations, laws
 
     given: dict[str, Any] = {"mode": options["mode"], "harmonics": options["harmonics"]}

@@ -11,6 +11,8 @@ from typing import Any, Literal, Self
 
 import click
 
+from faying.progress import duration
+
 Form = Literal["bar", "lines", "json", "none"]
 WIDTH = 79
 SEGMENTS = 20  # of the bar
@@ -115,7 +117,7 @@ class Shown:
         count = f"{self.done} of {self.total}" if self.total else f"{time.monotonic() - self.began:.0f} s"
         line = " ".join(part for part in (self.label, bar, f"{self.stage},", count) if part)
         left = self.left()
-        line += f", {_duration(left)} left" if left is not None else ""
+        line += f", {duration(left)} left" if left is not None else ""
         sys.stderr.write(f"\r{line:<{WIDTH}.{WIDTH}}")
         sys.stderr.flush()
 
@@ -125,7 +127,7 @@ class Shown:
             event = {"stage": stage, "done": done, "total": total, "elapsed_s": round(elapsed, 2)}
             line = json.dumps(event | {"left_s": None if left is None else round(left, 1)})
         else:
-            line = f"{elapsed:7.1f} s  {stage}" + (f", about {_duration(left)} left" if left is not None else "")
+            line = f"{elapsed:7.1f} s  {stage}" + (f", about {duration(left)} left" if left is not None else "")
         sys.stderr.write(line + "\n")
         sys.stderr.flush()
 
@@ -137,8 +139,3 @@ def _kind(stage: str) -> str:
 
 def _share(stage: str) -> float:
     return next((share for words, share in SHARES.items() if stage.startswith(words)), OTHERS)
-
-
-def _duration(seconds: float) -> str:
-    minutes = int(seconds) // 60
-    return f"{seconds:.0f} s" if minutes < 2 else f"{minutes} min" if minutes < 120 else f"{minutes / 60:.1f} h"

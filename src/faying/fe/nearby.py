@@ -102,7 +102,7 @@ class NearbyModes:
         )
 
     def _keep(self, inner: Array) -> None:
-        """Keep the lowest three quarters of what the basis may hold, in the span of the last modes, where it holds too much."""
+        """Where the basis holds too much, keep the lowest three quarters of what it may, as the last modes have it."""
         span = self._span
         if self._most is not None and span.vectors.shape[1] > self._most:
             self._span = Span(span.mass, span.operators[0], span.vectors @ inner[:, : 3 * self._most // 4])

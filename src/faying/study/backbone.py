@@ -13,18 +13,18 @@ from faying.fe.interface import Interface
 from faying.fe.modes import Modes
 from faying.joint.attachments import nearest_node
 from faying.joint.epmc import EpmcCurve, EpmcPoint
-from faying.joint.loads import preload_index
 from faying.joint.microslip import Microslip
 from faying.joint.slip_basis import SlipBasis
 from faying.joint.springs import Springs
 from faying.joint.support_check import check_motions
 from faying.progress import Report
 from faying.result.backbone import Backbone
+from faying.study.backbone_choice import chosen, friction_of, load_index, names
 from faying.study.backbone_result import Curve, collected
 from faying.study.backbone_store import CurveStore
 from faying.study.beside import changed, study_beside
 from faying.study.case import Case, checked_laws, law_reasons, surfaces_of
-from faying.study.keys.backbone import BackboneChoice, Point, check_friction, laws
+from faying.study.keys.backbone import BackboneChoice, Point, laws
 from faying.study.keys.beside import BesideChoice
 from faying.study.keys.law import LawChoice
 from faying.study.modes import modes_of, settled
@@ -145,23 +145,6 @@ def backbone(
     return curves if many else curves[0]
 
 
-def chosen(study: Study, friction: float | Sequence[float] | None, asked: dict[str, Any]) -> BackboneChoice:
-    """[backbone] of the study with what is asked for in place of it."""
-    given = {name: value for name, value in asked.items() if value is not None}
-    if friction is not None:
-        given["friction"] = tuple(friction) if isinstance(friction, Sequence) else (friction,)
-    return replace(study.backbone or BackboneChoice(), **given)
-
-
-def load_index(study: Study, load: float) -> int:
-    """Index of a preload [N] of the study. Raises InputError where it has none such."""
-    index = preload_index(study.loads, load)
-    if index is None:
-        known = ", ".join(f"{value / 1e3:g} kN" for value in study.loads)
-        raise InputError(f"no preload of {load / 1e3:g} kN in the study; it has {known}")
-    return index
-
-
 def backbones(
     study: Study,
     choice: BackboneChoice,
@@ -201,27 +184,6 @@ def backbones_of(case: Case, choice: BackboneChoice, *, report: Report | None = 
     progress = _Progress(report, max(len(choice.laws), 1) * len(frictions))
     with CurveStore(None, "") as store:
         return tuple(_curves(case, choice, [len(case.study.loads) - 1], frictions, store, progress))
-
-
-def names(out: Path, count: int) -> list[Path]:
-    """The files of several curves: numbered, but for one alone."""
-    return [out] if count == 1 else [out.with_name(f"{out.stem}-{k + 1}{out.suffix}") for k in range(count)]
-
-
-def friction_of(study: Study, choice: BackboneChoice) -> list[tuple[float, ...]]:
-    """Coefficient of each joint for each curve. Raises InputError where a joint has none."""
-    if choice.friction:
-        return [(value,) * len(study.joints) for value in choice.friction]
-    own: list[float] = []
-    for joint in study.joints:
-        if joint.friction is None:
-            raise InputError(
-                f"joint {joint.name!r} has no friction, without which nothing slips; give friction = 0.2 "
-                "(--friction 0.2), or friction in its [[joint]] or in [backbone]"
-            )
-        check_friction(joint.friction)
-        own.append(joint.friction)
-    return [tuple(own)]
 
 
 @dataclass

@@ -19,6 +19,7 @@ from faying.joint.solid_bolt import SolidBolt
 from faying.joint.structure import each_pair_once
 from faying.memory import available
 from faying.notes import Note
+from faying.progress import duration
 from faying.study.case import SIZES, name_faults
 from faying.study.expected import Expected, unknowns_of
 from faying.study.keys.geometry import mesh_of
@@ -238,17 +239,13 @@ def _expected(
     expected = Expected.of(study, unknowns)
     free = available()
     about = "" if mesh is not None else "about "
-    text = f"{about}{unknowns:,} unknowns, {expected.memory / 1e9:.2g} GB, {_minutes(expected.seconds)}"
+    text = f"{about}{unknowns:,} unknowns, {expected.memory / 1e9:.2g} GB, {duration(max(expected.seconds, 1.0))}"
     if free is not None and expected.memory > free:
         text += f"; {free / 1e9:.2g} GB are free: mesh more coarsely, or see docs on solvers for larger machines"
         found.add("fault" if expected.memory > 2 * free else "note", "expected", text, key)
     else:
         found.add("ok", "expected", text, key)
     return expected
-
-
-def _minutes(seconds: float) -> str:
-    return f"{max(round(seconds), 1)} s" if seconds < 90 else f"{seconds / 60:.2g} min"
 
 
 def _contacts(sketch: Sketch, found: _Findings) -> None:

@@ -17,7 +17,8 @@ from faying.joint.support_check import RIGID_BELOW
 from faying.notes import Note
 from faying.progress import Report
 from faying.result import BoltNumbers, Comparison, Receptance, Result
-from faying.study.backbone import backbones_of, friction_of
+from faying.study.backbone import backbones_of
+from faying.study.backbone_choice import friction_of
 from faying.study.beside import Beside, beside_fields, solve_beside
 from faying.study.beyond import stiff_as_bonded
 from faying.study.bolt_numbers import bolt_numbers, conductances
