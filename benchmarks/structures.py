@@ -206,7 +206,7 @@ def compare(size, repeats, with_ccx):
                     flush=True,
                 )
                 continue
-            mine = rows["ours"]["cpu" if name == "ccx" else "modes"]
+            mine = rows["ours"]["modes" if name == "bare" else "cpu"]
             elastic = slice(6, None)
             differ = np.abs(
                 np.array(row["frequencies"])[elastic] / np.array(rows["ours"]["frequencies"])[elastic] - 1
