@@ -225,3 +225,13 @@ def test_the_second_degree_of_a_random_form_has_the_flatness_of_its_tolerance():
     for a, b, t in sd * generator.standard_normal((400, 3)):
         zones.append(minimum_zone(grid, a * x**2 + b * y**2 + t * x * y).flatness)
     assert np.mean(zones) == pytest.approx(2 / 3, rel=0.08)
+
+
+def test_samples_that_the_bases_fit_less_well_are_counted():
+    from faying.identify.predict import _of_bases
+
+    assert not _of_bases(np.array([1e-4, np.nan, 5.9e-3]), 1e-4)
+    (note,) = _of_bases(np.array([1e-4, np.nan, 0.012, 0.007]), 1e-4)
+    assert note.code == "bases"
+    assert "2 of 4 samples" in note.text
+    assert "2.0e-04" in note.text

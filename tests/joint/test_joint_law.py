@@ -193,3 +193,20 @@ def test_open_points_lose_nothing_however_many_there_are():
         assert t[p > 0] == pytest.approx(0.1)
         springs = law.stiffness(p)[0]
         assert np.all(springs[p == 0] * n[p == 0] == 0)
+
+
+def test_places_in_a_table_are_those_of_a_search():
+    """Equal and unequal grids, values at, between and beside grid points; a grid too uneven is searched."""
+    from faying.joint.pressure_curve import cells, equal_steps
+
+    rng = np.random.default_rng(3)
+    even, uneven = np.linspace(0.0, 21.0, 2000), np.cumsum(rng.uniform(0.001, 0.03, 2000)) - 4.0
+    coarse = np.array([0.0, 1e-9, 1.0, 5.0])
+    for grid in (even, uneven, coarse):
+        values = np.concatenate([grid, rng.uniform(grid[0], grid[-1], 5000), (grid[1:] + grid[:-1]) / 2])
+        wanted = np.clip(np.searchsorted(grid, values, side="right") - 1, 0, len(grid) - 2)
+        found = cells(grid, values, *equal_steps(grid))
+        apart = found != wanted  # rounding may put a grid point in the cell before it, where the answer is the same
+        assert np.all(np.isclose(values[apart], grid[np.maximum(found, wanted)[apart]], rtol=0, atol=1e-12))
+        assert np.abs(found - wanted).max() <= 1
+    assert equal_steps(coarse)[1] == 0.0

@@ -115,6 +115,31 @@ def test_groups_of_points_give_the_same_answers(trained, monkeypatch, friction):
         )
 
 
+@pytest.mark.parametrize("friction", [None, 0.05])
+def test_secants_end_in_the_balance_that_newton_finds(trained, monkeypatch, friction):
+    """From a start far off and from a near one; where they give up, Newton is left to answer."""
+    from faying.joint import reduced, secant
+
+    monkeypatch.setattr(reduced, "MANY", 2)
+    model = trained[1].model
+    laws, forces = [law(2.41, 1e-10)], np.array([900.0])
+    exact = model.equilibrium(laws, forces, [friction])
+    grouped = model.grouped()
+    joints = list(zip(grouped._motions(grouped.static_relative, 0), laws, strict=True))
+    secants = secant.Secants(stiffness=grouped.matrices[0], joints=joints, friction=[friction])
+    load = grouped.static_loads @ forces
+    for start in (exact.displacement, 1.02 * exact.displacement):
+        found = secants.solve(load, start, 1e-9)
+        assert found is not None
+        assert found.imbalance < 1e-9
+        assert found.slipping == pytest.approx(exact.slipping, abs=1e-9)
+        assert found.pressures[0] == pytest.approx(exact.pressures[0], abs=1e-7 * exact.pressures[0].max())
+    monkeypatch.setattr(secant, "STEPS", 0)
+    assert secants.solve(load, 1.02 * exact.displacement, 1e-9) is None
+    again = grouped.equilibrium(laws, forces, [friction])
+    assert again.pressures[0] == pytest.approx(exact.pressures[0], abs=1e-6 * exact.pressures[0].max())
+
+
 def test_wrong_number_of_forces(trained):
     with pytest.raises(faying.InputError, match="2 bolt forces for 1 bolts"):
         trained[1].evaluate([law()], np.array([1.0, 2.0]), [None])

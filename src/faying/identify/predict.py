@@ -18,6 +18,8 @@ from faying.study.parallel import Rows
 from faying.study.part_folder import fingerprint
 from faying.study.provenance import provenance
 from faying.study.study import Study
+from faying.study.trainer import FAR
+from faying.typing import Array
 
 FEWEST, MOST = 8, 1_000_000  # samples
 BEYOND = 0.1  # share of the contact beyond the end of the law from which a sample is told
@@ -111,7 +113,7 @@ def predicted(study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, se
         provenance=provenance(study),
         **tested,
     )
-    return found.with_notes(_notes(study, found))
+    return found.with_notes([*_notes(study, found), *_of_bases(rows["estimate"], reduced.trainer.tolerance)])
 
 
 def _notes(study: Study, found: Prediction) -> list[Note]:
@@ -144,6 +146,18 @@ def _notes(study: Study, found: Prediction) -> list[Note]:
         text = "the interval holds what [uncertain] lists and nothing else: not the errors of the mesh or of the law"
         out.append(Note(code="interval", text=text))
     return out
+
+
+def _of_bases(estimate: Array, tolerance: float) -> list[Note]:
+    """Samples that the bases do not fit to their tolerance; the estimate is that of a basis `FAR` times coarser."""
+    far = estimate[np.isfinite(estimate) & (estimate > FAR * tolerance)]
+    if not len(far):
+        return []
+    text = (
+        f"the bases fit {len(far)} of {len(estimate)} samples less well than to {tolerance:.0e} of a frequency; they "
+        f"may miss by about {far.max() / FAR:.1e} there"
+    )
+    return [Note(code="bases", text=text)]
 
 
 def cut_notes(columns: Sequence[Any]) -> list[Note]:

@@ -1,7 +1,7 @@
 """Cheap stand-ins for the many points of a joint: groups of them that move alike, and seven digits of their motion.
 
-They are never the answer. An equilibrium starts from the groups and takes its tangents from the seven digits, and modes
-take their span from these. The force balance and the energy of the modes, asked of all points in full, make the answer.
+The groups are never the answer. An equilibrium starts from them, takes its tangents and its small changes from the
+seven digits, and ends where the force balance of all points in full says so. Springs of the modes have seven digits.
 """
 
 from dataclasses import dataclass

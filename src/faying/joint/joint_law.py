@@ -1,5 +1,6 @@
 """A contact law laid on a joint: pressure from approach, and stiffness and loss at every point from its pressure."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal, Self
@@ -9,9 +10,9 @@ import numpy as np
 from faying.contact.law import ContactLaw
 from faying.contact.response import Response
 from faying.errors import InputError
-from faying.joint.pressure_curve import PressureCurve, fade
+from faying.joint.pressure_curve import PressureCurve, cells, equal_steps, fade
 from faying.joint.springs import Motion, Springs
-from faying.typing import Array
+from faying.typing import Array, Index
 
 FEW = 200  # pressures that take no longer to invert than a table to make
 LEAST_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p(approach) goes on as a power
@@ -178,9 +179,8 @@ class JointLaw:
         """
         within = self._within(pressure)
         if np.size(pressure) > self.few:
-            log_p, (log_n, log_t), _ = self._samples
-            x = np.log(np.where(within > 0, within, 1.0))
-            k_n, k_t = (np.where(within > 0, np.exp(np.interp(x, log_p, y)), 0.0) for y in (log_n, log_t))
+            between = self._between(within)
+            k_n, k_t = (np.where(within > 0, np.exp(between(y)), 0.0) for y in self._samples[1])
         else:
             k_n, k_t = self._ask(within)
         raised = within > pressure
@@ -194,10 +194,27 @@ class JointLaw:
         within = self._within(pressure)
         if np.size(pressure) <= self.few:
             return self._ask_loss(within)
-        log_p, _, losses = self._samples
-        x = np.log(np.where(within > 0, within, 1.0))
-        n, t = (np.where(within > 0, np.interp(x, log_p, y), 0.0) for y in losses)
+        between = self._between(within)
+        n, t = (np.where(within > 0, between(y), 0.0) for y in self._samples[2])
         return n, t
+
+    @cached_property
+    def _index(self) -> tuple[Index, float]:
+        """For `cells` of ln pressure on the grid."""
+        return equal_steps(self._samples[0]) if self._unscaled is None else self._unscaled._index
+
+    def _between(self, within: Array) -> Callable[[Array], Array]:
+        """Interpolation of what is known on the grid, linear in ln pressure, at pressures within the law."""
+        log_p = self._samples[0]
+        x = np.clip(np.log(np.where(within > 0, within, 1.0)), log_p[0], log_p[-1])
+        cell = cells(log_p, x, *self._index)
+        low = log_p[cell]
+        share = (x - low) / (log_p[cell + 1] - low)
+
+        def at(values: Array) -> Array:
+            return np.asarray((1 - share) * values[cell] + share * values[cell + 1])
+
+        return at
 
     def springs(self, interface: Motion, pressure: Array) -> Springs[Motion]:
         """Springs at pressures [Pa] (q,) at the points of an interface."""

@@ -6,9 +6,10 @@ from typing import Any, Self
 
 import numpy as np
 
-from faying.typing import Array
+from faying.typing import Array, Index
 
 GREATEST_FADE = 2 / 3  # power of k in p below the least pressure
+BINS = 100_000  # most places of an index into a table
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,13 @@ class PressureCurve:
         return np.asarray(CubicHermiteSpline(self.log_w, self.log_p, self.slope).c)
 
     @cached_property
+    def _index(self) -> tuple[Index, float]:
+        """Cell at equal steps of ln w from its beginning, and the step: none is longer than the shortest cell."""
+        if self._unscaled is not None:
+            return self._unscaled._index
+        return equal_steps(self.log_w)
+
+    @cached_property
     def _inverse(self) -> Any:
         from scipy.interpolate import CubicHermiteSpline
 
@@ -70,7 +78,7 @@ class PressureCurve:
         shut = approach > 0
         x = np.log(np.where(shut, approach, self.end))
         inside = np.clip(x, log_w[0], log_w[-1])
-        cell = np.clip(np.searchsorted(log_w, inside, side="right") - 1, 0, len(log_w) - 2)
+        cell = cells(log_w, inside, *self._index)
         cubic = self._cubic[:, cell]
         dx = inside - log_w[cell]
         value = ((cubic[0] * dx + cubic[1]) * dx + cubic[2]) * dx + cubic[3]
@@ -93,3 +101,24 @@ class PressureCurve:
 def fade(p: Array, k: Array) -> float:
     """Power of the pressure with which k goes on below the first of the pressures p [-]."""
     return min(float(np.log(k[1] / k[0]) / np.log(p[1] / p[0])), GREATEST_FADE)
+
+
+def equal_steps(grid: Array) -> tuple[Index, float]:
+    """For `cells`: the cell of a rising grid at equal steps from its beginning, and the step; 0 where that is no gain.
+
+    No step is longer than the shortest cell, so that the next grid point settles which of two cells a value lies in.
+    """
+    step = float(np.diff(grid).min())
+    count = float(grid[-1] - grid[0]) / step
+    if not count < BINS:
+        return np.zeros(1, dtype=np.int64), 0.0
+    at = grid[0] + step * np.arange(int(count) + 2)
+    return np.clip(np.searchsorted(grid, at, side="right") - 1, 0, len(grid) - 2).astype(np.int64), step
+
+
+def cells(grid: Array, values: Array, index: Index, step: float) -> Index:
+    """The cell (from 0) of a rising grid in which each of the values lies; all lie within the grid."""
+    if not step:
+        return np.clip(np.searchsorted(grid, values, side="right") - 1, 0, len(grid) - 2)
+    cell = index[((values - grid[0]) * (1 / step)).astype(np.int64)]
+    return np.asarray(np.minimum(cell + (values >= grid[cell + 1]), len(grid) - 2))

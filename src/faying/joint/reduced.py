@@ -16,6 +16,7 @@ from faying.joint.equilibrium import Equilibrium, PreloadState, StickSlip
 from faying.joint.groups import Groups
 from faying.joint.joint_law import JointLaw
 from faying.joint.part_shares import ReducedShares, Scales
+from faying.joint.secant import Secants
 from faying.joint.springs import Springs
 from faying.typing import Array, Complex
 
@@ -25,6 +26,7 @@ BALANCED = 1e-8  # imbalance at which the pressure is right to far more digits t
 BLOCK = 36  # real modes beyond those wanted that meet them exactly under the loss
 SPAN = 10  # modes in seven digits beyond those wanted, with which they span what the modes are sought in
 KEPT = 0.1  # of the force out of balance: a tangent that leaves less serves once more
+SECANTS = 1e-7  # imbalance to which secants lead: frequencies are right to a tenth of that
 NEAR = 3e-3  # imbalance of the groups at which all points go on
 MANY = 400  # points of a joint from which groups pay
 SLIGHT = 1e-6  # relative error of an eigenvalue up to which first order is enough for the higher modes
@@ -99,14 +101,22 @@ def _complex_modes(real: Array, loss: Array, count: int, slight: float = SLIGHT)
     return values[order], vectors[:, order]
 
 
-def _sprung(relative: Array, springs: Array) -> Array:
+def _of_springs(springs: Springs["ReducedMotion"], moved: Any, k_n: Array, k_t: Array) -> Array:
+    """Stiffness (m, m) of springs per area k_n, k_t [Pa/m] of a joint on the motion (3q, m) of its points."""
+    return _sprung(moved, springs.interface.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
+
+
+def _sprung(relative: Any, springs: Array) -> Array:
     """Stiffness (m, m) of springs (q, 3) [N/m], normal and both tangential, on a relative motion (3q, m).
 
-    Springs and losses are never negative: half the work through their roots.
+    Springs and losses are never negative: half the work through their roots. A motion in single precision gives as many
+    digits.
     """
-    from scipy.linalg.blas import dsyrk
+    from scipy.linalg.blas import dsyrk, ssyrk
 
-    lower = dsyrk(1.0, (np.sqrt(springs).reshape(-1, 1) * relative).T, lower=1)
+    roots = np.sqrt(springs).astype(relative.dtype).reshape(-1, 1)
+    product = ssyrk if relative.dtype == np.float32 else dsyrk
+    lower = product(1.0, (roots * relative).T, lower=1).astype(float)
     return np.asarray(lower + np.tril(lower, -1).T)
 
 
@@ -247,6 +257,12 @@ class ReducedModel:
             try:
                 near = self._balance([motion.coarse for motion in motions], laws, friction)
                 start = near.solve(load, start=start, tolerance=NEAR).displacement
+                if all(motion.groups is not None for motion in motions):
+                    joints = list(zip(motions, laws, strict=True))
+                    secants = Secants(stiffness=self.matrices[0], joints=joints, friction=friction)
+                    found = secants.solve(load, start, SECANTS)
+                    if found is not None:
+                        return found
             except NotConverged:
                 pass
         if start is not None:
@@ -300,7 +316,7 @@ class ReducedModel:
         return turn, turn.T @ K @ turn
 
     def _spanned(self, springs: Sequence[Springs[ReducedMotion]]) -> tuple[Complex, Complex, Array]:
-        """`modes` in the span of those by seven digits; the energy in full errs by the square of what it lacks."""
+        """`modes` in the span of those by groups' seven digits, which are kept but for the energy of the parts."""
         from scipy.linalg import eigh, eigvalsh
 
         turn, K = self._normal
@@ -321,10 +337,11 @@ class ReducedModel:
         small, loss = shapes.T @ K @ shapes, np.zeros((wanted, wanted))
         span = turn @ shapes
         for s in springs:
-            here = replace(s, interface=replace(s.interface, relative=s.interface.relative @ span, groups=None))
-            small = small + here.stiffness()
+            seen = s.interface.relative if s.interface.groups is None else s.interface.groups.light
+            moved = seen @ span.astype(seen.dtype)
+            small = small + _of_springs(s, moved, s.k_n, s.k_t)
             if lossy:
-                loss = loss + here.loss()
+                loss = loss + _of_springs(s, moved, s.k_n * s.loss_n, s.k_t * s.loss_t)
         real, inner = eigh(small)
         if not lossy:
             return real[: self.count].astype(complex), (span @ inner[:, : self.count]).astype(complex), estimate

@@ -61,6 +61,7 @@ class Trainer:
             self._check(self.reduction, checks)
         else:
             self._train(self.reduction, more, "training")
+            self.reduction.compress(self.tolerance)  # so that the estimate knows what was learnt
         return self.reduction
 
     def _begun(self, points: Sequence[int]) -> Reduction:
