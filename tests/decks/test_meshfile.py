@@ -270,6 +270,10 @@ def test_parts_that_share_nodes_are_split_at_a_named_face(tmp_path, kind):
     assert len(np.unique(mesh.numbers)) == len(mesh.points)
     assert {"p0.p0.right", "p1.p0.right"} <= set(mesh.faces)
     assert join(mesh, "p0.p0.right", "p1.p0.right").area == pytest.approx(2e-4, rel=1e-9)
+    by_sides = [f"{number}, S{side + 1}" for number, side, *_ in meshfiles.sides(apart, "p0.right")]
+    alone = re.sub(r",\n elset=p\d", "", merged) + "\n".join(["*SURFACE, NAME=mid, TYPE=ELEMENT", *by_sides]) + "\n"
+    with pytest.raises(faying.InputError, match="'mid' are no outer side .* on each side into an element set"):
+        faying.read_mesh(written(tmp_path, alone, "m.inp"), unit="mm")
     unnamed = merged[: merged.index("*NSET")]
     assert "*NSET" not in unnamed
     with pytest.raises(

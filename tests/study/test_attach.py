@@ -20,6 +20,13 @@ from tests.helpers.models import two
 
 FACES = ("p0.right", "p1.left")
 TEXT = meshfiles.STUDY
+BRASS = """material = "brass"
+[material.brass]
+E = "100 GPa"
+nu = 0.33
+density = "8500 kg/m^3"
+yield_strength = "200 MPa"
+"""
 
 
 def model(folder, mesh=None, text=TEXT):
@@ -91,6 +98,23 @@ def test_models_of_every_format(tmp_path, suffix):
     area = dict(zip(c.tolist(), expected.pairs.area, strict=True))
     assert found.pairs.area == pytest.approx([area[n] for n in a.tolist()], rel=1e-6)
     assert found.deck.first_element > max(number for _, number, *_ in meshfiles.solids(mesh))
+
+
+def test_sets_of_the_study_are_the_parts_whatever_gives_the_pressure(tmp_path):
+    """Parts that the study names by element sets are those of a given pressure, too, with their materials."""
+    text = TEXT.replace('unit = "mm"\n', 'unit = "mm"\nsets = {upper = "p0", lower = "p1"}\n', 1)
+    text = text.replace("[part.p0]", "[part.upper]").replace(
+        '[part.p1]\nmaterial = "45 steel"', "[part.lower]\n" + BRASS
+    )
+    solved = attached(tmp_path, "solve", text=text, preload="3 kN")
+    given = attached(tmp_path, "5 MPa", text=text)
+    assert {name: one.name for name, one in given.materials.items()} == {"upper": "45 steel", "lower": "brass"}
+    assert given.materials == solved.materials
+    pair = faying.ContactPair(given.materials["upper"], given.materials["lower"])
+    law = faying.JK(D=2.39, G=1.53e-10, scan_area=16e-6, pair=pair)
+    assert given.pairs.totals()[0] == pytest.approx(law.at_pressure(5e6).k_n * 6e-4, rel=1e-10)
+    with pytest.raises(faying.InputError, match="part 'upper' names the element set 'p7'; the file holds 'p0', 'p1'"):
+        attached(tmp_path, text=text.replace('"p0"', '"p7"', 1))
 
 
 def test_pressure_from_our_preload(tmp_path):

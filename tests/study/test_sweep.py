@@ -10,7 +10,7 @@ import xarray
 import faying
 from faying.joint.form import Form
 from faying.joint.reduce import Reduction
-from faying.study import Study, run
+from faying.study import Study, part_folder, run
 from faying.study import sweep as module
 from faying.study.axes import Grid, axis_of
 from faying.study.case import surfaces_of
@@ -143,6 +143,25 @@ def test_leftovers_of_another_sweep_are_refused(plan, tmp_path):
     (tmp_path / "out.nc.part").mkdir()
     with pytest.raises(faying.InputError, match=r"out.nc.part is what another sweep has left"):
         sweep(plan, axes(), tmp_path / "out.nc")
+
+
+def test_a_half_made_by_another_version_is_refused(plan, tmp_path, monkeypatch):
+    """Its numbers may differ: the two halves of one sweep would come from two programs."""
+    out = tmp_path / "out.nc"
+
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "_begun", stopped)
+    monkeypatch.setattr(part_folder, "__version__", "0.0.9")
+    with pytest.raises(KeyboardInterrupt):
+        sweep(plan, axes(), out)
+    with pytest.raises(KeyboardInterrupt):  # it goes on with the version that began it
+        sweep(plan, axes(), out)
+    monkeypatch.setattr(part_folder, "__version__", "0.1.0")
+    with pytest.raises(faying.InputError, match=r"was begun by Faying 0.0.9, and this is 0.1.0, .* begin anew"):
+        sweep(plan, axes(), out)
+    assert (tmp_path / "out.nc.part").is_dir()  # it is not Faying's to throw away
 
 
 def test_processes_give_the_same(plan, done, tmp_path, monkeypatch):

@@ -134,18 +134,18 @@ def command(
 
 def heading(choice: Any, surface: Any) -> list[str]:
     """What the scan says of D and G, what the other face is, and why the law was taken."""
+    from dataclasses import asdict
     from textwrap import wrap
 
-    from faying.units import show
+    from faying.output import table
 
     lines = []
     if surface is not None:
         fit = surface.fit
         lines.append(f"{surface.origin}: {surface.counter}")
         if fit is not None:
-            (low, high), (least, most) = fit.D_interval, fit.G_interval
-            interval = f"[{show(least, 'm')}, {show(most, 'm')}]"
-            lines.append(f"  D {fit.D:.4g} [{low:.4g}, {high:.4g}], G {show(fit.G, 'm')} {interval}")
+            rows = [["method", *table.FRACTAL], [fit.method, *table.fractal(asdict(fit))]]
+            lines += [f"  {line}" for line in table.text(rows).splitlines()]
         lines += [line for text in surface.warnings for line in wrap(f"note: {text}", WIDTH)]
     if choice.reason:
         lines += wrap(f"law: {choice.reason}", WIDTH)

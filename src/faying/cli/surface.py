@@ -97,6 +97,7 @@ def describe(scan: Any, ready: Any, rough: Any, fits: Any) -> dict[str, Any]:
 
 def table(document: dict[str, Any]) -> str:
     """Format the document for the terminal."""
+    from faying.output import table as tables
     from faying.units import show
 
     def m(value: float | None, digits: int = 4) -> str:
@@ -119,23 +120,17 @@ def table(document: dict[str, Any]) -> str:
         f"  {q} {m(rough['Rq'])}, {a} {m(rough['Ra'])}, {z} {m(rough['Rz'])}, {slope} {rough['Rdq']:.4g}, "
         f"skewness {rough['skewness']:.3g}, kurtosis {rough['kurtosis']:.3g}",
         "",
-        f"  {'method':<17}{'D':>7}  {'95 % interval':<18}{'G':>10}  {'95 % interval':<24}{'band':<22}{'implied ' + q}",
     ]
     words: list[str] = []
+    rows = [["method", *tables.FRACTAL[:-1], f"implied {q}"]]
     for name, fit in document["fits"].items():
         if "error" in fit:
-            lines.append(f"  {name:<17}{fit['error']}")
+            words.append(f"  {name}: {fit['error']}")
             continue
-        d, g, band = fit["D_interval"], fit["G_interval"], fit["band"]
-        d_text = f"{d[0]:.3f} .. {d[1]:.3f}"
-        g_text = f"{m(g[0], 3)} .. {m(g[1], 3)}"
-        b_text = f"{m(band[0], 3)} .. {m(band[1], 3)}"
-        lines.append(
-            f"  {name:<17}{fit['D']:>7.3f}  {d_text:<18}{m(fit['G'], 3):>10}  {g_text:<24}{b_text:<22}"
-            f"{m(fit['implied_Rq'], 3)}"
-        )
+        rows.append([name, *tables.fractal(fit)])
         words += [f"  {name}: {word}" for word in fit["warnings"]]
     convention = next((f["convention"] for f in document["fits"].values() if "error" not in f), "")
+    lines += [f"  {line}" for line in tables.text(rows).splitlines()]
     lines += ["", f"  {convention}", *words]
     for seen in document.get("cross_check", ()):
         verdict = {True: "agrees", False: "DIFFERS", None: "no opinion"}[seen["agrees"]]

@@ -302,7 +302,8 @@ class _Builder:
         if not hit.all():
             raise InputError(
                 f"{self.name}: {np.count_nonzero(~hit)} of the {len(key)} element faces of {label!r} are no outer "
-                "side of a solid"
+                "side of a solid; where elements of one part share the nodes there, put those on each side into an "
+                "element set of their own, which is then a part with its own face"
             )
 
     def _split(

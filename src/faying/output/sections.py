@@ -87,6 +87,14 @@ def _joints(result: Result) -> tuple[Section, ...]:
     """Parts, joints and bolts."""
     order = ", ".join(result.tightening)
     return (
+        Section(
+            name="surfaces",
+            rows=table.fractals(result),
+            title="D and G that the laws rest on",
+            line="D and G of the scans that the laws rest on; the G of a law is that of both faces together",
+            below="The G of a law is that of both faces together. D and G hold within the band; the notes say how far "
+            "the scan bears them out.",
+        ),
         Section(name="parts", rows=table.parts(result), title="Masses"),
         Section(name="joints", rows=table.joints(result), title="Joints"),
         Section(

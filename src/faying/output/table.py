@@ -1,6 +1,8 @@
 """The tables of a result as plain text, for terminals, and as rows, for the report."""
 
+from collections.abc import Mapping
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -9,8 +11,10 @@ from faying.result import Result
 from faying.result.backbone import Backbone
 from faying.result.result import preload_slope
 from faying.typing import Array
+from faying.units import show
 
 Rows = list[list[str]]
+FRACTAL = ["D", "95 % interval", "G", "95 % interval", "band", "implied Rq"]  # heads of `fractal`
 SHOWN = 2  # modes in the table of laws
 MOST_MEASURED = 12  # measured points in the table of a backbone
 SAME = 1e-4  # relative difference of two frequencies that is not shown
@@ -290,6 +294,37 @@ def hammer(result: Result) -> Rows:
     return [] if result.hammer is None else result.hammer.rows()
 
 
+def fractal(facts: Mapping[str, Any]) -> list[str]:
+    """D and G of a scan with their intervals, the band of wavelengths, and the roughness that they imply over the scan.
+
+    facts: "D", "D_interval", and in metres "G", "G_interval", "band", "implied_Rq", or these names with " [m]".
+    """
+
+    def values(name: str) -> list[float | None]:
+        found = facts.get(name, facts.get(f"{name} [m]"))
+        return list(found) if isinstance(found, list | tuple) else [found]
+
+    def plain(value: float | None) -> str:
+        return "-" if value is None or not np.isfinite(value) else f"{value:.3f}"
+
+    def length(value: float | None) -> str:
+        return "-" if value is None or not np.isfinite(value) else show(value, "m", digits=3)
+
+    names = {"D": plain, "D_interval": plain, "G": length, "G_interval": length, "band": length, "implied_Rq": length}
+    return [" .. ".join(map(form, values(name))) for name, form in names.items()]
+
+
+def fractals(result: Result) -> Rows:
+    """D and G from scans, where a law rests on them; joints that share a scan have one row."""
+    found: dict[tuple[str, ...], list[str]] = {}
+    for joint, surface, law in zip(result.joints, result.surfaces, result.laws, strict=True):
+        if "fitted_G [m]" in surface and law.get("D") == surface["fitted_D"]:
+            cells = fractal(surface | {"D": surface["fitted_D"], "G [m]": surface["fitted_G [m]"]})
+            found.setdefault((surface["origin"], *cells, show(law["G"], "m", digits=3)), []).append(joint)
+    rows = [[", ".join(joints), *cells] for cells, joints in found.items()]
+    return [["joint", "scan", *FRACTAL, "G of the law"], *rows] if rows else []
+
+
 def text(rows: Rows) -> str:
     """Align rows in columns: the first two to the left, the others to the right."""
     if not rows:
@@ -299,7 +334,7 @@ def text(rows: Rows) -> str:
     for row in rows:
         cells = [
             cell.ljust(w)
-            if k < 2 and rows[0][k] in ("preload", "source", "law", "joint", "part", "bolt")
+            if k < 2 and rows[0][k] in ("preload", "source", "law", "joint", "part", "bolt", "method", "scan")
             else cell.rjust(w)
             for k, (cell, w) in enumerate(zip(row, widths, strict=True))
         ]

@@ -20,7 +20,7 @@ from faying.joint.loads import preload_index
 from faying.joint.pairs import NodePairs, consistent, lumped
 from faying.materials import Material
 from faying.study.case import checked_mesh, joint_law, structure_of, surfaces_of
-from faying.study.keys.geometry import GeometryChoice
+from faying.study.keys.geometry import GeometryChoice, mesh_of
 from faying.study.keys.joint import JointChoice
 from faying.study.pressure import read_pressure
 from faying.study.study import Study
@@ -104,17 +104,16 @@ def attach(
     file = Path(model)
     spec = _joint(study, faces, joint)
     solving = str(pressure) == "solve"
+    geometry = GeometryChoice(mesh=file, unit=unit, sets=study.geometry.sets)
     if solving:
         moved = replace(
             study,
-            geometry=GeometryChoice(mesh=file, unit=unit, sets=study.geometry.sets),
+            geometry=geometry,
             joints=tuple(replace(j, faces=faces, search_distance=tolerance) if j is spec else j for j in study.joints),
         )
         mesh = checked_mesh(moved)
     else:
-        from faying.decks.meshfile import read_mesh
-
-        mesh = read_mesh(file, unit=unit)
+        mesh = mesh_of(geometry)
     interface = _interface(mesh, faces, tolerance, any_size, unit)
     materials = _materials(study, mesh, faces)
     notes = _apart(mesh, faces, interface)

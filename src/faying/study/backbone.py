@@ -23,7 +23,7 @@ from faying.study.backbone_choice import chosen, friction_of, load_index, names
 from faying.study.backbone_result import Curve, collected
 from faying.study.backbone_store import CurveStore
 from faying.study.beside import changed, study_beside
-from faying.study.case import Case, checked_laws, law_reasons, surfaces_of
+from faying.study.case import Case, checked_laws, law_reasons, read_for, surfaces_of
 from faying.study.keys.backbone import BackboneChoice, Point, laws
 from faying.study.keys.beside import BesideChoice
 from faying.study.keys.law import LawChoice
@@ -161,10 +161,11 @@ def backbones(
     frictions = friction_of(study, choice)
     progress = _Progress(report, max(len(choice.laws), 1) * len(indices) * len(frictions))
     progress.stage("surface and mesh", 0.0)
+    read = read_for(study, surfaces_of(study))
     for law in choice.laws:
         other = study_beside(study, _beside(study, law))
-        checked_laws(other, surfaces_of(other))  # raises, before the mesh
-    case = Case.of(study)
+        checked_laws(other, surfaces_of(other, read))  # raises, before the mesh
+    case = Case.of(study, read=read)
     file = None if out is None else Path(out)
     with CurveStore(file, fingerprint(study, choice, indices)) as store:
         made = _curves(case, choice, indices, frictions, store, progress)

@@ -84,7 +84,7 @@ def study_beside(study: Study, choice: BesideChoice) -> Study:
 def changed(case: Case, choice: BesideChoice) -> Case:
     """The case under another law or form, with the same mesh and what is assembled on it."""
     study = study_beside(case.study, choice)
-    surfaces = surfaces_of(study)
+    surfaces = surfaces_of(study, case.read)
     mesh = case.structure.mesh
     placed = []
     for joint, old, surface in zip(study.joints, case.structure.joints, surfaces, strict=True):

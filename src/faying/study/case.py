@@ -29,6 +29,7 @@ from faying.units import show
 SIZES = 3e-3, 30.0  # m: a structure smaller or larger than these is noted, for its unit may be wrong
 SEEN = 1e-6  # of snap: less is rounding
 SPARE_MODES = 6  # beyond those asked for, so that the basis of the complex modes does not end at the last of them
+Read = Mapping[SurfaceChoice, Surface]  # surfaces by what they were read from
 
 
 @dataclass
@@ -65,15 +66,18 @@ class Case:
     notes: tuple[Note, ...] = ()
 
     @classmethod
-    def of(cls, study: Study, progress: Progress | None = None) -> "Case":
-        """Read the surfaces, mesh the parts, lay the laws on the joints. Raises InputError and ReadError."""
+    def of(cls, study: Study, progress: Progress | None = None, read: Read | None = None) -> "Case":
+        """Read the surfaces, mesh the parts, lay the laws on the joints. Raises InputError and ReadError.
+
+        read: surfaces that have been read already.
+        """
         progress = progress or Progress(0)
         hammer = None
         if study.hammer is not None:
             progress.begin("hammer test")
             hammer = Hammer.read(study.hammer)
         progress.begin("surface")
-        surfaces = surfaces_of(study)
+        surfaces = surfaces_of(study, read)
         laws = checked_laws(study, surfaces)
         progress.begin("mesh")
         structure = structure_of(study, checked_mesh(study), surfaces, laws)
@@ -102,6 +106,11 @@ class Case:
             test_points=None if hammer is None else hammer.points(structure),
             notes=tuple(notes),
         )
+
+    @property
+    def read(self) -> Read:
+        """Surfaces that have been read for this case, which need not be read again for another law."""
+        return read_for(self.study, self.surfaces)
 
     @property
     def loads(self) -> Array:
@@ -144,9 +153,15 @@ def law_reasons(structure: Structure, surfaces: tuple[Surface, ...]) -> list[Not
     return list(dict.fromkeys(out))
 
 
-def surfaces_of(study: Study) -> tuple[Surface, ...]:
-    """Return the surface of each joint; a scan that several joints share is read once."""
-    read: dict[SurfaceChoice, Surface] = {}
+def read_for(study: Study, surfaces: Sequence[Surface]) -> Read:
+    """The surfaces of a study's joints by what they were read from."""
+    choices = (joint.surface or study.surface for joint in study.joints)
+    return {choice: one for choice, one in zip(choices, surfaces, strict=True) if choice is not None}
+
+
+def surfaces_of(study: Study, read: Read | None = None) -> tuple[Surface, ...]:
+    """Return the surface of each joint; a scan that several joints share, or that is in `read`, is not read again."""
+    read = dict(read or {})
     out = []
     for joint in study.joints:
         choice = joint.surface or study.surface

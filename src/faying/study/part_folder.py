@@ -42,16 +42,22 @@ class PartFolder:
             except OSError as fault:
                 raise InputError(f"cannot make {self.path}: {fault.strerror}; choose another output") from None
             self._lock = locked(self.path, what)
-            text = json.dumps({"fingerprint": fingerprint})
+            text = json.dumps({"fingerprint": fingerprint, "version": __version__})
             write_text(label, text)
             return
         self._lock = locked(self.path, what)
         try:
-            known = json.loads(label.read_text(encoding="utf-8"))["fingerprint"]
-        except (OSError, ValueError, KeyError):
-            known = None
-        if known != fingerprint:
+            known = dict(json.loads(label.read_text(encoding="utf-8")))
+        except (OSError, ValueError, TypeError):
+            known = {}
+        if known.get("fingerprint") != fingerprint:
             self.close()
+            made_by = known.get("version", __version__)
+            if made_by != __version__:
+                raise InputError(
+                    f"{self.path} was begun by Faying {made_by}, and this is {__version__}, whose numbers may differ: "
+                    f"finish the {what} with {made_by}, or remove the folder and begin anew"
+                )
             raise InputError(
                 f"{self.path} is what another {what} has left, or another version of this study; remove it, "
                 "or choose another output with --out"

@@ -156,6 +156,8 @@ class Surface:
         if self.fit is None:
             return given | {"origin": self.origin} | ({"counter": self.counter} if self.counter else {})
         fitted = {
+            "fitted_D": self.fit.D,
+            "fitted_G [m]": self.fit.G,
             "D_interval": list(self.fit.D_interval),
             "G_interval [m]": list(self.fit.G_interval),
             "band [m]": list(self.fit.band),
