@@ -5,10 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from faying import files
-from faying.columns import read_columns
+from faying import columns as tables
+from faying.columns import read_columns, read_numbers
 from faying.errors import InputError, ReadError
-from faying.files import read_numbers
 from faying.measured.mapping import read_points
 from faying.study import pressure
 
@@ -35,12 +34,12 @@ def answer(path):
 @given(
     lines=st.lists(LINE, max_size=6), mark=st.sampled_from(["", "\ufeff"]), end=st.sampled_from(["\n", "\r\n", "\r"])
 )
-def test_both_ways_of_reading_agree(lines, mark, end, tmp_path_factory):
+def test_both_ways_of_reading_agree(tmp_path_factory, lines, mark, end):
     path = tmp_path_factory.mktemp("table") / "t.csv"
     path.write_bytes((mark + end.join(lines)).encode())
     quick = answer(path)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(files, "table_in_one_go", lambda *_, **__: None)
+        patch.setattr(tables, "table_in_one_go", lambda *_, **__: None)
         assert repr(answer(path)) == repr(quick)  # NaN, too
 
 

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from faying.columns import hold_table
 from faying.errors import InputError, ReadError
-from faying.files import hold_table, refuse_decimal_comma
+from faying.files import refuse_decimal_comma
 from faying.measured.frf import Position
 from faying.typing import Array, Index
 from faying.units import scale

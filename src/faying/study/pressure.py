@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 
 from faying import units
+from faying.columns import hold_table
 from faying.errors import InputError, ReadError
 from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
-from faying.files import hold_table
 from faying.typing import Array, Index
 
 HEAD = "node,pressure [MPa]"

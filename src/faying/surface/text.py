@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from faying.columns import table_in_one_go
 from faying.errors import ReadError
-from faying.files import refuse_decimal_comma, table_in_one_go
+from faying.files import refuse_decimal_comma
 from faying.surface.scan import BYTES, Profile, Scan, check_points
 from faying.typing import Array
 from faying.units import scale
