@@ -13,8 +13,9 @@ import pytest
 
 import faying
 from faying.cli.main import main
+from faying.columns import read_numbers
 from faying.errors import ReadError
-from faying.files import read_numbers, together, uninterrupted, write_atomically
+from faying.files import together, uninterrupted, write_atomically
 from faying.study import template
 from tests.helpers.studies import write
 

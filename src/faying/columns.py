@@ -1,16 +1,22 @@
-"""Columns of numbers from CSV files whose head names each quantity and its unit."""
+"""Tables of numbers: CSV files whose head names each quantity and its unit, and rows of numbers alone."""
 
 import csv
+import warnings
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from faying.errors import InputError, ReadError
+from faying.files import refuse_decimal_comma
+from faying.memory import require
 from faying.typing import Array
 from faying.units import scale
+
+LINE_MEMORY = 450  # B of a line of numbers beside its text while a table is read line by line, measured
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +57,7 @@ def read_columns(
         ReadError: with the file and the line.
     """
     try:
+        hold_table(path)
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as fault:
         raise ReadError(f"{path}: cannot be read as text ({fault})") from None
@@ -73,8 +80,15 @@ def read_columns(
             raise ReadError(f'{path}, line {first}: {names.count(name)} columns are called "{name}"; leave one')
     if needed not in names:
         raise ReadError(f'{path}, line {first}: no column "{needed} [unit]"; the head is {head}')
-    rows = [_row(line, names, passed_over, f"{path}, line {number}", form) for number, line in body]
-    found = {name: factor * np.array([row[name] for row in rows]) for name, factor in columns if name in known}
+    quick = None
+    if body and not set(names) & set(passed_over):
+        quick = table_in_one_go(path, len(names), delimiter=",", skip=first, comments="#")
+    if quick is not None and len(quick) == len(body):
+        values = dict(zip(names, quick.T, strict=True))
+    else:
+        rows = [_row(line, names, passed_over, f"{path}, line {number}", form) for number, line in body]
+        values = {name: np.array([row[name] for row in rows]) for name in names if name in known}
+    found = {name: factor * values[name] for name, factor in columns if name in known}
     return Columns(values=found, head=first, lines=[number for number, _ in body], factors=dict(columns))
 
 
@@ -150,3 +164,76 @@ def _row(line: str, names: list[str], passed_over: Collection[str], where: str, 
         if not isfinite(value):
             raise ReadError(f'{where}: "{cell}" in the column "{name}" is not a finite number; leave the row out')
     return row
+
+
+def hold_table(path: Path) -> None:
+    """Raise InputError where the numbers of a text file do not fit into the free memory while they are read."""
+    size = path.stat().st_size
+    with path.open("rb") as handle:
+        some = [len(line) for line in handle.readlines(65536)]
+    lines = size * len(some) / max(sum(some), 1)
+    text = f"{path}: {size / 1e6:.3g} MB of numbers"
+    require(3 * size + LINE_MEMORY * lines, text, "leave out rows and columns that are not needed")
+
+
+def table_in_one_go(path: Path, columns: int, *, delimiter: str | None, skip: int, comments: str | None) -> Any:
+    """All rows (n, columns) of a text file below its first `skip` lines, as an array.
+
+    delimiter: between the numbers, None for blanks. None where not every line is so many finite numbers: who reads
+    line by line can say which one.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            table = np.loadtxt(
+                path, delimiter=delimiter, comments=comments, skiprows=skip, ndmin=2, encoding="utf-8-sig"
+            )
+    except (ValueError, Warning):
+        return None
+    return table if table.shape[1] == columns and np.isfinite(table).all() else None
+
+
+def _in_one_go(path: Path, columns: int) -> Any:
+    """What `read_numbers` reads, where every line from the first row on is one; else None."""
+    with path.open(encoding="utf-8-sig", errors="replace") as handle:
+        for skip, line in enumerate(handle):
+            text = line.split("#")[0]
+            refuse_decimal_comma(text, f"{path.name}, line {skip + 1}")
+            if len(_numbers(text)) == columns:
+                delimiter = next((mark for mark in ";," if mark in text), None)
+                return table_in_one_go(path, columns, delimiter=delimiter, skip=skip, comments="#")
+    return None
+
+
+def _numbers(text: str) -> list[float]:
+    """The numbers of a line, with commas, semicolons or blanks between; none where a word is no number."""
+    try:
+        return [float(word) for word in text.replace(",", " ").replace(";", " ").split()]
+    except ValueError:
+        return []
+
+
+def read_numbers(path: Path, columns: int, form: str) -> Any:
+    """Read rows of `columns` numbers, with commas, semicolons or blanks between; lines of text may stand at the top.
+
+    Returns an array (rows, columns); comments begin with #. Raises ReadError, with `form` as what was expected, where
+    no such row is found or a later line is not one.
+    """
+    hold_table(path)
+    table = _in_one_go(path, columns)
+    if table is not None:
+        return table
+    rows: list[list[float]] = []
+    for number, line in enumerate(path.read_text(encoding="utf-8-sig", errors="replace").splitlines(), start=1):
+        text = line.split("#")[0]
+        refuse_decimal_comma(text, f"{path.name}, line {number}")
+        if not text.replace(",", " ").replace(";", " ").split():
+            continue
+        row = _numbers(text)
+        if len(row) == columns:
+            rows.append(row)
+        elif rows:
+            raise ReadError(f"{path.name}, line {number}: {line.strip()[:60]!r} is not {columns} numbers; {form}")
+    if not rows:
+        raise ReadError(f"{path.name} holds no line of {columns} numbers; {form}")
+    return np.array(rows)

@@ -160,31 +160,3 @@ def refuse_decimal_comma(line: str, where: str) -> None:
             f"for "
             "between numbers"
         )
-
-
-def read_numbers(path: Path, columns: int, form: str) -> Any:
-    """Read rows of `columns` numbers, with commas, semicolons or blanks between; lines of text may stand at the top.
-
-    Returns an array (rows, columns); comments begin with #. Raises ReadError, with `form` as what was expected, where
-    no such row is found or a later line is not one.
-    """
-    import numpy as np
-
-    rows: list[list[float]] = []
-    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), start=1):
-        text = line.split("#")[0]
-        refuse_decimal_comma(text, f"{path.name}, line {number}")
-        words = text.replace(",", " ").replace(";", " ").split()
-        if not words:
-            continue
-        try:
-            row = [float(word) for word in words]
-        except ValueError:
-            row = []
-        if len(row) == columns:
-            rows.append(row)
-        elif rows:
-            raise ReadError(f"{path.name}, line {number}: {line.strip()[:60]!r} is not {columns} numbers; {form}")
-    if not rows:
-        raise ReadError(f"{path.name} holds no line of {columns} numbers; {form}")
-    return np.array(rows)

@@ -46,7 +46,7 @@ def points(path):
 
 
 def numbers(path):
-    from faying.files import read_numbers
+    from faying.columns import read_numbers
 
     return len(read_numbers(Path(path), 2, "p, k"))
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import faying
-from faying.files import read_numbers
+from faying.columns import read_numbers
 from faying.joint.form import Form
 from faying.joint.gap_map import GapMap, read_gap_map
 from tests.helpers.plates import plates, stacked

@@ -103,7 +103,9 @@ def test_models_of_every_format(tmp_path, suffix):
 def test_sets_of_the_study_are_the_parts_whatever_gives_the_pressure(tmp_path):
     """Parts that the study names by element sets are those of a given pressure, too, with their materials."""
     text = TEXT.replace('unit = "mm"\n', 'unit = "mm"\nsets = {upper = "p0", lower = "p1"}\n', 1)
-    text = text.replace("[part.p0]", "[part.upper]").replace('[part.p1]\nmaterial = "45 steel"', "[part.lower]\n" + BRASS)
+    text = text.replace("[part.p0]", "[part.upper]").replace(
+        '[part.p1]\nmaterial = "45 steel"', "[part.lower]\n" + BRASS
+    )
     solved = attached(tmp_path, "solve", text=text, preload="3 kN")
     given = attached(tmp_path, "5 MPa", text=text)
     assert {name: one.name for name, one in given.materials.items()} == {"upper": "45 steel", "lower": "brass"}

@@ -9,11 +9,11 @@ from typing import Any, ClassVar, Self, final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from faying.columns import read_numbers
 from faying.contact.asperity.base import AsperityModel, summed_model
 from faying.contact.law import ContactLaw, Response, checked, require
 from faying.contact.parameter import FILE, TABLE, TEXT, Parameter
 from faying.errors import InputError
-from faying.files import read_numbers
 from faying.materials import ContactPair
 from faying.typing import Array
 from faying.units import scale

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from faying.columns import read_numbers
 from faying.errors import InputError
-from faying.files import read_numbers
 from faying.joint.face_axes import FaceAxes
 from faying.joint.flatness import minimum_zone
 from faying.typing import Array

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from faying.columns import hold_table
 from faying.errors import InputError, ReadError
 from faying.files import refuse_decimal_comma
 from faying.measured.frf import Position
@@ -204,6 +205,7 @@ def read_points(path: str | Path) -> dict[int, Position]:
     """
     file = Path(path)
     try:
+        hold_table(file)
         text = file.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as fault:
         raise ReadError(f"{file}: cannot be read ({fault}); give a CSV table point,x [mm],y [mm],z [mm]") from None

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from faying import units
+from faying.columns import hold_table
 from faying.errors import InputError, ReadError
 from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
@@ -47,6 +48,7 @@ def read_pressure(given: str | Path, mesh: Mesh, faces: tuple[str, str], interfa
 
 def _table(file: Path) -> tuple[Index, Array]:
     try:
+        hold_table(file)
         lines = [line.strip() for line in file.read_text(encoding="utf-8").splitlines()]
     except (OSError, UnicodeDecodeError) as fault:
         raise ReadError(f"cannot read {file}: {fault}") from None

@@ -1,13 +1,13 @@
 """Text files of points: x, y, z on a regular grid (Nanovea and the like), x, z of a line, or a matrix of heights."""
 
 import re
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from faying.columns import table_in_one_go
 from faying.errors import ReadError
 from faying.files import refuse_decimal_comma
 from faying.surface.scan import BYTES, Profile, Scan, check_points
@@ -152,13 +152,8 @@ def _quickly(path: Path, how: Layout) -> Array | None:
                 heading -= 1
             skip += 1
     delimiter = next((mark for mark in ";," if mark in first), None)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            table = np.loadtxt(path, delimiter=delimiter, comments=None, skiprows=skip, ndmin=2, encoding="utf-8-sig")
-    except (ValueError, Warning):
-        return None
-    return table if table.shape[1] == how.columns and len(table) > 3 and np.isfinite(table).all() else None
+    table = table_in_one_go(path, how.columns, delimiter=delimiter, skip=skip, comments=None)
+    return None if table is None or len(table) < 4 else np.asarray(table)
 
 
 def _line_by_line(path: Path, how: Layout) -> Array:
