@@ -108,6 +108,20 @@ def test_preloads_whose_unit_looks_wrong(made):
     assert codes(made("6 kN")) == []
 
 
+def test_notes_of_loads_say_what_to_do(made):
+    (slight,) = bolt_notes(made("1 uN"))
+    assert "check its unit and its prefix, for example 12 kN" in slight.text
+    for note in bolt_notes(made("1 MN")):
+        assert "Lower the preload, widen the seat, or give the part's bearing_limit" in note.text
+    shank = {"diameter": "8 mm", "material": "45 steel", "seat": ["9 mm", "30 mm"]}
+    (shank_yields,) = bolt_notes(made("20 kN", **shank))
+    assert "Lower the preload, take a thicker bolt, or give its grade" in shank_yields.text
+    structure = made("6 kN")
+    pressure = [np.full(len(structure.joints[0].interface.weights), 1e9)]
+    (crushed,) = pressure_notes(structure, pressure, 6e3)
+    assert "Lower the preload, or check the area of the joint" in crushed.text
+
+
 def test_a_material_whose_units_look_wrong(made):
     """7.8 g/cm^3 as 7.8 kg/m^3, or GPa in place of MPa: sound at 160 km/s. Diamond, 18 km/s, passes."""
     structure = made("6 kN")

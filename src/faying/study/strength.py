@@ -84,7 +84,7 @@ def bolt_notes(structure: Bolted) -> list[Note]:
         if least < weight:
             text = (
                 f"bolt {bolt.name!r}: a preload of {show(least, 'N')} is less than the {show(weight, 'N')} that the "
-                "structure weighs; is its unit right?"
+                "structure weighs; check its unit and its prefix, for example 12 kN"
             )
             out.append(Note(code="slight-preload", load=least, text=text))
         if bolt.fastener is not None:
@@ -135,7 +135,8 @@ def _shank(bolt: Bolt, force: float) -> list[Note]:
         return []
     text = (
         f"bolt {bolt.name!r}: {show(force, 'N')} pull its shank of {show(bolt.diameter, 'm')} to {show(stress, 'Pa')}, "
-        f"beyond the yield strength of its material, {show(strength, 'Pa')}; the shank stays elastic here"
+        f"beyond the yield strength of its material, {show(strength, 'Pa')}; the shank stays elastic here. "
+        "Lower the preload, take a thicker bolt, or give its grade"
     )
     return [Note(code="bolt-yield", load=force, text=text)]
 
@@ -165,7 +166,7 @@ def _seats(structure: Bolted, fitted: FittedBolt | BoltPlace, force: float) -> l
             text = (
                 f"bolt {fitted.bolt.name!r}: {show(force, 'N')} press its seat on {face!r} with "
                 f"{show(pressure, 'Pa')}, beyond the {limit[1]} of the part, {show(limit[0], 'Pa')}; "
-                "the part stays elastic here"
+                "the part stays elastic here. Lower the preload, widen the seat, or give the part's bearing_limit"
             )
             out.append(Note(code="seat-yield", load=force, text=text))
     return out
@@ -187,7 +188,8 @@ def pressure_notes(structure: Structure, pressures: Sequence[Array], load: float
         if share > 0:
             text = (
                 f"{joint.name}, {load / 1e3:g} kN: on {share:.2%} of the joint the pressure exceeds the yield strength "
-                f"of the softer part, {show(strength, 'Pa')}; the parts stay elastic here"
+                f"of the softer part, {show(strength, 'Pa')}; the parts stay elastic here. Lower the preload, or check "
+                "the area of the joint and the yield_strength of its parts"
             )
             out.append(Note(code="joint-yield", joint=joint.name, load=load, share=share, text=text))
     return out

@@ -89,8 +89,11 @@ class Study:
         try:
             text = file.read_text(encoding="utf-8")
             data = tomllib.loads(text)
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError, ValueError) as fault:
-            raise ReadError(f"{file} is not TOML: {fault}") from None
+        except RecursionError:
+            raise ReadError(f"{file} is not TOML that a study has: its brackets are nested too deep") from None
+        except ValueError as fault:  # of TOML, of UTF-8, or of an integer of thousands of digits
+            text = str(fault).partition("; use sys.")[0]
+            raise ReadError(f"{file} is not TOML: {text}") from None
         return cls.from_dict(data, folder=file.resolve().parent, where=str(file), text=text)
 
     @classmethod
