@@ -316,7 +316,8 @@ def test_a_sweep_over_the_crown_is_that_of_full_runs(plan, tmp_path):
         form = Form(crown_along=swept.axes[0].values[i])
         full = run(replace(plan, joints=tuple(replace(joint, form=form) for joint in plan.joints)))
         assert swept.frequencies[i] == pytest.approx(full.frequencies[0], rel=1e-5)
-        assert swept.loss_factors[i] == pytest.approx(full.loss_factors[0], rel=1e-3)
+        # the error of the frequencies allows that of w^2 (1 + i eta) 2e-5 of itself, and eta as much
+        assert swept.loss_factors[i] == pytest.approx(full.loss_factors[0], rel=1e-3, abs=5e-6)
 
 
 def test_axes_of_a_form(plan):

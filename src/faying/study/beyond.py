@@ -14,7 +14,7 @@ from faying.joint.springs import Springs
 from faying.joint.structure import Joint, Structure
 from faying.notes import Note
 from faying.study.case import Case, materials_at
-from faying.study.modes import joined, modes_with
+from faying.study.modes import EXACT, joined, modes_with
 from faying.typing import Array, Mask
 
 STIFF = 1e3  # times the stiffness of the parts over their size: what counts as bonded
@@ -53,6 +53,7 @@ def bonded_beyond(case: Case, load: float, springs: Sequence[Springs[Interface]]
         rigid=case.rigid_count,
         count=study.modes.count,
         kind=study.modes.damping,
+        tolerance=EXACT,
     )
     notes = _notes(case, load, springs, past, found.frequencies / held.frequencies - 1)
     return Beyond(frequencies=found.frequencies, loss_factors=found.loss_factors, notes=notes)

@@ -16,7 +16,7 @@ from faying.joint.support_check import checked_preload
 from faying.study.case import Case
 from faying.typing import Array
 
-EXACT = 1e-8  # of the squared frequencies: 5e-9 of a frequency, 1e-4 of a shape
+EXACT = 1e-8  # of the squared frequencies, complex or not: 5e-9 of a frequency, 1e-8 of a loss factor, 1e-4 of a shape
 FEW = 6  # rounds of enrichment that cost about what a factorisation and its modes do
 KEPT = 6  # times the modes of one state: what the basis keeps
 

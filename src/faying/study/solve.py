@@ -16,7 +16,7 @@ from faying.measured.model import FullResponse
 from faying.notes import Note
 from faying.study.beyond import Beyond, bonded_beyond, past_end
 from faying.study.case import Case, Progress
-from faying.study.modes import SharedModes, settled
+from faying.study.modes import EXACT, SharedModes, settled
 from faying.study.response import LoadedStructure, ResponseAtLoad
 from faying.study.strength import pressure_notes
 from faying.typing import Array, Mask
@@ -94,6 +94,7 @@ def solve(
         rigid=case.rigid_count,
         count=study.modes.count,
         kind=study.modes.damping,
+        tolerance=EXACT,
     )
     loaded = LoadedStructure(
         study=study, structure=structure, modes=modes, damped=damped, stiffness=stiffness, mass=mass, loss=loss
