@@ -169,11 +169,15 @@ def _row(line: str, names: list[str], passed_over: Collection[str], where: str, 
 def hold_table(path: Path) -> None:
     """Raise InputError where the numbers of a text file do not fit into the free memory while they are read."""
     size = path.stat().st_size
+    text = f"{path}: {size / 1e6:.3g} MB of numbers"
+    require(3 * size + LINE_MEMORY * line_count(path), text, "leave out rows and columns that are not needed")
+
+
+def line_count(path: Path) -> float:
+    """About how many lines a text file has, as long as its first ones."""
     with path.open("rb") as handle:
         some = [len(line) for line in handle.readlines(65536)]
-    lines = size * len(some) / max(sum(some), 1)
-    text = f"{path}: {size / 1e6:.3g} MB of numbers"
-    require(3 * size + LINE_MEMORY * lines, text, "leave out rows and columns that are not needed")
+    return path.stat().st_size * len(some) / max(sum(some), 1)
 
 
 def table_in_one_go(path: Path, columns: int, *, delimiter: str | None, skip: int, comments: str | None) -> Any:

@@ -21,11 +21,16 @@ _Answer = Callable[[Array], Array]  # what a tangent answers to a force
 
 @dataclass(frozen=True, kw_only=True)
 class _There:
-    """Joints at one displacement: relative motion (q, 3), opening, pressure and tractions times area (3q,) of each."""
+    """Joints at one displacement.
+
+    Relative motion (q, 3), opening, pressure, k_n, stick or slip, and tractions times area (3q,) of each.
+    """
 
     moves: list[Array]
     openings: list[Array]
     pressures: list[Array]
+    k_n: list[Array]
+    grips: list[StickSlip]
     forces: list[Array]
 
 
@@ -109,31 +114,28 @@ class Secants:
         return None
 
     def _there(self, moves: list[Array]) -> _There:
-        openings, pressures, forces = [], [], []
+        there = _There(moves=moves, openings=[], pressures=[], k_n=[], grips=[], forces=[])
         for (motion, law), friction, move in zip(self.joints, self.friction, moves, strict=True):
             gap = move[:, 0] + motion.gap
-            p = law.pressure(-gap)[0]
+            p, k_n = law.pressure(-gap)
+            limit = None if friction is None else friction * p
+            grip = StickSlip(k_t=law.stiffness(p)[1], limit=limit, anchor=np.zeros((len(p), 2)))
             local = np.empty_like(move)
             local[:, 0] = -p
-            local[:, 1:] = self._grip(law, friction, p).shear(move[:, 1:])
-            openings.append(gap)
-            pressures.append(p)
-            forces.append((local * motion.weights[:, None]).ravel())
-        return _There(moves=moves, openings=openings, pressures=pressures, forces=forces)
-
-    def _grip(self, law: JointLaw, friction: float | None, p: Array) -> StickSlip:
-        limit = None if friction is None else friction * p
-        return StickSlip(k_t=law.stiffness(p)[1], limit=limit, anchor=np.zeros((len(p), 2)))
+            local[:, 1:] = grip.shear(move[:, 1:])
+            there.openings.append(gap)
+            there.pressures.append(p)
+            there.k_n.append(k_n)
+            there.grips.append(grip)
+            there.forces.append((local * motion.weights[:, None]).ravel())
+        return there
 
     def _tangent(self, here: _There) -> _Answer | None:
         """What answers a force: springs of the joints as they are, without what slides; None where that is singular."""
         from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
         matrix = self.stiffness.copy()
-        for (motion, law), friction, move, gap, p in zip(
-            self.joints, self.friction, here.moves, here.openings, here.pressures, strict=True
-        ):
-            grip, k_n = self._grip(law, friction, p), law.pressure(-gap)[1]
+        for (motion, _), move, k_n, grip in zip(self.joints, here.moves, here.k_n, here.grips, strict=True):
             k_t = np.where(grip.sliding(move[:, 1:]), 0.0, grip.k_t)
             matrix += motion.groups.sprung(motion.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
         try:
@@ -144,10 +146,8 @@ class Secants:
 
     def _state(self, u: Array, here: _There, size: float, steps: int) -> PreloadState:
         slipping = []
-        for (motion, law), friction, move, p in zip(
-            self.joints, self.friction, here.moves, here.pressures, strict=True
-        ):
-            slides = self._grip(law, friction, p).sliding(move[:, 1:])
+        for (motion, _), move, grip in zip(self.joints, here.moves, here.grips, strict=True):
+            slides = grip.sliding(move[:, 1:])
             slipping.append(float(motion.weights @ slides / motion.weights.sum()))
         return PreloadState(
             pressures=tuple(here.pressures),

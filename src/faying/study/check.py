@@ -4,6 +4,7 @@ import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
@@ -128,7 +129,7 @@ def check(path: str | Path) -> Checked:
     )
     _contacts(sketch, found)
     for key, what, point in named_points(study):
-        found.tried("point", key, lambda what=what, point=point: on_structure(what, point, mesh or facts))  # type: ignore[misc]
+        found.tried("point", key, partial(on_structure, what, point, mesh or facts))
     sketch = _bolts(sketch, found)
     for level, code, words, key in law_findings(sketch):
         found.add(level, code, words, key)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.columns import table_in_one_go
+from faying.columns import line_count, table_in_one_go
 from faying.errors import ReadError
 from faying.files import refuse_decimal_comma
 from faying.surface.scan import BYTES, Profile, Scan, check_points
@@ -131,11 +131,8 @@ def read(path: Path, how: Layout, scales: tuple[float, float, float], steps: Ste
 
 def _table(path: Path, how: Layout) -> Array:
     """Every row of numbers (n, columns). Raises ReadError that names the first line that is none."""
-    size = path.stat().st_size
-    with path.open("rb") as handle:
-        lengths = [len(line) for line in handle.readlines(65536)]
-    points = size * len(lengths) / sum(lengths) * (how.columns if how.matrix else 1)
-    check_points(str(path), points + 4 * size / BYTES)
+    points = line_count(path) * (how.columns if how.matrix else 1)
+    check_points(str(path), points + 4 * path.stat().st_size / BYTES)
     table = _quickly(path, how)
     return _line_by_line(path, how) if table is None else table
 
