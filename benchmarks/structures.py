@@ -1,14 +1,16 @@
 """From a mesh to 15 elastic modes: Faying beside CalculiX and beside bare PARDISO, on the same meshes and springs.
 
-    python benchmarks/structures.py [--sizes 40 55 150] [--large] [--million] [--no-ccx] [--repeats 3]
+    python benchmarks/structures.py [--sizes 40 55 150] [--large] [--million] [--three-million] [--no-ccx]
 
 The T-specimen of the examples, meshed finer and finer (its holes need 55,000 unknowns at least; 40,000 are those of the
 two blocks), with springs between the facing nodes of its joint. Every contender runs in a process of its own on one
 thread; medians of the CPU seconds from the mesh in memory (for ccx: from its input file) to the frequencies, and the
 peak of resident memory. Modules are imported and libraries loaded before that, by two cubes solved in the same way.
 "bare" gets the matrices for nothing: pypardiso as it comes, and SciPy's eigsh. "ours" factorises in single precision,
-as `faying run` does; "double" is the same in double. Sizes in thousands of unknowns; --large adds 500 and 675 (ccx up
-to 500), --million a bar of 1,078,110 unknowns for Faying alone, in 24 GB at most.
+as `faying run` does; "double" is the same in double, "parts" factorises part by part. Sizes in thousands of unknowns;
+--large adds 500 and 675 (ccx up to 500), --million a bar of two parts with 1,078,110 unknowns, --three-million one of
+six parts, for Faying alone, in 24 GB at most. Parts of these bars are alike; "distinct" factorises each of them by
+itself and keeps the factors on the disk.
 """
 
 import argparse
@@ -30,7 +32,8 @@ ROOT = Path(__file__).parent.parent
 # largest edge in the body and on the joint [mm] for thousands of unknowns
 EDGES = {40: (5.7, 2.9), 55: (60.0, 30.0), 70: (18.0, 8.0), 150: (10.0, 4.8), 500: (5.8, 3.0), 675: (4.75, 2.5)}
 MODES, K_N, K_T = 21, 4e13, 2e13
-MILLION = 1000
+MILLION, THREE_MILLION = 1000, 3000
+WHO = {MILLION: ["ours", "parts", "distinct"], THREE_MILLION: ["parts"]}
 
 
 def meshed(size):
@@ -39,6 +42,8 @@ def meshed(size):
 
     if size == MILLION:
         return bar()
+    if size == THREE_MILLION:
+        return bar([0.3] * 6, [97] * 6, (20, 10))
     plan = Study.read(ROOT / "examples" / ("hammer-test" if size == 40 else "t-specimen") / "study.toml")
     edge, at_joint = EDGES[size]
     spec = replace(plan.geometry, size=edge * 1e-3, face_size={"upper.joint": at_joint * 1e-3})
@@ -46,15 +51,18 @@ def meshed(size):
 
 
 def bar(lengths=(0.3, 0.3), layers=(60, 60), section=(27, 13)):
-    """Two bars end to end, of bricks cut into tet10."""
+    """Bars end to end, of bricks cut into tet10."""
     sys.path[:0] = [str(ROOT)]
     from tests.helpers.boxes import stack
 
-    return stack(list(lengths), list(layers), width=0.06, height=0.025, sections=[section] * 2)
+    return stack(list(lengths), list(layers), width=0.06, height=0.025, sections=[section] * len(layers))
 
 
 def faces(mesh):
-    return ("upper.joint", "lower.joint") if "upper.joint" in mesh.face_part else ("p0.right", "p1.left")
+    """Names of the faces of each joint."""
+    if "upper.joint" in mesh.face_part:
+        return [("upper.joint", "lower.joint")]
+    return [(f"p{k}.right", f"p{k + 1}.left") for k in range(len(mesh.parts) - 1)]
 
 
 def shift_frequency(mesh):
@@ -71,9 +79,11 @@ def joined(mesh):
     from faying.fe.interface import join
 
     K, M = assemble(mesh, dict.fromkeys(mesh.parts, faying.CATALOGUE["45 steel"]), mass="stiffness")
-    nodes = join(mesh, *faces(mesh)).at_nodes()
-    ones = np.ones(len(nodes.weights))
-    return K + nodes.springs(K_N * ones, K_T * ones), M, nodes
+    for pair in faces(mesh):
+        nodes = join(mesh, *pair).at_nodes()
+        ones = np.ones(len(nodes.weights))
+        K = K + nodes.springs(K_N * ones, K_T * ones)
+    return K, M
 
 
 def double(mesh):
@@ -92,9 +102,33 @@ def ours(mesh):
     return solved(mesh, partial(refined_modes, rigid=rigid_motions(mesh.points)))
 
 
+def parts(mesh, alike=True):
+    """As `faying run` does it where memory is short: each kind of part factorised by itself."""
+    from functools import partial
+
+    import numpy as np
+
+    from faying.fe.by_parts import PartByPart
+    from faying.fe.elasticity import rigid_motions
+    from faying.fe.nearby import refined_modes
+    from faying.joint.frame import unknowns_of
+
+    way = PartByPart(
+        [unknowns_of(mesh.part_nodes(part)) for part in mesh.parts],
+        np.zeros(0, dtype=int),
+        stored=None if alike else True,
+        alike=alike,
+    )
+    return solved(mesh, partial(refined_modes, rigid=rigid_motions(mesh.points), solver=way))
+
+
+def distinct(mesh):
+    return parts(mesh, alike=False)
+
+
 def solved(mesh, modes):
     begin = time.process_time()
-    K, M, _ = joined(mesh)
+    K, M = joined(mesh)
     middle = time.process_time()
     found = modes(K, M, MODES, shift_frequency=shift_frequency(mesh))
     end = time.process_time()
@@ -112,7 +146,7 @@ def bare(mesh):
     from scipy.sparse import csr_matrix, triu
     from scipy.sparse.linalg import LinearOperator, eigsh
 
-    K, M, _ = joined(mesh)
+    K, M = joined(mesh)
     begin = time.process_time()
     shift = (2 * np.pi * shift_frequency(mesh)) ** 2
     upper = csr_matrix(triu(K + shift * M, format="csr"))
@@ -131,7 +165,7 @@ def bare(mesh):
     }
 
 
-ALONE = {"ours": ours, "double": double, "bare": bare}
+ALONE = {"ours": ours, "double": double, "bare": bare, "parts": parts, "distinct": distinct}
 
 
 def calculix(mesh, folder):
@@ -140,7 +174,7 @@ def calculix(mesh, folder):
     from faying.fe.interface import join
     from tests.helpers import ccx
 
-    nodes = join(mesh, *faces(mesh)).at_nodes()
+    nodes = join(mesh, *faces(mesh)[0]).at_nodes()
     axis = abs(nodes.normals[0]).argmax()
     springs = [
         (int(a), int(b), [(K_N if k == axis else K_T) * w for k in range(3)])
@@ -187,7 +221,7 @@ def compare(size, repeats, with_ccx):
         mesh = meshed(size)
         path.write_bytes(pickle.dumps(mesh))
         print(f"{mesh.unknowns:,} unknowns", flush=True)
-        who = ["ours", "double", *(["bare"] if size != MILLION else []), *(["ccx"] if with_ccx else [])]
+        who = WHO.get(size, ["ours", "double", "parts", "bare", *(["ccx"] if with_ccx else [])])
         rows = {}
         for name in who:
             runs = [measured(name, path) for _ in range(repeats)]
@@ -198,21 +232,21 @@ def compare(size, repeats, with_ccx):
             if "fault" in row:
                 print(f"  {name}: {row['fault']}", flush=True)
                 continue
-            if name == "ours":
+            if name == who[0]:
                 print(
-                    f"  ours  {row['cpu']:7.1f} CPU s, of them modes {row['modes']:7.1f}; peak {row['peak_gb']:.2f} "
+                    f"  {name:8s} {row['cpu']:7.1f} CPU s, of them modes {row['modes']:7.1f}; peak {row['peak_gb']:.2f} "
                     f"GB, factor "
                     f"estimated {row['factor_gb']:.2f} GB",
                     flush=True,
                 )
                 continue
-            mine = rows["ours"]["modes" if name == "bare" else "cpu"]
+            mine = rows[who[0]]["modes" if name == "bare" else "cpu"]
             elastic = slice(6, None)
             differ = np.abs(
-                np.array(row["frequencies"])[elastic] / np.array(rows["ours"]["frequencies"])[elastic] - 1
+                np.array(row["frequencies"])[elastic] / np.array(rows[who[0]]["frequencies"])[elastic] - 1
             ).max()
             print(
-                f"  {name:5s} {row['cpu']:7.1f} CPU s; ours takes {mine / row['cpu']:.3f} of it; peak "
+                f"  {name:8s} {row['cpu']:7.1f} CPU s; {who[0]} takes {mine / row['cpu']:.3f} of it; peak "
                 f"{row['peak_gb']:.2f} GB; "
                 f"frequencies differ by {differ:.1e}",
                 flush=True,
@@ -224,6 +258,7 @@ def main():
     ask.add_argument("--sizes", type=int, nargs="*", default=[40, 55, 150], choices=sorted(EDGES))
     ask.add_argument("--large", action="store_true")
     ask.add_argument("--million", action="store_true")
+    ask.add_argument("--three-million", action="store_true")
     ask.add_argument("--no-ccx", action="store_true")
     ask.add_argument("--repeats", type=int, default=3)
     ask.add_argument("--one", nargs=2, help=argparse.SUPPRESS)
@@ -231,7 +266,8 @@ def main():
     if given.one:
         one(*given.one)
         return
-    for size in [*given.sizes, *((500, 675) if given.large else ()), *((MILLION,) if given.million else ())]:
+    large = ((500, 675) if given.large else ()), ((MILLION,) if given.million else ())
+    for size in [*given.sizes, *large[0], *large[1], *((THREE_MILLION,) if given.three_million else ())]:
         compare(size, 1 if size > 200 else given.repeats, not given.no_ccx and size <= 500)
 
 

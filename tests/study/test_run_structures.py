@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import faying
+from faying.fe.solve import available
 from faying.study import Study, build, run
 from tests.helpers.studies import write
 
@@ -152,3 +153,21 @@ def test_a_point_of_the_test_far_from_the_structure(folder):
     given["test"] = {"source": "s", "direction": [1, 0, 0], "points": [["80 m", "0 mm", "0 mm"]], "frequencies": rows}
     with pytest.raises(faying.InputError, match=r"test.points\[1\]: the nearest node to .* check the point"):
         run(Study.from_dict(given, folder=folder))
+
+
+@pytest.mark.skipif("pardiso" not in available(), reason="only PARDISO factorises part by part")
+def test_part_by_part_gives_the_same_answer(folder, result):
+    """Shank, elastic support, point mass, slip and response: none of them is lost between the parts."""
+    given = data(folder)
+    given["bolt"][0]["preload"] = ["2 kN"]
+    given.setdefault("modes", {})["solver"] = "pardiso-by-parts"
+    found = run(Study.from_dict(given, folder=folder))
+    assert found.frequencies == pytest.approx(result.frequencies[:1], rel=1e-7)
+    assert found.loss_factors == pytest.approx(result.loss_factors[:1], rel=1e-5)
+    assert found.free == pytest.approx(result.free, rel=1e-8)
+    assert found.bonded == pytest.approx(result.bonded, rel=5e-3)  # springs stand for what cannot be merged
+    assert "bonded-by-springs" in [note.code for note in found.notes]
+    assert found.bolt_forces == pytest.approx(result.bolt_forces[:1], rel=1e-7)
+    assert found.pressure == pytest.approx(result.pressure[:1], rel=1e-5, abs=1e-5 * result.pressure.max())
+    size = np.abs(result.response.values).max()
+    assert found.response.values == pytest.approx(result.response.values[:1], abs=1e-6 * size)

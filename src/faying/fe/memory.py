@@ -17,6 +17,11 @@ def guessed(unknowns: int, *, fill: float = FILL, per_entry: float = 10.0) -> fl
     return fill * per_entry * unknowns * float(np.cbrt(unknowns))
 
 
+def in_single(unknowns: int) -> float:
+    """Memory [B] of PARDISO's factor of a compact solid in single precision, before there is a matrix."""
+    return guessed(unknowns, per_entry=5.0)
+
+
 def check(needed: float, unknowns: int, solver: str) -> None:
     """Raise InputError where a factorisation needs more memory [B] than there is."""
     free = available()

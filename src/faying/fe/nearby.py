@@ -6,8 +6,10 @@ from typing import Any
 import numpy as np
 
 from faying.errors import NotConverged
+from faying.fe.by_parts import PartByPart
 from faying.fe.modes import Modes, lowest_modes
 from faying.fe.single import Single, factorise_roughly
+from faying.fe.solve import factorise
 from faying.fe.span import Span
 from faying.typing import Array, Index
 
@@ -117,7 +119,13 @@ def _rounds_left(error: float, first: float, tolerance: float, done: int) -> flo
 
 
 def refined_modes(
-    stiffness: Any, mass: Any, count: int, *, rigid: Array, shift_frequency: float, solver: str | None = None
+    stiffness: Any,
+    mass: Any,
+    count: int,
+    *,
+    rigid: Array,
+    shift_frequency: float,
+    solver: str | PartByPart | None = None,
 ) -> Modes:
     """Find the lowest modes by a factorisation in single precision, and refine them in double.
 
@@ -127,8 +135,8 @@ def refined_modes(
         count: how many modes, rigid motions included.
         rigid: the motions (n, r) that nothing resists.
         shift_frequency: [Hz], as `lowest_modes` takes it.
-        solver: name of the factorisation; those that have no single precision, or where that is too coarse, give modes
-            in double precision.
+        solver: name of the factorisation, or what factorises part by part; those that have no single precision, or
+            where that is too coarse, give modes in double precision.
 
     Returns:
         Modes as exact as those of `lowest_modes`, with a factorisation that may be in single precision.
@@ -138,14 +146,17 @@ def refined_modes(
     """
     shift = (2 * np.pi * shift_frequency) ** 2
     factor = factorise_roughly((stiffness + shift * mass).tocsr(), mass, shift, rigid=rigid, solver=solver)
-    modes = lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, solver=solver, factor=factor)
+    modes = lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=factor)
     still = rigid.shape[1]
     if not isinstance(factor, Single) or count <= still:
         return modes
     try:
         return NearbyModes(modes, stiffness, mass, rigid=still).under(stiffness, count - still, tolerance=REFINED)
     except NotConverged:
-        return lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, solver=solver)
+        del factor, modes  # before the next factorisation: one at a time in memory
+        matrix = (stiffness + shift * mass).tocsr()
+        exact = solver.factorise(matrix, single=False) if isinstance(solver, PartByPart) else factorise(matrix, solver)
+        return lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=exact)
 
 
 def nearby_modes(

@@ -9,7 +9,7 @@ import numpy as np
 
 from faying.errors import InputError, NotConverged
 from faying.fe.memory import check
-from faying.typing import Array
+from faying.typing import Array, Index
 
 ANALYSE, FACTORISE, SOLVE, FORGET = 11, 22, 33, -1
 BLOCK = 3  # unknowns of a node
@@ -25,6 +25,16 @@ def _library() -> Any:
 
     function = pypardiso_solver._mkl_pardiso
     function.argtypes = [ctypes.c_void_p] * 16
+    return function
+
+
+@cache
+def handle(way: str) -> Any:
+    """The function pardiso_handle_store or pardiso_handle_restore of MKL: (state, folder, fault)."""
+    from pypardiso.scipy_aliases import pypardiso_solver
+
+    function = getattr(pypardiso_solver.libmkl, f"pardiso_handle_{way}")
+    function.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p]
     return function
 
 
@@ -51,11 +61,11 @@ class Pardiso:
 
     name = "PARDISO"
 
-    def __init__(self, matrix: Any, kind: int = POSITIVE, *, single: bool = False) -> None:
+    def __init__(self, matrix: Any, kind: int = POSITIVE, *, single: bool = False, kept: Index | None = None) -> None:
         self._kind, self._type = kind, np.dtype(np.float32 if single else np.float64)
         matrix.sum_duplicates()  # and sorts the indices
         self._size = matrix.shape[0]
-        self._block = BLOCK if _in_blocks(matrix) else 1
+        self._block = BLOCK if kept is None and _in_blocks(matrix) else 1
         bare = np.flatnonzero(np.diff(matrix.indptr) == 0)
         if len(bare):
             raise NotConverged(f"{len(bare)} unknowns have no stiffness at all; is a part free to move?")
@@ -77,6 +87,10 @@ class Pardiso:
         iparm[27] = int(single)
         iparm[34] = 1  # indices from 0
         iparm[36] = self._block if self._block > 1 else 0  # blocks of one node: a third of the graph to order
+        self._order = np.zeros(1 if kept is None else self._size, dtype=np.int32)
+        if kept is not None:
+            self._order[kept] = 1
+            iparm[35] = 2  # a Schur complement, and solutions by halves
         self._call(ANALYSE)
         self.memory = max(float(iparm[14]), float(iparm[15]) + float(iparm[16])) * 1024
         try:
@@ -84,7 +98,9 @@ class Pardiso:
         except InputError:
             self._call(FORGET)
             raise
-        self._call(FACTORISE)
+        # what eliminating all others makes of the unknowns that are kept
+        self.schur = np.zeros((0, 0) if kept is None else (len(kept), len(kept)), dtype=self._type)
+        self._call(FACTORISE, None if kept is None else np.zeros(self._size, dtype=self._type), self.schur)
 
     def solve(self, right: Array) -> Array:
         """Solve for one right-hand side (n,) or several (n, m)."""
@@ -129,7 +145,7 @@ class Pardiso:
             place(self._values),
             place(self._starts),
             place(self._columns),
-            place(np.zeros(1, dtype=np.int32)),
+            place(self._order),
             number(columns),
             place(self._iparm),
             number(0),

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import NotConverged
+from faying.fe.by_parts import PartByPart
 from faying.fe.pardiso import Pardiso
 from faying.fe.solve import Factorisation, chosen, factorise
 from faying.typing import Array
@@ -26,19 +27,20 @@ class Single:
         mass: M [kg], sparse (n, n).
         shift: s [1/s2], above 0.
         rigid: motions (n, r) that the stiffness K leaves free, r = 0 where there are none.
+        by_parts: what factorises it part by part; None: as a whole.
 
     Raises:
         NotConverged: the factor has too few digits of this matrix, or none.
     """
 
-    name = "PARDISO"
-
-    def __init__(self, matrix: Any, mass: Any, shift: float, rigid: Array) -> None:
+    def __init__(self, matrix: Any, mass: Any, shift: float, rigid: Array, by_parts: PartByPart | None = None) -> None:
         gram = rigid.T @ (mass @ rigid)
         self._rigid = rigid @ np.linalg.inv(np.linalg.cholesky((gram + gram.T) / 2)).T
         self._momentum, self._shift = np.asarray(mass @ self._rigid), shift
-        self._factor = Pardiso(matrix, single=True)
-        self.memory = self._factor.memory
+        self._factor: Factorisation = (
+            Pardiso(matrix, single=True) if by_parts is None else by_parts.factorise(matrix, single=True)
+        )
+        self.name, self.memory = self._factor.name, self._factor.memory
         # a motion of all wave lengths, as the softest of the elastic modes are the worst
         wanted = self.solve(mass @ np.random.default_rng(SEED).standard_normal(matrix.shape[0]))
         error = self.solve(matrix @ wanted) - wanted
@@ -58,18 +60,23 @@ class Single:
 
 
 def factorise_roughly(
-    matrix: Any, mass: Any, shift: float, *, rigid: Array, solver: str | None = None
+    matrix: Any, mass: Any, shift: float, *, rigid: Array, solver: str | PartByPart | None = None
 ) -> Factorisation:
     """Factorise in single precision where the solver can and the matrix allows, else in double.
 
     Args:
         matrix, mass, shift, rigid: as `Single` takes them.
-        solver: name of the factorisation, as `factorise` takes it.
+        solver: name of the factorisation, as `factorise` takes it, or what factorises part by part.
 
     Raises:
         NotConverged: the matrix is singular.
         InputError: memory is short.
     """
+    if isinstance(solver, PartByPart):
+        try:
+            return Single(matrix, mass, shift, rigid, solver)
+        except NotConverged:
+            return solver.factorise(matrix, single=False)
     if chosen(solver) == "pardiso":
         try:
             return Single(matrix, mass, shift, rigid)

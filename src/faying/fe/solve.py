@@ -129,8 +129,10 @@ class _SuperLU:
 
 
 _MODULE = {"pardiso": "pypardiso", "mumps": "mumps", "cholmod": "sksparse.cholmod", "superlu": "scipy"}
+BY_PARTS = "pardiso-by-parts"  # a way to use PARDISO on structures; as a whole where there are no parts
 _BACKENDS: dict[str, Callable[[Any], Factorisation]] = {
     "pardiso": Pardiso,
+    BY_PARTS: Pardiso,
     "mumps": _Mumps,
     "cholmod": _Cholmod,
     "superlu": _SuperLU,
@@ -161,6 +163,8 @@ def chosen(name: str | None = None) -> str:
     have = available()
     if asked is None:
         return have[0]
+    if asked == BY_PARTS and "pardiso" in have:
+        return asked
     if asked not in have:
         raise InputError(
             f"solver {asked!r} is not here; use one of {', '.join(have)}, or install it "
@@ -214,7 +218,7 @@ def negative_eigenvalues(matrix: Any, name: str | None = None) -> int:
     """
     from scipy.sparse.linalg import splu
 
-    if chosen(name) == "pardiso":
+    if chosen(name) in ("pardiso", BY_PARTS):
         return Pardiso(matrix.tocsr(), INDEFINITE).negative
     check(guessed(matrix.shape[0], fill=FILL_MINIMUM_DEGREE, per_entry=2 * 10), matrix.shape[0], "SuperLU")
     try:

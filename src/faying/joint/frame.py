@@ -7,13 +7,17 @@ from typing import Any
 
 import numpy as np
 
+from faying.fe.by_parts import PartByPart
 from faying.fe.constraint import constrain, free_motions
 from faying.fe.elasticity import Solid, assemble, rigid_motions
 from faying.fe.mesh import Mesh
+from faying.fe.sides import nodes_of
 from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt, FittedBolt, each_in_its_place
 from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.typing import Array, Index
+
+STILL = 1e-12  # of the greatest stiffness of an unknown: what a motion may ask for that nothing resists
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -96,10 +100,40 @@ class Frame:
         return free_motions(rigid_motions(self.mesh.points), self.fixed)
 
     @cached_property
+    def by_parts(self) -> PartByPart:
+        """What factorises the matrices of the structure part by part; the factors of the parts serve all laws."""
+        mesh = self.mesh
+        faces = {*self.joined, *(support.face for support in self.supports)}
+        faces |= {face for bolt in self.bolts for face in bolt.faces}
+        faces |= {mass.face for mass in self.masses if mass.face is not None}
+        nodes = np.unique(np.concatenate([nodes_of(mesh.face(face)) for face in sorted(faces)]))
+        pulled = np.flatnonzero(np.any(self.loads != 0, axis=1))
+        touched = np.union1d(np.union1d(unknowns_of(nodes), pulled), self.fixed)
+        return PartByPart([unknowns_of(mesh.part_nodes(part)) for part in mesh.parts], touched)
+
+    def loose(self) -> Array:
+        """Motions (unknowns, r) of the parts, each rigid by itself, that nothing resists with all joints apart."""
+        mesh, (stiffness, _) = self.mesh, self.vibrating
+        motions = np.zeros((mesh.unknowns, 6 * len(mesh.parts)))
+        for number, part in enumerate(mesh.parts):
+            nodes = mesh.part_nodes(part)
+            motions[unknowns_of(nodes), 6 * number : 6 * number + 6] = rigid_motions(mesh.points[nodes])
+        motions = free_motions(motions, self.fixed)
+        small = motions.T @ (stiffness @ motions)
+        values, vectors = np.linalg.eigh((small + small.T) / 2)
+        size = float(stiffness.diagonal().max())
+        return np.asarray(motions @ vectors[:, values < STILL * size])
+
+    @cached_property
     def shift_frequency(self) -> float:
         """A frequency below the first elastic mode of any compact body of this size [Hz]: .02 c/size."""
         speeds = [(m.E / (m.density or np.inf)) ** 0.5 for m in self.materials.values()]
         return float(0.02 * max(speeds) / self.mesh.size)
+
+
+def unknowns_of(nodes: Index) -> Index:
+    """The three unknowns of each node, in the order of the nodes."""
+    return np.asarray(3 * nodes[:, None] + np.arange(3)).ravel()
 
 
 def added(matrix: Any, more: Sequence[Any]) -> Any:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
+from faying.fe.by_parts import PartByPart
 from faying.fe.constraint import constrain
 from faying.fe.interface import Interface
 from faying.fe.single import factorise_roughly
@@ -42,7 +43,7 @@ class PreloadProblem(Equilibrium):
         joints: Sequence[tuple[Interface, JointLaw]],
         *,
         shift_frequency: float,
-        solver: str | None = None,
+        solver: str | PartByPart | None = None,
         friction: Sequence[float | None] | None = None,
         fixed: Index | None = None,
     ) -> None:

@@ -7,12 +7,15 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
+from faying.fe.by_parts import PartByPart
 from faying.fe.constraint import constrain
 from faying.fe.elasticity import Solid
 from faying.fe.interface import Interface
+from faying.fe.memory import in_single
 from faying.fe.mesh import Mesh
 from faying.fe.outline import Outline, outline
 from faying.fe.quality import quality
+from faying.fe.solve import BY_PARTS, chosen
 from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt, FittedBolt
 from faying.joint.frame import Frame, added
@@ -20,6 +23,7 @@ from faying.joint.joint_law import JointLaw
 from faying.joint.preload import PreloadProblem
 from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.joint.springs import Springs
+from faying.memory import available
 from faying.notes import Note
 from faying.typing import Array, Index
 
@@ -210,10 +214,29 @@ class Structure:
         """Number of rigid motions that no support resists, 0 to 6."""
         return int(self.rigid.shape[1])
 
+    def loose(self) -> Array:
+        """Motions (unknowns, r) of the parts, each rigid by itself, that nothing resists with all joints apart."""
+        return self._frame.loose()
+
     @property
     def shift_frequency(self) -> float:
         """A frequency below the first elastic mode of any compact body of this size [Hz]: .02 c/size."""
         return self._frame.shift_frequency
+
+    def solver(self, name: str | None = None) -> str | PartByPart:
+        """What factorises the matrices of this structure, by the name that a study gives; part by part if need be.
+
+        Where no name is given, that is where one factor of the whole would take more than half of the free memory.
+
+        Raises:
+            InputError: there is no such solver here.
+        """
+        way, free = chosen(name), available()
+        if len(self.mesh.parts) < 2 or way not in ("pardiso", BY_PARTS):
+            return way
+        if way == "pardiso" and (name or free is None or in_single(self.mesh.unknowns) < free / 2):
+            return way
+        return self._frame.by_parts
 
     @property
     def notes(self) -> tuple[Note, ...]:
@@ -230,7 +253,7 @@ class Structure:
             self.rigid,
             pairs,
             shift_frequency=self.shift_frequency,
-            solver=solver,
+            solver=self.solver(solver),
             friction=[joint.friction for joint in self.joints],
             fixed=self.fixed,
         )

@@ -7,7 +7,8 @@ import numpy as np
 
 from faying.fe.face_facts import FaceFacts, GeometryFacts
 from faying.fe.geometry import ELEMENTS, GRADING, UNKNOWNS
-from faying.fe.memory import guessed
+from faying.fe.memory import guessed, in_single
+from faying.fe.solve import BY_PARTS, chosen
 from faying.study.study import Study
 
 SEGMENTS = 2.0  # elements along a radius of curvature, as the mesher is told
@@ -48,7 +49,8 @@ class Expected:
         elif unknowns > at[-1]:
             one = took[-1] * (unknowns / at[-1]) ** 2
         seconds = one * solved + (MESHED * unknowns / UNKNOWNS if study.geometry.step is not None else 0.0)
-        return cls(unknowns=unknowns, memory=guessed(unknowns), seconds=float(seconds))
+        memory = in_single(unknowns) if chosen(study.modes.solver) in ("pardiso", BY_PARTS) else guessed(unknowns)
+        return cls(unknowns=unknowns, memory=memory, seconds=float(seconds))
 
 
 def unknowns_of(

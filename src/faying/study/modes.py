@@ -87,7 +87,7 @@ def modes_with(case: Case, stiffness: Any, mass: Any, count: int | None = None, 
     """
     count = count or case.mode_count
     check_modes(count, stiffness.shape[0])
-    frequency, solver = case.shift_frequency, case.study.modes.solver
+    frequency, solver = case.shift_frequency, case.structure.solver(case.study.modes.solver)
     if rigid is None:
-        return lowest_modes(stiffness, mass, count, shift_frequency=frequency, solver=solver)
+        return lowest_modes(stiffness, mass, count, shift_frequency=frequency, solver=case.study.modes.solver)
     return refined_modes(stiffness, mass, count, rigid=rigid, shift_frequency=frequency, solver=solver)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import NotConverged
+from faying.fe.by_parts import PartByPart
 from faying.fe.constraint import constrain
 from faying.fe.modes import Modes
 from faying.fe.solve import chosen
@@ -94,7 +95,7 @@ def stages(study: Study) -> list[str]:
 
 def bounds(case: Case) -> tuple[Array, Array, list[Note]]:
     """Frequencies [Hz] of the elastic modes with the faces of every joint apart, and with them bonded; notes."""
-    free = modes_with(case, *case.structure.vibrating)
+    free = modes_with(case, *case.structure.vibrating, rigid=case.structure.loose())
     bonded, notes = _bonded(case)
     elastic = slice(case.rigid_count, case.rigid_count + case.study.modes.count)
     still = np.where(free.frequencies < RIGID_BELOW * case.shift_frequency, 0.0, free.frequencies)
@@ -104,13 +105,21 @@ def bounds(case: Case) -> tuple[Array, Array, list[Note]]:
 def _bonded(case: Case) -> tuple[Modes, list[Note]]:
     structure = case.structure
     K, M = structure.vibrating
-    merge = structure.bonded()
+    by_parts = isinstance(structure.solver(case.study.modes.solver), PartByPart)
+    merge = None if by_parts else structure.bonded()
     if merge is not None and not len(structure.fixed):
         K, M = ((merge.T @ matrix @ merge).tocsr() for matrix in (K, M))
         rigid = (merge.T @ structure.rigid) / np.asarray(merge.sum(axis=0)).ravel()[:, None]
         return modes_with(case, K, M, rigid=rigid), []
-    apart = [joint.name for joint in structure.joints if bond(structure.mesh, [joint.faces]) is None]
-    why = f"the faces of {', '.join(apart)} do not match node for node" if apart else "supports hold some of the nodes"
+    apart = (
+        [] if by_parts else [joint.name for joint in structure.joints if bond(structure.mesh, [joint.faces]) is None]
+    )
+    if by_parts:
+        why = "the parts are factorised one by one"
+    elif apart:
+        why = f"the faces of {', '.join(apart)} do not match node for node"
+    else:
+        why = "supports hold some of the nodes"
     text = f"{why}: the bonded modes use springs a thousand times as stiff as the parts in place of bonded faces"
     stiff = stiff_as_bonded(structure)
     for joint in structure.joints:
