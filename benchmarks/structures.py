@@ -116,6 +116,7 @@ def parts(mesh, alike=True):
     way = PartByPart(
         [unknowns_of(mesh.part_nodes(part)) for part in mesh.parts],
         np.zeros(0, dtype=int),
+        rigid_motions(mesh.points),
         stored=None if alike else True,
         alike=alike,
     )
@@ -234,9 +235,8 @@ def compare(size, repeats, with_ccx):
                 continue
             if name == who[0]:
                 print(
-                    f"  {name:8s} {row['cpu']:7.1f} CPU s, of them modes {row['modes']:7.1f}; peak {row['peak_gb']:.2f} "
-                    f"GB, factor "
-                    f"estimated {row['factor_gb']:.2f} GB",
+                    f"  {name:8s} {row['cpu']:7.1f} CPU s, of them modes {row['modes']:7.1f}; "
+                    f"peak {row['peak_gb']:.2f} GB, factor estimated {row['factor_gb']:.2f} GB",
                     flush=True,
                 )
                 continue

@@ -44,7 +44,7 @@ class Chain:
         return K.tocsr()
 
     def way(self, **options):
-        return PartByPart(self.parts, np.zeros(0, dtype=int), **options)
+        return PartByPart(self.parts, np.zeros(0, dtype=int), self.rigid, **options)
 
 
 @pytest.fixture(scope="module")
@@ -132,7 +132,7 @@ def test_modes_are_those_of_the_whole(unlike, held, stored):
         fixed = unknowns_of(unlike.mesh.face_nodes("p0.left"))
         K, M, rigid = constrain(K, fixed), constrain(M, fixed, 0.0), rigid[:, :0]
     wanted = lowest_modes(K, M, 16, shift_frequency=SHIFT)
-    way = PartByPart(unlike.parts, fixed, stored=stored)
+    way = PartByPart(unlike.parts, fixed, unlike.rigid, stored=stored)
     found = refined_modes(K, M, 16, rigid=rigid, shift_frequency=SHIFT, solver=way)
     elastic = slice(rigid.shape[1], None)
     assert found.factorisation.name == PartByPart.name
@@ -154,5 +154,5 @@ def test_parts_without_an_inside_and_without_touched_unknowns(unlike):
     A.eliminate_zeros()
     b = force(unlike)
     exact = factorise(A, "pardiso").solve(b)
-    way = PartByPart(unlike.parts, unlike.parts[0])
+    way = PartByPart(unlike.parts, unlike.parts[0], unlike.rigid)
     assert way.factorise(A, single=False).solve(b) == pytest.approx(exact, abs=1e-9 * np.abs(exact).max())

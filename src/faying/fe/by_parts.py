@@ -8,24 +8,24 @@ of the joints changes that matrix alone (Przemieniecki 1963, doi:10.2514/3.1777)
 import shutil
 import tempfile
 import weakref
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from faying.errors import NotConverged
+from faying.fe.block_cholesky import BlockCholesky
 from faying.fe.condensed_part import CondensedPart
 from faying.fe.memory import in_single
-from faying.fe.pardiso import Pardiso
 from faying.memory import available
 from faying.typing import Array, Index
 
 NAME = "PARDISO, part by part"
 ALIKE = 1e-9  # relative difference of two parts' matrices that still counts as one
 CHANGED = 1e-11  # relative change of the forces inside the parts beyond which they are factorised anew
-DENSE = 12_000  # touched unknowns up to which their matrix is factorised as a dense one
 ROOM = 0.3  # of the free memory that the factors of all parts may take before they go to the disk
+ROUNDING = 1e-8  # of the greatest: rigid motions that touched unknowns cannot tell apart
 SEED = 20261123
 
 
@@ -36,6 +36,8 @@ class PartByPart:
         parts: unknowns of each part, every unknown in one of them.
         touched: unknowns that joints, bolts and supports may couple or hold; those with entries between parts are
             added.
+        motions: the six rigid motions (n, 6) of the whole: what a part answers to its own is known exactly, and the
+            little that single precision would leave of it is put in its place.
         alike: whether parts whose matrices agree share one factor.
         stored: whether only the factor of the part at work is in memory and the others are on the disk, in the place
             that TMPDIR names; None: where all together would take more than three tenths of the free memory.
@@ -44,9 +46,16 @@ class PartByPart:
     name = NAME
 
     def __init__(
-        self, parts: Sequence[Index], touched: Index, *, alike: bool = True, stored: bool | None = None
+        self,
+        parts: Sequence[Index],
+        touched: Index,
+        motions: Array,
+        *,
+        alike: bool = True,
+        stored: bool | None = None,
     ) -> None:
         self.parts, self.alike, self.stored = tuple(parts), alike, stored
+        self._motions = motions
         self._size = sum(len(part) for part in parts)
         self._touched = np.zeros(self._size, dtype=bool)
         self._touched[touched] = True
@@ -70,7 +79,7 @@ class PartByPart:
         self._touched[rows[of_unknown[rows] != of_unknown[matrix.indices]]] = True
         del rows
         kinds = _kinds(self.parts, self._touched, matrix, alike=self.alike)
-        self._made = (_Parts(self.parts, kinds, matrix, single=single, stored=self.stored),)
+        self._made = (_Parts(self.parts, self._motions, kinds, matrix, single=single, stored=self.stored),)
         return ByParts(self._made[0], matrix)
 
 
@@ -80,6 +89,7 @@ class _Parts:
     def __init__(
         self,
         parts: Sequence[Index],
+        motions: Array,
         kinds: Sequence[tuple[int, Index]],
         matrix: Any,
         *,
@@ -101,15 +111,16 @@ class _Parts:
             weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
         self._factors: dict[int, CondensedPart] = {}
         self._at_hand: int | None = None
-        self.complements: list[Array] = []
+        self._corrections: dict[int, tuple[Array, Array]] = {}
         for kind, number in first.items():
             own = _block(matrix, parts[number], parts[number])
-            self._factors[kind] = CondensedPart(own, self.local[number], single=single)
+            factor = self._factors[kind] = CondensedPart(own, self.local[number], single=single)
+            self._corrections[kind] = self._correction(factor, own, motions[parts[number]], self.local[number])
+            del own
             if self._on_disk:
                 self._store(kind)
         edges = [_block(matrix, part[i], part[i]) for part, i in zip(parts, self.local, strict=True)]
         self.edges = edges  # of the matrix that was condensed, on the touched unknowns
-        self.complements = [self._factors[kind].schur for kind in self.kind_of]
         self.first = first
         self._probe = np.random.default_rng(SEED).standard_normal(matrix.shape[0])
         self._probe[self.touched] = 0.0
@@ -123,6 +134,31 @@ class _Parts:
             return False
         change = np.linalg.norm(matrix @ self._probe - self._answer)
         return bool(change < CHANGED * np.linalg.norm(self._answer))
+
+    def complement(self, number: int) -> Array:
+        """What a part leaves on its touched unknowns (t, t), with the touched entries of the first of its kind."""
+        kind = self.kind_of[number]
+        unit, mended = self._corrections[kind]
+        found = self._factors[kind].schur.astype(float)
+        found += mended @ unit.T
+        found += unit @ mended.T
+        return found
+
+    @staticmethod
+    def _correction(factor: CondensedPart, own: Any, motions: Array, inside: Index) -> tuple[Array, Array]:
+        """Unit vectors Q (t, r) and X (t, r): the complement S + X Q' + Q X' answers rigid motions exactly.
+
+        From A r = f follows S r_t = f_t - A_ti A_ii^-1 f_i, whose right-hand side is small and known to all digits.
+        """
+        if not len(inside):
+            return np.zeros((0, 0)), np.zeros((0, 0))
+        unit, sizes, turn = np.linalg.svd(motions[inside], full_matrices=False)
+        keep = sizes > ROUNDING * sizes.max()
+        unit = unit[:, keep]
+        forces = np.asarray(own @ (motions @ (turn[keep].T / sizes[keep])))
+        miss = factor.forward(forces)[inside].astype(float) - factor.schur @ unit
+        half = unit.T @ miss
+        return unit, miss - unit @ (half + half.T) / 4
 
     def factor(self, kind: int) -> CondensedPart:
         """The factor of a kind of part, in memory."""
@@ -148,8 +184,8 @@ class ByParts:
     def __init__(self, parts: _Parts, matrix: Any) -> None:
         self._parts = parts
         self._starts = np.cumsum([0, *(len(inside) for inside in parts.local)])
-        self._core = _Core(self._condensed(matrix), single=parts.single)
-        self.memory = parts.memory + self._core.memory
+        self._factor = self._core(matrix)
+        self.memory = parts.memory + self._factor.memory
 
     def solve(self, right: Array) -> Array:
         """Solve for one right-hand side (n,) or several (n, m)."""
@@ -165,7 +201,10 @@ class ByParts:
             for place, number in enumerate(same):
                 halves[number] = half[:, place * width : (place + 1) * width]
         left = np.concatenate([half[inside] for half, inside in zip(halves, parts.local, strict=True)])
-        moved = self._core.solve(left)
+        solved = self._factor.solve([left[places] for places in self._places])
+        moved = np.empty(left.shape)
+        for places, block in zip(self._places, solved, strict=True):
+            moved[places] = block
         found = np.empty(columns.shape)
         for kind in reversed(order):  # the factor that was used last is still in memory
             same = [number for number, one in enumerate(parts.kind_of) if one == kind]
@@ -182,45 +221,44 @@ class ByParts:
             raise RuntimeError("what lies inside a part has changed: it is factorised anew")
         return ByParts(self._parts, matrix)
 
-    def _condensed(self, matrix: Any) -> Any:
-        """The matrix on the touched unknowns once all others are eliminated, sparse or dense."""
-        from scipy.sparse import block_diag, csr_array
+    def _core(self, matrix: Any) -> BlockCholesky:
+        """The factor of the matrix on the touched unknowns once all others are eliminated.
 
+        Its blocks are the touched unknowns of each part, those first that no part couples: alike parts are condensed
+        with the touched unknowns of all of them.
+        """
         parts = self._parts
-        core = csr_array(_block(matrix, parts.touched, parts.touched) - block_diag(parts.edges, format="csr"))
-        # a part of a kind was condensed with the touched entries of the first of its kind
-        ways = [parts.edges[number] - parts.edges[parts.first[kind]] for number, kind in enumerate(parts.kind_of)]
-        core = csr_array(core + block_diag(ways, format="csr"))
-        if core.shape[0] <= DENSE:
-            dense = core.toarray()
-            for at, complement in zip(self._starts, parts.complements, strict=False):
-                dense[at : at + len(complement), at : at + len(complement)] += complement
-            return dense
-        kept = np.float32 if parts.single else np.float64
-        return csr_array(core.astype(kept) + block_diag(parts.complements, format="csr"))
-
-
-class _Core:
-    """The factor of the matrix on the touched unknowns, dense or sparse."""
-
-    def __init__(self, matrix: Any, *, single: bool) -> None:
-        self.memory: float
-        self.solve: Callable[[Array], Array]
-        if not isinstance(matrix, np.ndarray):
-            factor = Pardiso(matrix, single=single)
-            self.memory, self.solve = factor.memory, factor.solve
-            return
-        from scipy.linalg import cho_factor, cho_solve
-
-        if not len(matrix):  # nothing couples the parts
-            self.memory, self.solve = 0.0, np.asarray
-            return
-        try:
-            lower = cho_factor(matrix, lower=True, overwrite_a=True, check_finite=False)
-        except np.linalg.LinAlgError:
-            raise NotConverged("the matrix is not positive definite; is a part free to move?") from None
-        self.memory = float(matrix.nbytes)
-        self.solve = lambda right: np.asarray(cho_solve(lower, right, check_finite=False))
+        change = _block(matrix, parts.touched, parts.touched)
+        diagonal: list[Array] = []
+        self._places: list[Index] = []
+        edges: dict[tuple[int, int], Any] = {}
+        between = []
+        for number, (at, end) in enumerate(pairwise(self._starts)):
+            kind = parts.kind_of[number]
+            own = change[at:end]
+            coupled = np.zeros(end - at, dtype=bool)
+            outside = own.copy()
+            outside.data = np.where((own.indices < at) | (own.indices >= end), own.data, 0.0)
+            outside.eliminate_zeros()
+            coupled[np.flatnonzero(np.diff(outside.indptr))] = True
+            inside = parts.complement(number) + (own[:, at:end] - parts.edges[parts.first[kind]]).toarray()
+            spare, met = np.flatnonzero(~coupled), np.flatnonzero(coupled)
+            here = len(diagonal)
+            if len(spare):
+                diagonal.append(inside[np.ix_(spare, spare)])
+                self._places.append(at + spare)
+            if len(met):
+                diagonal.append(inside[np.ix_(met, met)])
+                self._places.append(at + met)
+                between.append((len(diagonal) - 1, at + met))
+            if len(spare) and len(met):
+                edges[here, here + 1] = inside[np.ix_(spare, met)]
+        for k, (one, rows) in enumerate(between):
+            for other, columns in between[k + 1 :]:
+                edge = change[rows][:, columns]
+                if edge.nnz:
+                    edges[one, other] = edge
+        return BlockCholesky(diagonal, edges)
 
 
 def _block(matrix: Any, rows: Index, columns: Index) -> Any:

@@ -76,7 +76,8 @@ def factorise_roughly(
         try:
             return Single(matrix, mass, shift, rigid, solver)
         except NotConverged:
-            return solver.factorise(matrix, single=False)
+            pass  # before the other is made, this one is gone
+        return solver.factorise(matrix, single=False)
     if chosen(solver) == "pardiso":
         try:
             return Single(matrix, mass, shift, rigid)

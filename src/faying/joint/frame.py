@@ -89,15 +89,20 @@ class Frame:
         """Rigid motions of the whole that no support resists (unknowns, up to 6)."""
         if any(support.stiffness is not None for support in self.supports):
             springs = added(None, [support.springs(self.mesh) for support in self.supports])
-            all_six = free_motions(rigid_motions(self.mesh.points), self.fixed)
+            all_six = free_motions(self._motions, self.fixed)
             if not all_six.shape[1]:
                 return all_six
             values, vectors = np.linalg.eigh(all_six.T @ (springs @ all_six))
             # beside what the springs resist of any motion, fixed faces aside: the rest is rounding
-            whole = rigid_motions(self.mesh.points)
+            whole = self._motions
             most = float(np.linalg.eigvalsh(whole.T @ (springs @ whole)).max())
             return np.asarray(all_six @ vectors[:, values < 1e-10 * most])
-        return free_motions(rigid_motions(self.mesh.points), self.fixed)
+        return free_motions(self._motions, self.fixed)
+
+    @property
+    def _motions(self) -> Array:
+        """Six rigid motions (unknowns, 6) of the whole, whatever resists them."""
+        return rigid_motions(self.mesh.points)
 
     @cached_property
     def by_parts(self) -> PartByPart:
@@ -109,7 +114,7 @@ class Frame:
         nodes = np.unique(np.concatenate([nodes_of(mesh.face(face)) for face in sorted(faces)]))
         pulled = np.flatnonzero(np.any(self.loads != 0, axis=1))
         touched = np.union1d(np.union1d(unknowns_of(nodes), pulled), self.fixed)
-        return PartByPart([unknowns_of(mesh.part_nodes(part)) for part in mesh.parts], touched)
+        return PartByPart([unknowns_of(mesh.part_nodes(part)) for part in mesh.parts], touched, self._motions)
 
     def loose(self) -> Array:
         """Motions (unknowns, r) of the parts, each rigid by itself, that nothing resists with all joints apart."""

@@ -1,0 +1,109 @@
+"""Cholesky's factor of a symmetric matrix of dense blocks, few of which are coupled."""
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from faying.errors import NotConverged
+from faying.typing import Array, Index
+
+
+class BlockCholesky:
+    """Factor of a symmetric positive definite matrix given by its blocks.
+
+    Small blocks are eliminated first. Only the columns of a block beside the diagonal that hold anything are kept.
+
+    Args:
+        diagonal: the blocks on the diagonal, dense (n_i, n_i); they are overwritten.
+        edges: (i, j), i < j -> the block of rows i and columns j, dense or sparse.
+
+    Raises:
+        NotConverged: the matrix is not positive definite.
+    """
+
+    def __init__(self, diagonal: Sequence[Array], edges: Mapping[tuple[int, int], Any]) -> None:
+        self._order = sorted(range(len(diagonal)), key=lambda k: len(diagonal[k]))
+        rank = {block: place for place, block in enumerate(self._order)}
+        blocks = [np.asarray(diagonal[k], dtype=float) for k in self._order]
+        beside: list[dict[int, _Edge]] = [{} for _ in blocks]
+        for (one, other), edge in edges.items():
+            i, j = rank[one], rank[other]
+            beside[min(i, j)][max(i, j)] = _Edge.of(edge if i < j else edge.T)
+        self._lower: list[Array] = []
+        self._beside = beside
+        for i, block in enumerate(blocks):
+            lower = _cholesky(block)
+            self._lower.append(lower)
+            for edge in beside[i].values():
+                edge.values = _forward(lower, edge.values)
+            for j, edge in beside[i].items():
+                blocks[j][np.ix_(edge.columns, edge.columns)] -= edge.values.T @ edge.values
+            for j, k in combinations(sorted(beside[i]), 2):
+                first, second = beside[i][j], beside[i][k]
+                fill = np.zeros((len(blocks[j]), len(second.columns)))
+                fill[first.columns] = -first.values.T @ second.values
+                met = beside[j].get(k)
+                beside[j][k] = _Edge(second.columns, fill) if met is None else met.plus(second.columns, fill)
+        kept = [*self._lower, *(edge.values for row in beside for edge in row.values())]
+        self.memory = float(sum(values.nbytes for values in kept))
+
+    def solve(self, right: Sequence[Array]) -> list[Array]:
+        """Solve for right-hand sides, one (n_i, m) for each block; the solutions in the same order."""
+        found = [np.array(right[k], dtype=float) for k in self._order]
+        for i, lower in enumerate(self._lower):
+            found[i] = _forward(lower, found[i])
+            for j, edge in self._beside[i].items():
+                found[j][edge.columns] -= edge.values.T @ found[i]
+        for i in reversed(range(len(found))):
+            for j, edge in self._beside[i].items():
+                found[i] -= edge.values @ found[j][edge.columns]
+            found[i] = _backward(self._lower[i], found[i])
+        out: list[Array] = [np.zeros(0)] * len(found)
+        for place, block in enumerate(self._order):
+            out[block] = found[place]
+        return out
+
+
+class _Edge:
+    """A block beside the diagonal: dense values (n_i, c) in some of its columns."""
+
+    def __init__(self, columns: Index, values: Array) -> None:
+        self.columns, self.values = columns, values
+
+    @classmethod
+    def of(cls, edge: Any) -> "_Edge":
+        if isinstance(edge, np.ndarray):
+            return cls(np.arange(edge.shape[1]), edge)
+        columns = np.flatnonzero(np.diff(edge.tocsc().indptr))
+        return cls(columns, edge.tocsc()[:, columns].toarray())
+
+    def plus(self, columns: Index, values: Array) -> "_Edge":
+        """The sum with values in other columns."""
+        either = np.union1d(self.columns, columns)
+        total = np.zeros((len(values), len(either)))
+        total[:, np.searchsorted(either, self.columns)] = self.values
+        total[:, np.searchsorted(either, columns)] += values
+        return _Edge(either, total)
+
+
+def _cholesky(block: Array) -> Array:
+    from scipy.linalg import LinAlgError, cholesky
+
+    try:
+        return np.asarray(cholesky(block, lower=True, overwrite_a=True, check_finite=False))
+    except LinAlgError:
+        raise NotConverged("the matrix is not positive definite; is a part free to move?") from None
+
+
+def _forward(lower: Array, right: Array) -> Array:
+    from scipy.linalg import solve_triangular
+
+    return np.asarray(solve_triangular(lower, right, lower=True, check_finite=False))
+
+
+def _backward(lower: Array, right: Array) -> Array:
+    from scipy.linalg import solve_triangular
+
+    return np.asarray(solve_triangular(lower, right, lower=True, trans="T", check_finite=False))
