@@ -15,6 +15,7 @@ from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
 from faying.fe.nearby import refined_modes
+from faying.fe.single import Single
 from faying.fe.solve import available, factorise
 from faying.joint.frame import unknowns_of
 from tests.helpers.boxes import stack
@@ -156,3 +157,16 @@ def test_parts_without_an_inside_and_without_touched_unknowns(unlike):
     exact = factorise(A, "pardiso").solve(b)
     way = PartByPart(unlike.parts, unlike.parts[0], unlike.rigid)
     assert way.factorise(A, single=False).solve(b) == pytest.approx(exact, abs=1e-9 * np.abs(exact).max())
+
+
+def test_single_precision_serves_where_the_parts_are_nearly_free(alike):
+    """At 3 Hz the shift resists the rigid motions of a part by 1e-13 of its stiffness; they are answered exactly."""
+    soft = (2 * np.pi * 3.0) ** 2
+    K, M = alike.sprung(1e13, 1e13, 1e13), alike.M
+    A = (K + soft * M).tocsr()
+    force = M @ np.sin(np.arange(K.shape[0]))[:, None]
+    exact = factorise(A, "pardiso").solve(force)
+    found = Single(A, M, soft, alike.rigid, alike.way()).solve(force)
+    assert np.linalg.norm(found - exact) < 1e-3 * np.linalg.norm(exact)
+    with pytest.raises(NotConverged):
+        Single(A, M, soft, alike.rigid, PartByPart(alike.parts, np.zeros(0, dtype=int), alike.rigid[:, :0]))

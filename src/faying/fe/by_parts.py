@@ -153,10 +153,12 @@ class _Parts:
         if not len(inside):
             return np.zeros((0, 0)), np.zeros((0, 0))
         unit, sizes, turn = np.linalg.svd(motions[inside], full_matrices=False)
-        keep = sizes > ROUNDING * sizes.max()
+        keep = sizes > ROUNDING * sizes.max(initial=0.0)
         unit = unit[:, keep]
         forces = np.asarray(own @ (motions @ (turn[keep].T / sizes[keep])))
-        miss = factor.forward(forces)[inside].astype(float) - factor.schur @ unit
+        at_ends = forces[inside]  # great, where springs of a joint pull there: not to be rounded
+        forces[inside] = 0.0
+        miss = at_ends + factor.forward(forces)[inside] - factor.schur @ unit
         half = unit.T @ miss
         return unit, miss - unit @ (half + half.T) / 4
 
