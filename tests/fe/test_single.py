@@ -12,8 +12,10 @@ from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
 from faying.fe.nearby import NearbyModes, refined_modes
+from faying.fe.shifted import Shifted
 from faying.fe.single import Single
 from faying.fe.solve import available, conjugate_gradients, factorise
+from faying.fe.span import extension
 from tests.helpers.boxes import stack
 
 STEEL = faying.CATALOGUE["45 steel"]
@@ -41,7 +43,7 @@ def test_rigid_motions_are_answered_exactly_and_the_rest_to_some_digits(bars):
     """Single precision alone would lose the rigid motions: their stiffness is 1e-9 of the others'."""
     K, M = sprung(bars, 1e13, 1e13)
     rigid = rigid_motions(bars[0].points)
-    factor = Single((K + S * M).tocsr(), M, S, rigid)
+    factor = Single(Shifted(stiffness=K, mass=M, shift=S), rigid)
     force = M @ rigid
     assert factor.solve(force) * S == pytest.approx(rigid, abs=1e-6 * np.abs(rigid).max())
     bend = M @ np.sin(np.arange(K.shape[0]))[:, None]
@@ -53,7 +55,7 @@ def test_rigid_motions_are_answered_exactly_and_the_rest_to_some_digits(bars):
 def test_a_factor_takes_half_of_the_memory(bars):
     K, M = sprung(bars, 1e13, 1e13)
     A = (K + S * M).tocsr()
-    half = Single(A, M, S, rigid_motions(bars[0].points)).memory
+    half = Single(Shifted(stiffness=K, mass=M, shift=S), rigid_motions(bars[0].points)).memory
     assert half < 0.6 * factorise(A, "pardiso").memory
 
 
@@ -62,7 +64,7 @@ def test_digits_that_are_not_there_are_noticed(bars):
     """Without its rigid motions and at a millionth of the shift, the matrix is singular in single precision."""
     K, M = sprung(bars, 1e13, 1e13)
     with pytest.raises(NotConverged):
-        Single((K + 1e-12 * S * M).tocsr(), M, 1e-12 * S, np.zeros((K.shape[0], 0)))
+        Single(Shifted(stiffness=K, mass=M, shift=1e-12 * S), np.zeros((K.shape[0], 0)))
 
 
 @pytest.mark.parametrize("held", [False, True])
@@ -102,6 +104,32 @@ def test_one_factorisation_gives_the_modes_under_one_spring_after_another(bars, 
         found = near.under(changed, 10, tolerance=1e-9)
         wanted = lowest_modes(changed, M, 16, shift_frequency=SHIFT)
         assert found.frequencies[6:] == pytest.approx(wanted.frequencies[6:], rel=1e-7)
+
+
+@pytest.mark.parametrize("tolerance", [1e-5, 1e-8])
+@pytest.mark.parametrize(("before", "after"), [(10.0, 0.5), (10.0, 0.1), (2.6, 0.2), (0.1, 10.0)])
+def test_modes_of_every_symmetry_are_found(bars, before, after, tolerance):
+    """A softer joint brings torsion and bending down from beyond the basis, which residuals of others do not show."""
+    K, M = sprung(bars, 1e12 * before, 5e11 * before)
+    near = NearbyModes(lowest_modes(K, M, 18, shift_frequency=SHIFT), K, M, rigid=6)
+    changed, _ = sprung(bars, 1e12 * after, 5e11 * after)
+    found = near.under(changed, 10, tolerance=tolerance)
+    wanted = lowest_modes(changed, M, 16, shift_frequency=SHIFT)
+    assert found.frequencies[6:] == pytest.approx(wanted.frequencies[6:], rel=tolerance)
+
+
+def test_what_rounding_has_left_of_a_direction_is_orthonormal(bars):
+    """Columns that differ by a millionth: the Gram matrix of the rest has lost half of its digits."""
+    _, M = sprung(bars, 1e12, 5e11)
+    rng = np.random.default_rng(5)
+    first = rng.standard_normal((M.shape[0], 3))
+    first = first @ np.linalg.inv(np.linalg.cholesky(first.T @ (M @ first))).T
+    again = first @ rng.standard_normal((3, 4)) + 1e-6 * rng.standard_normal((M.shape[0], 4))
+    new, momentum = extension(again, first, M @ first, M)
+    both = np.concatenate([first, new], axis=1)
+    assert new.shape[1] == 4
+    assert both.T @ (M @ both) == pytest.approx(np.eye(7), abs=1e-9)
+    assert momentum == pytest.approx(M @ new, rel=1e-9, abs=1e-12 * np.abs(momentum).max())
 
 
 def test_what_asks_for_too_many_rounds_is_given_up_early(bars):

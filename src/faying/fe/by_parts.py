@@ -18,11 +18,12 @@ import numpy as np
 from faying.fe.block_cholesky import BlockCholesky
 from faying.fe.condensed_part import CondensedPart
 from faying.fe.memory import in_single
+from faying.fe.shifted import block
 from faying.memory import available
 from faying.typing import Array, Index
 
 NAME = "PARDISO, part by part"
-ALIKE = 1e-9  # relative difference of two parts' matrices that still counts as one
+ALIKE = 1e-9  # relative difference of two parts' forces under the same motion that still counts as none
 CHANGED = 1e-11  # relative change of the forces inside the parts beyond which they are factorised anew
 ROOM = 0.3  # of the free memory that the factors of all parts may take before they go to the disk
 ROUNDING = 1e-8  # of the greatest: rigid motions that touched unknowns cannot tell apart
@@ -62,7 +63,7 @@ class PartByPart:
         self._made: tuple[_Parts, ...] = ()
 
     def factorise(self, matrix: Any, *, single: bool) -> "ByParts":
-        """Factorise a symmetric positive definite CSR matrix (n, n), in single or in double precision.
+        """Factorise a symmetric positive definite matrix (n, n), CSR or `Shifted`, in single or in double precision.
 
         Raises:
             NotConverged: the matrix is singular.
@@ -72,12 +73,7 @@ class PartByPart:
             if made.single == single and made.fits(matrix):
                 return ByParts(made, matrix)
         self._made = ()  # before others are made, these are gone
-        of_unknown = np.empty(self._size, dtype=np.int32)
-        for number, part in enumerate(self.parts):
-            of_unknown[part] = number
-        rows = np.repeat(np.arange(self._size), np.diff(matrix.indptr))
-        self._touched[rows[of_unknown[rows] != of_unknown[matrix.indices]]] = True
-        del rows
+        self._touched |= _between(self.parts, matrix)
         kinds = _kinds(self.parts, self._touched, matrix, alike=self.alike)
         self._made = (_Parts(self.parts, self._motions, kinds, matrix, single=single, stored=self.stored),)
         return ByParts(self._made[0], matrix)
@@ -113,13 +109,12 @@ class _Parts:
         self._at_hand: int | None = None
         self._corrections: dict[int, tuple[Array, Array]] = {}
         for kind, number in first.items():
-            own = _block(matrix, parts[number], parts[number])
-            factor = self._factors[kind] = CondensedPart(own, self.local[number], single=single)
-            self._corrections[kind] = self._correction(factor, own, motions[parts[number]], self.local[number])
-            del own
+            part, inside = parts[number], self.local[number]
+            self._factors[kind] = CondensedPart(block(matrix, part, part), inside, single=single)
+            self._corrections[kind] = self._correction(kind, matrix, part, motions[part], inside)
             if self._on_disk:
                 self._store(kind)
-        edges = [_block(matrix, part[i], part[i]) for part, i in zip(parts, self.local, strict=True)]
+        edges = [block(matrix, part[i], part[i]) for part, i in zip(parts, self.local, strict=True)]
         self.edges = edges  # of the matrix that was condensed, on the touched unknowns
         self.first = first
         self._probe = np.random.default_rng(SEED).standard_normal(matrix.shape[0])
@@ -144,8 +139,7 @@ class _Parts:
         found += unit @ mended.T
         return found
 
-    @staticmethod
-    def _correction(factor: CondensedPart, own: Any, motions: Array, inside: Index) -> tuple[Array, Array]:
+    def _correction(self, kind: int, matrix: Any, part: Index, motions: Array, inside: Index) -> tuple[Array, Array]:
         """Unit vectors Q (t, r) and X (t, r): the complement S + X Q' + Q X' answers rigid motions exactly.
 
         From A r = f follows S r_t = f_t - A_ti A_ii^-1 f_i, whose right-hand side is small and known to all digits.
@@ -155,7 +149,10 @@ class _Parts:
         unit, sizes, turn = np.linalg.svd(motions[inside], full_matrices=False)
         keep = sizes > ROUNDING * sizes.max(initial=0.0)
         unit = unit[:, keep]
-        forces = np.asarray(own @ (motions @ (turn[keep].T / sizes[keep])))
+        moved = np.zeros((matrix.shape[0], int(keep.sum())))
+        moved[part] = motions @ (turn[keep].T / sizes[keep])
+        forces = (matrix @ moved)[part]
+        factor = self._factors[kind]
         at_ends = forces[inside]  # great, where springs of a joint pull there: not to be rounded
         forces[inside] = 0.0
         miss = at_ends + factor.forward(forces)[inside] - factor.schur @ unit
@@ -205,8 +202,8 @@ class ByParts:
         left = np.concatenate([half[inside] for half, inside in zip(halves, parts.local, strict=True)])
         solved = self._factor.solve([left[places] for places in self._places])
         moved = np.empty(left.shape)
-        for places, block in zip(self._places, solved, strict=True):
-            moved[places] = block
+        for places, here in zip(self._places, solved, strict=True):
+            moved[places] = here
         found = np.empty(columns.shape)
         for kind in reversed(order):  # the factor that was used last is still in memory
             same = [number for number, one in enumerate(parts.kind_of) if one == kind]
@@ -230,7 +227,7 @@ class ByParts:
         with the touched unknowns of all of them.
         """
         parts = self._parts
-        change = _block(matrix, parts.touched, parts.touched)
+        change = block(matrix, parts.touched, parts.touched)
         diagonal: list[Array] = []
         self._places: list[Index] = []
         edges: dict[tuple[int, int], Any] = {}
@@ -263,43 +260,45 @@ class ByParts:
         return BlockCholesky(diagonal, edges)
 
 
-def _block(matrix: Any, rows: Index, columns: Index) -> Any:
-    """Rows and columns of a CSR matrix, as CSR with sorted indices."""
-    from scipy.sparse import csr_array
-
-    found = csr_array(matrix[rows][:, columns])
-    found.sort_indices()
-    return found
+def _between(parts: Sequence[Index], matrix: Any) -> Any:
+    """Which unknowns (n,) have entries in another part: each part is moved at random, and what else answers is met."""
+    moves = np.random.default_rng(SEED).standard_normal(matrix.shape[0])
+    met = np.zeros(matrix.shape[0], dtype=bool)
+    for part in parts:
+        alone = np.zeros(matrix.shape[0])
+        alone[part] = moves[part]
+        answer = matrix @ alone != 0
+        answer[part] = False
+        met |= answer
+    return met
 
 
 def _kinds(parts: Sequence[Index], touched: Any, matrix: Any, *, alike: bool) -> list[tuple[int, Index]]:
     """For each part the number of its kind and its touched unknowns, as numbers in the part.
 
-    Parts are of one kind where their matrices agree but for the touched unknowns of any of them.
+    Parts are of one kind where the same motion of what lies inside asks for the same forces, touched unknowns of any
+    part of their size held.
     """
-    found: list[tuple[int, Index]] = [(-1, np.zeros(0, dtype=np.int64))] * len(parts)
-    left = list(range(len(parts)))
-    kind = 0
-    while left:
-        first = left[0]
-        like = [other for other in left if other == first or (alike and len(parts[other]) == len(parts[first]))]
-        own = _block(matrix, parts[first], parts[first]) if len(like) > 1 else None
-        same, inside = [first], touched[parts[first]]
-        for other in like[1:]:
-            either = inside | touched[parts[other]]
-            if _alike(own, _block(matrix, parts[other], parts[other]), either):
-                same.append(other)
-                inside = either
-        for number in same:
-            found[number] = (kind, np.flatnonzero(inside))
-            left.remove(number)
-        kind += 1
-    return found
-
-
-def _alike(one: Any, other: Any, apart: Any) -> bool:
-    """Whether two matrices agree outside the block of the unknowns that `apart` marks."""
-    difference = (one - other).tocoo()
-    inner = ~(apart[difference.row] & apart[difference.col])
-    size = float(np.abs(one.data).max(initial=0.0))
-    return bool(np.abs(difference.data[inner]).max(initial=0.0) <= ALIKE * size)
+    sizes = sorted({len(part) for part in parts})
+    held = {size: np.any([touched[part] for part in parts if len(part) == size], axis=0) for size in sizes}
+    moves = np.zeros(matrix.shape[0])
+    for part in parts:
+        same = np.random.default_rng(SEED).standard_normal(len(part))
+        moves[part] = np.where(held[len(part)], 0.0, same)
+    forces = matrix @ moves
+    firsts: list[int] = []
+    kinds: list[int] = []
+    for number, part in enumerate(parts):
+        kind = len(firsts)
+        for earlier, first in enumerate(firsts):
+            if alike and len(parts[first]) == len(part):
+                wanted = forces[parts[first]]
+                if np.linalg.norm(forces[part] - wanted) <= ALIKE * np.linalg.norm(wanted):
+                    kind = earlier
+                    break
+        if kind == len(firsts):
+            firsts.append(number)
+        kinds.append(kind)
+    members = [[part for part, one in zip(parts, kinds, strict=True) if one == kind] for kind in range(len(firsts))]
+    inside = [np.flatnonzero(np.any([touched[part] for part in some], axis=0)) for some in members]
+    return [(kind, inside[kind]) for kind in kinds]

@@ -101,7 +101,7 @@ def assemble(mesh: Mesh, materials: Mapping[str, Solid], *, mass: str = "exact")
     """
     if mass not in ("exact", "stiffness"):
         raise InputError(f"mass = {mass!r} should be exact or stiffness")
-    from scipy.sparse import bsr_array, csr_array
+    from scipy.sparse import bsr_array, csr_array, get_index_dtype
 
     n = len(mesh.points)
     pairs, slot = _slots(_keys(mesh.blocks, n))
@@ -119,9 +119,10 @@ def assemble(mesh: Mesh, materials: Mapping[str, Solid], *, mass: str = "exact")
         _add(stiff, here, block.reshape(-1, 9))
         heavy = element_mass(mesh.points, cells, solid.density or 0.0, mass)
         _add(weight[:, None], here, heavy[:, a, b].reshape(-1, 1))
-    columns, rows = pairs % n, pairs // n
+    short = get_index_dtype(maxval=max(3 * n, 18 * len(pairs)))  # indices take a third of a matrix
+    columns, rows = (pairs % n).astype(short), pairs // n
     half = np.where(rows == columns, 0.5, 1.0)
-    pointer = np.searchsorted(rows, np.arange(n + 1))
+    pointer = np.searchsorted(rows, np.arange(n + 1)).astype(short)
     stiff *= half[:, None]
     K = bsr_array((stiff.reshape(-1, 3, 3), columns, pointer), shape=(3 * n, 3 * n)).tocsr()
     M = csr_array((weight * half, columns, pointer), shape=(n, n))
@@ -148,7 +149,7 @@ def _threefold(scalar: Any) -> Any:
 
     n = scalar.shape[0]
     rows = scalar[np.repeat(np.arange(n), 3)]
-    component = np.repeat(np.tile(np.arange(3), n), np.diff(rows.indptr))
+    component = np.repeat(np.tile(np.arange(3, dtype=rows.indices.dtype), n), np.diff(rows.indptr))
     return csr_array((rows.data, 3 * rows.indices + component, rows.indptr), shape=(3 * n, 3 * n))
 
 

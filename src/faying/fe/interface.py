@@ -51,7 +51,7 @@ class Interface:
     @cached_property
     def relative(self) -> Any:
         """Sparse operator (3q, unknowns) from displacements to opening and slips [m per m]."""
-        from scipy.sparse import csr_array
+        from scipy.sparse import csr_array, get_index_dtype
 
         q = len(self.weights)
         nodes = np.concatenate([self.first_nodes, self.second_nodes], axis=1)
@@ -59,7 +59,9 @@ class Interface:
         entries = values[:, None, :, None] * self.frames[:, :, None, :]  # q, axis, node, component
         columns = np.broadcast_to((3 * nodes)[:, None, :, None] + np.arange(3), entries.shape)
         pointer = np.arange(3 * q + 1) * (3 * nodes.shape[1])
-        matrix = csr_array((entries.ravel(), columns.ravel(), pointer), shape=(3 * q, self.unknowns))
+        short = get_index_dtype(maxval=max(self.unknowns, int(pointer[-1])))  # as those of the parts
+        indices = columns.astype(short).ravel(), pointer.astype(short)
+        matrix = csr_array((entries.ravel(), *indices), shape=(3 * q, self.unknowns))
         matrix.eliminate_zeros()
         return matrix
 

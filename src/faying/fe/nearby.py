@@ -8,6 +8,7 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.fe.by_parts import PartByPart
 from faying.fe.modes import Modes, lowest_modes
+from faying.fe.shifted import Shifted
 from faying.fe.single import Single, factorise_roughly
 from faying.fe.solve import factorise
 from faying.fe.span import Span
@@ -16,6 +17,10 @@ from faying.typing import Array, Index
 ROUNDS = 40  # enrichments of the basis
 SLOWEST = 0.3  # decades that a round is taken to gain where it has gained less so far
 REFINED = 1e-10  # estimated relative error of the squared frequencies of refined modes
+WATCHED = 4  # modes beyond those wanted that must have found their place above them
+PLACED = 1e-2  # estimated relative error of their squared frequencies
+EVERYWHERE = 6  # vectors of no symmetry that each new stiffness begins with
+SEED = 20261124
 LEAST = 1e-10  # share of a new vector that must be new
 
 
@@ -65,6 +70,7 @@ class NearbyModes:
 
         span = self._span
         first = None
+        self._look_everywhere()
         change = (stiffness - span.operators[0]).tocsr()
         change.eliminate_zeros()
         touched = np.flatnonzero(np.diff(change.indptr))
@@ -74,26 +80,43 @@ class NearbyModes:
             forces = change @ at_joints
             values, inner = eigh(span.small[0] + at_joints.T @ forces)
             order = np.argsort(np.abs(values))
-            wanted = order[self.rigid : self.rigid + count]
+            wanted = order[self.rigid : self.rigid + count + WATCHED]
             squared, mix = values[wanted], inner[:, wanted]
             left = span.force @ mix - span.momentum @ (mix * squared)
             left[touched] += forces @ mix
             solved = self.modes.factorisation.solve(np.asfortranarray(left))
             error = np.abs(np.einsum("ij,ij->j", left, solved)) / np.abs(squared)
-            if error.max() < tolerance:
-                found = self._found(values, inner, order[: self.rigid + count + spare], error)
+            targets = np.full(len(error), PLACED)
+            targets[:count] = tolerance
+            excess = float((error / targets).max())
+            if excess < 1:
+                found = self._found(values, inner, order[: self.rigid + count + spare], error[:count])
                 self._keep(inner[:, order])
                 return found
-            first = first or float(error.max())
-            if done + _rounds_left(float(error.max()), first, tolerance, done) > rounds:
+            first = first or excess
+            if done + _rounds_left(excess, first, done) > rounds:
                 break
-            new = solved[:, error > tolerance / 10]
+            new = solved[:, error > targets / 10]
             new = new / np.sqrt(np.einsum("ij,ij->j", new, span.mass @ new))
             if not span.add(new, least=LEAST):
                 break
         raise NotConverged(
-            f"modes under changed springs: the estimated error stays at {error.max():.1e} (tolerance {tolerance:.0e})"
+            f"modes under changed springs: the estimated error stays at {error[:count].max():.1e} (tolerance "
+            f"{tolerance:.0e})"
         )
+
+    def _look_everywhere(self) -> None:
+        """Take directions of all kinds into the basis.
+
+        The residuals of modes of one symmetry have none of another: a mode that comes down from beyond the basis would
+        be missed by all of them, and nothing would tell.
+        """
+        mass, factor = self._span.mass, self.modes.factorisation
+        found = np.random.default_rng(SEED).standard_normal((mass.shape[0], EVERYWHERE))
+        for _ in range(2):  # towards the low modes
+            found = factor.solve(np.asfortranarray(mass @ found))
+            found /= np.sqrt(np.einsum("ij,ij->j", found, mass @ found))
+        self._span.add(found, least=LEAST)
 
     def _found(self, values: Array, inner: Array, order: Index, error: Array) -> Modes:
         return replace(
@@ -110,12 +133,11 @@ class NearbyModes:
             self._span = Span(span.mass, span.operators[0], span.vectors @ inner[:, : 3 * self._most // 4])
 
 
-def _rounds_left(error: float, first: float, tolerance: float, done: int) -> float:
-    """How many more enrichments the tolerance asks for, at the rate of those done."""
+def _rounds_left(excess: float, first: float, done: int) -> float:
+    """How many more enrichments an error that is so many times its target asks for, at the rate of those done."""
     if done < 2:
         return 1.0
-    rate = max(np.log10(first / error) / done, SLOWEST)
-    return float(np.log10(error / tolerance) / rate)
+    return float(np.log10(excess) / max(np.log10(first / excess) / done, SLOWEST))
 
 
 def refined_modes(
@@ -145,7 +167,8 @@ def refined_modes(
         InputError, NotConverged: as `lowest_modes` does.
     """
     shift = (2 * np.pi * shift_frequency) ** 2
-    factor = factorise_roughly((stiffness + shift * mass).tocsr(), mass, shift, rigid=rigid, solver=solver)
+    matrix = Shifted(stiffness=stiffness.tocsr(), mass=mass.tocsr(), shift=shift)
+    factor = factorise_roughly(matrix, rigid=rigid, solver=solver)
     modes = lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=factor)
     still = rigid.shape[1]
     if not isinstance(factor, Single) or count <= still:
@@ -154,9 +177,11 @@ def refined_modes(
         return NearbyModes(modes, stiffness, mass, rigid=still).under(stiffness, count - still, tolerance=REFINED)
     except NotConverged:
         del factor, modes  # before the next factorisation: one at a time in memory
-        matrix = (stiffness + shift * mass).tocsr()
-        exact = solver.factorise(matrix, single=False) if isinstance(solver, PartByPart) else factorise(matrix, solver)
-        return lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=exact)
+    if isinstance(solver, PartByPart):
+        factor = solver.factorise(matrix, single=False)
+    else:
+        factor = factorise(matrix.whole(), solver)
+    return lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=factor)
 
 
 def nearby_modes(

@@ -12,6 +12,7 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.fe.by_parts import PartByPart
 from faying.fe.pardiso import Pardiso
+from faying.fe.shifted import Shifted
 from faying.fe.solve import Factorisation, chosen, factorise
 from faying.typing import Array
 
@@ -23,9 +24,7 @@ class Single:
     """A factor of K + s M in single precision, as a `Factorisation`.
 
     Args:
-        matrix: K + s M, sparse CSR (n, n).
-        mass: M [kg], sparse (n, n).
-        shift: s [1/s2], above 0.
+        matrix: K + s M, (n, n), s above 0.
         rigid: motions (n, r) that the stiffness K leaves free, r = 0 where there are none.
         by_parts: what factorises it part by part; None: as a whole.
 
@@ -33,12 +32,13 @@ class Single:
         NotConverged: the factor has too few digits of this matrix, or none.
     """
 
-    def __init__(self, matrix: Any, mass: Any, shift: float, rigid: Array, by_parts: PartByPart | None = None) -> None:
+    def __init__(self, matrix: Shifted, rigid: Array, by_parts: PartByPart | None = None) -> None:
+        mass = matrix.mass
         gram = rigid.T @ (mass @ rigid)
         self._rigid = rigid @ np.linalg.inv(np.linalg.cholesky((gram + gram.T) / 2)).T
-        self._momentum, self._shift = np.asarray(mass @ self._rigid), shift
+        self._momentum, self._shift = np.asarray(mass @ self._rigid), matrix.shift
         self._factor: Factorisation = (
-            Pardiso(matrix, single=True) if by_parts is None else by_parts.factorise(matrix, single=True)
+            Pardiso(matrix.whole(), single=True) if by_parts is None else by_parts.factorise(matrix, single=True)
         )
         self.name, self.memory = self._factor.name, self._factor.memory
         # a motion of all wave lengths, as the softest of the elastic modes are the worst
@@ -59,13 +59,11 @@ class Single:
         raise RuntimeError("a factorisation in single precision is made anew")
 
 
-def factorise_roughly(
-    matrix: Any, mass: Any, shift: float, *, rigid: Array, solver: str | PartByPart | None = None
-) -> Factorisation:
+def factorise_roughly(matrix: Shifted, *, rigid: Array, solver: str | PartByPart | None = None) -> Factorisation:
     """Factorise in single precision where the solver can and the matrix allows, else in double.
 
     Args:
-        matrix, mass, shift, rigid: as `Single` takes them.
+        matrix, rigid: as `Single` takes them.
         solver: name of the factorisation, as `factorise` takes it, or what factorises part by part.
 
     Raises:
@@ -74,13 +72,13 @@ def factorise_roughly(
     """
     if isinstance(solver, PartByPart):
         try:
-            return Single(matrix, mass, shift, rigid, solver)
+            return Single(matrix, rigid, solver)
         except NotConverged:
             pass  # before the other is made, this one is gone
         return solver.factorise(matrix, single=False)
     if chosen(solver) == "pardiso":
         try:
-            return Single(matrix, mass, shift, rigid)
+            return Single(matrix, rigid)
         except NotConverged:
             pass  # before the other is made, this one is gone
-    return factorise(matrix, solver)
+    return factorise(matrix.whole(), solver)

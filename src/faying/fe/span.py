@@ -31,7 +31,11 @@ def extension(new: Array, basis: Array, image: Array, operator: Any, *, least: f
     keep = squares > max(least, ROUNDING * squares.max(initial=0.0))
     new = new @ (turn[:, keep] / np.sqrt(squares[keep]))
     new = new - basis @ (image.T @ new)  # what rounding leaves of the first pass
-    return new, np.asarray(operator @ new)
+    moved = np.asarray(operator @ new)
+    gram = new.T @ moved  # a direction that was small has lost digits of its size
+    squares, turn = np.linalg.eigh((gram + gram.T) / 2)
+    mend = (turn / np.sqrt(squares)) @ turn.T
+    return new @ mend, moved @ mend
 
 
 def without(new: Array, basis: Array, image: Array) -> Array:

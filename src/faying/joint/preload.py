@@ -13,6 +13,7 @@ from faying.errors import InputError
 from faying.fe.by_parts import PartByPart
 from faying.fe.constraint import constrain
 from faying.fe.interface import Interface
+from faying.fe.shifted import Shifted
 from faying.fe.single import factorise_roughly
 from faying.fe.solve import Factorisation
 from faying.joint.equilibrium import Equilibrium, StickSlip
@@ -51,8 +52,7 @@ class PreloadProblem(Equilibrium):
         self.solver = solver
         self.fixed = np.zeros(0, dtype=np.int64) if fixed is None else fixed
         self.shift_frequency = shift_frequency
-        self._mass, self._shift = mass, (2 * np.pi * shift_frequency) ** 2
-        self.mass_shift = self._shift * mass
+        self._mass, self._shift = constrain(mass, self.fixed, 0.0), (2 * np.pi * shift_frequency) ** 2
         self._rigid = np.linalg.qr(rigid)[0] if rigid.size else rigid
         self.factor: Factorisation | None = None
         self._rate = 0.0  # conjugate-gradient steps for each decade of the residual, with this factorisation
@@ -79,7 +79,7 @@ class PreloadProblem(Equilibrium):
     def _start(self, load: Array) -> Array:
         """Begin with every joint at the mean pressure that the load would give it."""
         total = float(np.abs(load).sum()) / 4
-        springs = self.stiffness + self.mass_shift
+        springs = self.stiffness
         push = load.copy()
         for joint, law in self.joints:
             mean = np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure)
@@ -89,19 +89,19 @@ class PreloadProblem(Equilibrium):
             offset = mean - k_n * (law.approach(float(mean)) + joint.gap)
             push = push + joint.forces(np.asarray(offset), np.zeros((len(joint.weights), 2)))
         push = self._admissible(push)
+        near = Shifted(stiffness=springs, mass=self._mass, shift=self._shift)
         if self.factor is not None:  # of a like state, taken from elsewhere
-            found, count = self._conjugate_gradients(lambda x: self._held(springs @ x), push, ROUGH)
+            found, count = self._conjugate_gradients(lambda x: self._held(near @ x), push, ROUGH)
             if count < AGED:
                 return found
         self._factorise(springs)
         assert self.factor is not None
         return self.factor.solve(push)
 
-    def _factorise(self, matrix: Any) -> None:
+    def _factorise(self, stiffness: Any) -> None:
         self.factor = None  # one at a time in memory
-        self.factor = factorise_roughly(
-            constrain(matrix.tocsr(), self.fixed), self._mass, self._shift, rigid=self._rigid, solver=self.solver
-        )
+        near = Shifted(stiffness=constrain(stiffness, self.fixed), mass=self._mass, shift=self._shift)
+        self.factor = factorise_roughly(near, rigid=self._rigid, solver=self.solver)
         self.factorisations += 1
         self._rate = 0.0
 
@@ -146,7 +146,7 @@ class PreloadProblem(Equilibrium):
         return bool(LATE < left < EARLY and self._rate > SLOW)
 
     def _renew(self, tangents: list[tuple[Any, Array, Array]]) -> None:
-        springs = self.stiffness + self.mass_shift
+        springs = self.stiffness
         for joint, k_n, k_t in tangents:
             shear = np.trace(k_t, axis1=1, axis2=2) / 2
             springs = springs + joint.springs(k_n / joint.weights, shear / joint.weights)
