@@ -182,6 +182,31 @@ def test_laws_are_weighed_by_their_evidence(tmp_path):
     assert sum(weights.values()) == pytest.approx(1)
 
 
+@pytest.mark.slow
+def test_damping_of_a_test_tells_what_makes_the_loss(tmp_path):
+    """The index alpha of JK's elastic-plastic contact sets its loss and hardly its stiffness: only damping tells it."""
+    truth, noise = 0.35, np.random.default_rng(2)
+    text = EXAMPLE.read_text().replace("[uncertain]", '[uncertain]\nlaw.alpha = "0.05 to 0.6"')
+    (tmp_path / "model.inp").write_bytes((EXAMPLE.parent / "model.inp").read_bytes())
+    path = tmp_path / "study.toml"
+    path.write_text(text)
+    study = Study.read(path)
+    made = replace(study, uncertain=None, law=replace(study.law, given={**study.law.given, "alpha": truth}))
+    result = faying.run(made)
+    f = result.frequencies * np.exp(noise.normal(0, 2e-3, result.frequencies.shape))
+    loss = result.loss_factors * np.exp(noise.normal(0, 0.05, f.shape))
+    test = replace(study.test, frequencies=tuple(map(tuple, f.tolist())))
+    told = []
+    for losses in (None, tuple(map(tuple, loss.tolist()))):
+        one = replace(study, test=replace(test, losses=losses))
+        found = faying.identify(one, seed=1, count=300)
+        told.append(dict(zip(found.names, found.told, strict=True))["law.alpha"])
+    low, high = dict(zip(found.names, found.quantiles((0.02, 0.98)).T, strict=True))["law.alpha"]
+    assert told[0] > 0.8
+    assert told[1] < 0.6
+    assert low < truth < high
+
+
 @pytest.mark.parametrize(("given", "expected"), [(None, ()), ("2 kN", (0,)), (["2 kN"], (0,)), (6000.0, (1,))])
 def test_preloads_are_left_out_by_their_value(tmp_path, given, expected):
     plan = study_of(tmp_path)

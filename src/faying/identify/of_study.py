@@ -13,11 +13,12 @@ from faying.identify.evaluate import TOLERANCE, Reduced
 from faying.identify.identification import Identification, mixed
 from faying.identify.identify import identify_model
 from faying.identify.identity import paired, settled
-from faying.identify.noise import DISCREPANCY_SD, TEST_SD
+from faying.identify.noise import DISCREPANCY_SD, LOSS_DISCREPANCY_SD, LOSS_TEST_SD, TEST_SD, Losses
 from faying.identify.predict import check, cut_notes
 from faying.identify.store import Store
 from faying.joint.loads import preload_index
 from faying.progress import Report, silent
+from faying.study.keys.test import TestChoice
 from faying.study.keys.uncertain import UncertainChoice
 from faying.study.keys.varied import MODEL
 from faying.study.part_folder import fingerprint
@@ -42,7 +43,10 @@ class StudyModel:
         self.modes: Index | None = None  # of the bases that are the test's
 
     def frequencies(self, values: Array, report: Report | None = None) -> tuple[Array, list[str]]:
-        """Frequencies of the test's modes (n, load, mode) [Hz] at values (n, d), and why a sample has none."""
+        """Frequencies of the test's modes (n, load, mode) [Hz] at values (n, d), and why a sample has none.
+
+        Where the test has loss factors, those of the same modes follow.
+        """
         self.calls += 1
         inputs, what = self.ensemble.inputs, f"{self.calls:03d}"
         if inputs.models:
@@ -56,7 +60,9 @@ class StudyModel:
         assert test is not None
         if self.modes is None:
             self.modes = settled(np.array(test.frequencies), rows)
-        return paired(rows["named"], self.modes), [str(reason) for reason in rows["reasons"]]
+        given = ["named"] if test.losses is None else ["named", "named_loss"]
+        found = [paired(rows[name], self.modes) for name in given]
+        return np.concatenate(found, axis=2), [str(reason) for reason in rows["reasons"]]
 
 
 class _Stage:
@@ -83,7 +89,7 @@ def identify(
     out: str | Path | None = None,
     report: Report | None = None,
 ) -> Identification:
-    """Identify the numbers that scatter in a study from the frequencies of its test.
+    """Identify the numbers that scatter in a study from the frequencies of its test, and the loss factors it gives.
 
     What [uncertain] says are the priors. The model's own error in each mode, the same at all preloads, and the scatter
     of the test are identified with the rest. Where [uncertain] lists laws, each is identified by itself; the evidence
@@ -171,6 +177,7 @@ def _identified(
             seed=seed,
             test_sd=choice.test or TEST_SD,
             discrepancy=choice.discrepancy or DISCREPANCY_SD,
+            losses=_losses(test, choice),
             report=report,
         )
         for law in range(max(len(choice.models), 1))
@@ -180,6 +187,17 @@ def _identified(
     if not choice.models:
         return found[0]
     return mixed(dict(zip([name for name, _ in choice.models], found, strict=True)), dict(choice.models), seed=seed)
+
+
+def _losses(test: TestChoice, choice: UncertainChoice) -> Losses | None:
+    """The measured loss factors with the priors of their noise; None where there are none."""
+    if test.losses is None:
+        return None
+    return Losses(
+        values=np.array(test.losses),
+        scatter=choice.test_loss or LOSS_TEST_SD,
+        discrepancy=choice.discrepancy_loss or LOSS_DISCREPANCY_SD,
+    )
 
 
 def _check_laws(study: Study, choice: UncertainChoice) -> None:
