@@ -206,10 +206,11 @@ class Reduced:
             self.seen = reduction.probe(probe(self.trainer.structure, test))
         self.store.keep_model(self.model, self.seen)
 
-    def rows(self, ensemble: Ensemble, what: str = "samples", law: int = 0) -> Rows:
+    def rows(self, ensemble: Ensemble, what: str = "samples", law: int = 0, *, enrich: bool = True) -> Rows:
         """Rows of all samples of an ensemble that has the same training; those that the bases do not fit, anew.
 
-        what: the name under which they are kept on disk; law: under which the median names the modes.
+        what: the name under which they are kept on disk; law: under which the median names the modes; enrich: whether
+        the bases grow where samples need it.
         """
         out: Rows = {}
         chunks = [list(range(i, min(i + CHUNK, ensemble.count))) for i in range(0, ensemble.count, CHUNK)]
@@ -227,7 +228,7 @@ class Reduced:
             self.report("evaluations", done, ensemble.count)
             _put(out, ensemble.count, indices, rows)
             self.store.keep_rows(what, indices[0] // CHUNK, rows)
-        for _ in range(ROUNDS):
+        for _ in range(ROUNDS if enrich else 0):
             far = np.flatnonzero(out["estimate"] > FAR * self.trainer.tolerance)
             if not len(far):
                 break
@@ -249,9 +250,10 @@ class Reduced:
         """Evaluate chunk by chunk, as they come."""
         recipe = replace(self.trainer.recipe, design=ensemble)
         if law not in self._work:
-            work = Evaluator(model=self.model.grouped(), recipe=recipe, seen=self.seen, test=ensemble.study.test)
+            work = Evaluator(model=self.model.grouped(), recipe=recipe, seen=self.seen)
             self._work[law] = work.with_median(law)
-        return each(partial(_rows, replace(self._work[law], recipe=recipe)), chunks, self.jobs, self.dask)
+        work = replace(self._work[law], recipe=recipe, test=ensemble.study.test)
+        return each(partial(_rows, work), chunks, self.jobs, self.dask)
 
 
 def _put(out: Rows, count: int, indices: Sequence[int], rows: Rows) -> None:

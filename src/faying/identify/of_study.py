@@ -55,7 +55,8 @@ class StudyModel:
             what = f"{self.law}-{what}"
         else:
             self.stage.begin("evaluations", report)
-        rows = self.reduced.rows(self.ensemble.with_values(values), what, self.law)
+        # over the priors the error of the bases is slight beside that of the polynomials; about the posterior it counts
+        rows = self.reduced.rows(self.ensemble.with_values(values), what, self.law, enrich=self.calls > 1)
         test = self.ensemble.study.test
         assert test is not None
         if self.modes is None:
