@@ -206,12 +206,13 @@ class Reduced:
             self.seen = reduction.probe(probe(self.trainer.structure, test))
         self.store.keep_model(self.model, self.seen)
 
-    def rows(self, ensemble: Ensemble, what: str = "samples", law: int = 0, *, enrich: bool = True) -> Rows:
+    def rows(self, ensemble: Ensemble, what: str = "samples", law: int = 0, *, allowed: float = 0.0) -> Rows:
         """Rows of all samples of an ensemble that has the same training; those that the bases do not fit, anew.
 
-        what: the name under which they are kept on disk; law: under which the median names the modes; enrich: whether
-        the bases grow where samples need it.
+        what: the name under which they are kept on disk; law: under which the median names the modes; allowed: relative
+        error of a frequency, above the tolerance, up to which the bases do not grow for a sample.
         """
+        limit = FAR * max(self.trainer.tolerance, allowed)
         out: Rows = {}
         chunks = [list(range(i, min(i + CHUNK, ensemble.count))) for i in range(0, ensemble.count, CHUNK)]
         left = []
@@ -228,8 +229,8 @@ class Reduced:
             self.report("evaluations", done, ensemble.count)
             _put(out, ensemble.count, indices, rows)
             self.store.keep_rows(what, indices[0] // CHUNK, rows)
-        for _ in range(ROUNDS if enrich else 0):
-            far = np.flatnonzero(out["estimate"] > FAR * self.trainer.tolerance)
+        for _ in range(ROUNDS):
+            far = np.flatnonzero(out["estimate"] > limit)
             if not len(far):
                 break
             worst = far[np.argsort(-out["estimate"][far])][:WORST]

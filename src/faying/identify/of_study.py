@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +28,7 @@ from faying.study.variation import check_key
 from faying.typing import Array, Index
 
 COUNT = 1000  # samples of the posterior
+SLIGHT = 0.1  # error of the bases over the scatter of the test that does not matter
 
 
 class StudyModel:
@@ -40,6 +42,8 @@ class StudyModel:
         self.priors = tuple(column.distribution for column in columns)
         self.units = tuple(column.unit for column in columns)
         self.calls = 0
+        choice = scattering(ensemble.study)
+        self.scatter = (choice.test or TEST_SD).median  # of a measured frequency, relative
         self.modes: Index | None = None  # of the bases that are the test's
 
     def frequencies(self, values: Array, report: Report | None = None) -> tuple[Array, list[str]]:
@@ -55,8 +59,10 @@ class StudyModel:
             what = f"{self.law}-{what}"
         else:
             self.stage.begin("evaluations", report)
-        # over the priors the error of the bases is slight beside that of the polynomials; about the posterior it counts
-        rows = self.reduced.rows(self.ensemble.with_values(values), what, self.law, enrich=self.calls > 1)
+        # over the priors the error of the bases is slight beside that of the polynomials; about the posterior a part of
+        # the scatter of the test is
+        allowed = inf if self.calls == 1 else SLIGHT * self.scatter
+        rows = self.reduced.rows(self.ensemble.with_values(values), what, self.law, allowed=allowed)
         test = self.ensemble.study.test
         assert test is not None
         if self.modes is None:
