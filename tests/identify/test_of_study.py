@@ -193,7 +193,8 @@ def test_laws_are_weighed_by_their_evidence(tmp_path):
 def test_damping_of_a_test_tells_what_makes_the_loss(tmp_path):
     """The index alpha of JK's elastic-plastic contact sets its loss and hardly its stiffness: only damping tells it."""
     truth, noise = 0.35, np.random.default_rng(2)
-    text = EXAMPLE.read_text().replace("[uncertain]", '[uncertain]\nlaw.alpha = "0.05 to 0.6"')
+    more = '[law]\nmodel = "jk"\n\n[uncertain]\nlaw.alpha = "0.05 to 0.6"'
+    text = EXAMPLE.read_text().replace("[uncertain]", more)
     (tmp_path / "model.inp").write_bytes((EXAMPLE.parent / "model.inp").read_bytes())
     path = tmp_path / "study.toml"
     path.write_text(text)
