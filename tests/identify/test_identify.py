@@ -10,7 +10,7 @@ from faying.distribution import Distribution
 from faying.errors import InputError, ReadError
 from faying.identify.emulator import Emulator
 from faying.identify.fit import Seen
-from faying.identify.identification import Identification, weights_of
+from faying.identify.identification import Identification, mixed, weights_of
 from faying.identify.identify import identify_model
 from faying.identify.noise import DISCREPANCY_SD, TEST_SD, Losses, offsets
 from faying.identify.tempering import temper
@@ -519,6 +519,11 @@ def test_a_law_without_loss_leaves_the_loss_factors_out_and_says_so(damped):
 
     found = identify_model(Altered(DampedChain(), lossless), test, LOADS, count=COUNT, losses=Losses(values=losses))
     assert not found.losses_used.any()
+    lossy = identify_model(DampedChain(), test, LOADS, count=COUNT, losses=Losses(values=losses))
+    both = mixed({"lossy": lossy, "lossless": found}, {"lossy": 0.5, "lossless": 0.5})
+    assert codes(both)[0] == "evidence"
+    assert "evidence" not in codes(mixed({"one": lossy, "other": lossy}, {"one": 0.5, "other": 0.5}))
+    assert both.predictive_losses.shape == lossy.predictive_losses.shape
     text = next(note.text for note in found.notes if note.code == "test-modes")
     assert "loss factor of mode 1 at 4 kN" in text
 
