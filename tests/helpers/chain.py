@@ -34,6 +34,22 @@ class Chain:
         return np.sqrt(np.linalg.eigvalsh(matrix)) / (2 * np.pi), [""] * len(values)
 
 
+class DampedChain(Chain):
+    """A chain whose contacts lose a share of what they store; the frequencies do not see how large it is."""
+
+    names = (*Chain.names[:3], "contact.loss")
+    units = ("N/m", "", "", "")
+    priors = (*Chain.priors[:3], Distribution(kind="lognormal", centre=0.02, spread=1.0))
+
+    def frequencies(self, values, report=None):
+        f, reasons = super().frequencies(values)
+        stiffer = values.copy()
+        stiffer[:, 0] *= 1.001
+        # share of the contacts in the energy of each mode, by what their stiffness changes
+        share = 2 * np.log(super().frequencies(stiffer)[0] / f) / np.log(1.001)
+        return np.concatenate([f, values[:, 3, None, None] * share], axis=2), reasons
+
+
 class Linear:
     """ln f linear in normal parameters: ln f[load, mode] = ln 100 + slopes[load, mode] . (x - 1)/0.1."""
 

@@ -10,11 +10,11 @@ from faying.distribution import Distribution
 from faying.errors import InputError, ReadError
 from faying.identify.emulator import Emulator
 from faying.identify.fit import Seen
-from faying.identify.identification import Identification, weights_of
+from faying.identify.identification import Identification, mixed, weights_of
 from faying.identify.identify import identify_model
-from faying.identify.noise import DISCREPANCY_SD, TEST_SD, offsets
+from faying.identify.noise import DISCREPANCY_SD, TEST_SD, Losses, offsets
 from faying.identify.tempering import temper
-from tests.helpers.chain import LOADS, Altered, Chain, Linear
+from tests.helpers.chain import LOADS, Altered, Chain, DampedChain, Linear
 
 COUNT = 400
 
@@ -432,3 +432,104 @@ def test_a_model_without_partners_is_said():
     test[:, 3] = np.nan
     with pytest.raises(InputError, match="no frequency of the test has a partner in the model"):
         identify_model(Altered(Chain(), change), test, LOADS)
+
+
+# -- damping
+
+
+@pytest.fixture(scope="module")
+def damped():
+    """A test with loss factors, scattered by 10 % and off by some 20 % in each mode; one of them is missing."""
+    rng = np.random.default_rng(8)
+    whole = DampedChain().frequencies(np.array([[*TRUTH[:3], 0.05]]))[0][0]
+    losses = whole[:, 4:] * np.exp(0.2 * rng.standard_normal(4) + 0.1 * rng.standard_normal((3, 4)))
+    losses[0, 1] = np.nan
+    return twin(TRUTH, 0), losses
+
+
+def test_loss_factors_tell_what_frequencies_do_not(damped):
+    test, losses = damped
+
+    class Undamped(DampedChain):
+        def frequencies(self, values, report=None):
+            f, reasons = super().frequencies(values)
+            return f[:, :, :4], reasons
+
+    without = identify_model(Undamped(), test, LOADS, leave_out=[2], count=COUNT)
+    found = identify_model(DampedChain(), test, LOADS, leave_out=[2], count=COUNT, losses=Losses(values=losses))
+    assert without.told[3] > 0.85
+    assert "not-told" in codes(without)
+    low, high = found.quantiles((0.01, 0.99))[:, 3]
+    assert low < 0.05 < high
+    low, _, high = found.quantiles()[:, 3]
+    assert np.log(high / low) < 0.4 * np.log(np.divide(*without.quantiles((0.95, 0.05))[:, 3]))
+    # the frequencies say of the rest what they said before
+    assert found.quantiles((0.5,))[0, :3] == pytest.approx(without.quantiles((0.5,))[0, :3], rel=0.05)
+    low, _, high = found.predicted_losses
+    assert ((losses[2] > low[2]) & (losses[2] < high[2])).sum() >= 3
+    assert found.predicted.shape == found.predicted_losses.shape == (3, 3, 4)
+    assert found.losses_used.sum() == 7
+    assert found.names[-2:] == ("loss test scatter", "loss model discrepancy")
+
+
+def test_loss_factors_are_written_read_and_shown(damped, tmp_path):
+    test, losses = damped
+    found = identify_model(DampedChain(), test, LOADS, count=COUNT, losses=Losses(values=losses))
+    assert Identification.load(found.save(tmp_path / "i.nc")) == found
+    assert "test loss" in found.table()
+    said = json.loads(json.dumps(found.to_dict()))["loss_factors"]
+    assert said["test"][0][1] is None
+    assert said["quantiles"]["0.5"][2][3] == pytest.approx(found.predicted_losses[1, 2, 3])
+
+
+def test_evidence_with_loss_factors_is_that_of_the_closed_form():
+    """Frequencies and loss factors of a linear-Gaussian model, each with noise and offsets of their own."""
+    slopes = 0.02 * np.random.default_rng(4).standard_normal((3, 4, 2))
+    model, s, t, loss_s, loss_t = Linear(slopes), 0.004, 0.008, 0.02, 0.03
+    whole = np.exp(model.logs(np.array([[1.1, 0.85]])))[0]
+    rng = np.random.default_rng(3)
+    data = whole * np.exp(rng.normal(0, 1, (3, 4)) * np.repeat([s, loss_s], 2))
+    found = identify_model(
+        model,
+        data[:, :2],
+        LOADS,
+        count=4000,
+        test_sd=fixed(s),
+        discrepancy=fixed(t),
+        losses=Losses(values=data[:, 2:], scatter=fixed(loss_s), discrepancy=fixed(loss_t)),
+        evaluations=64,
+    )
+    design, modes = slopes.reshape(12, 2), np.tile(np.eye(4), (3, 1))
+    offset, noise = np.repeat([t, loss_t], 2), np.tile(np.repeat([s, loss_s], 2), 3)
+    cov = design @ design.T + (modes * offset**2) @ modes.T + np.diag(noise**2)
+    y = np.log(data / 100).ravel()
+    assert found.log_evidence == pytest.approx(stats.multivariate_normal.logpdf(y, cov=cov), abs=0.2)
+    exact = design.T @ np.linalg.solve(cov, y)
+    sd = np.sqrt(np.diag(np.eye(2) - design.T @ np.linalg.solve(cov, design)))
+    assert (found.mean[:2] - 1) / 0.1 == pytest.approx(exact, abs=0.06 * sd.max())
+    assert found.sd[:2] / 0.1 == pytest.approx(sd, rel=0.06)
+
+
+def test_a_law_without_loss_leaves_the_loss_factors_out_and_says_so(damped):
+    test, losses = damped
+
+    def lossless(values, f, reasons):
+        f[:, :, 4:] = np.nan
+        return f, reasons
+
+    found = identify_model(Altered(DampedChain(), lossless), test, LOADS, count=COUNT, losses=Losses(values=losses))
+    assert not found.losses_used.any()
+    lossy = identify_model(DampedChain(), test, LOADS, count=COUNT, losses=Losses(values=losses))
+    both = mixed({"lossy": lossy, "lossless": found}, {"lossy": 0.5, "lossless": 0.5})
+    assert codes(both)[0] == "evidence"
+    assert "evidence" not in codes(mixed({"one": lossy, "other": lossy}, {"one": 0.5, "other": 0.5}))
+    assert both.predictive_losses.shape == lossy.predictive_losses.shape
+    text = next(note.text for note in found.notes if note.code == "test-modes")
+    assert "loss factor of mode 1 at 4 kN" in text
+
+
+def test_loss_factors_that_cannot_be_are_refused(damped):
+    test, losses = damped
+    for wrong in (losses[:, :3], -losses):
+        with pytest.raises(InputError, match=r"positive ones of shape \(3, 4\) are due"):
+            identify_model(DampedChain(), test, LOADS, losses=Losses(values=wrong))

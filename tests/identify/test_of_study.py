@@ -9,8 +9,11 @@ from scipy.stats import norm
 
 import faying
 from faying.errors import InputError
+from faying.identify.ensemble import Ensemble
+from faying.identify.evaluate import Reduced
 from faying.identify.identification import Identification
-from faying.identify.of_study import left_out
+from faying.identify.identify import identify_model
+from faying.identify.of_study import StudyModel, _Stage, left_out
 from faying.study import Study
 from faying.study.keys import test as keys
 from faying.study.keys.law import LawChoice
@@ -43,13 +46,15 @@ def twin(plan, truth=TRUTH, seed=3, model=None):
         test=None,
     )
     from faying.study.case import Case, Progress
+    from faying.study.modes import SharedModes
     from faying.study.solve import solve
 
     case = Case.of(other)
     joints = tuple(replace(j, law=replace(j.law, scale=truth["stiffness"])) for j in case.structure.joints)
     case = replace(case, structure=replace(case.structure, joints=joints))
     problem = case.structure.assembly()
-    states = [solve(case, k, problem, Progress(0)) for k in range(len(plan.loads))]
+    shared = SharedModes()
+    states = [solve(case, k, problem, shared, Progress(0)) for k in range(len(plan.loads))]
     truth = np.stack([s.damped.frequencies for s in states])
     noise = np.random.default_rng(seed).normal(0, 1e-3, truth.shape)
     measured = truth * np.exp(noise)
@@ -96,7 +101,7 @@ def test_ten_twins_of_another_mesh_law_and_form(tmp_path):
 
     The twins have finer meshes, another law than the study, a twist that the study knows, and moduli and factors on the
     stiffness that fill their priors. What the study calls the factor on the stiffness has to take the law's place. A
-    preload known to 2 % is told no better by the test, which the identifications say. Ten CPU minutes or so.
+    preload known to 2 % is told no better by the test, which the identifications say. The bases are made once.
     """
     known = '[joint.form]\ntwist = "1 um"\n'
     more = SCATTER.replace('joint.form.twist = "0 um to 2 um"\n', 'preload = {scatter = "2 %"}\n')
@@ -106,11 +111,15 @@ def test_ten_twins_of_another_mesh_law_and_form(tmp_path):
     path.write_text(text)
     plan = replace(Study.read(path), geometry=plan.geometry, modes=plan.modes)
     inside, covered, told, unseen = [], [], [], []
+    loads, stage, reduced = np.array(plan.loads), _Stage(None), None
     shares = np.random.default_rng(5).permuted(np.tile((np.arange(10) + 0.5) / 10, (2, 1)), axis=1)
     for number, (one, other) in enumerate(shares.T):
         truth = {"E": 200e9 + 4e9 * norm.ppf(one), "stiffness": float(np.exp(0.6 * norm.ppf(other)))}
         study, measured = twin(plan, truth, number, "ME")
-        found = faying.identify(study, leave_out=study.loads[-1], seed=number, count=400)
+        ensemble = Ensemble.of(study, 8, 0)
+        reduced = reduced or Reduced(ensemble, report=stage)  # the twins differ in their test alone
+        model = StudyModel(ensemble, reduced, stage)
+        found = identify_model(model, measured, loads, leave_out=[len(loads) - 1], seed=number, count=400)
         low, _, high = dict(zip(found.names, found.quantiles().T, strict=True))["material.45 steel.E"]
         inside.append(low < truth["E"] < high)
         covered.append((measured[-1] > found.predicted[0, -1]) & (measured[-1] < found.predicted[2, -1]))
@@ -180,6 +189,32 @@ def test_laws_are_weighed_by_their_evidence(tmp_path):
     weights = {law.name: law.weight for law in result.laws}
     assert weights["JK"] > 0.9
     assert sum(weights.values()) == pytest.approx(1)
+
+
+@pytest.mark.slow
+def test_damping_of_a_test_tells_what_makes_the_loss(tmp_path):
+    """The index alpha of JK's elastic-plastic contact sets its loss and hardly its stiffness: only damping tells it."""
+    truth, noise = 0.35, np.random.default_rng(2)
+    more = '[law]\nmodel = "jk"\n\n[uncertain]\nlaw.alpha = "0.05 to 0.6"'
+    text = EXAMPLE.read_text().replace("[uncertain]", more)
+    (tmp_path / "model.inp").write_bytes((EXAMPLE.parent / "model.inp").read_bytes())
+    path = tmp_path / "study.toml"
+    path.write_text(text)
+    study = Study.read(path)
+    made = replace(study, uncertain=None, law=replace(study.law, given={**study.law.given, "alpha": truth}))
+    result = faying.run(made)
+    f = result.frequencies * np.exp(noise.normal(0, 2e-3, result.frequencies.shape))
+    loss = result.loss_factors * np.exp(noise.normal(0, 0.05, f.shape))
+    test = replace(study.test, frequencies=tuple(map(tuple, f.tolist())))
+    told = []
+    for losses in (None, tuple(map(tuple, loss.tolist()))):
+        one = replace(study, test=replace(test, losses=losses))
+        found = faying.identify(one, seed=1, count=300)
+        told.append(dict(zip(found.names, found.told, strict=True))["law.alpha"])
+    low, high = dict(zip(found.names, found.quantiles((0.02, 0.98)).T, strict=True))["law.alpha"]
+    assert told[0] > 0.8
+    assert told[1] < 0.6
+    assert low < truth < high
 
 
 @pytest.mark.parametrize(("given", "expected"), [(None, ()), ("2 kN", (0,)), (["2 kN"], (0,)), (6000.0, (1,))])

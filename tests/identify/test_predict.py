@@ -235,3 +235,15 @@ def test_samples_that_the_bases_fit_less_well_are_counted():
     assert note.code == "bases"
     assert "2 of 4 samples" in note.text
     assert "2.0e-04" in note.text
+
+
+def test_every_law_is_drawn_at_its_own_share_and_trained_at_its_median(tmp_path):
+    more = SCATTER + 'law.model = {jk = 1, me = 3, "gw-ke" = 2}\n'
+    ensemble = Ensemble.of(study_of(tmp_path, more), 8, 0)
+    inputs = ensemble.inputs
+    names = [name for name, _ in inputs.models]
+    assert [inputs.model(inputs.share(law)) for law in range(3)] == names
+    medians = [prior.median for prior in inputs.priors[:-1]]
+    for law in range(3):
+        assert ensemble.values[law, :-1] == pytest.approx(medians)
+        assert inputs.model(ensemble.values[law, -1]) == names[law]

@@ -210,3 +210,17 @@ def test_places_in_a_table_are_those_of_a_search():
         assert np.all(np.isclose(values[apart], grid[np.maximum(found, wanted)[apart]], rtol=0, atol=1e-12))
         assert np.abs(found - wanted).max() <= 1
     assert equal_steps(coarse)[1] == 0.0
+
+
+@pytest.mark.parametrize("factor", [1.0, 0.4])
+def test_one_look_at_the_tables_gives_what_two_give(factor):
+    """Pressure, slope and k_t: apart, below the least pressure, within the law, beyond its end."""
+    law = JointLaw(model=LAW) if factor == 1 else JointLaw(model=LAW).scaled(factor)
+    end = law.approach(law.model.greatest_pressure)
+    closing = np.concatenate([[-1e-6, 0.0], np.geomspace(1e-4 * end, 3 * end, 500)])
+    p, k_n, k_t = law.contact(closing)
+    assert np.array_equal(p, law.pressure(closing)[0])
+    assert np.array_equal(k_n, law.pressure(closing)[1])
+    assert k_t == pytest.approx(law.stiffness(p)[1], rel=1e-9)
+    few = law.contact(closing[::10])  # exactly, as few points are
+    assert few[2] == pytest.approx(law.stiffness(law.pressure(closing[::10])[0])[1])

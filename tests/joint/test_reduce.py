@@ -77,6 +77,24 @@ def test_the_estimate_covers_the_error(trained):
         assert error.max() < variant.estimate.max() + 5e-7  # the share of the force balance
 
 
+def test_enrichment_lowers_the_estimates():
+    """From stiff joints to soft ones: at the variant that is trained on, and at its neighbours."""
+    reduction = Reduction.of(beam(), [law()], np.array([1000.0]), count=COUNT)
+    for D, G, F in [(2.5, 3e-11, 3000.0), (2.5, 3e-10, 3000.0), (2.39, 1.5e-10, 1000.0)]:
+        reduction.train([law(D, G)], np.array([F]), [None], tolerance=TOLERANCE)
+    reduction.compress(TOLERANCE)
+    soft = [(2.3, 3e-10), (2.3, 1e-10), (2.25, 2e-10)]
+
+    def estimates():
+        return np.array([reduction.evaluate([law(*one)], np.array([100.0]), [None]).estimate.max() for one in soft])
+
+    before = estimates()
+    reduction.train([law(*soft[0])], np.array([100.0]), [None], tolerance=TOLERANCE)
+    reduction.compress(TOLERANCE)
+    assert np.all(before > 1e-3)
+    assert np.all(estimates() < 1e-2 * before)
+
+
 def test_a_variant_trained_on_is_solved_and_adds_nothing(trained):
     _, reduction = trained
     D, G, F = CORNERS[3]

@@ -1,5 +1,6 @@
 import tomllib
 
+import numpy as np
 import pytest
 
 import faying
@@ -169,3 +170,39 @@ def test_files(tmp_path):
     (tmp_path / "bad.toml").write_text("a = = 1")
     with pytest.raises(faying.ReadError, match="is not TOML"):
         Study.read(tmp_path / "bad.toml")
+
+
+FREQUENCIES = [["100 Hz", "200 Hz"], ["110 Hz", "210 Hz"]]
+
+
+@pytest.mark.parametrize(
+    ("key", "given", "expected"),
+    [
+        ("loss_factors", [[2e-3, float("nan")], ["0.3 %", 4e-3]], [2e-3, np.nan, 3e-3, 4e-3]),
+        ("damping_ratios", [["0.1 %", 2e-3], [1e-3, 1e-3]], [2e-3, 4e-3, 2e-3, 2e-3]),
+    ],
+)
+def test_damping_of_a_test_stands_beside_its_frequencies(folder, key, given, expected):
+    """A loss factor is twice a damping ratio."""
+    found = study(
+        folder,
+        test={"frequencies": FREQUENCIES, key: given, "direction": [1, 0, 0], "points": [["0 mm", "0 mm", "1 mm"]]},
+    )
+    assert np.ravel(found.test.losses) == pytest.approx(expected, nan_ok=True)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"loss_factors": [[1e-3, 1e-3]]}, "a number for each of the frequencies"),
+        ({"loss_factors": [[1e-3, 0], [1e-3, 1e-3]]}, "give a plain number above 0"),
+        ({"loss_factors": [[1e-3, "3 Hz"], [1e-3, 1e-3]]}, "loss_factors"),
+        ({"loss_factors": [[1e-3] * 2] * 2, "damping_ratios": [[1e-3] * 2] * 2}, "give one of them"),
+    ],
+)
+def test_damping_that_cannot_be_is_refused(folder, wrong, words):
+    with pytest.raises(faying.InputError, match=words):
+        study(
+            folder,
+            test={"frequencies": FREQUENCIES, "direction": [1, 0, 0], "points": [["0 mm", "0 mm", "1 mm"]], **wrong},
+        )

@@ -53,6 +53,8 @@ OWN: dict[str, dict[str, Any]] = {
     "backbone.law": {"anyOf": [TEXT, listed(TEXT, 1)]},
     "backbone.rest_damping": {"anyOf": [{"type": "number"}, {"const": "law"}]},
     "test.frequencies": listed(listed({"$ref": "#/$defs/quantity"}, 1), 1),
+    "test.loss_factors": listed(listed({"type": ["number", "string"]}, 1), 1),
+    "test.damping_ratios": listed(listed({"type": ["number", "string"]}, 1), 1),
     "test.published": listed(listed({"$ref": "#/$defs/quantity"}, 1), 1),
     "test.points": {"anyOf": [listed(POINT, 1), TEXT]},
     "test.direction": {"anyOf": [DIRECTION, {"enum": ["x", "y", "z"]}]},

@@ -74,6 +74,11 @@ class Inputs:
         ends = np.cumsum([weight for _, weight in self.models])
         return self.models[min(int(np.searchsorted(ends, share, side="right")), len(ends) - 1)][0]
 
+    def share(self, law: int) -> float:
+        """The share of the weights, from 0 to 1, at which a law is drawn: the middle of its own."""
+        weights = [weight for _, weight in self.models]
+        return sum(weights[:law]) + 0.5 * weights[law]
+
     def put(self, point: Point, values: Array, original: Study) -> Point:
         """The point with values (d,) put in; the materials of `original` are those of the matrices."""
         named = dict(zip(self.names, values.tolist(), strict=True))
@@ -183,7 +188,8 @@ def _of_fit(
 class Ensemble:
     """Samples of a study at each of its loads; the index of a point is sample * loads + load.
 
-    The first samples are for training alone: the medians, each input far out to either side, and some far out in all.
+    The first samples are for training alone: the medians, under each law, each input far out to either side, and some
+    far out in all.
 
     Args:
         study, surfaces: What is varied.
@@ -217,17 +223,16 @@ class Ensemble:
         """Shares of probability (t, d) of the samples for training."""
         from scipy.stats import norm
 
-        size = len(inputs.columns)
-        rows = [np.zeros(size)]
+        size, laws = len(inputs.columns), max(len(inputs.models), 1)
+        rows = [np.zeros(size)] * laws
         for column, sign in product(range(size), (-FAR, FAR)):
             rows.append(np.zeros(size))
             rows[-1][column] = sign
         rows += list(np.random.default_rng(seed).choice([-FAR / 2, FAR / 2], (PAIRS, size)))
         shares = norm.cdf(np.array(rows))
-        if inputs.models:  # every law once
-            ends = np.cumsum([weight for _, weight in inputs.models])
-            middles = ends - 0.5 * np.array([weight for _, weight in inputs.models])
-            shares[:, -1] = middles[np.arange(len(shares)) % len(middles)]
+        if inputs.models:  # laws in turn
+            middles = np.array([inputs.share(law) for law in range(laws)])
+            shares[:, -1] = middles[np.arange(len(shares)) % laws]
         return np.asarray(shares)
 
     def with_values(self, values: Array) -> "Ensemble":

@@ -22,12 +22,13 @@ from faying.study.keys.test import TestChoice
 from faying.study.parallel import Rows, each
 from faying.study.recipe import Recipe, contact_shares
 from faying.study.trainer import FAR, Trainer
-from faying.typing import Array, Complex, Index
+from faying.typing import Array, Index
 
 TOLERANCE = 1e-4  # relative error of a frequency that the bases are made for: far below the scatter of any test
 CHUNK = 32  # samples evaluated in one go
 ROUNDS = 6  # of training at samples that the bases do not fit
 WORST = 4  # samples trained on in each round
+GAINED = 0.9  # of the samples that the bases do not fit: a round that leaves more of them is the last
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,14 +40,15 @@ class Evaluator:
         recipe: Makes laws, forces, gaps and scales; its design is the ensemble.
         seen: What the points of the test see of the basis (k, d) and of the rigid motions (k, r) along its direction.
         test: The test; None where the study has none.
-        median: Shapes of the modes of the median at each load (d, m), after which those of samples are named.
+        median: The median at each load: after the shapes of its modes those of samples are named, and its equilibria
+            are where those of samples start.
     """
 
     model: ReducedModel
     recipe: Recipe
     seen: tuple[Array, Array] | None = None
     test: TestChoice | None = None
-    median: tuple[Complex, ...] = ()
+    median: tuple[Variant, ...] = ()
 
     @property
     def ensemble(self) -> Ensemble:
@@ -86,17 +88,21 @@ class Evaluator:
         first = (ensemble.training + sample) * ensemble.loads
         model = self.model.with_gaps(recipe.gaps(first)).with_scales(recipe.scales(first))
         found: list[Variant] = []
-        for index in range(first, first + ensemble.loads):
-            laws, forces, friction = recipe.laws(index)
+        usual = [one.preload.displacement for one in self.median]
+        for load in range(ensemble.loads):
+            laws, forces, friction = recipe.laws(first + load)
             start = found[-1].preload.displacement if found else None
+            if usual:
+                start = usual[load] if start is None else start + usual[load] - usual[load - 1]
             found.append(model.evaluate(laws, forces, friction, start))
         return model, found, laws
 
-    def with_median(self) -> "Evaluator":
-        """The same, with the shapes of the median, or of the first sample that has an answer."""
-        for sample in range(-self.ensemble.training, self.ensemble.count):
+    def with_median(self, law: int) -> "Evaluator":
+        """The same, with the median under one of the laws, or the first sample that has an answer."""
+        training = self.ensemble.training
+        for sample in (law - training, *range(-training, self.ensemble.count)):
             try:
-                return replace(self, median=tuple(one.shapes for one in self.solved(sample)[1]))
+                return replace(self, median=tuple(self.solved(sample)[1]))
             except FayingError:
                 continue
         return self
@@ -108,7 +114,7 @@ class Evaluator:
         shares = [contact_shares(weights, laws, one.preload.pressures) for one in found]
         frequencies = np.stack([one.frequencies for one in found])
         loss = np.stack([one.loss_factors for one in found])
-        names = named(self.median, [one.shapes for one in found], model.matrices[2])
+        names = named([one.shapes for one in self.median], [one.shapes for one in found], model.matrices[2])
         lossless = not any(law.predicts_loss for law in laws)
         nothing = np.full((ensemble.loads, model.count), np.nan)
         loss = nothing if lossless else loss
@@ -186,6 +192,7 @@ class Reduced:
         self.trainer = Trainer.of(ensemble.study, ensemble, tolerance, self.report)
         self.store = store or Store(None, what="samples")
         self.seen: tuple[Array, Array] | None = None
+        self._work: dict[int, Evaluator] = {}  # in the bases as they are, with the median under each law
         kept = self.store.model()
         if kept is None:
             self._train()
@@ -194,17 +201,19 @@ class Reduced:
 
     def _train(self, points: Sequence[int] = ()) -> None:
         """Make or enrich the bases, and what the points of the test see of them."""
-        self.model = self.trainer.model(points)
+        self.model, self._work = self.trainer.model(points), {}
         test, reduction = self.trainer.study.test, self.trainer.reduction
         if test is not None and reduction is not None:
             self.seen = reduction.probe(probe(self.trainer.structure, test))
         self.store.keep_model(self.model, self.seen)
 
-    def rows(self, ensemble: Ensemble, what: str = "samples") -> Rows:
+    def rows(self, ensemble: Ensemble, what: str = "samples", law: int = 0, *, allowed: float = 0.0) -> Rows:
         """Rows of all samples of an ensemble that has the same training; those that the bases do not fit, anew.
 
-        what: the name under which they are kept on disk.
+        what: the name under which they are kept on disk; law: under which the median names the modes; allowed: relative
+        error of a frequency, above the tolerance, up to which the bases do not grow for a sample.
         """
+        limit = FAR * max(self.trainer.tolerance, allowed)
         out: Rows = {}
         chunks = [list(range(i, min(i + CHUNK, ensemble.count))) for i in range(0, ensemble.count, CHUNK)]
         left = []
@@ -216,32 +225,36 @@ class Reduced:
                 _put(out, ensemble.count, chunk, found)
         done = ensemble.count - sum(map(len, left))
         self.report("evaluations", done, ensemble.count)
-        for indices, rows in self._evaluated(ensemble, left):
+        for indices, rows in self._evaluated(ensemble, left, law):
             done += len(indices)
             self.report("evaluations", done, ensemble.count)
             _put(out, ensemble.count, indices, rows)
             self.store.keep_rows(what, indices[0] // CHUNK, rows)
         for _ in range(ROUNDS):
-            far = np.flatnonzero(out["estimate"] > FAR * self.trainer.tolerance)
+            far = np.flatnonzero(out["estimate"] > limit)
             if not len(far):
                 break
             worst = far[np.argsort(-out["estimate"][far])][:WORST]
             self.report(f"enrichment: {len(far)} samples", 0, 0)
             points = [int(ensemble.training + k) * ensemble.loads + ensemble.loads - 1 for k in worst]
-            before = out["estimate"][far].copy()
             self.trainer.recipe = replace(self.trainer.recipe, design=ensemble)
             self._train(points)
-            for indices, rows in self._evaluated(ensemble, [far.tolist()]):
+            for indices, rows in self._evaluated(ensemble, [far.tolist()], law):
                 _put(out, ensemble.count, indices, rows)
-            if not np.any(out["estimate"][far] < before):
+            if np.count_nonzero(out["estimate"][far] > limit) > GAINED * len(far):
                 break
         return out
 
-    def _evaluated(self, ensemble: Ensemble, chunks: Sequence[Sequence[int]]) -> Iterable[tuple[Sequence[int], Rows]]:
+    def _evaluated(
+        self, ensemble: Ensemble, chunks: Sequence[Sequence[int]], law: int
+    ) -> Iterable[tuple[Sequence[int], Rows]]:
         """Evaluate chunk by chunk, as they come."""
         recipe = replace(self.trainer.recipe, design=ensemble)
-        work = Evaluator(model=self.model.grouped(), recipe=recipe, seen=self.seen, test=ensemble.study.test)
-        return each(partial(_rows, work.with_median()), chunks, self.jobs, self.dask)
+        if law not in self._work:
+            work = Evaluator(model=self.model.grouped(), recipe=recipe, seen=self.seen)
+            self._work[law] = work.with_median(law)
+        work = replace(self._work[law], recipe=recipe, test=ensemble.study.test)
+        return each(partial(_rows, work), chunks, self.jobs, self.dask)
 
 
 def _put(out: Rows, count: int, indices: Sequence[int], rows: Rows) -> None:

@@ -77,20 +77,21 @@ class Seen(Recorded):
         return "; ".join(self.combination(int(k)) for k in which[:SHOWN]) + more
 
 
-def least_squares_ends(emulator: Emulator, test: Array, used: Mask, scatter: float, peak: Array, seed: int) -> Array:
+def least_squares_ends(emulator: Emulator, test: Array, used: Mask, scatter: Array, peak: Array, seed: int) -> Array:
     """The values (start, d) at which least squares end, from Sobol points of the priors and from one more point.
 
     Args:
         emulator: of the model, with the derivatives that the search follows.
-        test: frequencies [Hz] (load, mode).
-        used: which of them count.
-        scatter: relative sd of the test.
+        test: what was measured (load, column).
+        used: which of it counts.
+        scatter: relative sd of the test (column,).
         peak: the likeliest values (d,), the last start.
         seed: of the Sobol points.
     """
     from scipy.optimize import least_squares
 
     priors, logs = emulator.priors, np.log(np.where(used, test, 1.0))[used]
+    sd = np.broadcast_to(scatter, used.shape)[used]
     reach = [-1.0 if p.kind == "uniform" else -REACH for p in priors]
     low, high = (
         np.array([float(p.standardised(end)) for p, end in zip(priors, ends, strict=True)])
@@ -102,10 +103,10 @@ def least_squares_ends(emulator: Emulator, test: Array, used: Mask, scatter: flo
         return np.array([[float(p.from_standard(v)) for p, v in zip(priors, x, strict=True)]])
 
     def residual(x: Array) -> Array:
-        return np.concatenate([(emulator.predict(values(x))[0][0][used] - logs) / scatter, PULL * x])
+        return np.concatenate([(emulator.predict(values(x))[0][0][used] - logs) / sd, PULL * x])
 
     def slope(x: Array) -> Array:
-        return np.concatenate([emulator.gradient(values(x))[0][used] / scatter, PULL * np.eye(len(x))])
+        return np.concatenate([emulator.gradient(values(x))[0][used] / sd[:, None], PULL * np.eye(len(x))])
 
     points = sobol(len(priors), STARTS, seed)
     last = (np.array([float(p.standardised(v)) for p, v in zip(priors, peak, strict=True)]) - low) / (high - low)
@@ -114,24 +115,24 @@ def least_squares_ends(emulator: Emulator, test: Array, used: Mask, scatter: flo
     return np.concatenate([values(x) for x in ends])
 
 
-def what_is_seen(emulator: Emulator, at: Array, used: Mask, noise: tuple[float, float], names: tuple[str, ...]) -> Seen:
+def what_is_seen(emulator: Emulator, at: Array, used: Mask, noise: tuple[Array, Array], names: tuple[str, ...]) -> Seen:
     """Singular values of the sensitivity at values (d,), with scatter, surrogate error and offsets as noise.
 
     Args:
         emulator: of the model.
         at: values of the parameters.
-        used: which frequencies count (load, mode).
-        noise: relative sd of the scatter and of the offsets.
+        used: what counts of what was measured (load, column).
+        noise: relative sd of the scatter and of the offsets, (column,) each.
         names: of the parameters.
     """
-    scatter, discrepancy = noise
+    scatter, discrepancy = (np.broadcast_to(values, used.shape[1:]) for values in noise)
     spread = np.array([p.sd_standardised for p in emulator.priors])
     slopes = emulator.gradient(at[None, :])[0] * spread
     error = emulator.predict(at[None, :])[1][0]
     rows = []
     for mode in np.flatnonzero(used.any(axis=0)):
         here = used[:, mode]
-        cov = np.diag(scatter**2 + error[here, mode] ** 2) + discrepancy**2
+        cov = np.diag(scatter[mode] ** 2 + error[here, mode] ** 2) + discrepancy[mode] ** 2
         rows.append(np.linalg.solve(np.linalg.cholesky(cov), slopes[here, mode]))
     _, values, vectors = np.linalg.svd(np.concatenate(rows), full_matrices=True)
     padded = np.zeros(len(names))

@@ -59,7 +59,7 @@ class Identification(Recorded):
     steps: int
     calls: int
     samples: Array = variable("draw", "parameter", unit="SI", long_name="samples of the posterior, of one weight")
-    log_likelihood: Array = variable("draw", "mode", unit="1", long_name="ln likelihood of each mode's frequencies")
+    log_likelihood: Array = variable("draw", "mode", unit="1", long_name="ln likelihood of what was measured of a mode")
     loads: Array = variable("load", unit="N", long_name="preload")
     test: Array = variable("load", "mode", unit="Hz", long_name="frequencies of the test", gaps=True)
     used: Mask = variable("load", "mode", unit="1", long_name="whether a frequency was used", dtype="bool")
@@ -77,6 +77,15 @@ class Identification(Recorded):
     singular: Seen
     notes: tuple[Note, ...] = ()
     laws: tuple[LawEvidence, ...] = ()
+    losses: Array | None = variable(
+        "load", "mode", unit="1", long_name="loss factors of the test", gaps=True, default=None
+    )
+    losses_used: Mask | None = variable(
+        "load", "mode", unit="1", long_name="whether a loss factor was used", dtype="bool", default=None
+    )
+    predictive_losses: Array | None = variable(
+        "draw", "load", "mode", unit="1", long_name="loss factors as measured", gaps=True, default=None
+    )
 
     def __repr__(self) -> str:
         return self.table()
@@ -117,11 +126,20 @@ class Identification(Recorded):
         """5, 50 and 95 % of every frequency as a test would measure it (3, load, mode) [Hz]; left-out loads too."""
         return np.asarray(np.quantile(self.predictive, LEVELS, axis=0))
 
+    @cached_property
+    def predicted_losses(self) -> Array | None:
+        """5, 50 and 95 % of every loss factor as a test would measure it (3, load, mode) [-]; None where none was."""
+        return None if self.predictive_losses is None else np.quantile(self.predictive_losses, LEVELS, axis=0)
+
     # -- for people and programs
 
     def table(self) -> str:
         """What was found, for a terminal of 80 columns."""
-        return "\n".join([*self._parameter_lines(), "", *self._frequency_lines(), "", *self._closing_lines()])
+        frequencies = self._lines(self.test, self.predicted, "test [Hz]", "11.2f")
+        losses = []
+        if self.losses is not None and self.predicted_losses is not None:
+            losses = ["", *self._lines(self.losses, self.predicted_losses, "test loss", "11.2e")]
+        return "\n".join([*self._parameter_lines(), "", *frequencies, *losses, "", *self._closing_lines()])
 
     def _parameter_lines(self) -> list[str]:
         lines = [f"{'parameter':<26}{'5 %':>13}{'50 %':>13}{'95 %':>13}  sd/prior"]
@@ -130,21 +148,20 @@ class Identification(Recorded):
             lines.append(f"{name if len(name) <= 25 else f'~{name[-24:]}':<26}{cells}{told:>10.2f}")
         return lines
 
-    def _frequency_lines(self) -> list[str]:
-        lines = [f"{'load':<10}{'mode':>4}{'test [Hz]':>12}{'5 %':>11}{'50 %':>11}{'95 %':>11}"]
+    def _lines(self, measured: Array, predicted: Array, title: str, form: str) -> list[str]:
+        """What was measured (load, mode) beside its intervals (3, load, mode)."""
+        lines = [f"{'load':<10}{'mode':>4}{title:>12}{'5 %':>11}{'50 %':>11}{'95 %':>11}"]
         for i, load in enumerate(self.loads):
-            for j in range(self.test.shape[1]):
-                low, middle, high = self.predicted[:, i, j]
+            for j in range(measured.shape[1]):
+                low, middle, high = predicted[:, i, j]
                 if np.isnan(middle):
                     continue
-                test = self.test[i, j]
+                test = measured[i, j]
                 outside = np.isfinite(test) and not low <= test <= high
                 mark = ["  left out"] * bool(self.left_out[i]) + ["  outside"] * bool(outside)
-                measured = "-" if np.isnan(test) else f"{test:.2f}"
-                lines.append(
-                    f"{show(load, 'N'):<10}{j + 1:>4}{measured:>12}{low:>11.2f}{middle:>11.2f}{high:>11.2f}"
-                    + ",".join(mark)
-                )
+                given = f"{'-':>12}" if np.isnan(test) else f" {test:{form}}"
+                cells = "".join(f"{value:{form}}" for value in (low, middle, high))
+                lines.append(f"{show(load, 'N'):<10}{j + 1:>4}{given}{cells}{','.join(mark)}")
         return lines
 
     def _closing_lines(self) -> list[str]:
@@ -177,6 +194,11 @@ class Identification(Recorded):
             for k, (name, unit, prior) in enumerate(zip(self.names, self.units, self.priors, strict=True))
         }
         quantiles = zip(map(str, LEVELS), self.predicted, strict=True)
+        lost = self.predicted_losses
+        losses = None
+        if self.losses is not None and lost is not None:
+            named = zip(map(str, LEVELS), lost, strict=True)
+            losses = {"test": listed(self.losses), "quantiles": {level: listed(values) for level, values in named}}
         return {
             "parameters": parameters,
             "correlation": listed(self.correlation),
@@ -188,6 +210,7 @@ class Identification(Recorded):
             "test": {"unit": "Hz", "values": listed(self.test)},
             "used": listed(self.used),
             "predicted": {"unit": "Hz", "quantiles": {level: listed(values) for level, values in quantiles}},
+            "loss_factors": losses,
             "offsets": {"mean": listed(self.offset_mean), "sd": listed(self.offset_sd)},
             "surrogate_error": listed(self.surrogate_error),
             "checked": listed(self.checked),
@@ -290,7 +313,9 @@ def mixed(found: Mapping[str, Identification], prior: Mapping[str, float], *, se
     count = len(best.samples)
     which = rng.choice(len(names), count, p=weights)
     rows = rng.integers(count, size=count)
-    predictive = np.stack([found[names[k]].predictive[row] for k, row in zip(which, rows, strict=True)])
+    draws = list(zip((found[names[k]] for k in which), rows, strict=True))
+    predictive = np.stack([one.predictive[row] for one, row in draws])
+    lost = [one.predictive_losses[row] for one, row in draws if one.predictive_losses is not None]
     laws = tuple(
         LawEvidence(
             name=name,
@@ -300,7 +325,21 @@ def mixed(found: Mapping[str, Identification], prior: Mapping[str, float], *, se
         )
         for name, weight in zip(names, weights, strict=True)
     )
-    return replace(best, predictive=predictive, laws=laws)
+    notes = best.notes
+    if any(_data(one) != _data(best) for one in found.values()):
+        text = (
+            "The laws were not compared on the same measured numbers, since not every law has an answer for each of "
+            "them: their evidences say nothing of which is better."
+        )
+        notes = (Note(code="evidence", text=text), *notes)
+    return replace(
+        best, predictive=predictive, predictive_losses=np.stack(lost) if lost else None, laws=laws, notes=notes
+    )
+
+
+def _data(found: Identification) -> bytes:
+    """What an identification used of the test."""
+    return found.used.tobytes() + (b"" if found.losses_used is None else found.losses_used.tobytes())
 
 
 def weights_of(log_evidences: Sequence[float]) -> Array:

@@ -13,7 +13,17 @@ from faying.identify.emulator import Emulator
 from faying.identify.fit import Fit, least_squares_ends, what_is_seen
 from faying.identify.identification import Identification
 from faying.identify.model import Model
-from faying.identify.noise import DISCREPANCY, DISCREPANCY_SD, SCATTER, TEST_SD, Offsets, offsets
+from faying.identify.noise import (
+    DISCREPANCY,
+    DISCREPANCY_SD,
+    LOSS_DISCREPANCY,
+    LOSS_SCATTER,
+    SCATTER,
+    TEST_SD,
+    Losses,
+    Offsets,
+    offsets,
+)
 from faying.identify.points import at_shares, sobol
 from faying.identify.tempering import Tempered, temper
 from faying.progress import Report
@@ -38,15 +48,17 @@ def identify_model(
     seed: int = 0,
     test_sd: Distribution = TEST_SD,
     discrepancy: Distribution = DISCREPANCY_SD,
+    losses: Losses | None = None,
     evaluations: int | None = None,
     report: Report | None = None,
 ) -> Identification:
-    """Identify the parameters of a model from measured frequencies.
+    """Identify the parameters of a model from measured frequencies, and loss factors where they are given.
 
     ln test = ln model + b + e: e is the scatter of each frequency, b the model's own bias, one offset for each mode at
     all loads. The sd of both are identified with the rest. The model is evaluated over its priors and replaced by
     polynomials of ln f, whose leave-one-out error counts as scatter; where the polynomials miss the model at points of
-    the posterior, points there are added and the surrogate is drawn closer.
+    the posterior, points there are added and the surrogate is drawn closer. Loss factors are treated as the frequencies
+    are, with a scatter and offsets of their own.
 
     Args:
         model: with its parameters and their priors.
@@ -57,6 +69,7 @@ def identify_model(
         seed: of all random numbers.
         test_sd: prior of the relative sd of the scatter.
         discrepancy: prior of the relative sd of the offsets.
+        losses: measured loss factors; None where they are not used.
         evaluations: of the model over its priors; a power of 2 of at least 256 where not given, more for many
             parameters.
         report: told what is done, how much of it, and of how much.
@@ -68,6 +81,15 @@ def identify_model(
     """
     test, loads = np.asarray(test, dtype=float), np.asarray(loads, dtype=float)
     wanted, left_out = _what_counts(test, loads, leave_out)
+    priors = (*model.priors, test_sd, discrepancy)
+    if losses is not None:
+        if losses.values.shape != test.shape or np.any(losses.values <= 0):
+            raise InputError(
+                f"loss factors of shape {losses.values.shape}; positive ones of shape {test.shape} are due"
+            )
+        test = np.concatenate([test, losses.values], axis=1)
+        wanted = np.isfinite(test) & ~left_out[:, None]
+        priors = (*priors, losses.scatter, losses.discrepancy)
     size = len(model.names)
     chosen = at_shares(model.priors, sobol(size, evaluations or points_for(size), seed))
     points = _Points.at(model, chosen, test.shape, report)
@@ -86,7 +108,7 @@ def identify_model(
         wanted=wanted,
         used=wanted & emulator.known,
         left_out=left_out,
-        priors=(*model.priors, test_sd, discrepancy),
+        priors=priors,
         count=count,
         seed=seed,
         report=report,
@@ -121,7 +143,7 @@ def points_for(size: int) -> int:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Points:
-    """Points at which the model was evaluated (n, d), its frequencies there (n, load, mode), and why there are none."""
+    """Points at which the model was evaluated (n, d), what it gives there (n, load, column), or why it does not."""
 
     values: Array
     frequencies: Array
@@ -137,6 +159,7 @@ class _Points:
                 "(sample, load, mode) of the test"
             )
         frequencies[[bool(reason) for reason in reasons]] = np.nan
+        frequencies[~(frequencies > 0)] = np.nan  # a loss factor of a law that predicts none
         return cls(values=values, frequencies=frequencies, reasons=tuple(reasons))
 
     def __add__(self, other: "_Points") -> "_Points":
@@ -149,7 +172,10 @@ class _Points:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Question:
-    """What is asked: the test, what of it counts, and the priors with those of the noise."""
+    """What is asked: the test, what of it counts, and the priors with those of the noise.
+
+    The columns of the test are its frequencies by mode, and then its loss factors where they are used.
+    """
 
     model: Model
     test: Array
@@ -162,13 +188,29 @@ class _Question:
     seed: int
     report: Report | None
 
+    @property
+    def size(self) -> int:
+        """Number of the model's parameters, without those of the noise."""
+        return len(self.model.names)
+
+    @property
+    def modes(self) -> int:
+        """Number of the test's modes."""
+        return int(2 * self.test.shape[1] // (len(self.priors) - self.size))
+
+    def noise(self, values: Array) -> tuple[Array, Array]:
+        """Relative sd of the scatter and of the offsets (n, column) at values of all parameters (n, d + 2 or 4)."""
+        scatter, discrepancy = values[:, self.size :: 2], values[:, self.size + 1 :: 2]
+        return np.repeat(scatter, self.modes, axis=1), np.repeat(discrepancy, self.modes, axis=1)
+
     def offsets(self, emulator: Emulator, values: Array) -> Offsets:
-        """What the test says at values of all parameters (n, d + 2)."""
-        logs, error = emulator.predict_known(values[:, :-2])
-        chosen = self.used[emulator.known]
-        variance = values[:, -2, None] ** 2 + error[:, chosen] ** 2
+        """What the test says at values of all parameters (n, d + 2 or 4)."""
+        logs, error = emulator.predict_known(values[:, : self.size])
+        chosen, columns = self.used[emulator.known], np.nonzero(self.used)[1]
+        scatter, discrepancy = self.noise(values)
+        variance = scatter[:, columns] ** 2 + error[:, chosen] ** 2
         residual = np.log(self.test[self.used]) - logs[:, chosen]
-        return offsets(residual, variance, values[:, -1], np.nonzero(self.used)[1], self.test.shape[1])
+        return offsets(residual, variance, discrepancy, columns, self.test.shape[1])
 
     def sample(self, emulator: Emulator) -> Tempered:
         """Sample the posterior with a surrogate in place of the model."""
@@ -186,8 +228,9 @@ class _Question:
 class _Check:
     """The surrogate beside the model at points of the posterior.
 
-    difference: rms of ln f (load, mode); error: what the surrogate says of itself there; rough: whether it misses by
-    far more than that; blunt: whether its own error blurs the posterior.
+    difference: rms of ln f (load, column); error: what the surrogate says of itself there; missed, claimed: both as one
+    number, of the frequencies; rough: whether it misses by far more than that; blunt: whether its own error blurs the
+    posterior.
     """
 
     points: _Points
@@ -201,26 +244,32 @@ class _Check:
     @classmethod
     def of(cls, question: _Question, emulator: Emulator, posterior: Tempered, rng: np.random.Generator) -> "_Check":
         chosen = posterior.samples[rng.choice(len(posterior.samples), min(CHECKS, len(posterior.samples)), False)]
-        points = question.evaluate(chosen[:, :-2])
-        logs, errors = emulator.predict(chosen[:, :-2])
+        size, modes = question.size, question.modes
+        points = question.evaluate(chosen[:, :size])
+        logs, errors = emulator.predict(chosen[:, :size])
         apart = np.log(points.frequencies) - logs
         count = np.isfinite(apart).sum(axis=0)
         square = np.where(np.isfinite(apart), apart, 0.0) ** 2
         difference = np.sqrt(np.where(count > 0, square.sum(axis=0) / np.maximum(count, 1), np.nan))
         error = np.sqrt((errors**2).mean(axis=0))
-        scatter = float(np.median(posterior.samples[:, -2]))
+        scatter = np.broadcast_to(np.median(question.noise(posterior.samples)[0], axis=0), difference.shape)
         used = question.used
-        seen, said = difference[used & (count > 0)], error[used & (count > 0)]
-        claimed = float(np.sqrt(np.mean(error[used] ** 2)))
+        seen = used & (count > 0)
+        rough = difference[seen] > np.maximum(WORSE * error[seen], IDLE * scatter[seen])
+        pitch = np.arange(difference.shape[1]) < modes
         return cls(
             points=points,
             difference=difference,
             error=error,
-            missed=float(np.sqrt(np.mean(seen**2))) if len(seen) else float("nan"),
-            claimed=claimed,
-            rough=bool(np.any(seen > np.maximum(WORSE * said, IDLE * scatter))),
-            blunt=claimed > BLUNT * scatter,
+            missed=_rms(difference[seen & pitch]),
+            claimed=_rms(error[used & pitch]),
+            rough=bool(np.any(rough)),
+            blunt=any(_rms(error[part] / scatter[part]) > BLUNT for part in (used & pitch, used & ~pitch)),
         )
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2))) if len(values) else float("nan")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -243,9 +292,10 @@ def _sampled(question: _Question, emulator: Emulator, points: _Points) -> _Answe
         check = _Check.of(question, surrogate, posterior, rng)
         if rounds == ROUNDS or not (check.rough or check.blunt):
             break
-        about = _about(question.model.priors, posterior.samples[:, :-2], rng)
+        samples = posterior.samples[:, : question.size]
+        about = _about(question.model.priors, samples, rng)
         points = points + check.points + question.evaluate(about)
-        emulator = surrogate.closer(points.values, points.frequencies, posterior.samples[:, :-2])
+        emulator = surrogate.closer(points.values, points.frequencies, samples)
     return _Answer(posterior=posterior, emulator=surrogate, points=points + check.points, check=check, rounds=rounds)
 
 
@@ -262,23 +312,25 @@ def _about(priors: Sequence[Distribution], samples: Array, rng: np.random.Genera
 
 def _identification(question: _Question, answer: _Answer) -> Identification:
     model, posterior, check = question.model, answer.posterior, answer.check
-    samples, size = posterior.samples, len(model.names)
-    names = (*model.names, SCATTER, DISCREPANCY)
-    scatter, discrepancy = (float(v) for v in np.median(samples[:, size:], axis=0))
+    samples, size, modes = posterior.samples, question.size, question.modes
+    names = (*model.names, *(SCATTER, DISCREPANCY, LOSS_SCATTER, LOSS_DISCREPANCY)[: len(question.priors) - size])
+    scatter, discrepancy = (np.median(noise, axis=0) for noise in question.noise(samples))
     found = question.offsets(answer.emulator, samples)
     density = [prior.log_density(x) for prior, x in zip(question.priors, samples.T, strict=True)]
     peak = samples[int(np.argmax(posterior.log_likelihood + np.sum(density, axis=0))), :size]
     notes = (
-        *remarks.of_data(size, question.wanted, question.used, question.loads),
+        *remarks.of_data(size, question.wanted, question.used, question.loads, modes),
         *remarks.of_answers(answer.points.reasons, "that were evaluated", "no-answer"),
         *remarks.of_answers(check.points.reasons, "of the posterior", "no-answer-in-posterior"),
         *remarks.of_posterior(names, question.priors, samples),
         *remarks.of_sampling(posterior.correlation),
-        *remarks.of_surrogate(check.missed, check.claimed, scatter, rough=check.rough),
+        *remarks.of_surrogate(check.missed, check.claimed, float(scatter[0]), rough=check.rough),
     )
+    predictive = _predictive(question, answer, found)
+    damped = question.test.shape[1] > modes
     return Identification(
         names=names,
-        units=(*model.units, "", ""),
+        units=(*model.units, *[""] * (len(names) - size)),
         priors=question.priors,
         log_evidence=posterior.log_evidence,
         log_evidence_sd=posterior.log_evidence_sd,
@@ -288,16 +340,19 @@ def _identification(question: _Question, answer: _Answer) -> Identification:
         steps=posterior.steps,
         calls=posterior.calls,
         samples=samples,
-        log_likelihood=found.log_likelihood,
+        log_likelihood=found.log_likelihood.reshape(len(samples), -1, modes).sum(axis=1),
         loads=question.loads,
-        test=question.test,
-        used=question.used,
+        test=question.test[:, :modes],
+        used=question.used[:, :modes],
         left_out=question.left_out,
-        predictive=_predictive(question, answer, found),
-        offset_mean=found.mean.mean(axis=0),
-        offset_sd=np.sqrt(found.variance.mean(axis=0) + found.mean.var(axis=0)),
-        surrogate_error=check.error,
-        checked=check.difference,
+        predictive=predictive[:, :, :modes],
+        losses=question.test[:, modes:] if damped else None,
+        losses_used=question.used[:, modes:] if damped else None,
+        predictive_losses=predictive[:, :, modes:] if damped else None,
+        offset_mean=found.mean.mean(axis=0)[:modes],
+        offset_sd=np.sqrt(found.variance.mean(axis=0) + found.mean.var(axis=0))[:modes],
+        surrogate_error=check.error[:, :modes],
+        checked=check.difference[:, :modes],
         fit=_fit(question, answer.emulator, scatter, peak),
         singular=what_is_seen(answer.emulator, peak, question.used, (scatter, discrepancy), model.names),
         notes=notes,
@@ -305,27 +360,28 @@ def _identification(question: _Question, answer: _Answer) -> Identification:
 
 
 def _predictive(question: _Question, answer: _Answer, found: Offsets) -> Array:
-    """Frequencies as a test would measure them (draw, load, mode): with the offset of the mode, and scatter."""
+    """What a test would measure (draw, load, column): with the offset of the mode, and scatter."""
     rng = np.random.default_rng([question.seed, 2])
     samples = answer.posterior.samples
-    logs, error = answer.emulator.predict(samples[:, :-2])
+    logs, error = answer.emulator.predict(samples[:, : question.size])
     offset = found.mean + np.sqrt(found.variance) * rng.standard_normal(found.mean.shape)
-    scatter = np.sqrt(samples[:, -2, None, None] ** 2 + error**2)
+    scatter = np.sqrt(question.noise(samples)[0][:, None, :] ** 2 + error**2)
     return np.asarray(np.exp(logs + offset[:, None, :] + scatter * rng.standard_normal(logs.shape)))
 
 
-def _fit(question: _Question, emulator: Emulator, scatter: float, peak: Array) -> Fit:
+def _fit(question: _Question, emulator: Emulator, scatter: Array, peak: Array) -> Fit:
     """The least-squares fit: of all ends of the search, the one at which the model itself is nearest to the test."""
     ends = least_squares_ends(emulator, question.test, question.used, scatter, peak, question.seed)
-    frequencies = question.evaluate(ends).frequencies
-    used = question.used
-    misfit = np.sqrt(np.mean(np.log(question.test[used] / frequencies[:, used]) ** 2, axis=1))
+    found, used, modes = question.evaluate(ends).frequencies, question.used, question.modes
+    apart = np.log(question.test[used] / found[:, used])
+    misfit = np.sqrt(np.mean((apart / np.broadcast_to(scatter, used.shape)[used]) ** 2, axis=1))  # in sd of the scatter
     ranked = np.where(np.isnan(misfit), np.inf, misfit)
     best = int(ranked.argmin())
+    of_frequencies = np.nonzero(used)[1] < modes
     return Fit(
         values=ends[best],
-        frequencies=frequencies[best],
-        misfit=float(misfit[best]),
+        frequencies=found[best][:, :modes],
+        misfit=float(np.sqrt(np.mean(apart[best, of_frequencies] ** 2))) if of_frequencies.any() else float("nan"),
         starts=len(ends),
-        agreeing=int((ranked <= ranked[best] + AGREE * scatter).sum()) if np.isfinite(ranked[best]) else 0,
+        agreeing=int((ranked <= ranked[best] + AGREE).sum()) if np.isfinite(ranked[best]) else 0,
     )

@@ -29,14 +29,15 @@ class Model(Protocol):
         ...
 
     def frequencies(self, values: Array, report: Report | None = None) -> tuple[Array, list[str]]:
-        """The frequencies of the test's modes.
+        """The frequencies of the test's modes, and after them their loss factors where the test has these.
 
         Args:
             values: of the parameters (n, d), SI.
             report: told what is done, how much of it, and of how much.
 
         Returns:
-            Frequencies [Hz] (n, load, mode), NaN where a sample has no answer or a mode of the test no partner; and for
-            each sample the reason why it has no answer, "" where it has one.
+            Frequencies [Hz] (n, load, mode), or with loss factors [-] (n, load, twice as many), NaN where a sample has
+            no answer or a mode of the test no partner; and for each sample the reason why it has no answer, "" where it
+            has one.
         """
         ...

@@ -1,4 +1,4 @@
-"""How a test differs from a model: scatter of each frequency, and one offset for each mode."""
+"""How a test differs from a model: scatter of each measured number, and one offset for each mode."""
 
 from dataclasses import dataclass
 from math import log, pi
@@ -10,9 +10,27 @@ from faying.distribution import FACTOR_SCORE, Distribution
 from faying.typing import Array, Index
 
 SCATTER, DISCREPANCY = "test scatter", "model discrepancy"
+LOSS_SCATTER, LOSS_DISCREPANCY = "loss test scatter", "loss model discrepancy"
 # relative: 5 to 95 % lie within a factor of three
 TEST_SD = Distribution(kind="lognormal", centre=0.003, spread=log(3) / FACTOR_SCORE)
 DISCREPANCY_SD = Distribution(kind="lognormal", centre=0.01, spread=log(3) / FACTOR_SCORE)
+# of loss factors, which tests repeat to a tenth or so and models hit within a third at best
+LOSS_TEST_SD = Distribution(kind="lognormal", centre=0.1, spread=log(3) / FACTOR_SCORE)
+LOSS_DISCREPANCY_SD = Distribution(kind="lognormal", centre=0.3, spread=log(3) / FACTOR_SCORE)
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Losses:
+    """Measured loss factors beside the frequencies of a test.
+
+    values: (load, mode) [-], NaN where there is none; scatter, discrepancy: priors of the relative sd of their scatter,
+    and of one offset of their logarithm for each mode.
+    """
+
+    values: Array
+    scatter: Distribution = LOSS_TEST_SD
+    discrepancy: Distribution = LOSS_DISCREPANCY_SD
 
 
 @final
@@ -37,14 +55,14 @@ def offsets(residual: Array, variance: Array, discrepancy: Array, modes: Index, 
     Args:
         residual: ln test - ln model of the k frequencies that count (n, k).
         variance: of the scatter, with the square of the surrogate's error (n, k).
-        discrepancy: sd of the offsets (n,).
+        discrepancy: sd of the offsets, of all (n,) or of each mode (n, mode).
         modes: the mode, from 0, of each frequency (k,).
         count: of modes; one without a frequency has the likelihood 1 and the offset's prior.
     """
     member = np.zeros((len(modes), count))
     member[np.arange(len(modes)), modes] = 1.0
     weight = 1 / variance
-    prior = discrepancy[:, None] ** 2
+    prior = np.reshape(discrepancy, (len(residual), -1)) ** 2 * np.ones(count)
     whole, pull = weight @ member, (weight * residual) @ member
     shrunk = prior / (1 + prior * whole)
     # determinant and inverse of diag + rank one (Sherman and Morrison)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -13,39 +14,62 @@ from faying.identify.evaluate import TOLERANCE, Reduced
 from faying.identify.identification import Identification, mixed
 from faying.identify.identify import identify_model
 from faying.identify.identity import paired, settled
-from faying.identify.noise import DISCREPANCY_SD, TEST_SD
+from faying.identify.noise import DISCREPANCY_SD, LOSS_DISCREPANCY_SD, LOSS_TEST_SD, TEST_SD, Losses
 from faying.identify.predict import check, cut_notes
 from faying.identify.store import Store
 from faying.joint.loads import preload_index
 from faying.progress import Report, silent
+from faying.study.keys.test import TestChoice
 from faying.study.keys.uncertain import UncertainChoice
+from faying.study.keys.varied import MODEL
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
+from faying.study.variation import check_key
 from faying.typing import Array, Index
 
 COUNT = 1000  # samples of the posterior
+SLIGHT = 0.1  # error of the bases over the scatter of the test that does not matter
 
 
 class StudyModel:
-    """A study in its reduced bases, as an identification asks for it."""
+    """A study in its reduced bases, under one of its laws, as an identification asks for it."""
 
-    def __init__(self, ensemble: Ensemble, reduced: Reduced, stage: "_Stage", label: str = "") -> None:
-        self.ensemble, self.reduced, self.stage, self.label = ensemble, reduced, stage, label
-        self.names, self.priors = ensemble.inputs.names, ensemble.inputs.priors
-        self.units = tuple(column.unit for column in ensemble.inputs.columns)
+    def __init__(self, ensemble: Ensemble, reduced: Reduced, stage: "_Stage", law: int = 0) -> None:
+        self.ensemble, self.reduced, self.stage, self.law = ensemble, reduced, stage, law
+        inputs = ensemble.inputs
+        columns = [column for column in inputs.columns if column.key != MODEL]
+        self.names = tuple(column.key for column in columns)
+        self.priors = tuple(column.distribution for column in columns)
+        self.units = tuple(column.unit for column in columns)
         self.calls = 0
+        choice = scattering(ensemble.study)
+        self.scatter = (choice.test or TEST_SD).median  # of a measured frequency, relative
         self.modes: Index | None = None  # of the bases that are the test's
 
     def frequencies(self, values: Array, report: Report | None = None) -> tuple[Array, list[str]]:
-        """Frequencies of the test's modes (n, load, mode) [Hz] at values (n, d), and why a sample has none."""
+        """Frequencies of the test's modes (n, load, mode) [Hz] at values (n, d), and why a sample has none.
+
+        Where the test has loss factors, those of the same modes follow.
+        """
         self.calls += 1
-        self.stage.begin(f"evaluations{self.label}", report)
-        rows = self.reduced.rows(self.ensemble.with_values(values), f"{self.calls:03d}")
+        inputs, what = self.ensemble.inputs, f"{self.calls:03d}"
+        if inputs.models:
+            self.stage.begin(f"evaluations of {inputs.models[self.law][0]}", report)
+            values = np.column_stack([values, np.full(len(values), inputs.share(self.law))])
+            what = f"{self.law}-{what}"
+        else:
+            self.stage.begin("evaluations", report)
+        # over the priors the error of the bases is slight beside that of the polynomials; about the posterior a part of
+        # the scatter of the test is
+        allowed = inf if self.calls == 1 else SLIGHT * self.scatter
+        rows = self.reduced.rows(self.ensemble.with_values(values), what, self.law, allowed=allowed)
         test = self.ensemble.study.test
         assert test is not None
         if self.modes is None:
             self.modes = settled(np.array(test.frequencies), rows)
-        return paired(rows["named"], self.modes), [str(reason) for reason in rows["reasons"]]
+        given = ["named"] if test.losses is None else ["named", "named_loss"]
+        found = [paired(rows[name], self.modes) for name in given]
+        return np.concatenate(found, axis=2), [str(reason) for reason in rows["reasons"]]
 
 
 class _Stage:
@@ -72,7 +96,7 @@ def identify(
     out: str | Path | None = None,
     report: Report | None = None,
 ) -> Identification:
-    """Identify the numbers that scatter in a study from the frequencies of its test.
+    """Identify the numbers that scatter in a study from the frequencies of its test, and the loss factors it gives.
 
     What [uncertain] says are the priors. The model's own error in each mode, the same at all preloads, and the scatter
     of the test are identified with the rest. Where [uncertain] lists laws, each is identified by itself; the evidence
@@ -147,16 +171,12 @@ def _identified(
 ) -> Identification:
     choice, test = scattering(study), study.test
     assert test is not None
-    variants = _variants(study, choice)
-    found = []
-    for number, (name, variant) in enumerate(variants):
-        stage = _Stage(report)
-        label = f" of {name}" if name else ""
-        ensemble = Ensemble.of(variant, 8, seed)
-        reduced = Reduced(ensemble, jobs=jobs, dask=dask, report=stage, store=store.within(number))
-        model = StudyModel(ensemble, reduced, stage, label)
-        one = identify_model(
-            model,
+    _check_laws(study, choice)
+    stage, ensemble = _Stage(report), Ensemble.of(study, 8, seed)
+    reduced = Reduced(ensemble, jobs=jobs, dask=dask, report=stage, store=store)
+    found = [
+        identify_model(
+            StudyModel(ensemble, reduced, stage, law),
             np.array(test.frequencies),
             np.array(study.loads),
             leave_out=left,
@@ -164,22 +184,41 @@ def _identified(
             seed=seed,
             test_sd=choice.test or TEST_SD,
             discrepancy=choice.discrepancy or DISCREPANCY_SD,
+            losses=_losses(test, choice),
             report=report,
         )
-        found.append(replace(one, notes=(*cut_notes(ensemble.inputs.columns), *one.notes)))
+        for law in range(max(len(choice.models), 1))
+    ]
+    cut = cut_notes(ensemble.inputs.columns)
+    found = [replace(one, notes=(*cut, *one.notes)) for one in found]
     if not choice.models:
         return found[0]
-    return mixed(dict(zip([name for name, _ in variants], found, strict=True)), dict(choice.models), seed=seed)
+    return mixed(dict(zip([name for name, _ in choice.models], found, strict=True)), dict(choice.models), seed=seed)
 
 
-def _variants(study: Study, choice: UncertainChoice) -> list[tuple[str, Study]]:
-    """The study under each of its laws; the study itself where its law is certain."""
+def _losses(test: TestChoice, choice: UncertainChoice) -> Losses | None:
+    """The measured loss factors with the priors of their noise; None where there are none."""
+    if test.losses is None:
+        return None
+    return Losses(
+        values=np.array(test.losses),
+        scatter=choice.test_loss or LOSS_TEST_SD,
+        discrepancy=choice.discrepancy_loss or LOSS_DISCREPANCY_SD,
+    )
+
+
+def _check_laws(study: Study, choice: UncertainChoice) -> None:
+    """Raise InputError where laws are listed and nothing else scatters, or one of them lacks what scatters."""
     if not choice.models:
-        return [("", study)]
+        return
     alone = replace(choice, models=())
     if not (alone.inputs or alone.fit):
         raise InputError(
             "uncertain lists laws and nothing else; add what scatters beside them, for example "
             'stiffness = {distribution = "lognormal", median = 1, sd_ln = 0.6}'
         )
-    return [(name, replace(study, law=replace(study.law, model=name), uncertain=alone)) for name, _ in choice.models]
+    for name, _ in choice.models:
+        law = replace(study.law, model=name)
+        for column in alone.inputs:
+            if column.key.startswith("law."):
+                check_key(replace(study, law=law), column.key, models=False, where=f"uncertain.{column.key}")

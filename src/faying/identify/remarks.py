@@ -7,7 +7,7 @@ import numpy as np
 
 from faying.distribution import Distribution
 from faying.identify.fit import UNSEEN
-from faying.identify.noise import DISCREPANCY, SCATTER
+from faying.identify.noise import DISCREPANCY, LOSS_DISCREPANCY, LOSS_SCATTER, SCATTER
 from faying.notes import Note
 from faying.typing import Array, Mask
 from faying.units import show
@@ -17,19 +17,25 @@ MIXED = 0.3  # correlation with the start of a stage above which the samples hav
 SHOWN = 3  # reasons that are listed
 
 
-def of_data(parameters: int, wanted: Mask, used: Mask, loads: Array) -> list[Note]:
-    """Frequencies of the test that the model has no partner for; more parameters than frequencies."""
+def of_data(parameters: int, wanted: Mask, used: Mask, loads: Array, modes: int) -> list[Note]:
+    """What of the test the model has no partner for; more parameters than measured numbers.
+
+    wanted, used: (load, column), frequencies of the `modes` and then loss factors.
+    """
     out = []
-    lost = [f"mode {j + 1} at {show(loads[i], 'N')}" for i, j in zip(*np.nonzero(wanted & ~used), strict=True)]
+    lost = [
+        f"{'loss factor of ' if j >= modes else ''}mode {j % modes + 1} at {show(loads[i], 'N')}"
+        for i, j in zip(*np.nonzero(wanted & ~used), strict=True)
+    ]
     if lost:
         text = f"Not used, since the model has no partner for them over most of the priors: {', '.join(lost)}."
         out.append(Note(code="test-modes", text=text))
-    count = int(used.sum())
+    count, measured = int(used.sum()), "frequencies" if used.shape[1] == modes else "frequencies and loss factors"
     if parameters > count:
         out.append(
             Note(
                 code="more-parameters-than-data",
-                text=f"{parameters} parameters and {count} frequencies: some combinations of the parameters stay as "
+                text=f"{parameters} parameters and {count} {measured}: some combinations of the parameters stay as "
                 "uncertain as their priors make them. More preloads or modes, or fewer parameters, tell more.",
             )
         )
@@ -52,7 +58,7 @@ def of_posterior(names: Sequence[str], priors: Sequence[Distribution], samples: 
     """Parameters that the test does not tell, and those that press against an end of their prior."""
     out = []
     for name, prior, values in zip(names, priors, samples.T, strict=True):
-        of_noise = name in (SCATTER, DISCREPANCY)
+        of_noise = name in (SCATTER, DISCREPANCY, LOSS_SCATTER, LOSS_DISCREPANCY)
         # of ln x for a lognormal: pressed against its upper end, x itself scatters by more than before
         told = float(prior.standardised(values).std(ddof=1) / prior.sd_standardised)
         if told > UNSEEN and not of_noise:

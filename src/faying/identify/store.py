@@ -13,14 +13,6 @@ Bases = tuple[ReducedModel, tuple[Array, Array] | None]
 class Store(Kept):
     """The folder OUT.part beside the output; without an output nothing is kept."""
 
-    def within(self, number: int) -> "Store":
-        """A folder in this one, for a part of the work with bases of its own."""
-        inner = Store(None, what="identification")
-        if self.folder is not None:
-            inner.folder = self.folder / f"{number:03d}"
-            inner.folder.mkdir(exist_ok=True)
-        return inner
-
     def model(self) -> Bases | None:
         """The bases that were kept, and what the test sees of them."""
         if self.folder is None:

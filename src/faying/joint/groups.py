@@ -5,7 +5,7 @@ seven digits, and ends where the force balance of all points in full says so. Sp
 """
 
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,13 +16,23 @@ SIZE = 8  # most points of a group
 SEEN = 6  # of the motions of a joint, strongest first, by which points are alike
 
 
+def sprung(relative: Any, springs: Array) -> Array:
+    """Stiffness (m, m) of springs (q, 3) [N/m], normal and both tangential, on a relative motion (3q, m).
+
+    Springs and losses are never negative: half the work through their roots. A motion in single precision gives as many
+    digits.
+    """
+    rooted = np.sqrt(springs).astype(relative.dtype).reshape(-1, 1) * relative
+    return np.asarray((rooted.T @ rooted).astype(float))  # NumPy sees that both are one, and does half of it
+
+
 @dataclass(frozen=True, kw_only=True)
 class Groups:
     """Groups of the q points of one joint, g of them.
 
     order: the points, group by group (q,); starts: where each group begins in `order` (g,); weights: area of each
     group [m2] (g,); shares: of each point of `order` in the area of its group (q,); relative: mean motion (3g, m);
-    light: the motion of all points (3q, m) in seven digits.
+    light: the motion of all points (3q, m) in seven digits; light_mean: `relative` in as many.
     """
 
     order: Index
@@ -31,6 +41,7 @@ class Groups:
     shares: Array
     relative: Array
     light: NDArray[np.float32]
+    light_mean: NDArray[np.float32]
 
     @classmethod
     def of(cls, weights: Array, relative: Array) -> Self:
@@ -60,16 +71,13 @@ class Groups:
             shares=shares,
             relative=mean.reshape(-1, width),
             light=relative.astype(np.float32),
+            light_mean=mean.reshape(-1, width).astype(np.float32),
         )
-
-    def sprung(self, springs: Array) -> Array:
-        """Stiffness (m, m) of springs (q, 3) [N/m], normal and both tangential, of all points, to six digits or so."""
-        from scipy.linalg.blas import ssyrk
-
-        roots = np.sqrt(springs).astype(np.float32).reshape(-1, 1)
-        lower = ssyrk(1.0, (roots * self.light).T, lower=1).astype(float)
-        return np.asarray(lower + np.tril(lower, -1).T)
 
     def mean(self, values: Array) -> Array:
         """Means (g,) by area of values (q,)."""
         return np.add.reduceat(self.shares * values[self.order], self.starts)
+
+    def sums(self, values: Array) -> Array:
+        """Sums (g, ...) over each group of values (q, ...)."""
+        return np.add.reduceat(values[self.order], self.starts)

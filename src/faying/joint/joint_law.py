@@ -119,7 +119,7 @@ class JointLaw:
         slope = self.model.at_pressure(self._grid).k_load
         return np.exp(self._samples[1][0]) if slope is None else self.scale * slope
 
-    @property
+    @cached_property
     def _fade(self) -> float:
         """Power of the pressure with which the stiffness goes on below the least pressure [-]."""
         return fade(self._grid, self._loading)
@@ -237,6 +237,18 @@ class JointLaw:
         result checks the pressure against `law.greatest_pressure`.
         """
         return self._curve.pressure(approach)
+
+    def contact(self, approach: Array) -> tuple[Array, Array, Array]:
+        """`pressure` [Pa] with its slope, and k_t of `stiffness` [Pa/m] there, at approaches [m], sooner than both."""
+        if np.size(approach) <= self.few:
+            p, k_n = self.pressure(approach)
+            return p, k_n, self.stiffness(p)[1]
+        p, k_n, log_p, cell = self._curve.placed(approach)
+        grid, (_, log_t), _ = self._samples
+        low = grid[cell]
+        share = np.clip((log_p - low) / (grid[cell + 1] - low), 0.0, 1.0)
+        log_k = (1 - share) * log_t[cell] + share * log_t[cell + 1] + self._fade * np.minimum(log_p - grid[0], 0.0)
+        return p, k_n, np.where(approach > 0, np.exp(log_k), 0.0)
 
     def lasting_approach(self, pressure: Array) -> tuple[Array, Array] | None:
         """Bounds of the approach [m] that is left when pressures [Pa] are taken off; None where the law is elastic.

@@ -74,6 +74,13 @@ class PressureCurve:
 
     def pressure(self, approach: Array) -> tuple[Array, Array]:
         """Pressure [Pa] and its slope [Pa/m] at approaches [m] of any shape; both 0 where the faces are apart."""
+        return self.placed(approach)[:2]
+
+    def placed(self, approach: Array) -> tuple[Array, Array, Array, Index]:
+        """`pressure` and its slope, with ln p and the cell of the table that it lies in, the nearest beyond the ends.
+
+        ln p is that of the last pressure where the faces are apart.
+        """
         log_w, slope = self.log_w, self.slope
         shut = approach > 0
         x = np.log(np.where(shut, approach, self.end))
@@ -88,7 +95,7 @@ class PressureCurve:
         value = value + np.where(beyond, end * (x - inside), 0.0)
         steep = np.where(beyond, end, steep)
         p = np.where(shut, np.exp(value), 0.0)
-        return p, np.where(shut, p * steep / np.where(shut, approach, 1.0), 0.0)
+        return p, np.where(shut, p * steep / np.where(shut, approach, 1.0), 0.0), value, cell
 
     def approach(self, pressure: Array) -> Array:
         """Approach [m] at pressures [Pa] of any shape; 0 where there is none."""

@@ -288,15 +288,17 @@ class Reduction:
         )
 
     def modal_error(
-        self, laws: Sequence[JointLaw], pressures: Sequence[Array], tolerance: float = 0.0
+        self, laws: Sequence[JointLaw], pressures: Sequence[Array], tolerance: float = 0.0, which: Any = slice(None)
     ) -> tuple[Array, Array]:
         """Estimated relative error of the complex eigenvalues (m,) of a variant, and what would mend it (n, k).
 
         The square of the residual in the energy norm: eigenvalues err by the square of their vectors. What would mend
-        it is for the modes whose error exceeds the tolerance, real and imaginary parts where there is loss.
+        it is for the modes whose error exceeds the tolerance, real and imaginary parts where there is loss. which: of
+        the modes, all of them where not given.
         """
         springs = self.model.springs(laws, pressures)
         values, vectors, _ = self.model.modes(springs, slight=0.0)  # no basis mends what first order leaves
+        values, vectors = values[which], vectors[:, which]
         momentum = self.model.matrices[2] @ vectors
         size = np.abs(values) * np.abs(np.einsum("ij,ij->j", vectors.conj(), momentum))
         parts = _parts(self._modal_residual(springs, values, vectors))
@@ -327,9 +329,11 @@ class Reduction:
 
     def train_dynamic(self, laws: Sequence[JointLaw], pressures: Sequence[Array], tolerance: float) -> None:
         """Enrich until all modes of a variant are right; tolerance: of the complex eigenvalues."""
+        poor: Any = np.arange(self.model.count)
         for _ in range(FEW_STEPS):
-            error, mend = self.modal_error(laws, pressures, tolerance)
-            if error.max() <= tolerance:
+            error, mend = self.modal_error(laws, pressures, tolerance, poor)
+            poor = poor[error > tolerance]  # the others only gain by what is added
+            if not len(poor):
                 return
             new = self.dynamic.add(mend, least=0.02 * tolerance)
             self._refresh()

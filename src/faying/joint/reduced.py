@@ -5,7 +5,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ import numpy as np
 from faying.errors import InputError, NotConverged
 from faying.fe.damped import followers
 from faying.joint.equilibrium import Equilibrium, PreloadState, StickSlip
-from faying.joint.groups import Groups
+from faying.joint.groups import Groups, sprung
 from faying.joint.joint_law import JointLaw
 from faying.joint.part_shares import ReducedShares, Scales
 from faying.joint.secant import Secants
@@ -36,13 +36,15 @@ SLIGHT = 1e-6  # relative error of an eigenvalue up to which first order is enou
 class ReducedMotion:
     """Relative motion at the points of a joint from coefficients of a basis: relative (3q, m), dense.
 
-    groups: of the points, which then stand for them in tangents.
+    groups: of the points, which then stand for them in tangents; light: the motion that tangents take, the exact one
+    where None.
     """
 
     weights: Array
     gap: Array
     relative: Array
     groups: Groups | None = None
+    light: Any = None
 
     @property
     def coarse(self) -> "ReducedMotion":
@@ -50,11 +52,13 @@ class ReducedMotion:
         groups = self.groups
         if groups is None:
             return self
-        return ReducedMotion(weights=groups.weights, gap=groups.mean(self.gap), relative=groups.relative)
+        return ReducedMotion(
+            weights=groups.weights, gap=groups.mean(self.gap), relative=groups.relative, light=groups.light_mean
+        )
 
     def springs(self, k_n: Array, k_t: Array) -> Array:
         """Stiffness (m, m) [N/m] of springs per area k_n, k_t [Pa/m] (q,)."""
-        return _sprung(self.relative, self.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
+        return sprung(self.relative, self.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,21 +107,7 @@ def _complex_modes(real: Array, loss: Array, count: int, slight: float = SLIGHT)
 
 def _of_springs(springs: Springs["ReducedMotion"], moved: Any, k_n: Array, k_t: Array) -> Array:
     """Stiffness (m, m) of springs per area k_n, k_t [Pa/m] of a joint on the motion (3q, m) of its points."""
-    return _sprung(moved, springs.interface.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
-
-
-def _sprung(relative: Any, springs: Array) -> Array:
-    """Stiffness (m, m) of springs (q, 3) [N/m], normal and both tangential, on a relative motion (3q, m).
-
-    Springs and losses are never negative: half the work through their roots. A motion in single precision gives as many
-    digits.
-    """
-    from scipy.linalg.blas import dsyrk, ssyrk
-
-    roots = np.sqrt(springs).astype(relative.dtype).reshape(-1, 1)
-    product = ssyrk if relative.dtype == np.float32 else dsyrk
-    lower = product(1.0, (roots * relative).T, lower=1).astype(float)
-    return np.asarray(lower + np.tril(lower, -1).T)
+    return sprung(moved, springs.interface.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
 
 
 class ReducedEquilibrium(Equilibrium):
@@ -151,8 +141,9 @@ class ReducedEquilibrium(Equilibrium):
         matrix = self.stiffness.copy()
         for trace, k_n, k_t in self._tangents(u, grips):
             if not k_t[:, 0, 1].any():  # nothing slides
-                sprung = partial(_sprung, trace.relative) if trace.groups is None else trace.groups.sprung
-                matrix += sprung(np.stack([k_n, k_t[:, 0, 0], k_t[:, 1, 1]], axis=1))
+                light = trace.light if trace.groups is None else trace.groups.light
+                light = trace.relative if light is None else light
+                matrix += sprung(light, np.stack([k_n, k_t[:, 0, 0], k_t[:, 1, 1]], axis=1))
                 continue
             local = trace.relative.reshape(len(k_n), 3, -1)
             scaled = np.empty_like(local)
@@ -317,7 +308,7 @@ class ReducedModel:
 
     def _spanned(self, springs: Sequence[Springs[ReducedMotion]]) -> tuple[Complex, Complex, Array]:
         """`modes` in the span of those by groups' seven digits, which are kept but for the energy of the parts."""
-        from scipy.linalg import eigh, eigvalsh
+        from scipy.linalg import eigh
 
         turn, K = self._normal
         lossy = any(np.any(s.loss_n) or np.any(s.loss_t) for s in springs)
@@ -328,12 +319,12 @@ class ReducedModel:
                 rough = rough + turn.T @ s.stiffness() @ turn
             else:
                 w = s.interface.weights[:, None]
-                rough = rough + turn.T @ groups.sprung(w * np.stack([s.k_n, s.k_t, s.k_t], axis=1)) @ turn
-        near, shapes = eigh(rough, subset_by_index=[0, wanted - 1])
+                rough = rough + turn.T @ sprung(groups.light, w * np.stack([s.k_n, s.k_t, s.k_t], axis=1)) @ turn
+        near, shapes = (found[..., :wanted] for found in eigh(rough, driver="evd"))  # sooner than a part of them
         # the leading vectors of the basis are those of the first columns of `turn`, which is triangular
         cut = slice(0, self.coarse)
-        coarser = eigvalsh(rough[cut, cut], subset_by_index=[0, self.count - 1])
-        estimate = np.abs(coarser / near[: self.count] - 1) / 2
+        coarser = np.linalg.eigvalsh(rough[cut, cut])
+        estimate = np.abs(coarser[: self.count] / near[: self.count] - 1) / 2
         small, loss = shapes.T @ K @ shapes, np.zeros((wanted, wanted))
         span = turn @ shapes
         for s in springs:

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 from faying.joint.equilibrium import PreloadState, StickSlip
+from faying.joint.groups import sprung
 from faying.joint.joint_law import JointLaw
 from faying.typing import Array
 
 STEPS = 30  # after which Newton is asked
 GROWN = 3.0  # times the least imbalance found, from which Newton is asked
-AGAIN, FALLEN = 0.05, 0.03  # imbalance of a start that needs a second tangent, and where that is made
+AGAIN, FALLEN = 0.05, 0.03  # imbalance of a start whose tangent is that of groups, and where the one of points is made
 ROUNDS = 4  # most times that the balance is found in full
 
 _Answer = Callable[[Array], Array]  # what a tangent answers to a force
@@ -68,7 +69,7 @@ class Secants:
             size = float(np.linalg.norm(force)) / scale
             if size < tolerance:
                 return self._state(u, here, size, used)
-            answer = answer or self._tangent(here)
+            answer = answer or self._tangent(here, rough=size > AGAIN)
             if answer is None or used > STEPS:
                 return None
             found = self._steps(u, here, force, scale, 0.5 * tolerance, answer)
@@ -117,9 +118,9 @@ class Secants:
         there = _There(moves=moves, openings=[], pressures=[], k_n=[], grips=[], forces=[])
         for (motion, law), friction, move in zip(self.joints, self.friction, moves, strict=True):
             gap = move[:, 0] + motion.gap
-            p, k_n = law.pressure(-gap)
+            p, k_n, k_t = law.contact(-gap)
             limit = None if friction is None else friction * p
-            grip = StickSlip(k_t=law.stiffness(p)[1], limit=limit, anchor=np.zeros((len(p), 2)))
+            grip = StickSlip(k_t=k_t, limit=limit, anchor=np.zeros((len(p), 2)))
             local = np.empty_like(move)
             local[:, 0] = -p
             local[:, 1:] = grip.shear(move[:, 1:])
@@ -130,14 +131,18 @@ class Secants:
             there.forces.append((local * motion.weights[:, None]).ravel())
         return there
 
-    def _tangent(self, here: _There) -> _Answer | None:
-        """What answers a force: springs of the joints as they are, without what slides; None where that is singular."""
+    def _tangent(self, here: _There, *, rough: bool = False) -> _Answer | None:
+        """What answers a force: springs of the joints as they are, without what slides; None where that is singular.
+
+        rough: groups stand for the points.
+        """
         from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
         matrix = self.stiffness.copy()
         for (motion, _), move, k_n, grip in zip(self.joints, here.moves, here.k_n, here.grips, strict=True):
             k_t = np.where(grip.sliding(move[:, 1:]), 0.0, grip.k_t)
-            matrix += motion.groups.sprung(motion.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
+            springs, groups = motion.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1), motion.groups
+            matrix += sprung(groups.light_mean, groups.sums(springs)) if rough else sprung(groups.light, springs)
         try:
             factor = cho_factor(matrix)
         except LinAlgError:

@@ -20,6 +20,8 @@ class TestChoice:
 
     kind: "test" where they were measured, "model" where they are those of somebody's model.
 
+    losses: measured loss factors [-] per load, NaN where there is none; None where the test has none.
+
     A mode is seen where its motion along `direction` at one of `points` [m] is at least `threshold` of the largest
     among the modes.
     """
@@ -32,6 +34,7 @@ class TestChoice:
     direction: tuple[float, float, float]
     points: tuple[tuple[float, float, float], ...]
     threshold: float = 0.1
+    losses: tuple[tuple[float, ...], ...] | None = None
 
     def seen(self, points: Array) -> tuple[Index, Array]:
         """Of nodes (n, 3) [m] those nearest to the points of the test, and the unit vector of its direction."""
@@ -93,9 +96,11 @@ def _listed(table: Table, loads: int) -> TestChoice:
             raise InputError(f"{name} should be a list of points, each three lengths")
         return tuple(point(v, name) for v in value)
 
+    frequencies = table.take("frequencies", rows) or ()
     return TestChoice(
         source=table.text("source", ""),
-        frequencies=table.take("frequencies", rows) or (),
+        frequencies=frequencies,
+        losses=_losses(table, [len(row) for row in frequencies]),
         published=table.take("published", rows, None),
         published_name=table.text("published_name", "published"),
         kind=table.text("kind", "test", ("test", "model")),
@@ -103,6 +108,32 @@ def _listed(table: Table, loads: int) -> TestChoice:
         points=table.take("points", points) or (),
         threshold=table.number("threshold", 0.1),
     )
+
+
+def _losses(table: Table, modes: list[int]) -> tuple[tuple[float, ...], ...] | None:
+    """Loss factors, or damping ratios, which are half of them: a number for each frequency, nan for none."""
+
+    def rows(value: Any, name: str) -> tuple[tuple[float, ...], ...]:
+        shape = [len(row) if isinstance(row, list) else -1 for row in value] if isinstance(value, list) else None
+        if shape != modes:
+            raise InputError(f"{name} should have a number for each of the frequencies, one list for each preload")
+        found = tuple(tuple(_share(v, name) for v in row) for row in value)
+        return tuple(tuple(2 * v for v in row) for row in found) if name.endswith("damping_ratios") else found
+
+    if "loss_factors" in table.data and "damping_ratios" in table.data:
+        table.faults.add("test has both loss_factors and damping_ratios; give one of them")
+    given = table.take("loss_factors", rows, None), table.take("damping_ratios", rows, None)
+    return next((one for one in given if one), None)
+
+
+def _share(value: Any, name: str) -> float:
+    """A positive share as a plain number or in percent; nan where nothing was measured."""
+    found = quantity(value, "", name) if isinstance(value, str) else value
+    if isinstance(found, bool) or not isinstance(found, int | float) or not (0 < found < 2 or found != found):
+        raise InputError(
+            f'{name} has {value!r}; give a plain number above 0, for example 2e-3, or "0.2 %"; nan for none'
+        )
+    return float(found)
 
 
 def _file(table: Table, loads: tuple[float, ...]) -> HammerChoice:

@@ -24,7 +24,8 @@ OF_MATERIAL = {
     "E": Parameter("Pa", "Young's modulus of the parts of a material", 0),
     "density": Parameter("kg/m^3", "density of the parts of a material", 0),
 }
-OWN = ("preload", "test", "discrepancy", "surface.fit", "surface.scans", "law.model")  # that are no plain distribution
+OF_TEST = ("test", "discrepancy", "test_loss", "discrepancy_loss")
+OWN = ("preload", *OF_TEST, "surface.fit", "surface.scans", "law.model")  # that are no plain distribution
 # standard deviations of the shapes of a joint over the flatness tolerance of its faces: the second-degree part of the
 # random form of `faying.joint.form`, whose mean flatness over one face is two thirds of the tolerance
 SHAPE_SD = {"crown_along": 0.41, "crown_across": 0.41, "twist": 0.36}
@@ -59,6 +60,7 @@ class UncertainChoice:
         fit: Whether D and G scatter as the fit of the scan says; scans: others of the same surface.
         test, discrepancy: Standard deviation of a test frequency over its value, and of the model's own error in a mode
             [-]; None for the defaults of an identification.
+        test_loss, discrepancy_loss: The same of loss factors.
     """
 
     inputs: tuple[Input, ...] = ()
@@ -67,6 +69,8 @@ class UncertainChoice:
     scans: tuple[Path, ...] = ()
     test: Distribution | None = None
     discrepancy: Distribution | None = None
+    test_loss: Distribution | None = None
+    discrepancy_loss: Distribution | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -194,7 +198,7 @@ class _Reader:
         parts = key.split(".")
         if key == "preload":
             self._preload(value, where)
-        elif key in ("test", "discrepancy"):
+        elif key in OF_TEST:
             self.rest[key] = _share(value, where)
         elif key == "surface.fit":
             if not isinstance(value, bool):
