@@ -49,7 +49,7 @@ def slip_of(contact: HalfSpaceContact, shear_ratio: float, friction: float, *, t
     shape, dx = contact.heights.shape, contact.spacing[0]
     touching = contact.traction > 0
     kernel = shear_kernel(
-        shape, contact.spacing[1] / dx, contact.nu, periodic=contact.periodic, vector=False, workers=contact.workers
+        shape, contact.spacing[1] / dx, contact.nu, periodic=contact.periodic, vector=False, place=contact.place
     )
     stuck_stiffness = float(stiffness_on(kernel, touching)[0, 0])
     bound = friction * contact.traction.ravel() / contact.E_star
@@ -75,7 +75,7 @@ def slip_of(contact: HalfSpaceContact, shear_ratio: float, friction: float, *, t
     )
     found = minimise(problem, tol=tol, start=shear_ratio * bound)
     sliding = touching.ravel() & (np.abs(found.x) >= bound)
-    slipped = np.where(sliding, np.abs(found.gradient + found.level), 0.0)
+    slipped = np.where(sliding, np.abs(found.G), 0.0)
     moved = -found.level
     loss = 4 * float((bound * slipped).mean())
     return Slip(
