@@ -14,7 +14,7 @@ from faying.errors import InputError
 from faying.typing import AnyArray, Array
 
 PART = 1 << 17  # values of a part: 1 MB in double precision, within the second cache
-COLUMNS = 32  # columns transformed together
+COLUMNS = 32  # columns transformed together, at least
 Precision = Literal["double", "single"]
 Device = Literal["cpu", "gpu"]
 
@@ -83,9 +83,10 @@ class Place:
         step = max(1, PART * (self.workers or 1) // shape[1]) if self.host else shape[0]
         return [slice(k, min(k + step, shape[0])) for k in range(0, shape[0], step)]
 
-    def columns(self, count: int) -> list[slice]:
+    def columns(self, shape: tuple[int, int]) -> list[slice]:
         """Blocks of columns of a spectrum."""
-        step = COLUMNS * (self.workers or 1) if self.host else count
+        count = shape[1]
+        step = max(COLUMNS, PART // 2 // shape[0]) * (self.workers or 1) if self.host else count
         return [slice(k, min(k + step, count)) for k in range(0, count, step)]
 
     def along_rows(self, x: AnyArray, length: int) -> AnyArray:
@@ -110,7 +111,7 @@ class Place:
             from scipy.fft import fft, ifft
 
             done = (ifft if back else fft)(spectrum, axis=0, overwrite_x=True, workers=self.workers)
-            if done is not spectrum:
+            if not np.may_share_memory(done, spectrum):
                 spectrum[...] = done
         else:
             spectrum[...] = (self.xp.fft.ifft if back else self.xp.fft.fft)(spectrum, axis=0)

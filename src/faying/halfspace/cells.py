@@ -10,8 +10,7 @@ from faying.halfspace.arrays import namespace
 from faying.halfspace.kernels import Kernel
 from faying.typing import AnyArray
 
-BLOCK = 16  # cells a side of a coarse block; 8 on maps below SMALL points a side
-SMALL = 512
+BLOCK = 16  # cells a side of a coarse block
 
 
 @final
@@ -61,8 +60,7 @@ class Blocks:
 
     def __init__(self, cells: Cells) -> None:
         xp, kernel = cells.xp, cells.kernel
-        side = BLOCK if min(kernel.shape) >= SMALL else BLOCK // 2
-        self.shape: tuple[int, int] = (max(1, kernel.shape[0] // side), max(1, kernel.shape[1] // side))
+        self.shape: tuple[int, int] = (max(1, kernel.shape[0] // BLOCK), max(1, kernel.shape[1] // BLOCK))
         self.xp, self.rows = xp, kernel.shape[0]
         (of_row, edges), (of_column, across) = (_divided(n, m) for n, m in zip(kernel.shape, self.shape, strict=True))
         self._edges = kernel.place.send(edges)

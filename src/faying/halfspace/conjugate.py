@@ -27,6 +27,7 @@ CUT = 1.5  # wave number at which E^-1 ends, over the highest one of the coarse 
 LEAST = 1e-3  # what is left of E^-1 there, over what was taken off
 COARSE = 1e-3  # reduction of the residual of K
 TURNS = 40
+DENSE = 100  # blocks up to which K is made as a matrix
 GROWTH = 1e4  # of the residual squared, beyond which only rounding is left of it
 
 
@@ -39,18 +40,14 @@ class _Coarse:
         xp, shape = kernel.place.xp, self.blocks.shape
         stiffness = self.blocks.sums(c)
         self.stiffness = xp.where(stiffness > 0, stiffness, 0.0)
-        self.mean = float(xp.sum(self.stiffness)) / (shape[0] * shape[1])
-        # symbol of E for sums over a block, lengths in columns
-        side = [n / m for n, m in zip(kernel.shape, shape, strict=True)]
-        qy = 2 * np.pi * np.fft.fftfreq(shape[0], side[0] * kernel.aspect)[:, None]
-        qx = 2 * np.pi * np.fft.rfftfreq(shape[1], side[1])[None, :]
-        q = np.hypot(qy, qx)
-        q[0, 0] = 1.0
-        cut = CUT * np.pi / min(side[0] * kernel.aspect, side[1])
-        compliance = np.maximum(1 / q - 1 / cut, LEAST / cut)
-        E = side[0] * side[1] / (kernel.strength * compliance)
-        E[0, 0] = 0.0
+        self.whole = float(xp.sum(self.stiffness))
+        self.mean = self.whole / (shape[0] * shape[1])
+        E = _symbol(kernel, shape)
         self.E, self.near_inverse = kernel.place.send(E), kernel.place.send(1 / (E + self.mean))
+        self.inverse: AnyArray | None = None
+        if shape[0] * shape[1] <= DENSE:
+            matrix = _circulant(E, shape) + np.diag(kernel.place.fetch(self.stiffness).ravel())
+            self.inverse = kernel.place.send(np.linalg.inv(matrix))
 
     def apply_E(self, field: AnyArray) -> AnyArray:
         return self.place.convolve(field, self.E)
@@ -58,22 +55,50 @@ class _Coarse:
     def solve(self, right: AnyArray) -> AnyArray:
         """K times a field of the blocks, its mean exact."""
         xp = self.place.xp
-        y = xp.zeros(self.blocks.shape, dtype=xp.float64)
-        r = right
-        t = z = self.place.convolve(r, self.near_inverse)
+        if self.inverse is not None:
+            y = xp.reshape(self.inverse @ xp.reshape(right, (-1,)), self.blocks.shape)
+        else:
+            y = self._iterated(right)
+        return y + float(xp.sum(right) - xp.sum(self.stiffness * y)) / self.whole
+
+    def _iterated(self, right: AnyArray) -> AnyArray:
+        xp = self.place.xp
+        y, r = 0.0 * right, right
+        z = self.place.convolve(r, self.near_inverse)
+        t, Et = z, r - self.mean * z  # z = (E + mean)^-1 r, so that E z needs no transform
         rz = first = float(xp.sum(r * z))
         for _ in range(TURNS):
             if rz <= COARSE**2 * first or rz <= 0:
                 break
-            q = self.apply_E(t) + self.stiffness * t
+            q = Et + self.stiffness * t
             along = rz / float(xp.sum(t * q))
             y = y + along * t
             r = r - along * q
             z = self.place.convolve(r, self.near_inverse)
             new = float(xp.sum(r * z))
-            t = z + (new / rz) * t
+            t, Et = z + (new / rz) * t, r - self.mean * z + (new / rz) * Et
             rz = new
-        return y + float(xp.sum(right) - xp.sum(self.stiffness * y)) / float(xp.sum(self.stiffness))
+        return y
+
+
+def _symbol(kernel: Kernel, shape: tuple[int, int]) -> Array:
+    """Symbol of E, from displacements of blocks to their sums of traction; lengths in columns of the map."""
+    side = [n / m for n, m in zip(kernel.shape, shape, strict=True)]
+    qy = 2 * np.pi * np.fft.fftfreq(shape[0], side[0] * kernel.aspect)[:, None]
+    qx = 2 * np.pi * np.fft.rfftfreq(shape[1], side[1])[None, :]
+    q = np.hypot(qy, qx)
+    q[0, 0] = 1.0
+    cut = CUT * np.pi / min(side[0] * kernel.aspect, side[1])
+    E: Array = side[0] * side[1] / (kernel.strength * np.maximum(1 / q - 1 / cut, LEAST / cut))
+    E[0, 0] = 0.0
+    return E
+
+
+def _circulant(symbol: Array, shape: tuple[int, int]) -> Array:
+    """The matrix of a symbol on a small field."""
+    first = np.fft.irfft2(symbol, s=shape)
+    y, x = (a.ravel() for a in np.indices(shape))
+    return np.asarray(first[y[:, None] - y[None, :], x[:, None] - x[None, :]])
 
 
 @final

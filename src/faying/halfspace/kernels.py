@@ -94,7 +94,7 @@ class Kernel:
             for i, rows in enumerate(self.rows):
                 block = read(k, i)
                 spectrum[rows, :] = 0.0 if block is None else place.along_rows(block, mx)
-        for columns in place.columns(mx // 2 + 1):
+        for columns in place.columns((my, mx // 2 + 1)):
             for spectrum in spectra:
                 place.along_columns(spectrum[:, columns])
             upper = my // 2 + 1
