@@ -33,6 +33,7 @@ from faying.typing import AnyArray
 
 Bound = float | AnyArray
 Progress = Callable[[int, float], object]
+Start = Callable[[], AnyArray]
 STEPS = 200
 HALVES = (0.5, 0.25, 0.125)
 ROUNDS = ((0.1, 20), (0.1, 10), (0.1, 10))  # reduction of the residual and most iterations, round after round
@@ -192,10 +193,8 @@ class Problem:
         return out, largest
 
 
-def minimise(
-    problem: Problem, *, tol: float, start: AnyArray | None = None, progress: Progress | None = None
-) -> Minimum:
-    """Solve the problem, from `start` (flat) where given.
+def minimise(problem: Problem, *, tol: float, start: Start | None = None, progress: Progress | None = None) -> Minimum:
+    """Solve the problem, from what `start` makes (flat) where given; a function, so that nobody else keeps the array.
 
     Raises NotConverged where the residual stays above tol after STEPS steps, or single precision can do no more.
     """
@@ -239,10 +238,9 @@ class _Search:
         gap = duality_gap(self.x, self.g, self.lower, self.upper, level)
         return level, max(gap / size, self._imbalance())
 
-    def run(self, tol: float, start: AnyArray | None, progress: Progress | None) -> Minimum:
+    def run(self, tol: float, start: Start | None, progress: Progress | None) -> Minimum:
         n = self.problem.load.shape[0]
-        first = self.xp.full(n, self.total / n, dtype=self.real) if start is None else start
-        del start
+        first = self.xp.full(n, self.total / n, dtype=self.real) if start is None else start()
         self.x = project(first, self.lower, self.upper, self.total)[0]
         del first
         self.refresh(0.0, precise=False)
@@ -345,18 +343,19 @@ class _Search:
         """Solve on the working set, project, repeat on what is left of it; False where no point lowers the energy."""
         level = self._level(shift)
         cells = Cells(self.kernel, self._working(level))
-        x, g, energy, least, doubt, start = self.x, self.g, 0.0, 0.0, 0.0, (self.x, self.g)
+        x, g, energy, least, doubt = self.x, self.g, 0.0, 0.0, 0.0
         first: tuple[Cells, AnyArray] | None = None
         for reduction, limit in ROUNDS:
             way = self._way(g, cells, level, reduction, limit)
             if way is None:
                 break
-            first = first or (cells, way)
+            if least == 0.0:
+                first = first or (cells, way)
             x, g, change, left, more = self._moved(x, g, cells, way, level)
             energy, doubt = energy + change, doubt + more
             if energy < least:
                 self.x, self.g, least = x, g, energy
-                self.doubt, doubt = self.doubt + doubt, 0.0
+                self.doubt, doubt, first = self.doubt + doubt, 0.0, None
             few = cells.size - left.size < FEW * cells.size
             cells = left
             if few or left.size < 2:
@@ -366,7 +365,7 @@ class _Search:
             return least < 0
         for share in HALVES:
             cells, way = first
-            x, g, change, _, more = self._moved(*start, cells, share * way, level)
+            x, g, change, _, more = self._moved(self.x, self.g, cells, share * way, level)
             if change < 0:
                 self.x, self.g = x, g
                 self.doubt += more

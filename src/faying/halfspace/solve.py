@@ -1,6 +1,7 @@
 """Contact of a height map with a rigid plane, both taken as one elastic half-space, by `solve_half_space`."""
 
 from dataclasses import dataclass
+from functools import partial
 from math import isfinite, isnan
 
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from faying.errors import InputError, NotConverged
 from faying.halfspace.arrays import Device, Place, Precision, parts, place_for, total
-from faying.halfspace.bounded import Minimum, Problem, Progress, best_level, duality_gap, minimise
+from faying.halfspace.bounded import Minimum, Problem, Progress, Start, best_level, duality_gap, minimise
 from faying.halfspace.kernels import normal_kernel, transform_shape
 from faying.halfspace.solution import HalfSpaceContact
 from faying.memory import GB, available
@@ -139,23 +140,28 @@ class _Pressing:
             return self._solution(None)
         if start is None or not start.any():
             return self._solution(self._nested(self.map, mean))
-        place = self.options.place
-        first = place.send(start * (mean / start.mean(dtype=float)), place.real)
-        return self._solution(self._minimise(self.map, mean, first))
+        place, scale = self.options.place, mean / start.mean(dtype=float)
+        return self._solution(self._minimise(self.map, mean, lambda: place.send((start * scale).ravel(), place.real)))
 
     def _nested(self, on: _Map, mean: float) -> Minimum:
         """Solve coarse maps first; each gives the next one's start."""
-        start = None
+        start: Start | None = None
         if min(on.h.shape) >= 2 * COARSEST:
             small, place = on.coarser(), self.options.place
             try:
                 found = place.fetch(self._nested(small, mean).x).reshape(small.h.shape)
-                start = place.send(_spread(found, on.h.shape), place.real)
             except NotConverged:
-                start = None  # a coarse map only gives a start; do without
+                pass  # a coarse map only gives a start; do without
+            else:
+                start = partial(self._fine, found, on.h.shape)
+            del small
         return self._minimise(on, mean, start)
 
-    def _minimise(self, on: _Map, mean: float, start: AnyArray | None) -> Minimum:
+    def _fine(self, found: Array, shape: tuple[int, ...]) -> AnyArray:
+        place = self.options.place
+        return place.send(_spread(found, shape).ravel(), place.real)
+
+    def _minimise(self, on: _Map, mean: float, start: Start | None) -> Minimum:
         finest = on is self.map
         options, place = self.options, self.options.place
         problem = Problem(
@@ -172,7 +178,7 @@ class _Pressing:
         return minimise(
             problem,
             tol=options.tol if finest else max(options.tol, COARSE_TOLERANCE),
-            start=None if start is None else place.xp.reshape(start, (-1,)),
+            start=start,
             progress=self.progress if finest else None,
         )
 
