@@ -212,7 +212,7 @@ class _Search:
         self.pace = 1 / self.kernel.own
         self.applications = 0
         self.x: AnyArray = problem.load
-        self.bounded = isinstance(self.upper, (int, float)) and isfinite(self.upper)
+        self.bounded = _is_finite(self.upper)
         self.varies = not isinstance(self.upper, (int, float))
         self.datum = 0.0
         self.g: AnyArray = problem.load
@@ -282,7 +282,7 @@ class _Search:
         for s in parts(self.x):
             x = self.x[s]
             inside += int(self.xp.count_nonzero((x > _at(self.lower, s)) & (x < _at(self.upper, s))))
-            at_upper += int(self.xp.count_nonzero(x >= self.upper)) if self.bounded else 0
+            at_upper += int(self.xp.count_nonzero(x >= _at(self.upper, s))) if self.bounded else 0
         return inside, at_upper
 
     def _gradient_step(self, *, once: bool) -> float:
