@@ -271,9 +271,10 @@ class _Search:
             if inside == 0 or stuck or (self.bounded and (step == 0 or at_upper >= inside)):
                 shift = self._gradient_step(once=step == 0)
             stuck = not self._newton_step(shift)
+        remedy = "smooth the map" if self.kernel.place.precision == "double" else 'precision="double"'
         raise NotConverged(
             f"half-space contact: residual {best:.1e} after {step} steps, above the tolerance {tol:.1e}; "
-            "ask for a larger tol, or smooth the map"
+            f"ask for a larger tol, or {remedy}"
         )
 
     def _counted(self) -> tuple[int, int]:

@@ -77,7 +77,7 @@ class HalfSpaceContact:
         """Where the pressure is the hardness (to rounding)."""
         if self.hardness is None:
             return np.zeros(self.traction.shape, dtype=bool)
-        return self.traction >= self.hardness * (1 - 1e-12)
+        return self.traction >= self.hardness * (1 - max(1e-12, 4 * float(np.finfo(self.traction.dtype).eps)))
 
     @property
     def area(self) -> float:
