@@ -148,8 +148,8 @@ def constrained_gradients(
 ) -> AnyArray:
     """Solve A s = residual on the cells of a system, up to one constant per component, where s has given totals.
 
-    residual and s of shape (c, cells), totals (c,). Stops when the preconditioned residual has fallen by `reduction`
-    or after `limit` iterations. A bad solve does no harm: callers measure what they get.
+    residual and s of shape (c, cells), totals (c,). Stops where the last turn has gained less energy than
+    reduction^2 of all that was gained, or after `limit` turns. A bad solve does no harm: callers measure what they get.
     """
     xp: Any = system.xp
     flat = (-1,)
@@ -161,7 +161,8 @@ def constrained_gradients(
     r -= xp.mean(r, axis=1, keepdims=True)
     t = system.preconditioned(r)
     rz = first = dot(xp.reshape(r, flat), xp.reshape(t, flat))
-    for _ in range(limit):
+    gained = 0.0
+    for turn in range(limit):
         if rz <= 0:
             break
         q = system.apply(t)
@@ -170,11 +171,15 @@ def constrained_gradients(
             break
         along = rz / curvature
         s += along * t
+        gain = along * rz
+        gained += gain
+        if gain <= reduction**2 * gained or turn + 1 == limit:
+            break  # before another product with the preconditioner
         q *= along
         r -= q
         q = system.preconditioned(r)
         new = dot(xp.reshape(r, flat), xp.reshape(q, flat))
-        if not reduction**2 * first <= new < GROWTH * first:
+        if new >= GROWTH * first:
             break
         t *= new / rz
         t += q

@@ -180,6 +180,7 @@ class _Pressing:
             problem,
             tol=options.tol if finest else max(options.tol, COARSE_TOLERANCE),
             start=start,
+            least=0 if finest else 1,  # a start may be good enough for a coarse map and bad for the next
             progress=self.progress if finest else None,
         )
 
