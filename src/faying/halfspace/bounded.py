@@ -3,12 +3,13 @@
     minimise  x.A x/2 - b.x   over   lower <= x <= upper,  mean(x) = mean
 
 A projected Newton method. Each step solves the linear problem on the cells that are between their bounds, or at a
-bound and pressed off it, by conjugate gradients in single precision, preconditioned by |q|, and projects the outcome
-on the bounds and the mean. What the projection cuts off in one place it must not put back everywhere, since long waves
+bound and pressed off it, by conjugate gradients in single precision, preconditioned on two levels (`conjugate`), and
+projects the outcome on the bounds and the mean. What the projection cuts off in one place it must not put back everywhere, since long waves
 cost the most energy: so up to twice more the problem is solved on the cells that are left between their bounds. The
 point of least energy is kept; where none is below the start, the first step is halved. Where many cells sit at the
 upper bound, a projected-gradient step goes before it (More and Toraldo 1991, doi:10.1137/0801008; Bertsekas 1982,
-doi:10.1137/0320018). Gradient, energy and error bound are in double precision.
+doi:10.1137/0320018). Products on the way are in single precision; the error that this leaves in the gradient is kept
+count of, and the gradient is made afresh in double precision before it matters and before the end.
 
 The error bound is the duality gap. With g = A x - b and any level d, and G = g + d,
 
