@@ -4,7 +4,8 @@
 
 A projected Newton method. Each step solves the linear problem on the cells that are between their bounds, or at a
 bound and pressed off it, by conjugate gradients in single precision, preconditioned on two levels (`conjugate`), and
-projects the outcome on the bounds and the mean. What the projection cuts off in one place it must not put back everywhere, since long waves
+projects the outcome on the bounds and the mean.
+What the projection cuts off in one place it must not put back everywhere, since long waves
 cost the most energy: so up to twice more the problem is solved on the cells that are left between their bounds. The
 point of least energy is kept; where none is below the start, the first step is halved. Where many cells sit at the
 upper bound, a projected-gradient step goes before it (More and Toraldo 1991, doi:10.1137/0801008; Bertsekas 1982,
