@@ -1,6 +1,8 @@
 """Half-space contact beside other codes on the same heights: CPU seconds, accuracy by one measure, growth with size.
 
     python benchmarks/halfspace.py [--witness PYTHON] [--contactmechanics PYTHON] [--quick]
+    python benchmarks/halfspace.py --sizes 1024 2048 4096 8192 [--kinds elastic saturated] [--precision single]
+    python benchmarks/halfspace.py --beside 2048 --witness PYTHON
 
 PYTHON: interpreters that have tamaas and aspher, and ContactMechanics (their needs may clash; neither is a dependency
 of faying). Without them only faying is measured. Every run is on one thread; CPU seconds of the solution alone, median
@@ -8,6 +10,7 @@ of three for faying, one run for the others. "residual" is faying's error bound,
 """
 
 import argparse
+import json
 import os
 import statistics
 import subprocess
@@ -29,11 +32,12 @@ WITNESS = Path(__file__).with_name("halfspace_witness.py")
 PEERS = {"tamaas": 1e-6, "contactmechanics": 1e-6, "aspher-periodic": 1e-7}
 
 
-def ours(h, pressure, hardness, repeats=3):
-    seconds = []
+def ours(h, pressure, hardness, repeats=3, **options):
+    seconds, contact = [], None
     for _ in range(repeats):
+        del contact  # its maps do not count in the next one's memory
         begin = time.process_time()
-        contact = solve_half_space(h, 1 / h.shape[0], E_star=1.0, pressure=pressure, hardness=hardness)
+        contact = solve_half_space(h, 1 / h.shape[0], E_star=1.0, pressure=pressure, hardness=hardness, **options)
         seconds.append(time.process_time() - begin)
     return contact, statistics.median(seconds)
 
@@ -83,19 +87,53 @@ def compare(n, pressure, hardness, peers):
         )
 
 
-def growth(largest):
-    print("growth with size at p/E* .01 (s) and H/E* .005 at p/E* .002 (s); per N log2 N, in ns")
-    n = 128
-    while n <= largest:
-        cells = n * n
-        row = []
-        for pressure, hardness in ((0.01, None), (0.002, 0.005)):
-            contact, seconds = ours(self_affine(n), pressure, hardness, repeats=3 if n <= 1024 else 1)
-            row.append(
-                f"{seconds:8.3f} s {contact.applications:4d} products {seconds / cells / np.log2(cells) * 1e9:7.1f} ns"
-            )
-        print(f"  {n:5d}  " + "   |   ".join(row), flush=True)
-        n *= 2
+LOADS = {"elastic": (0.01, None), "saturated": (0.002, 0.005)}  # pressure and hardness over E*
+
+
+def memory(name):
+    """Of this process now (VmRSS) or at its peak (VmHWM) [B]; Linux."""
+    lines = Path("/proc/self/status").read_text().splitlines()
+    return next(float(line.split()[1]) * 1024 for line in lines if line.startswith(name))
+
+
+def one(file, pressure, hardness, precision, repeats):
+    """Solve one map in this process; CPU seconds, the peak of memory with the map [B a point], and counts."""
+    ours(self_affine(64), 0.01, None, 1)  # imports
+    h = np.load(file)
+    Path("/proc/self/clear_refs").write_text("5")  # the peak so far was a smaller map's or the parent's
+    before = memory("VmRSS")
+    tol = 1e-6 if precision == "double" else 1e-5
+    contact, seconds = ours(h, pressure, hardness, repeats, precision=precision, tol=tol)
+    peak = memory("VmHWM") - before + h.nbytes
+    names = ("iterations", "applications", "residual", "area", "saturated")
+    print(json.dumps({"seconds": seconds, "memory": peak / h.size} | {name: getattr(contact, name) for name in names}))
+
+
+def sizes(counts, kinds, precision):
+    """The table of growth with size: every map in a process of its own, so that its peak of memory is its own."""
+    head = "points a side, load, CPU s, ns a point, over 1024, peak B a point, steps, products, residual, area, hard"
+    print("| " + head.replace(", ", " | ") + " |\n|" + "---|" * (head.count(", ") + 1), flush=True)
+    least = {}
+    for n in counts:
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "map.npy"
+            np.save(file, self_affine(n))
+            for kind in kinds:
+                pressure, hardness = LOADS[kind]
+                ask = ["--one", file, pressure, hardness or 0, precision, 3 if n <= 4096 else 1]
+                run = subprocess.run([sys.executable, __file__, *map(str, ask)], capture_output=True, text=True)
+                if run.returncode:
+                    print(f"| {n} | {kind} | {run.stderr.strip().splitlines()[-1]} |", flush=True)
+                    continue
+                found = json.loads(run.stdout)
+                each = found["seconds"] / n**2 * 1e9
+                least.setdefault(kind, each) if n >= 1024 else None
+                print(
+                    f"| {n} | {kind} | {found['seconds']:.3g} | {each:.0f} | {each / least.get(kind, np.nan):.2f} | "
+                    f"{found['memory']:.0f} | {found['iterations']} | {found['applications']} | "
+                    f"{found['residual']:.1e} | {found['area']:.4f} | {found['saturated']:.4f} |",
+                    flush=True,
+                )
 
 
 def main():
@@ -103,13 +141,29 @@ def main():
     ask.add_argument("--witness", help="interpreter with tamaas and aspher")
     ask.add_argument("--contactmechanics", help="interpreter with ContactMechanics")
     ask.add_argument("--quick", action="store_true", help="maps of 256 points a side only")
+    ask.add_argument("--sizes", type=int, nargs="+", metavar="N", help="only the table of growth, for these sizes")
+    ask.add_argument("--kinds", nargs="+", choices=LOADS, default=list(LOADS), help="loads of that table")
+    ask.add_argument("--precision", choices=("double", "single"), default="double", help="precision of that table")
+    ask.add_argument("--beside", type=int, metavar="N", help="only the other codes, elastic at this size")
+    ask.add_argument("--one", nargs=5, help=argparse.SUPPRESS)
     given = ask.parse_args()
+    if given.one:
+        file, pressure, hardness, precision, repeats = given.one
+        one(file, float(pressure), float(hardness) or None, precision, int(repeats))
+        return
+    if given.sizes:
+        sizes(given.sizes, given.kinds, given.precision)
+        return
     peers = {}
     if given.witness:
         peers |= {"tamaas": given.witness, "aspher-periodic": given.witness}
     if given.contactmechanics:
         peers["contactmechanics"] = given.contactmechanics
     ours(self_affine(64), 0.01, None)  # imports
+    if given.beside:
+        for pressure in (0.002, 0.01):
+            compare(given.beside, pressure, None, peers)
+        return
     if given.quick:
         compare(256, 0.01, None, peers)
         compare(256, 0.002, 0.005, peers)
@@ -117,7 +171,7 @@ def main():
     for n, pressure in ((512, 0.002), (512, 0.01), (1024, 0.002), (1024, 0.01), (1024, 0.02)):
         compare(n, pressure, None, peers)
     compare(512, 0.002, 0.005, peers)
-    growth(4096)
+    sizes((256, 512, 1024, 2048, 4096), LOADS, "double")
 
 
 if __name__ == "__main__":

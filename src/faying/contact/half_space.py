@@ -15,6 +15,7 @@ from faying.contact.ladder import Ladder, cached, climb
 from faying.contact.law import ContactLaw, Response
 from faying.contact.parameter import TABLE, TEXT, Parameter
 from faying.errors import InputError
+from faying.halfspace.arrays import Device
 from faying.halfspace.solution import HalfSpaceContact
 from faying.halfspace.solve import halved_map, solve_half_space
 from faying.materials import ContactPair
@@ -50,6 +51,7 @@ class HalfSpace(ContactLaw):
             monotone cubic in logarithms. Large maps are solved on fewer of them.
         lowest, highest: the first and the last of these pressures [Pa].
         tol: as in `solve_half_space`.
+        device: "cpu", or "gpu" to solve with CuPy on a graphics card.
         progress: called with (solutions done, solutions in all) while they are solved, on first use.
         cache: folder that keeps solved contacts by the hash of all that they depend on; None keeps nothing.
 
@@ -71,6 +73,7 @@ class HalfSpace(ContactLaw):
     lowest: float | None = None
     highest: float | None = None
     tol: float = 1e-5
+    device: Device = "cpu"
     progress: Callable[[int, int], object] | None = field(default=None, repr=False, compare=False)
     cache: Path | None = field(default=None, repr=False, compare=False)
 
@@ -85,6 +88,7 @@ class HalfSpace(ContactLaw):
         "lowest": Parameter("Pa", "least pressure covered", 0),
         "highest": Parameter("Pa", "greatest pressure covered, above the least and below the hardness", 0),
         "tol": Parameter("", "error bound asked of every contact", 0, 1),
+        "device": Parameter(TEXT, "where contacts are solved: CPU, or graphics card with CuPy", choices=("cpu", "gpu")),
         "cache": Parameter(TABLE, "folder that keeps solved contacts", surface="cache"),
         "progress": Parameter(TABLE, "told how many contacts are solved", surface="progress"),
     }
@@ -151,6 +155,7 @@ class HalfSpace(ContactLaw):
             pressure=pressure,
             nu=self.nu,
             tol=self.tol,
+            device=self.device,
             hardness=self._hardness,
             periodic=self.periodic,
             **options,

@@ -3,12 +3,14 @@
     minimise  x.A x/2 - b.x   over   lower <= x <= upper,  mean(x) = mean
 
 A projected Newton method. Each step solves the linear problem on the cells that are between their bounds, or at a
-bound and pressed off it, by conjugate gradients in single precision, preconditioned by |q|, and projects the outcome
-on the bounds and the mean. What the projection cuts off in one place it must not put back everywhere, since long waves
+bound and pressed off it, by conjugate gradients in single precision, preconditioned on two levels (`conjugate`), and
+projects the outcome on the bounds and the mean.
+What the projection cuts off in one place it must not put back everywhere, since long waves
 cost the most energy: so up to twice more the problem is solved on the cells that are left between their bounds. The
 point of least energy is kept; where none is below the start, the first step is halved. Where many cells sit at the
 upper bound, a projected-gradient step goes before it (More and Toraldo 1991, doi:10.1137/0801008; Bertsekas 1982,
-doi:10.1137/0320018). Gradient, energy and error bound are in double precision.
+doi:10.1137/0320018). Products on the way are in single precision; the error that this leaves in the gradient is kept
+count of, and the gradient is made afresh in double precision before it matters and before the end.
 
 The error bound is the duality gap. With g = A x - b and any level d, and G = g + d,
 
@@ -20,62 +22,84 @@ so it bounds the distance to the solution whatever the iteration did.
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import isfinite
-from typing import final
+from typing import Any, final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faying.errors import NotConverged
-from faying.halfspace.conjugate import constrained_gradients
+from faying.halfspace.arrays import dot, namespace, parts, total
+from faying.halfspace.cells import Cells
+from faying.halfspace.conjugate import System, constrained_gradients
 from faying.halfspace.kernels import Kernel
-from faying.typing import Array, Mask
+from faying.typing import AnyArray
 
-Bound = float | Array
+Bound = float | AnyArray
 Progress = Callable[[int, float], object]
+Start = Callable[[], AnyArray]
 STEPS = 200
 HALVES = (0.5, 0.25, 0.125)
-ROUNDS = ((0.3, 20), (0.1, 10), (0.1, 10))  # reduction of the residual and most iterations, round after round
+ROUNDS = ((0.3, 20), (0.3, 10), (0.3, 10))  # root of what the last turn may gain over all; most turns
 FEW = 1e-3  # share of the cells cut off by the projection below which another round is not worth its price
+ROUNDING = 3e-7  # error of a product in single precision, over the largest displacement that it gives
+SAMPLE = 1 << 16
 
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Minimum:
-    """x and its gradient g = A x - b, both flat; level d, residual (gap over total times scale), counts."""
+    """x and G = A x - b + d, both flat; level d, residual (gap over total times scale), counts."""
 
-    x: Array
-    gradient: Array
+    x: AnyArray
+    G: AnyArray
     level: float
     residual: float
     steps: int
     applications: int
 
 
-def _at(bound: Bound, where: NDArray[np.intp]) -> Bound:
-    return bound[where] if isinstance(bound, np.ndarray) else bound
+def _at(bound: Bound, where: Any) -> Bound:
+    return bound if isinstance(bound, (int, float)) else bound[where]
 
 
-def project(v: Array, lower: Bound, upper: Bound, total: float) -> tuple[Array, float]:
+def _is_finite(bound: Bound) -> bool:
+    return not isinstance(bound, (int, float)) or isfinite(bound)
+
+
+def _least(a: AnyArray) -> float:
+    xp = namespace(a)
+    return min(float(xp.min(a[s])) for s in parts(a))
+
+
+def project(v: AnyArray, lower: Bound, upper: Bound, total: float) -> tuple[AnyArray, float]:
     """Nearest point to v between the bounds whose sum is `total`, and the shift that gives it: clip(v + shift)."""
-    scale = max(abs(total), float(np.abs(upper).sum()) if isinstance(upper, np.ndarray) else 0.0, 1e-300)
-    clipped = np.clip(v, lower, upper)
-    if abs(total - float(clipped.sum())) <= 1e-13 * scale:
-        return clipped, 0.0  # a shift of rounding size would lift every cell off its bound
-    low = float((lower - v).min())
-    high = (
-        float((upper - v).max())
-        if isinstance(upper, np.ndarray) or isfinite(upper)
-        else total / v.size - float(v.min())
-    )
-    shift = min(max((total - float(clipped.sum())) / v.size, low), high)
+    xp = namespace(v)
+    size = int(v.shape[0])
+    scale = max(abs(total), 0.0 if isinstance(upper, (int, float)) else float(xp.sum(xp.abs(upper))), 1e-300)
+    near = (1e-13 if v.dtype == xp.float64 else 1e-8) * scale
+
+    def look(shift: float) -> tuple[float, int]:
+        """Sum of the clipped values, and how many stay off their bounds."""
+        found, free = 0.0, 0
+        for s in parts(v):
+            moved, low, high = v[s] + shift, _at(lower, s), _at(upper, s)
+            found += float(xp.sum(xp.clip(moved, low, high), dtype=xp.float64))
+            free += int(xp.count_nonzero((moved > low) & (moved < high)))
+        return found, free
+
+    shift, (found, free) = 0.0, look(0.0)
+    if abs(total - found) <= near:
+        return xp.clip(v, lower, upper), 0.0  # a shift of rounding size would lift every cell off its bound
+    low = min(float(xp.min(_at(lower, s) - v[s])) for s in parts(v))
+    high = total / size - _least(v)
+    if _is_finite(upper):
+        high = max(float(xp.max(_at(upper, s) - v[s])) for s in parts(v))
+    shift = min(max((total - found) / size, low), high)
     for turn in range(200):
-        moved = v + shift
-        clipped = np.clip(moved, lower, upper)
-        miss = total - float(clipped.sum())
-        if abs(miss) <= 1e-13 * scale:
+        found, free = look(shift)
+        miss = total - found
+        if abs(miss) <= near:
             break
         low, high = (shift, high) if miss > 0 else (low, shift)
-        free = int(np.count_nonzero((moved > lower) & (moved < upper)))
         trial = shift + miss / free if free else high
         # Newton crawls where points leave their bounds: halve the bracket every third turn
         if not low < trial < high or turn % 3 == 2:
@@ -83,192 +107,325 @@ def project(v: Array, lower: Bound, upper: Bound, total: float) -> tuple[Array, 
         if trial in (shift, low, high):
             break
         shift = trial
-    return clipped, shift
+    out = v + shift
+    for s in parts(out):
+        out[s] = xp.clip(out[s], _at(lower, s), _at(upper, s))
+    return out, shift
 
 
-def duality_gap(x: Array, gradient: Array, lower: Bound, upper: Bound, level: float) -> float:
+def duality_gap(x: AnyArray, gradient: AnyArray, lower: Bound, upper: Bound, level: float) -> float:
     """The bound on the energy's excess at level d (module text)."""
-    G = gradient + level
-    gap = float(((x - lower) * np.maximum(G, 0.0)).sum())
-    if isinstance(upper, np.ndarray) or isfinite(upper):
-        gap += float(((upper - x) * np.maximum(-G, 0.0)).sum())
-    elif G.min() < 0:
-        return np.inf
-    return gap
+    xp = namespace(x)
+    bounded, gap, least = _is_finite(upper), 0.0, 0.0
+    for s in parts(x):
+        G = gradient[s] + level
+        gap += total((x[s] - _at(lower, s)) * xp.maximum(G, 0.0))
+        if bounded:
+            gap += total((_at(upper, s) - x[s]) * xp.maximum(-G, 0.0))
+        else:
+            least = min(least, float(xp.min(G)))
+    return np.inf if least < 0 else gap
 
 
-def best_level(x: Array, gradient: Array, lower: Bound, upper: Bound) -> float:
+def _in_order(a: AnyArray, place: int) -> float:
+    """The value that stands at this place of the array in order, by sorting what a sample leaves in question."""
+    xp, size = namespace(a), int(a.shape[0])
+    if size > 4 * SAMPLE:
+        sample = xp.sort(a[:: size // SAMPLE])
+        count = int(sample.shape[0])
+        middle = place * count // size
+        low, high = (float(sample[min(max(middle + k, 0), count - 1)]) for k in (-1000, 1000))
+        below = sum(int(xp.count_nonzero(a[s] < low)) for s in parts(a))
+        between = xp.sort(xp.concat([a[s][(a[s] >= low) & (a[s] <= high)] for s in parts(a)]))
+        if below <= place < below + int(between.shape[0]):
+            return float(between[place - below])
+    return float(xp.sort(a)[place])
+
+
+def best_level(x: AnyArray, gradient: AnyArray, lower: Bound, upper: Bound) -> float:
     """The level of the least duality gap; for bounds that vary from cell to cell, the mean over the free cells."""
-    if not isinstance(upper, np.ndarray) and not isinstance(lower, np.ndarray):
+    xp, size = namespace(x), int(x.shape[0])
+    if isinstance(upper, (int, float)) and isinstance(lower, (int, float)):
         if not isfinite(upper):
-            return -float(gradient.min())
-        filled = min(int((x.sum() - x.size * lower) / (upper - lower)), x.size - 1)
-        return -float(np.partition(gradient, filled)[filled])
+            return -_least(gradient)
+        return -_in_order(gradient, min(int((total(x) - size * lower) / (upper - lower)), size - 1))
     free = (x > lower) & (x < upper)
-    return -float(gradient[free].mean()) if free.any() else -float(np.median(gradient))
+    return -float(xp.mean(gradient[free])) if bool(xp.any(free)) else -_in_order(gradient, size // 2)
 
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Problem:
-    """The problem of the module's text for one component: load b, bounds (flat arrays or numbers) and mean.
+    """The problem of the module's text for one component: load, bounds (flat arrays or numbers) and mean.
 
-    `scale` is the displacement by which the error bound is measured: residual = gap/(sum |x| scale).
+    b = (load - datum)/unit; the load may be of any precision. `scale` is the displacement by which the error bound is
+    measured: residual = gap/(sum |x| scale).
     """
 
     kernel: Kernel
-    load: Array
+    load: AnyArray
     lower: Bound
     upper: Bound
     mean: float
     scale: float
+    datum: float = 0.0
+    unit: float = 1.0
+
+    def gradient_at(self, x: AnyArray, level: float, *, precise: bool) -> tuple[AnyArray, float]:
+        """A x - b + level, and the largest displacement; without `precise` the product is in single precision."""
+        kernel = self.kernel
+        xp, width = kernel.place.xp, kernel.shape[1]
+        pieces = [slice(rows.start * width, rows.stop * width) for rows in kernel.rows]
+        out = xp.empty(x.shape[0], dtype=x.dtype)
+        largest = 0.0
+        work = xp.float64 if precise else xp.float32
+
+        def read(_: int, i: int) -> AnyArray:
+            return xp.reshape(xp.astype(x[pieces[i]], work, copy=False), (-1, width))
+
+        def write(_: int, i: int, block: AnyArray) -> None:
+            nonlocal largest
+            here = xp.reshape(block, (-1,))
+            largest = max(largest, float(xp.max(xp.abs(here))))
+            load = xp.astype(self.load[pieces[i]], xp.float64, copy=False)
+            here = here + (self.datum / self.unit + level - load / self.unit)
+            out[pieces[i]] = xp.astype(here, x.dtype, copy=False)
+
+        kernel.stream(kernel.symbol if precise else kernel.symbol_single, read, write)
+        return out, largest
 
 
-def minimise(problem: Problem, *, tol: float, start: Array | None = None, progress: Progress | None = None) -> Minimum:
-    """Solve the problem, from `start` (flat) where given.
+def minimise(
+    problem: Problem, *, tol: float, start: Start | None = None, least: int = 0, progress: Progress | None = None
+) -> Minimum:
+    """Solve the problem in at least `least` steps, from what `start` makes (flat), so that nobody else keeps the array.
 
     Raises NotConverged where the residual stays above tol after STEPS steps, or single precision can do no more.
     """
-    return _Search(problem).run(tol, start, progress)
+    return _Search(problem).run(tol, start, least, progress)
 
 
 class _Search:
+    """g is the gradient plus the datum d, which brings it near 0 where x is between its bounds."""
+
     def __init__(self, problem: Problem) -> None:
-        self.kernel, self.load, self.lower, self.upper = problem.kernel, problem.load, problem.lower, problem.upper
-        self.total, self.scale = problem.mean * problem.load.size, problem.scale
+        self.problem, self.kernel = problem, problem.kernel
+        self.xp, self.real = problem.kernel.place.xp, problem.kernel.place.real
+        self.lower, self.upper = problem.lower, problem.upper
+        self.total, self.scale = problem.mean * problem.load.shape[0], problem.scale
         self.pace = 1 / self.kernel.own
         self.applications = 0
-        self.bounded = isinstance(self.upper, np.ndarray) or isfinite(self.upper)
+        self.x: AnyArray = problem.load
+        self.bounded = _is_finite(self.upper)
+        self.varies = not isinstance(self.upper, (int, float))
+        self.datum = 0.0
+        self.g: AnyArray = problem.load
+        self.doubt = 0.0  # what single precision may have left in g
 
-    def apply(self, x: Array) -> Array:
+    def refresh(self, level: float, *, precise: bool) -> None:
+        """Make the gradient from x alone."""
         self.applications += 1
-        return self.kernel.apply(x.reshape(1, *self.kernel.shape)).reshape(-1)
+        del self.g  # its memory goes to the new one
+        self.datum += level
+        self.g, largest = self.problem.gradient_at(self.x, self.datum, precise=precise)
+        self.doubt = 0.0 if precise else ROUNDING * largest
 
     def _imbalance(self) -> float:
-        """Miss of the total, which steps leave at rounding; relative, and nothing below 1e-10."""
-        miss = abs(float(self.x.sum()) - self.total) / max(abs(self.total), 1e-300)
-        return miss if miss > 1e-10 else 0.0
+        """Miss of the total, which steps leave at rounding; relative, and nothing below what that is."""
+        miss = abs(total(self.x) - self.total) / max(abs(self.total), 1e-300)
+        return miss if miss > (1e-10 if self.real == self.xp.float64 else 1e-6) else 0.0
 
-    def run(self, tol: float, start: Array | None, progress: Progress | None) -> Minimum:
-        n = self.load.size
-        first = np.full(n, self.total / n) if start is None else start
+    def measured(self) -> tuple[float, float]:
+        """The level and the residual of this x and g."""
+        level = best_level(self.x, self.g, self.lower, self.upper)
+        size = max(abs(self.total), sum(total(self.xp.abs(self.x[s])) for s in parts(self.x))) * self.scale
+        gap = duality_gap(self.x, self.g, self.lower, self.upper, level)
+        return level, max(gap / size, self._imbalance())
+
+    def run(self, tol: float, start: Start | None, least: int, progress: Progress | None) -> Minimum:
+        n = self.problem.load.shape[0]
+        first = self.xp.full(n, self.total / n, dtype=self.real) if start is None else start()
         self.x = project(first, self.lower, self.upper, self.total)[0]
-        self.g = self.apply(self.x) - self.load
+        del first
+        self.refresh(0.0, precise=False)
         stuck, best, since = False, np.inf, 0
         for step in range(STEPS + 1):
-            level = best_level(self.x, self.g, self.lower, self.upper)
-            size = max(abs(self.total), float(np.abs(self.x).sum())) * self.scale
-            residual = max(duality_gap(self.x, self.g, self.lower, self.upper, level) / size, self._imbalance())
+            level, residual = self.measured()
+            if self.doubt and step >= least and residual < max(tol, 4 * self.doubt / self.scale):
+                # the gradient was updated step by step: bound the error with a fresh one
+                self.refresh(level, precise=True)
+                level, residual = self.measured()
             if progress is not None:
                 progress(step, residual)
-            if residual < tol:
-                # the gradient was updated step by step: bound the error with a fresh one
-                self.g = self.apply(self.x) - self.load
-                level = best_level(self.x, self.g, self.lower, self.upper)
-                residual = max(duality_gap(self.x, self.g, self.lower, self.upper, level) / size, self._imbalance())
-                if residual < tol:
-                    return Minimum(
-                        x=self.x,
-                        gradient=self.g,
-                        level=level,
-                        residual=residual,
-                        steps=step,
-                        applications=self.applications,
-                    )
+            if residual < tol and step >= least:
+                self.g += level
+                return Minimum(
+                    x=self.x,
+                    G=self.g,
+                    level=self.datum + level,
+                    residual=residual,
+                    steps=step,
+                    applications=self.applications,
+                )
             best, since = (residual, 0) if residual < 0.9 * best else (best, since + 1)
             if since > 40:
                 break
-            free = (self.x > self.lower) & (self.x < self.upper)
-            inside = int(np.count_nonzero(free))
-            at_upper = int(np.count_nonzero(self.x >= self.upper)) if self.bounded else 0
+            inside, at_upper = self._counted()
             shift = None
             if inside == 0 or stuck or (self.bounded and (step == 0 or at_upper >= inside)):
                 shift = self._gradient_step(once=step == 0)
-                free = (self.x > self.lower) & (self.x < self.upper)
-            stuck = not self._newton_step(free, shift)
+            stuck = not self._newton_step(shift)
+        remedy = "smooth the map" if self.kernel.place.precision == "double" else 'precision="double"'
         raise NotConverged(
             f"half-space contact: residual {best:.1e} after {step} steps, above the tolerance {tol:.1e}; "
-            "ask for a larger tol, or smooth the map"
+            f"ask for a larger tol, or {remedy}"
         )
+
+    def _counted(self) -> tuple[int, int]:
+        """How many cells are between their bounds, and how many at the upper one."""
+        inside = at_upper = 0
+        for s in parts(self.x):
+            x = self.x[s]
+            inside += int(self.xp.count_nonzero((x > _at(self.lower, s)) & (x < _at(self.upper, s))))
+            at_upper += int(self.xp.count_nonzero(x >= _at(self.upper, s))) if self.bounded else 0
+        return inside, at_upper
 
     def _gradient_step(self, *, once: bool) -> float:
         """Step along the projected gradient, shortened until the energy falls; returns the level it used."""
-        pace = self.pace
-        level = 0.0
+        xp, pace, level = self.xp, self.pace, 0.0
+        every = Cells(self.kernel, xp.ones(self.x.shape[0], dtype=xp.bool))
         for _ in range(1 if once else 12):
-            y, shift = project(self.x - pace * self.g, self.lower, self.upper, self.total)
+            y = xp.empty(self.x.shape[0], dtype=self.real)
+            for s in parts(y):
+                y[s] = self.x[s] - pace * self.g[s]
+            y, shift = project(y, self.lower, self.upper, self.total)
             level = -shift / pace
-            v = y - self.x
-            Av = self.apply(v)
-            # v sums to 0: taking the level out of g changes nothing but the rounding
-            down, curvature = float((self.g + level) @ v), float(v @ Av)
+            for s in parts(y):
+                y[s] -= self.x[s]
+            # y sums to 0: taking the level out of g changes nothing but the rounding
+            g, curvature, doubt = self._added(every, y)
+            down = sum(total((self.g[s] + level) * y[s]) for s in parts(y))
             if down + curvature / 2 < 0:
+                self.doubt += doubt
+                self.g = g
+                for s in parts(y):
+                    y[s] += self.x[s]
+                    y[s] = xp.clip(y[s], _at(self.lower, s), _at(self.upper, s))
                 self.x = y
-                self.g += Av
                 break
             if curvature <= 0:
                 break
             pace *= min(max(-down / curvature, 0.1), 0.7)
         return level
 
-    def _newton_step(self, free: Mask, shift: float | None) -> bool:
+    def _working(self, level: float) -> AnyArray:
+        """The cells between their bounds, or at one and pressed off it."""
+        xp = self.xp
+        out = xp.empty(self.x.shape[0], dtype=xp.bool)
+        for s in parts(self.x):
+            x, g, lower, upper = self.x[s], self.g[s], _at(self.lower, s), _at(self.upper, s)
+            working = ((x > lower) & (x < upper)) | ((x <= lower) & (g < -level))
+            if self.bounded:
+                working |= (x >= upper) & (g > -level)
+            if self.varies:
+                working &= lower < upper
+            out[s] = working
+        return out
+
+    def _level(self, shift: float | None) -> float:
+        """The mean over the cells between their bounds, else the one of the gradient step."""
+        count, found = 0, 0.0
+        for s in parts(self.x):
+            x = self.x[s]
+            free = (x > _at(self.lower, s)) & (x < _at(self.upper, s))
+            count += int(self.xp.count_nonzero(free))
+            found += total(self.g[s][free])
+        if count:
+            return -found / count
+        return shift if shift is not None else best_level(self.x, self.g, self.lower, self.upper)
+
+    def _newton_step(self, shift: float | None) -> bool:
         """Solve on the working set, project, repeat on what is left of it; False where no point lowers the energy."""
-        if free.any():
-            level = -float(self.g[free].mean())
-        else:
-            level = shift if shift is not None else best_level(self.x, self.g, self.lower, self.upper)
-        G = self.g + level
-        working = free | ((self.x <= self.lower) & (G < 0))
-        if self.bounded:
-            working |= (self.x >= self.upper) & (G > 0)
-        if isinstance(self.upper, np.ndarray):
-            working &= np.asarray(self.lower < self.upper)
-        index = np.flatnonzero(working)
-        x, g, energy, least, start = self.x, self.g, 0.0, 0.0, (self.x, self.g)
-        first: tuple[NDArray[np.intp], Array] | None = None
+        level = self._level(shift)
+        cells = Cells(self.kernel, self._working(level))
+        x, g, energy, least, doubt = self.x, self.g, 0.0, 0.0, 0.0
+        first: tuple[Cells, AnyArray] | None = None
         for reduction, limit in ROUNDS:
-            way = self._way(g, index, level, reduction, limit)
+            way = self._way(g, cells, level, reduction, limit)
             if way is None:
                 break
-            first = first or (index, way)
-            x, g, change, left = self._moved(x, g, index, way, level)
-            energy += change
+            if least == 0.0:
+                first = first or (cells, way)
+            x, g, change, left, more = self._moved(x, g, cells, way, level)
+            energy, doubt = energy + change, doubt + more
             if energy < least:
                 self.x, self.g, least = x, g, energy
-            if index.size - left.size < FEW * index.size or left.size < 2:
+                self.doubt, doubt, first = self.doubt + doubt, 0.0, None
+            few = cells.size - left.size < FEW * cells.size
+            cells = left
+            if few or left.size < 2:
                 break
-            index, level = left, -float(g[left].mean())
+            level = -total(cells.values(g)) / cells.size
         if least < 0 or first is None:
             return least < 0
         for share in HALVES:
-            index, way = first
-            x, g, change, _ = self._moved(*start, index, share * way, level)
+            cells, way = first
+            x, g, change, _, more = self._moved(self.x, self.g, cells, share * way, level)
             if change < 0:
                 self.x, self.g = x, g
+                self.doubt += more
                 return True
         return False
 
-    def _way(self, g: Array, index: NDArray[np.intp], level: float, reduction: float, limit: int) -> Array | None:
-        """What to add to the tractions of the cells `index` so that their gaps close; None where nothing is to do."""
-        G = g[index] + level
-        largest = float(np.abs(G).max()) if index.size >= 2 else 0.0
+    def _way(self, g: AnyArray, cells: Cells, level: float, reduction: float, limit: int) -> AnyArray | None:
+        """What to add to the tractions of the cells so that their gaps close; None where nothing is to do."""
+        if cells.size < 2:
+            return None
+        G = cells.values(g) + level
+        largest = float(self.xp.max(self.xp.abs(G)))
         if largest == 0.0:
             return None
-        right = (-G / largest).astype(np.float32)[None]
-        solved, used = constrained_gradients(self.kernel, index, right, np.zeros(1), reduction=reduction, limit=limit)
-        self.applications += used
-        return np.asarray(largest * solved[0].astype(np.float64))
+        right = self.xp.astype(G / -largest, self.xp.float32)[None, :]
+        del G
+        system = System(self.kernel, cells)
+        way = constrained_gradients(system, right, np.zeros(1), reduction=reduction, limit=limit)[0, :]
+        self.applications += system.used
+        way *= largest
+        return way
+
+    def _added(self, cells: Cells, v: AnyArray, g: AnyArray | None = None) -> tuple[AnyArray, float, float]:
+        """Gradient after adding v on the cells, v.A v, and what single precision may have left in the gradient."""
+        xp, before = self.xp, self.g if g is None else g
+        self.applications += 1
+        out = xp.empty(before.shape[0], dtype=self.real)
+        size = float(xp.max(xp.abs(v))) or 1.0
+        scaled = xp.astype(v / size, xp.float32)
+        curvature = largest = 0.0
+
+        def write(_: int, i: int, block: AnyArray) -> None:
+            nonlocal curvature, largest
+            piece = cells.pieces[i]
+            Av = xp.reshape(block, (-1,))
+            largest = max(largest, float(xp.max(xp.abs(Av))))
+            curvature += total(Av[cells.mask[piece]] * scaled[cells.starts[i] : cells.starts[i + 1]])
+            out[piece] = before[piece] + size * xp.astype(Av, self.real, copy=False)
+
+        self.kernel.stream(self.kernel.symbol_single, lambda _, i: cells.block(scaled, i), write)
+        return out, curvature * size**2, ROUNDING * largest * size
 
     def _moved(
-        self, x: Array, g: Array, index: NDArray[np.intp], way: Array, level: float
-    ) -> tuple[Array, Array, float, NDArray[np.intp]]:
-        """Go that way and project; returns x, g, what the energy has changed by, and the cells between their bounds."""
-        old, lower, upper = x[index], _at(self.lower, index), _at(self.upper, index)
-        new = project(old + way, lower, upper, float(old.sum()))[0]
-        v = np.zeros(x.size)
-        v[index] = new - old
-        Av = self.apply(v)
-        change = float((g[index] + level) @ v[index]) + float(v[index] @ Av[index]) / 2
-        v += x
-        Av += g
-        return v, Av, change, index[(new > lower) & (new < upper)]
+        self, x: AnyArray, g: AnyArray, cells: Cells, way: AnyArray, level: float
+    ) -> tuple[AnyArray, AnyArray, float, Cells, float]:
+        """Go that way and project; returns x, g, change of energy, cells between their bounds, doubt about g."""
+        xp = self.xp
+        old, lower, upper = cells.values(x), _at(self.lower, cells.mask), _at(self.upper, cells.mask)
+        new = project(old + way, lower, upper, total(old))[0]
+        out = xp.asarray(x, copy=True)
+        out[cells.mask] = new
+        left = xp.zeros(x.shape[0], dtype=xp.bool)
+        left[cells.mask] = (new > lower) & (new < upper)
+        new -= old
+        del old
+        after, curvature, doubt = self._added(cells, new, g)
+        change = dot(cells.values(g) + level, new) + curvature / 2
+        return out, after, change, Cells(self.kernel, left), doubt

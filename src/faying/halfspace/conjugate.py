@@ -1,82 +1,187 @@
-"""Linear problems on a set of cells: preconditioned conjugate gradients in single precision with given totals."""
+"""Linear problems on a set of cells: preconditioned conjugate gradients in single precision with given totals.
+
+The preconditioner has two levels. On the cells the product M with |q|, cut to them, is near the inverse for what is
+shorter than the distance between contact spots. Longer waves it takes for far too soft: to move a spot as a whole
+costs much at its rim, to move a smooth field costs little. The operator is taken for the sum of both compliances,
+
+    A = M^-1 + Z E^-1 Z',       E^-1 = 2/q - 2/q_c    (waves longer than a coarse block, periodic)
+
+with Z the fields that are constant on coarse blocks. By Woodbury's identity, and with M Z = C Z where C = diag(M 1),
+
+    A^-1 = (1 - Q') M (1 - Q) + C Z K E K Z' C,       Q = Z K Z' C,   K = (E + Z'C Z)^-1,
+
+which is symmetric and positive whatever C is, takes one product with M, and gives tractions of total 0 since E leaves
+out the mean. K is solved on the coarse blocks by conjugate gradients.
+"""
+
+from typing import Any, final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from faying.halfspace.kernels import Kernel, Single
-from faying.typing import Array
+from faying.halfspace.arrays import dot, total
+from faying.halfspace.cells import Cells
+from faying.halfspace.kernels import Kernel
+from faying.typing import AnyArray, Array
+
+CUT = 1.5  # wave number at which E^-1 ends, over the highest one of the coarse blocks
+LEAST = 1e-3  # what is left of E^-1 there, over what was taken off
+COARSE = 1e-3  # reduction of the residual of K
+TURNS = 40
+DENSE = 100  # blocks up to which K is made as a matrix
+GROWTH = 1e4  # of the residual squared, beyond which only rounding is left of it
 
 
-class _System:
-    """The operator on some cells, and its preconditioner kept clear of the constrained totals."""
+@final
+class _Coarse:
+    """The smooth part of one component: K, E and Z for given stiffnesses c of the cells."""
 
-    def __init__(self, kernel: Kernel, index: NDArray[np.intp], components: int) -> None:
-        self.kernel, self.index = kernel, index
-        self.plane = np.zeros((components, kernel.shape[0] * kernel.shape[1]), np.float32)
+    def __init__(self, kernel: Kernel, cells: Cells, c: AnyArray) -> None:
+        self.blocks, self.c, self.place = cells.coarse, c, kernel.place
+        xp, shape = kernel.place.xp, self.blocks.shape
+        stiffness = self.blocks.sums(c)
+        self.stiffness = xp.where(stiffness > 0, stiffness, 0.0)
+        self.whole = float(xp.sum(self.stiffness))
+        self.mean = self.whole / (shape[0] * shape[1])
+        E = _symbol(kernel, shape)
+        self.E, self.near_inverse = kernel.place.send(E), kernel.place.send(1 / (E + self.mean))
+        self.inverse: AnyArray | None = None
+        if shape[0] * shape[1] <= DENSE:
+            matrix = _circulant(E, shape) + np.diag(kernel.place.fetch(self.stiffness).ravel())
+            self.inverse = kernel.place.send(np.linalg.inv(matrix))
+
+    def apply_E(self, field: AnyArray) -> AnyArray:
+        return self.place.convolve(field, self.E)
+
+    def solve(self, right: AnyArray) -> AnyArray:
+        """K times a field of the blocks, its mean exact."""
+        xp = self.place.xp
+        if self.inverse is not None:
+            y = xp.reshape(self.inverse @ xp.reshape(right, (-1,)), self.blocks.shape)
+        else:
+            y = self._iterated(right)
+        return y + float(xp.sum(right) - xp.sum(self.stiffness * y)) / self.whole
+
+    def _iterated(self, right: AnyArray) -> AnyArray:
+        xp = self.place.xp
+        y, r = 0.0 * right, right
+        z = self.place.convolve(r, self.near_inverse)
+        t, Et = z, r - self.mean * z  # z = (E + mean)^-1 r, so that E z needs no transform
+        rz = first = float(xp.sum(r * z))
+        for _ in range(TURNS):
+            if rz <= COARSE**2 * first or rz <= 0:
+                break
+            q = Et + self.stiffness * t
+            along = rz / float(xp.sum(t * q))
+            y = y + along * t
+            r = r - along * q
+            z = self.place.convolve(r, self.near_inverse)
+            new = float(xp.sum(r * z))
+            t, Et = z + (new / rz) * t, r - self.mean * z + (new / rz) * Et
+            rz = new
+        return y
+
+
+def _symbol(kernel: Kernel, shape: tuple[int, int]) -> Array:
+    """Symbol of E, from displacements of blocks to their sums of traction; lengths in columns of the map."""
+    side = [n / m for n, m in zip(kernel.shape, shape, strict=True)]
+    qy = 2 * np.pi * np.fft.fftfreq(shape[0], side[0] * kernel.aspect)[:, None]
+    qx = 2 * np.pi * np.fft.rfftfreq(shape[1], side[1])[None, :]
+    q = np.hypot(qy, qx)
+    q[0, 0] = 1.0
+    cut = CUT * np.pi / min(side[0] * kernel.aspect, side[1])
+    E: Array = side[0] * side[1] / (kernel.strength * np.maximum(1 / q - 1 / cut, LEAST / cut))
+    E[0, 0] = 0.0
+    return E
+
+
+def _circulant(symbol: Array, shape: tuple[int, int]) -> Array:
+    """The matrix of a symbol on a small field."""
+    first = np.fft.irfft2(symbol, s=shape)
+    y, x = (a.ravel() for a in np.indices(shape))
+    return np.asarray(first[y[:, None] - y[None, :], x[:, None] - x[None, :]])
+
+
+@final
+class System:
+    """The operator on some cells, and its preconditioner, which gives tractions of total 0 in every component.
+
+    used: how many products it has taken.
+    """
+
+    def __init__(self, kernel: Kernel, cells: Cells) -> None:
+        components = kernel.components
+        self.kernel, self.cells, self.xp = kernel, cells, kernel.place.xp
         self.used = 0
-        # the constraint's share of the preconditioned space: columns M e_k and their Gram matrix
-        self.columns = []
+        self.coarse = []
         for k in range(components):
-            unit = np.zeros((components, index.size), np.float32)
-            unit[k] = 1.0
-            self.columns.append(self.on_cells(unit, inverse=True))
-        self.gram = np.array([[c[k].sum(dtype=float) for c in self.columns] for k in range(components)])
+            unit = self.xp.zeros((components, cells.size), dtype=self.xp.float32)
+            unit[k, :] = 1.0
+            self.coarse.append(_Coarse(kernel, cells, self._inverse(unit)[k, :]))
 
-    def on_cells(self, v: Single, *, inverse: bool) -> Single:
-        """Apply the operator, or its preconditioner, to values on the cells."""
+    def apply(self, v: AnyArray) -> AnyArray:
+        """The operator times v."""
         self.used += 1
-        self.plane[:, self.index] = v
-        field = self.plane.reshape(len(v), *self.kernel.shape)
-        out = self.kernel.precondition(field) if inverse else self.kernel.apply_single(field)
-        return np.asarray(out.reshape(len(v), -1)[:, self.index])
+        return self.cells.product(v, self.kernel.symbol_single)
 
-    def with_totals(self, totals: Array) -> Single:
-        """Combination of the columns that has these totals."""
-        out = np.zeros((len(totals), self.index.size), np.float32)
-        for weight, column in zip(np.linalg.solve(self.gram, totals), self.columns, strict=True):
-            out += np.float32(weight) * column
-        return out
+    def _inverse(self, v: AnyArray) -> AnyArray:
+        self.used += 1
+        return self.cells.product(v, self.kernel.inverse)
 
-    def preconditioned(self, r: Single) -> Single:
-        """M r less its totals."""
-        z = self.on_cells(r, inverse=True)
-        for weight, column in zip(np.linalg.solve(self.gram, z.sum(axis=1, dtype=float)), self.columns, strict=True):
-            z -= np.float32(weight) * column
+    def with_totals(self, totals: Array) -> AnyArray:
+        """Tractions that have these totals."""
+        shares = [float(t) / total(part.c) * part.c for t, part in zip(totals, self.coarse, strict=True)]
+        return self.xp.stack(shares)
+
+    def preconditioned(self, r: AnyArray) -> AnyArray:
+        """The module's A^-1 times r."""
+        smooth = [part.solve(part.blocks.sums(part.c * r[k, :])) for k, part in enumerate(self.coarse)]
+        z = r - self.xp.stack([part.blocks.spread(u) for part, u in zip(self.coarse, smooth, strict=True)])
+        z = self._inverse(z)
+        for k, (part, u) in enumerate(zip(self.coarse, smooth, strict=True)):
+            y = part.solve(part.blocks.sums(z[k, :]) - part.apply_E(u))
+            z[k, :] -= part.c * part.blocks.spread(y)
         return z
 
 
 def constrained_gradients(
-    kernel: Kernel, index: NDArray[np.intp], residual: Single, totals: Array, *, reduction: float, limit: int
-) -> tuple[Single, int]:
-    """Solve A s = residual on the cells `index`, up to one constant per component, where s has given totals.
+    system: System, residual: AnyArray, totals: Array, *, reduction: float, limit: int
+) -> AnyArray:
+    """Solve A s = residual on the cells of a system, up to one constant per component, where s has given totals.
 
-    residual and s of shape (c, cells), totals (c,). Stops when the preconditioned residual has fallen by `reduction`
-    or after `limit` iterations. Returns s and the number of operator applications. A bad solve does no harm: callers
-    measure what they get.
+    residual and s of shape (c, cells), totals (c,). Stops where the last turn has gained less energy than
+    reduction^2 of all that was gained, or after `limit` turns. A bad solve does no harm: callers measure what they get.
     """
-    system = _System(kernel, index, len(residual))
-    s = np.zeros(residual.shape, np.float32)
-    r = residual.copy()
+    xp: Any = system.xp
+    flat = (-1,)
+    s = xp.zeros(tuple(residual.shape), dtype=xp.float32)
+    r = xp.asarray(residual, copy=True)
     if np.any(totals != 0):
         s = system.with_totals(totals)
-        r -= system.on_cells(s, inverse=False)
-    z = system.preconditioned(r)
-    rz = first = float(np.vdot(r, z))
-    t = z
-    for _ in range(limit):
+        r -= system.apply(s)
+    r -= xp.mean(r, axis=1, keepdims=True)
+    t = system.preconditioned(r)
+    rz = first = dot(xp.reshape(r, flat), xp.reshape(t, flat))
+    gained = 0.0
+    for turn in range(limit):
         if rz <= 0:
             break
-        q = system.on_cells(t, inverse=False)
-        curvature = float(np.vdot(t, q))
+        q = system.apply(t)
+        curvature = dot(xp.reshape(t, flat), xp.reshape(q, flat))
         if curvature <= 0:
             break
-        along = np.float32(rz / curvature)
+        along = rz / curvature
         s += along * t
-        r -= along * q
-        z = system.preconditioned(r)
-        new = float(np.vdot(r, z))
-        if new < reduction**2 * first:
+        gain = along * rz
+        gained += gain
+        if gain <= reduction**2 * gained or turn + 1 == limit:
+            break  # before another product with the preconditioner
+        q *= along
+        r -= q
+        q = system.preconditioned(r)
+        new = dot(xp.reshape(r, flat), xp.reshape(q, flat))
+        if new >= GROWTH * first:
             break
-        t = z + np.float32(new / rz) * t
+        t *= new / rz
+        t += q
         rz = new
-    return s, system.used
+    return s

@@ -2,18 +2,25 @@
 
 All lengths in units of the column spacing and all stresses in units of E*: the solvers work on numbers near 1, so
 that single precision serves where only a search direction is wanted.
+
+A product goes through its map three times: rows forward, columns forward, times the symbol and back, rows back. Blocks
+of rows and of columns stay in the cache meanwhile, and nothing but the spectrum is ever stored whole.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import pi
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from faying.typing import Array
+from faying.halfspace.arrays import Place
+from faying.typing import AnyArray, Array
 
-Single = NDArray[np.float32]
+HOST = Place()
+Read = Callable[[int, int], AnyArray | None]
+Write = Callable[[int, int, AnyArray], None]
 
 
 @final
@@ -22,16 +29,21 @@ class Kernel:
     """A symmetric operator traction -> displacement with c components, diagonal or full in the components.
 
     shape (ny, nx) of the map; padded (my, mx), the size of its transforms: equal to shape for a periodic surface, at
-    least twice it less one for a free one. symbol[i, j] of shape (c, c, my, mx // 2 + 1), real; inverse likewise, a
-    positive operator near the inverse of `symbol`, for preconditioning.
+    least twice it less one for a free one. Tables of shape (c, c, my // 2 + 1, mx // 2 + 1), real, hold a quarter of
+    the wave numbers: the diagonal ones are even in q_y, the others odd. symbol, in double precision, and
+    symbol_single; inverse, in single, a positive operator near the inverse, for preconditioning. aspect: dy/dx.
+    strength: symbol times |q|, of long waves.
     """
 
     shape: tuple[int, int]
     padded: tuple[int, int]
-    symbol: Array
-    symbol_single: Single
-    inverse: Single
-    workers: int | None = None
+    aspect: float
+    symbol: AnyArray
+    symbol_single: AnyArray
+    inverse: AnyArray
+    strength: float
+    place: Place
+    spectra: "Spectra"
 
     @property
     def components(self) -> int:
@@ -39,59 +51,113 @@ class Kernel:
         return int(self.symbol.shape[0])
 
     @property
+    def moves_mean(self) -> bool:
+        """Whether a uniform traction displaces anything."""
+        return float(self.symbol[0, 0, 0, 0]) != 0
+
+    @property
     def own(self) -> float:
         """Displacement of a cell under unit traction on itself: the operator's diagonal (first component)."""
-        last = self.padded[1] // 2 + 1 if self.padded[1] % 2 else self.padded[1] // 2
-        s = self.symbol[0, 0]
-        return float((s.sum() + s[:, 1:last].sum()) / (self.padded[0] * self.padded[1]))
+        # a table holds each wave number once that stands four times among all, twice on its borders
+        weight = [
+            np.where((np.arange(n // 2 + 1) == 0) | (2 * np.arange(n // 2 + 1) == n), 1.0, 2.0) for n in self.padded
+        ]
+        sums = weight[0] @ self.place.fetch(self.symbol[0, 0, ...]) @ weight[1]
+        return float(sums / (self.padded[0] * self.padded[1]))
 
-    def apply(self, traction: Array) -> Array:
+    @cached_property
+    def rows(self) -> list[slice]:
+        """The blocks of rows that `stream` takes and gives."""
+        return self.place.rows((self.shape[0], self.padded[1]))
+
+    def apply(self, traction: AnyArray) -> AnyArray:
         """Displacement under traction, shape (c, ny, nx), double precision."""
-        return np.asarray(self._filter(traction, self.symbol))
+        xp = self.place.xp
+        out = xp.empty(tuple(traction.shape), dtype=xp.float64)
 
-    def apply_single(self, traction: Single) -> Single:
-        """The same in single precision."""
-        return np.asarray(self._filter(traction, self.symbol_single))
+        def write(k: int, i: int, block: AnyArray) -> None:
+            out[k, self.rows[i], :] = block
 
-    def precondition(self, residual: Single) -> Single:
-        """Near-inverse of `apply`, single precision."""
-        return np.asarray(self._filter(residual, self.inverse))
+        self.stream(self.symbol, lambda k, i: traction[k, self.rows[i], :], write)
+        return out
 
-    def _filter(self, x: NDArray[np.floating], symbol: NDArray[np.floating]) -> NDArray[np.floating]:
-        from scipy.fft import irfft2, rfft2
+    def stream(self, table: AnyArray, read: Read, write: Write, *, needed: Sequence[bool] | None = None) -> None:
+        """Apply a table to a map that comes and goes by blocks of rows, in the table's precision.
 
-        spectrum = rfft2(x, s=self.padded, workers=self.workers)
-        if self.components == 1:
-            spectrum *= symbol[0]
-        else:
-            first = spectrum[0] * symbol[0, 0] + spectrum[1] * symbol[0, 1]
-            spectrum[1] *= symbol[1, 1]
-            spectrum[1] += spectrum[0] * symbol[1, 0]
-            spectrum[0] = first
-        out = irfft2(spectrum, s=self.padded, workers=self.workers, overwrite_x=True)
-        cut: NDArray[np.floating] = out[:, : self.shape[0], : self.shape[1]]
-        return cut
+        read(component, i) gives the rows `self.rows[i]`, or None where all of them are 0; write(component, i, block)
+        takes those of the outcome. needed[i]: whether anybody wants them.
+        """
+        place, (my, mx), nx = self.place, self.padded, self.shape[1]
+        spectra = self.spectra.take(table)
+        for k, spectrum in enumerate(spectra):
+            spectrum[self.shape[0] :, :] = 0.0
+            for i, rows in enumerate(self.rows):
+                block = read(k, i)
+                spectrum[rows, :] = 0.0 if block is None else place.along_rows(block, mx)
+        for columns in place.columns((my, mx // 2 + 1)):
+            for spectrum in spectra:
+                place.along_columns(spectrum[:, columns])
+            upper = my // 2 + 1
+            _multiply([s[:upper, columns] for s in spectra], table[:, :, :, columns], 1.0)
+            if my > 2:
+                mirrored = table[:, :, 1 : my - upper + 1, columns]
+                _multiply([s[upper:, columns] for s in spectra], mirrored[:, :, ::-1, :], -1.0)
+            for spectrum in spectra:
+                place.along_columns(spectrum[:, columns], back=True)
+        for k, spectrum in enumerate(spectra):
+            for i, rows in enumerate(self.rows):
+                if needed is None or needed[i]:
+                    write(k, i, place.back_along_rows(spectrum[rows, :], mx)[:, :nx])
+
+
+def _multiply(spectra: list[AnyArray], table: AnyArray, sign: float) -> None:
+    """Multiply in place; `sign` goes with what couples two components."""
+    if len(spectra) == 1:
+        spectra[0][...] *= table[0, 0, ...]
+        return
+    one, two = spectra
+    first = one * table[0, 0, ...] + two * (sign * table[0, 1, ...])
+    two[...] = two * table[1, 1, ...] + one * (sign * table[1, 0, ...])
+    one[...] = first
+
+
+@final
+class Spectra:
+    """The work arrays of a kernel's transforms; those in single precision are kept from one product to the next."""
+
+    def __init__(self, padded: tuple[int, int], components: int, place: Place) -> None:
+        self._shape, self._components, self._place = (padded[0], padded[1] // 2 + 1), components, place
+        self._kept: list[AnyArray] = []
+
+    def take(self, table: AnyArray) -> list[AnyArray]:
+        """One spectrum a component, in the precision of the table, with any content."""
+        xp = self._place.xp
+        if table.dtype == xp.float64:
+            return [xp.empty(self._shape, dtype=xp.complex128) for _ in range(self._components)]
+        if not self._kept:
+            self._kept = [xp.empty(self._shape, dtype=xp.complex64) for _ in range(self._components)]
+        return self._kept
 
 
 def transform_shape(shape: tuple[int, int], *, periodic: bool) -> tuple[int, int]:
-    """Size of the transforms: that of the map if periodic, else the next quick size that keeps images apart."""
+    """Size of the transforms: that of the map if periodic, else the next quick even size that keeps images apart."""
     if periodic:
         return shape
     from scipy.fft import next_fast_len
 
-    return next_fast_len(2 * shape[0] - 1), next_fast_len(2 * shape[1] - 1, real=True)
+    return 2 * next_fast_len(shape[0]), 2 * next_fast_len(shape[1], real=True)
 
 
 def wave_numbers(padded: tuple[int, int], aspect: float) -> tuple[Array, Array, Array]:
-    """q_x (row), q_y (column) and |q| for spacings 1 along x and `aspect` along y; |q| = 1 stands at q = 0."""
-    qy: Array = 2 * pi * np.fft.fftfreq(padded[0], aspect)[:, None].astype(np.float64)
+    """q_x (row), q_y (column) and |q|, none negative; spacings 1 along x, `aspect` along y; |q| = 1 stands at q = 0."""
+    qy: Array = 2 * pi * np.fft.rfftfreq(padded[0], aspect)[:, None].astype(np.float64)
     qx: Array = 2 * pi * np.fft.rfftfreq(padded[1])[None, :].astype(np.float64)
     q: Array = np.hypot(qy, qx)
     q[0, 0] = 1.0
     return qx, qy, q
 
 
-def normal_kernel(shape: tuple[int, int], aspect: float, *, periodic: bool, workers: int | None = None) -> Kernel:
+def normal_kernel(shape: tuple[int, int], aspect: float, *, periodic: bool, place: Place = HOST) -> Kernel:
     """Normal displacement under pressure, units of E* and of the column spacing.
 
     Periodic: u = 2 p/(E* |q|), the mean displacement left out (Johnson 1985, 13.2; Stanley and Kato 1997,
@@ -102,7 +168,7 @@ def normal_kernel(shape: tuple[int, int], aspect: float, *, periodic: bool, work
     symbol = 2 / q if periodic else _love(padded, aspect)
     if periodic:
         symbol[0, 0] = 0.0
-    return _assembled(shape, padded, symbol[None, None], _inverse(q)[None, None], workers)
+    return _assembled(shape, padded, aspect, (symbol[None, None], _inverse(q)[None, None]), 2.0, place)
 
 
 def shear_kernel(
@@ -112,7 +178,7 @@ def shear_kernel(
     *,
     periodic: bool,
     vector: bool = True,
-    workers: int | None = None,
+    place: Place = HOST,
 ) -> Kernel:
     """Tangential displacement (u_x, u_y) under traction (t_x, t_y), units of E* and of the column spacing.
 
@@ -136,21 +202,31 @@ def shear_kernel(
     base = 2 * G * _inverse(q)
     inverse = {k: base * ((k != "xy") + nu / (1 - nu) * v / q**2) for k, v in along.items()}
     if not vector:
-        return _assembled(shape, padded, parts["xx"][None, None], base[None, None], workers)
+        return _assembled(shape, padded, aspect, (parts["xx"][None, None], base[None, None]), 1 / G, place)
     full = [np.array([[d["xx"], d["xy"]], [d["xy"], d["yy"]]]) for d in (parts, inverse)]
-    return _assembled(shape, padded, full[0], full[1], workers)
+    return _assembled(shape, padded, aspect, (full[0], full[1]), 1 / G, place)
 
 
 def _assembled(
-    shape: tuple[int, int], padded: tuple[int, int], symbol: Array, inverse: Array, workers: int | None
+    shape: tuple[int, int],
+    padded: tuple[int, int],
+    aspect: float,
+    tables: tuple[Array, Array],
+    strength: float,
+    place: Place,
 ) -> Kernel:
+    symbol, inverse = tables
+    single = place.xp.float32
     return Kernel(
         shape=shape,
         padded=padded,
-        symbol=symbol,
-        symbol_single=symbol.astype(np.float32),
-        inverse=inverse.astype(np.float32),
-        workers=workers,
+        aspect=aspect,
+        symbol=place.send(symbol),
+        symbol_single=place.send(symbol.astype(np.float32), single),
+        inverse=place.send(inverse.astype(np.float32), single),
+        strength=strength,
+        place=place,
+        spectra=Spectra(padded, len(symbol), place),
     )
 
 
@@ -161,18 +237,11 @@ def _inverse(q: Array) -> Array:
     return out
 
 
-def _lags(padded: tuple[int, int], aspect: float) -> tuple[Array, Array]:
-    """Signed distances of the cells of a padded map from its first cell, x as a row and y as a column."""
-    x: Array = np.fft.fftfreq(padded[1], 1 / padded[1])[None, :].astype(np.float64)
-    y: Array = np.fft.fftfreq(padded[0], 1 / padded[0])[:, None].astype(np.float64) * aspect
-    return x, y
-
-
 def _rectangle(padded: tuple[int, int], aspect: float) -> dict[str, Array]:
-    """Integrals over a cell of x^2/r^3, y^2/r^3 and x y/r^3 seen from every other cell."""
-    names = ("xx", "yy", "xy")
-    total = {name: np.zeros(padded) for name in names}
-    x, y = _lags(padded, aspect)
+    """Integrals over a cell of x^2/r^3, y^2/r^3 and x y/r^3 seen from the cells up to half a padded map away."""
+    x = np.arange(padded[1] // 2 + 1.0)[None, :]
+    y = np.arange(padded[0] // 2 + 1.0)[:, None] * aspect
+    total = {name: np.zeros((y.size, x.size)) for name in ("xx", "yy", "xy")}
     for sx, sy in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
         X, Y, sign = x + sx / 2, y + sy * aspect / 2, sx * sy
         r = np.hypot(X, Y)
@@ -183,23 +252,33 @@ def _rectangle(padded: tuple[int, int], aspect: float) -> dict[str, Array]:
     return total
 
 
-def _love(padded: tuple[int, int], aspect: float) -> Array:
-    from scipy.fft import rfft2
+def _even(lags: Array) -> Array:
+    """Transform of a real map that is even both ways, from a quarter of it to a quarter."""
+    from scipy.fft import dctn
 
+    return np.asarray(dctn(lags, type=1))
+
+
+def _odd(lags: Array) -> Array:
+    """The same of a map that is odd both ways, 0 at half of its length."""
+    from scipy.fft import dstn
+
+    out = np.zeros(lags.shape)
+    out[1:-1, 1:-1] = -dstn(lags[1:-1, 1:-1], type=1)
+    return out
+
+
+def _love(padded: tuple[int, int], aspect: float) -> Array:
     cell = _rectangle(padded, aspect)
-    return np.asarray(rfft2((cell["xx"] + cell["yy"]) / pi).real)
+    return _even((cell["xx"] + cell["yy"]) / pi)
 
 
 def _cerruti(padded: tuple[int, int], aspect: float, nu: float, G: float) -> dict[str, Array]:
-    from scipy.fft import rfft2
-
     cell = _rectangle(padded, aspect)
     both = cell["xx"] + cell["yy"]
-    cross = cell["xy"]
-    # the lag of exactly half an even padded size is never used: keep the odd kernel odd there
-    if padded[0] % 2 == 0:
-        cross[padded[0] // 2, :] = 0.0
-    if padded[1] % 2 == 0:
-        cross[:, padded[1] // 2] = 0.0
-    tables = {"xx": (1 - nu) * both + nu * cell["xx"], "yy": (1 - nu) * both + nu * cell["yy"], "xy": nu * cross}
-    return {k: np.asarray(rfft2(v / (2 * pi * G)).real) for k, v in tables.items()}
+    scale = 2 * pi * G
+    return {
+        "xx": _even(((1 - nu) * both + nu * cell["xx"]) / scale),
+        "yy": _even(((1 - nu) * both + nu * cell["yy"]) / scale),
+        "xy": _odd(nu * cell["xy"] / scale),
+    }

@@ -47,12 +47,12 @@ def slip_of(contact: HalfSpaceContact, shear_ratio: float, friction: float, *, t
     """
     _check(shear_ratio, friction)
     shape, dx = contact.heights.shape, contact.spacing[0]
-    touching = contact.traction > 0
+    touching, place = contact.traction > 0, contact.place
     kernel = shear_kernel(
-        shape, contact.spacing[1] / dx, contact.nu, periodic=contact.periodic, vector=False, workers=contact.workers
+        shape, contact.spacing[1] / dx, contact.nu, periodic=contact.periodic, vector=False, place=place
     )
     stuck_stiffness = float(stiffness_on(kernel, touching)[0, 0])
-    bound = friction * contact.traction.ravel() / contact.E_star
+    bound = friction * contact.traction.ravel().astype(float) / contact.E_star
     mean = shear_ratio * float(bound.mean())
     if mean == 0 or not isfinite(stuck_stiffness):
         return Slip(
@@ -67,19 +67,20 @@ def slip_of(contact: HalfSpaceContact, shear_ratio: float, friction: float, *, t
         )
     problem = Problem(
         kernel=kernel,
-        load=np.zeros(bound.size),
-        lower=-bound,
-        upper=bound,
+        load=place.send(np.zeros(bound.size)),
+        lower=place.send(-bound),
+        upper=place.send(bound),
         mean=mean,
         scale=mean / stuck_stiffness,
     )
-    found = minimise(problem, tol=tol, start=shear_ratio * bound)
-    sliding = touching.ravel() & (np.abs(found.x) >= bound)
-    slipped = np.where(sliding, np.abs(found.gradient + found.level), 0.0)
+    found = minimise(problem, tol=tol, start=lambda: place.send(shear_ratio * bound))
+    x = place.fetch(found.x)
+    sliding = touching.ravel() & (np.abs(x) >= bound)
+    slipped = np.where(sliding, np.abs(place.fetch(found.G)), 0.0)
     moved = -found.level
     loss = 4 * float((bound * slipped).mean())
     return Slip(
-        traction=found.x.reshape(shape) * contact.E_star,
+        traction=x.reshape(shape) * contact.E_star,
         tangential_pressure=mean * contact.E_star,
         displacement=moved * dx,
         sliding=float(np.count_nonzero(sliding) / np.count_nonzero(touching)),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, final
 import numpy as np
 from numpy.typing import NDArray
 
+from faying.halfspace.arrays import Device, Place, place_for
 from faying.typing import Array, Mask
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ class HalfSpaceContact:
         iterations: Newton steps on the finest map.
         applications: products with the half-space's operator or its inverse on it.
         workers: threads of the transforms.
+        device: where it was solved, and where its stiffness and slip are: "cpu" or "gpu".
     """
 
     heights: Array
@@ -50,11 +52,17 @@ class HalfSpaceContact:
     iterations: int
     applications: int
     workers: int | None = None
+    device: Device = "cpu"
+
+    @property
+    def place(self) -> Place:
+        """Where tangent and slip are computed."""
+        return place_for(None, self.device, "double", self.workers)
 
     @property
     def pressure(self) -> float:
         """Mean pressure over the map [Pa]."""
-        return float(self.traction.mean())
+        return float(self.traction.mean(dtype=float))
 
     @property
     def state(self) -> NDArray[np.int8]:
@@ -69,7 +77,7 @@ class HalfSpaceContact:
         """Where the pressure is the hardness (to rounding)."""
         if self.hardness is None:
             return np.zeros(self.traction.shape, dtype=bool)
-        return self.traction >= self.hardness * (1 - 1e-12)
+        return self.traction >= self.hardness * (1 - max(1e-12, 4 * float(np.finfo(self.traction.dtype).eps)))
 
     @property
     def area(self) -> float:

@@ -1,21 +1,24 @@
 """Contact of a height map with a rigid plane, both taken as one elastic half-space, by `solve_half_space`."""
 
 from dataclasses import dataclass
+from functools import partial
 from math import isfinite, isnan
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.errors import InputError, NotConverged
-from faying.halfspace.bounded import Minimum, Problem, Progress, best_level, duality_gap, minimise
+from faying.halfspace.arrays import Device, Place, Precision, parts, place_for, total
+from faying.halfspace.bounded import Minimum, Problem, Progress, Start, best_level, duality_gap, minimise
 from faying.halfspace.kernels import normal_kernel, transform_shape
 from faying.halfspace.solution import HalfSpaceContact
 from faying.memory import GB, available
-from faying.typing import Array
+from faying.typing import AnyArray, Array
 
 COARSEST = 48
 COARSE_TOLERANCE = 1e-3
 ROUNDING = 1e-12
+BLOCKS = 2e6  # bytes of the rows and columns that are worked on
 
 
 def solve_half_space(
@@ -31,6 +34,8 @@ def solve_half_space(
     tol: float = 1e-6,
     start: HalfSpaceContact | None = None,
     workers: int | None = None,
+    device: Device | None = None,
+    precision: Precision = "double",
     progress: Progress | None = None,
 ) -> HalfSpaceContact:
     """Press a height map against a rigid plane and return the contact, with a bound on its error.
@@ -49,7 +54,11 @@ def solve_half_space(
         tol: bounds `.residual`, the duality gap over load times rms height: an upper bound on the relative excess of
             energy whatever the iteration did; in (0, 1).
         start: an earlier contact of the same map, to begin from.
-        workers: threads of the transforms.
+        workers: threads of the transforms on the CPU.
+        device: "gpu" solves with CuPy on a graphics card, "cpu" with NumPy; None where the heights are, which may be
+            an array of any library that follows the array API standard. The contact always holds NumPy arrays.
+        precision: "single" keeps pressures and gaps in half of the memory, and returns them so. Its `.residual` is that
+            of the pressures returned, in double precision: it reaches about 1e-6.
         progress: called with (step, residual) on the finest map; it may raise to stop the solution.
 
     Returns:
@@ -64,14 +73,15 @@ def solve_half_space(
         Polonsky and Keer 1999, doi:10.1016/S0043-1648(99)00113-1; Almqvist et al. 2007,
         doi:10.1016/j.triboint.2005.11.008.
     """
-    h, (dx, dy) = _checked_map(heights, spacing)
+    place = place_for(heights, device, precision, workers)
+    h, (dx, dy) = _checked_map(heights, spacing, place)
     _check_numbers(E_star, nu, hardness, tol)
-    _check_memory(h.shape, periodic)
+    _check_memory(h.shape, periodic, place)
     if (pressure is None) == (displacement is None):
         raise InputError("give either pressure or displacement to solve_half_space, one of the two")
-    options = _Options(E_star=E_star, hardness=hardness, nu=nu, periodic=periodic, tol=tol, workers=workers)
+    options = _Options(E_star=E_star, hardness=hardness, nu=nu, periodic=periodic, tol=tol, place=place)
     problem = _Pressing(h, (dx, dy), options, progress)
-    first = None if start is None else _first(start, h.shape) / E_star
+    first = None if start is None else _first(start, h.shape)
     if displacement is not None:
         return _at_displacement(problem, displacement, first)
     assert pressure is not None
@@ -97,99 +107,133 @@ class _Options:
     nu: float
     periodic: bool
     tol: float
-    workers: int | None
+    place: Place
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Map:
-    """Heights at one coarseness, lengths in cells: `unit`, the cell over the finest one, and `aspect` dy/dx."""
+    """Heights [m] at one coarseness, the width of its cells [m] and their aspect dy/dx."""
 
     h: Array
-    unit: float
+    cell: float
     aspect: float
 
     def coarser(self) -> "_Map":
         """The map on half as many points each way."""
         small = _halved(self.h)
         across, down = self.h.shape[1] / small.shape[1], self.h.shape[0] / small.shape[0]
-        return _Map(h=small / across, unit=self.unit * across, aspect=self.aspect * down / across)
+        return _Map(h=small, cell=self.cell * across, aspect=self.aspect * down / across)
 
 
 class _Pressing:
-    """One map under one set of options, scaled: lengths by dx, stresses by E*."""
+    """One map under one set of options, scaled: lengths by the width of a cell, stresses by E*."""
 
     def __init__(self, h: Array, spacing: tuple[float, float], options: _Options, progress: Progress | None) -> None:
         self.heights, self.spacing, self.options, self.progress = h, spacing, options, progress
         self.top = float(h.max())
-        self.map = _Map(h=(h - self.top) / spacing[0], unit=1.0, aspect=spacing[1] / spacing[0])
-        self.rms = float(self.map.h.std())
+        self.map = _Map(h=h, cell=spacing[0], aspect=spacing[1] / spacing[0])
+        self.rms = float(h.std(dtype=float))
         self.limit = np.inf if options.hardness is None else options.hardness / options.E_star
 
     def at(self, mean: float, start: Array | None) -> HalfSpaceContact:
-        """The contact at a mean pressure, scaled."""
+        """The contact at a mean pressure, scaled; start: pressures [Pa] of any mean."""
         if mean == 0:
             return self._solution(None)
         if start is None or not start.any():
             return self._solution(self._nested(self.map, mean))
-        return self._solution(self._minimise(self.map, mean, start * (mean / start.mean())))
+        place, scale = self.options.place, mean / start.mean(dtype=float)
+        return self._solution(self._minimise(self.map, mean, lambda: place.send((start * scale).ravel(), place.real)))
 
     def _nested(self, on: _Map, mean: float) -> Minimum:
         """Solve coarse maps first; each gives the next one's start."""
-        start = None
+        start: Start | None = None
         if min(on.h.shape) >= 2 * COARSEST:
-            small = on.coarser()
+            small, place = on.coarser(), self.options.place
             try:
-                start = _spread(self._nested(small, mean).x.reshape(small.h.shape), on.h.shape)
+                found = place.fetch(self._nested(small, mean).x).reshape(small.h.shape)
             except NotConverged:
-                start = None  # a coarse map only gives a start; do without
+                pass  # a coarse map only gives a start; do without
+            else:
+                start = partial(self._fine, found, on.h.shape)
+            del small
         return self._minimise(on, mean, start)
 
-    def _minimise(self, on: _Map, mean: float, start: Array | None) -> Minimum:
+    def _fine(self, found: Array, shape: tuple[int, ...]) -> AnyArray:
+        place = self.options.place
+        return place.send(_spread(found, shape).ravel(), place.real)
+
+    def _minimise(self, on: _Map, mean: float, start: Start | None) -> Minimum:
         finest = on is self.map
-        options = self.options
+        options, place = self.options, self.options.place
         problem = Problem(
-            kernel=normal_kernel(on.h.shape, on.aspect, periodic=options.periodic, workers=options.workers),
-            load=on.h.ravel(),
+            kernel=normal_kernel((on.h.shape[0], on.h.shape[1]), on.aspect, periodic=options.periodic, place=place),
+            load=place.send(on.h.ravel()),
+            datum=self.top,
+            unit=on.cell,
             lower=0.0,
             upper=self.limit,
             mean=mean,
             # a smooth flat has no roughness to measure by: take what its own load does to one cell
-            scale=self.rms / on.unit if self.rms > 0 else mean,
+            scale=self.rms / on.cell if self.rms > 0 else mean,
         )
         return minimise(
             problem,
             tol=options.tol if finest else max(options.tol, COARSE_TOLERANCE),
-            start=None if start is None else start.ravel(),
+            start=start,
+            least=0 if finest else 1,  # a start may be good enough for a coarse map and bad for the next
             progress=self.progress if finest else None,
         )
 
     def _solution(self, found: Minimum | None) -> HalfSpaceContact:
-        length = self.spacing[0]
-        shape = self.heights.shape
-        traction, displacement = np.zeros(shape), np.zeros(shape)
+        shape, options = self.heights.shape, self.options
+        real = np.float64 if options.place.precision == "double" else np.float32
+        traction, displacement = np.zeros(shape, real), np.zeros(shape, real)
         plane, residual, steps, applications = self.top, 0.0, 0, 0
         if found is not None:
-            # less than this is what the projection's rounding leaves, not contact
-            x = np.where(found.x > ROUNDING * found.x.mean(), found.x, 0.0)
-            traction = x.reshape(shape) * self.options.E_star
-            displacement = (found.gradient.reshape(shape) + self.map.h) * length
-            plane = self.top + found.level * length
+            plane = self.top + found.level * self.spacing[0]
+            traction, displacement = self._maps(found, plane)
             residual, steps, applications = found.residual, found.steps, found.applications
+            if options.place.precision == "single":
+                residual, applications = self._certified(traction, residual), applications + 1
         return HalfSpaceContact(
             heights=self.heights,
             spacing=self.spacing,
-            E_star=self.options.E_star,
-            nu=self.options.nu,
-            hardness=self.options.hardness,
-            periodic=self.options.periodic,
+            E_star=options.E_star,
+            nu=options.nu,
+            hardness=options.hardness,
+            periodic=options.periodic,
             traction=_frozen(traction),
             displacement=_frozen(displacement),
             plane=plane,
             residual=residual,
             iterations=steps,
             applications=applications,
-            workers=self.options.workers,
+            workers=options.place.workers,
+            device="gpu" if hasattr(options.place.xp, "asnumpy") else "cpu",
         )
+
+    def _maps(self, found: Minimum, plane: float) -> tuple[Array, Array]:
+        """Traction [Pa] and displacement [m], made where x and G of the solution are."""
+        place, x, G = self.options.place, found.x, found.G
+        load = place.send(self.heights.ravel())
+        least = ROUNDING * total(x) / x.shape[0]
+        for s in parts(x):
+            # less than this is what the projection's rounding leaves, not contact
+            x[s] = place.xp.where(x[s] > least, x[s], 0.0) * self.options.E_star
+            moved = place.xp.astype(G[s], place.xp.float64) * self.spacing[0] + load[s] - plane
+            G[s] = place.xp.astype(moved, place.real)
+        shape = self.heights.shape
+        return place.fetch(x).reshape(shape), place.fetch(G).reshape(shape)
+
+    def _certified(self, traction: Array, claimed: float) -> float:
+        """The residual of pressures that have been rounded to single precision, in double precision."""
+        residual = _residual(self.heights, self.spacing, traction, self.limit, self.options)
+        if residual >= self.options.tol > claimed:
+            raise NotConverged(
+                f"half-space contact: single precision comes to residual {residual:.1e}, above the tolerance "
+                f'{self.options.tol:.1e}; ask for a larger tol, or for precision="double"'
+            )
+        return residual
 
 
 def error_bound(
@@ -206,17 +250,33 @@ def error_bound(
     Tractions outside 0 to hardness are cut to these bounds first. Raises InputError as `solve_half_space` does and for
     a map of another shape or without any pressure.
     """
-    h, (dx, dy) = _checked_map(heights, spacing)
+    h, (dx, dy) = _checked_map(heights, spacing, Place())
     _check_numbers(E_star, 0.3, hardness, 0.5)
-    limit = np.inf if hardness is None else hardness / E_star
-    x = np.clip(np.asarray(traction, dtype=np.float64) / E_star, 0.0, limit)
-    if x.shape != h.shape or not x.any():
-        raise InputError(f"traction of shape {x.shape}; give pressures above 0 on a map of shape {h.shape}")
-    kernel = normal_kernel((h.shape[0], h.shape[1]), dy / dx, periodic=periodic)
-    gradient = (kernel.apply(x[None])[0] - h / dx).ravel()
-    x = x.ravel()
+    given = np.asarray(traction)
+    if given.shape != h.shape or not (given > 0).any():
+        raise InputError(f"traction of shape {given.shape}; give pressures above 0 on a map of shape {h.shape}")
+    options = _Options(E_star=E_star, hardness=hardness, nu=0.3, periodic=periodic, tol=0.5, place=Place())
+    return _residual(h, (dx, dy), given, np.inf if hardness is None else hardness / E_star, options)
+
+
+def _residual(h: Array, spacing: tuple[float, float], traction: Array, limit: float, options: _Options) -> float:
+    """Duality gap over load times rms height of pressures cut to their bounds, in double precision."""
+    place = Place(options.place.xp, "double", options.place.workers)
+    xp, (ny, nx) = place.xp, h.shape
+    x = xp.clip(place.send(traction.ravel(), xp.float64) / options.E_star, 0.0, limit)
+    problem = Problem(
+        kernel=normal_kernel((ny, nx), spacing[1] / spacing[0], periodic=options.periodic, place=place),
+        load=place.send(h.ravel()),
+        datum=float(h.max()),
+        unit=spacing[0],
+        lower=0.0,
+        upper=limit,
+        mean=0.0,
+        scale=1.0,
+    )
+    gradient = problem.gradient_at(x, 0.0, precise=True)[0]
     gap = duality_gap(x, gradient, 0.0, limit, best_level(x, gradient, 0.0, limit))
-    return gap / float(x.sum() * h.std() / dx)
+    return gap / (total(x) * float(h.std(dtype=float)) / spacing[0])
 
 
 def _at_displacement(problem: _Pressing, displacement: float, start: Array | None) -> HalfSpaceContact:
@@ -241,7 +301,7 @@ def _at_displacement(problem: _Pressing, displacement: float, start: Array | Non
         contact = problem.at(float(np.exp(log_p)), last)
         contacts.clear()
         contacts[log_p] = contact
-        last = contact.traction / problem.options.E_star
+        last = contact.traction
         return (contact.approach - displacement) / displacement
 
     ceiling = np.log(problem.limit * (1 - 1e-9))
@@ -265,8 +325,13 @@ def _at_displacement(problem: _Pressing, displacement: float, start: Array | Non
     return contacts[root]
 
 
-def _checked_map(heights: ArrayLike, spacing: float | tuple[float, float]) -> tuple[Array, tuple[float, float]]:
-    h = np.array(heights, dtype=np.float64)
+def _checked_map(
+    heights: ArrayLike, spacing: float | tuple[float, float], place: Place
+) -> tuple[Array, tuple[float, float]]:
+    """A copy of the heights that nobody changes, and (dx, dy)."""
+    given = heights if isinstance(heights, (np.ndarray, list, tuple)) else place.fetch(heights)
+    keep = place.precision == "single" and isinstance(given, np.ndarray) and given.dtype == np.float32
+    h: Array = np.array(given, dtype=np.float32 if keep else np.float64)
     if h.ndim != 2 or min(h.shape) < 2:
         raise InputError(f"heights of shape {h.shape}; give a map of rows and columns, at least 2 by 2")
     bad = int(np.count_nonzero(~np.isfinite(h)))
@@ -304,14 +369,22 @@ def _check_pressure(pressure: float, hardness: float | None) -> None:
         )
 
 
-def memory_needed(shape: tuple[int, int], *, periodic: bool) -> float:
-    """Bytes that a solution on a map of this shape takes at its peak."""
+def memory_needed(shape: tuple[int, int], *, periodic: bool, precision: Precision = "double") -> float:
+    """Bytes that a solution on a map of this shape takes at its peak, the given map not counted.
+
+    Measured where every point touches, which takes the most.
+    """
     padded = transform_shape(shape, periodic=periodic)
-    return 8.0 * (22 * shape[0] * shape[1] + 5 * padded[0] * padded[1])
+    points, transformed = shape[0] * shape[1], padded[0] * padded[1]
+    return (76.0 if precision == "double" else 67.0) * points + 9.0 * transformed + BLOCKS
 
 
-def _check_memory(shape: tuple[int, ...], periodic: bool) -> None:
-    need, have = memory_needed((shape[0], shape[1]), periodic=periodic), available()
+def _check_memory(shape: tuple[int, ...], periodic: bool, place: Place) -> None:
+    if place.host:
+        need = memory_needed((shape[0], shape[1]), periodic=periodic, precision=place.precision)
+    else:
+        need = 24.0 * shape[0] * shape[1]  # heights, traction and displacement; the rest is on the device
+    have = available()
     if have is not None and need > have:
         raise InputError(
             f"a map of {shape[0]} x {shape[1]} points needs about {need / GB:.3g} GB and {have / GB:.3g} GB "

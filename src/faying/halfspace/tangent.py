@@ -6,7 +6,8 @@ from typing import final
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.halfspace.conjugate import constrained_gradients
+from faying.halfspace.cells import Cells
+from faying.halfspace.conjugate import System, constrained_gradients
 from faying.halfspace.kernels import Kernel, normal_kernel, shear_kernel
 from faying.halfspace.solution import HalfSpaceContact
 from faying.typing import Array, Mask
@@ -36,36 +37,37 @@ class Tangent:
         return self.k_n_loading
 
 
-def stiffness_on(kernel: Kernel, cells: Mask) -> Array:
-    """Stiffness matrix (c, c), per nominal area, of the set of cells moved as one rigid punch; scaled units.
+def stiffness_on(kernel: Kernel, touching: Mask) -> Array:
+    """Stiffness matrix (c, c), per nominal area, of the points of a map moved as one rigid punch; scaled units.
 
     The traction of least energy that carries a unit mean load; its energy is the compliance, so that an error e in
     the traction leaves e^2 in the stiffness. Raises NotConverged where the passes do not settle.
     """
-    c, n = kernel.components, cells.size
-    index = np.flatnonzero(cells)
-    if index.size == 0:
+    c, n, xp = kernel.components, touching.size, kernel.place.xp
+    cells = Cells(kernel, kernel.place.send(touching.ravel()))
+    if cells.size == 0:
         return np.zeros((c, c))
-    if index.size == n and not kernel.symbol[0, 0, 0, 0]:
+    if cells.size == n and not kernel.moves_mean:
         return np.diag(np.full(c, np.inf))
-    s = np.zeros((c, c, n))  # load direction, component, cell
-    moved = np.zeros_like(s)
+    system = System(kernel, cells)
+    s = [xp.zeros((c, cells.size), dtype=xp.float64) for _ in range(c)]  # one a load direction
+    moved = list(s)
     compliance = np.zeros((c, c))
     for turn in range(PASSES):
         for k in range(c):
-            r = -moved[k][:, index]
-            r -= r.mean(axis=1, keepdims=True)
-            size = float(np.abs(r).max()) or 1.0
+            r = xp.mean(moved[k], axis=1, keepdims=True) - moved[k]
+            size = float(xp.max(xp.abs(r))) or 1.0
             totals = np.zeros(c)
             totals[k] = n if turn == 0 else 0.0
-            step = constrained_gradients(
-                kernel, index, (r / size).astype(np.float32), totals / size, reduction=3e-3, limit=60
-            )[0]
-            s[k][:, index] += size * step.astype(np.float64)
+            right = xp.astype(r / size, xp.float32)
+            step = constrained_gradients(system, right, totals / size, reduction=3e-3, limit=60)
+            s[k] = s[k] + size * xp.astype(step, xp.float64)
             # single precision leaves the totals off by 1e-7: restore them
-            s[k][:, index] += ((n * np.eye(c)[k] - s[k].sum(axis=1)) / index.size)[:, None]
-            moved[k] = kernel.apply(s[k].reshape(c, *kernel.shape)).reshape(c, -1)
-        before, compliance = compliance, np.einsum("kcn,lcn->kl", s, moved) / n
+            missing = kernel.place.send(n * np.eye(c)[k]) - xp.sum(s[k], axis=1)
+            s[k] += missing[:, None] / cells.size
+            moved[k] = cells.product(s[k], kernel.symbol)
+        before = compliance
+        compliance = np.array([[float(xp.sum(s[k] * moved[l])) for l in range(c)] for k in range(c)]) / n
         if np.abs(compliance - before).max() <= AGREEMENT * np.abs(compliance).max():
             return np.asarray(np.linalg.inv((compliance + compliance.T) / 2))
     raise NotConverged(
@@ -80,7 +82,7 @@ def normal_stiffness_of(contact: HalfSpaceContact, *, loading: bool) -> float:
         contact.heights.shape,
         contact.spacing[1] / contact.spacing[0],
         periodic=contact.periodic,
-        workers=contact.workers,
+        place=contact.place,
     )
     cells = contact.traction > 0
     if loading:
@@ -91,7 +93,7 @@ def normal_stiffness_of(contact: HalfSpaceContact, *, loading: bool) -> float:
 def tangent_of(contact: HalfSpaceContact) -> Tangent:
     """Return the tangent stiffness of a contact; see `HalfSpaceContact.tangent`."""
     shape, aspect = contact.heights.shape, contact.spacing[1] / contact.spacing[0]
-    shear = shear_kernel(shape, aspect, contact.nu, periodic=contact.periodic, workers=contact.workers)
+    shear = shear_kernel(shape, aspect, contact.nu, periodic=contact.periodic, place=contact.place)
     k_unload = k_load = normal_stiffness_of(contact, loading=False)
     if contact.hardness is not None and contact.at_hardness.any():
         k_load = normal_stiffness_of(contact, loading=True)
