@@ -1,6 +1,6 @@
 """Cholesky's factor of a symmetric matrix of dense blocks, few of which are coupled."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import combinations
 from typing import Any
 
@@ -16,25 +16,29 @@ class BlockCholesky:
     Small blocks are eliminated first. Only the columns of a block beside the diagonal that hold anything are kept.
 
     Args:
-        diagonal: the blocks on the diagonal, dense (n_i, n_i); they are overwritten.
-        edges: (i, j), i < j -> the block of rows i and columns j, dense or sparse.
+        diagonal: the blocks on the diagonal, dense (n_i, n_i).
+        edges: (i, j), i < j -> the block of rows i and columns j, dense or sparse. Both are used up: the blocks are
+            great, and what is left of them is in the factor.
 
     Raises:
         NotConverged: the matrix is not positive definite.
     """
 
-    def __init__(self, diagonal: Sequence[Array], edges: Mapping[tuple[int, int], Any]) -> None:
+    def __init__(self, diagonal: list[Array], edges: dict[tuple[int, int], Any]) -> None:
         self._order = sorted(range(len(diagonal)), key=lambda k: len(diagonal[k]))
         rank = {block: place for place, block in enumerate(self._order)}
         blocks = [np.asarray(diagonal[k], dtype=float) for k in self._order]
+        diagonal.clear()
         beside: list[dict[int, _Edge]] = [{} for _ in blocks]
-        for (one, other), edge in edges.items():
+        while edges:
+            (one, other), edge = edges.popitem()
             i, j = rank[one], rank[other]
             beside[min(i, j)][max(i, j)] = _Edge.of(edge if i < j else edge.T)
         self._lower: list[Array] = []
         self._beside = beside
-        for i, block in enumerate(blocks):
-            lower = _cholesky(block)
+        for i in range(len(blocks)):
+            lower = _cholesky(blocks[i])
+            blocks[i] = np.zeros((0, 0))
             self._lower.append(lower)
             for edge in beside[i].values():
                 edge.values = _forward(lower, edge.values)
@@ -92,7 +96,8 @@ def _cholesky(block: Array) -> Array:
     from scipy.linalg import LinAlgError, cholesky
 
     try:
-        return np.asarray(cholesky(block, lower=True, overwrite_a=True, check_finite=False))
+        # the transpose of a symmetric matrix is itself, in the order that LAPACK overwrites
+        return np.asarray(cholesky(block.T, lower=True, overwrite_a=True, check_finite=False))
     except LinAlgError:
         raise NotConverged("the matrix is not positive definite; is a part free to move?") from None
 

@@ -240,7 +240,9 @@ class ByParts:
             outside.data = np.where((own.indices < at) | (own.indices >= end), own.data, 0.0)
             outside.eliminate_zeros()
             coupled[np.flatnonzero(np.diff(outside.indptr))] = True
-            inside = parts.complement(number) + (own[:, at:end] - parts.edges[parts.first[kind]]).toarray()
+            inside = parts.complement(number)
+            more = (own[:, at:end] - parts.edges[parts.first[kind]]).tocoo()
+            inside[more.row, more.col] += more.data
             spare, met = np.flatnonzero(~coupled), np.flatnonzero(coupled)
             here = len(diagonal)
             if len(spare):
