@@ -130,13 +130,18 @@ class _Parts:
         change = np.linalg.norm(matrix @ self._probe - self._answer)
         return bool(change < CHANGED * np.linalg.norm(self._answer))
 
-    def complement(self, number: int) -> Array:
-        """What a part leaves on its touched unknowns (t, t), with the touched entries of the first of its kind."""
+    def complement(self, number: int, change: Any, rows: Index, columns: Index) -> Array:
+        """What a part leaves on some of its touched unknowns: rows and columns (r, c) of its complement.
+
+        change: sparse (t, t), what the matrix has there beyond that of the first part of this kind.
+        """
         kind = self.kind_of[number]
         unit, mended = self._corrections[kind]
-        found = self._factors[kind].schur.astype(float)
-        found += mended @ unit.T
-        found += unit @ mended.T
+        found = self._factors[kind].schur[np.ix_(rows, columns)].astype(float)
+        found += mended[rows] @ unit[columns].T
+        found += unit[rows] @ mended[columns].T
+        more = block(change, rows, columns).tocoo()
+        found[more.row, more.col] += more.data
         return found
 
     def _correction(self, kind: int, matrix: Any, part: Index, motions: Array, inside: Index) -> tuple[Array, Array]:
@@ -240,20 +245,16 @@ class ByParts:
             outside.data = np.where((own.indices < at) | (own.indices >= end), own.data, 0.0)
             outside.eliminate_zeros()
             coupled[np.flatnonzero(np.diff(outside.indptr))] = True
-            inside = parts.complement(number)
-            more = (own[:, at:end] - parts.edges[parts.first[kind]]).tocoo()
-            inside[more.row, more.col] += more.data
+            here = (own[:, at:end] - parts.edges[parts.first[kind]]).tocsr()
             spare, met = np.flatnonzero(~coupled), np.flatnonzero(coupled)
-            here = len(diagonal)
-            if len(spare):
-                diagonal.append(inside[np.ix_(spare, spare)])
-                self._places.append(at + spare)
+            for rows in (spare, met):
+                if len(rows):
+                    diagonal.append(parts.complement(number, here, rows, rows))
+                    self._places.append(at + rows)
             if len(met):
-                diagonal.append(inside[np.ix_(met, met)])
-                self._places.append(at + met)
                 between.append((len(diagonal) - 1, at + met))
             if len(spare) and len(met):
-                edges[here, here + 1] = inside[np.ix_(spare, met)]
+                edges[len(diagonal) - 2, len(diagonal) - 1] = parts.complement(number, here, spare, met)
         for k, (one, rows) in enumerate(between):
             for other, columns in between[k + 1 :]:
                 edge = change[rows][:, columns]

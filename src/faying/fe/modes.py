@@ -142,7 +142,7 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[A
     last = factor.solve(mass @ generator.standard_normal((n, width)))
     last, momentum, _ = _orthonormal(last, mass)
     before, before_momentum, rows = np.zeros((n, 0)), np.zeros((n, 0)), np.zeros((last.shape[1], 0))
-    basis, projected = last, np.zeros((0, 0))
+    basis, projected = [last], np.zeros((0, 0))  # as blocks: to join them would take them twice
     for _ in range(MOST_STEPS // width):
         image = factor.solve(momentum)
         corner = momentum.T @ image
@@ -155,7 +155,8 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[A
         size = float(np.sqrt(np.einsum("ij,ij->j", image, moved).max()))
         image -= last @ corner + before @ rows.T
         moved -= momentum @ corner + before_momentum @ rows.T
-        image -= basis @ (basis.T @ moved)
+        for block in basis:
+            image -= block @ (block.T @ moved)
         before, before_momentum = last, momentum
         last, momentum, rows = _orthonormal(image, mass, nothing=NOTHING * size)
         values, vectors = np.linalg.eigh(projected)
@@ -167,10 +168,13 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[A
         if width <= often < count and width < n:
             return _krylov(factor, mass, count, 2 * width)
         if whole or (len(values) == count and np.all(converged)):
-            return values, np.asarray(basis @ vectors)
-        basis = np.concatenate([basis, last], axis=1)
+            ends = np.cumsum([block.shape[1] for block in basis])[:-1]
+            return values, sum(
+                (block @ rows for block, rows in zip(basis, np.split(vectors, ends), strict=True)), np.zeros((n, 1))
+            )
+        basis.append(last)
     raise NotConverged(
-        f"{np.count_nonzero(converged)} of {count} modes have converged after {basis.shape[1]} steps; ask for "
+        f"{np.count_nonzero(converged)} of {count} modes have converged after {len(projected)} steps; ask for "
         "fewer, or raise modes.shift_frequency towards the first mode"
     )
 
