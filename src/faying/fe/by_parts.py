@@ -2,7 +2,7 @@
 
 What lies inside each part is eliminated by itself. What is left is a matrix on the touched unknowns alone, those that
 joints, bolts or supports may couple: the Schur complements of the parts and, exactly, whatever couples them. A change
-of the joints changes that matrix alone (Przemieniecki 1963, doi:10.2514/3.1777).
+of the joints changes that matrix alone (Przemieniecki 1963, AIAA Journal 1, 138).
 """
 
 import shutil
