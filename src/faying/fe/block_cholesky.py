@@ -1,6 +1,6 @@
 """Cholesky's factor of a symmetric matrix of dense blocks, few of which are coupled."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from itertools import combinations
 from typing import Any
 
@@ -13,19 +13,22 @@ from faying.typing import Array, Index
 class BlockCholesky:
     """Factor of a symmetric positive definite matrix given by its blocks.
 
-    Small blocks are eliminated first. Only the columns of a block beside the diagonal that hold anything are kept.
+    Rough blocks are eliminated first, then small ones. Only the columns of a block beside the diagonal that hold
+    anything are kept.
 
     Args:
         diagonal: the blocks on the diagonal, dense (n_i, n_i).
         edges: (i, j), i < j -> the block of rows i and columns j, dense or sparse. Both are used up: the blocks are
             great, and what is left of them is in the factor.
+        rough: blocks whose factor is kept in single precision once it is made, where nothing is lost on what holds
+            them.
 
     Raises:
         NotConverged: the matrix is not positive definite.
     """
 
-    def __init__(self, diagonal: list[Array], edges: dict[tuple[int, int], Any]) -> None:
-        self._order = sorted(range(len(diagonal)), key=lambda k: len(diagonal[k]))
+    def __init__(self, diagonal: list[Array], edges: dict[tuple[int, int], Any], rough: Collection[int] = ()) -> None:
+        self._order = sorted(range(len(diagonal)), key=lambda k: (k not in rough, len(diagonal[k])))
         rank = {block: place for place, block in enumerate(self._order)}
         blocks = [np.asarray(diagonal[k], dtype=float) for k in self._order]
         diagonal.clear()
@@ -50,6 +53,10 @@ class BlockCholesky:
                 fill[first.columns] = -first.values.T @ second.values
                 met = beside[j].get(k)
                 beside[j][k] = _Edge(second.columns, fill) if met is None else met.plus(second.columns, fill)
+            if self._order[i] in rough:
+                self._lower[i] = lower.astype(np.float32)
+                for edge in beside[i].values():
+                    edge.values = edge.values.astype(np.float32)
         kept = [*self._lower, *(edge.values for row in beside for edge in row.values())]
         self.memory = float(sum(values.nbytes for values in kept))
 
@@ -59,10 +66,10 @@ class BlockCholesky:
         for i, lower in enumerate(self._lower):
             found[i] = _forward(lower, found[i])
             for j, edge in self._beside[i].items():
-                found[j][edge.columns] -= edge.values.T @ found[i]
+                found[j][edge.columns] -= edge.values.T @ found[i].astype(edge.values.dtype)
         for i in reversed(range(len(found))):
             for j, edge in self._beside[i].items():
-                found[i] -= edge.values @ found[j][edge.columns]
+                found[i] -= edge.values @ found[j][edge.columns].astype(edge.values.dtype)
             found[i] = _backward(self._lower[i], found[i])
         out: list[Array] = [np.zeros(0)] * len(found)
         for place, block in enumerate(self._order):
@@ -105,10 +112,10 @@ def _cholesky(block: Array) -> Array:
 def _forward(lower: Array, right: Array) -> Array:
     from scipy.linalg import solve_triangular
 
-    return np.asarray(solve_triangular(lower, right, lower=True, check_finite=False))
+    return np.asarray(solve_triangular(lower, right.astype(lower.dtype), lower=True, check_finite=False))
 
 
 def _backward(lower: Array, right: Array) -> Array:
     from scipy.linalg import solve_triangular
 
-    return np.asarray(solve_triangular(lower, right, lower=True, trans="T", check_finite=False))
+    return np.asarray(solve_triangular(lower, right.astype(lower.dtype), lower=True, trans="T", check_finite=False))

@@ -237,6 +237,7 @@ class ByParts:
         self._places: list[Index] = []
         edges: dict[tuple[int, int], Any] = {}
         between = []
+        resting: set[int] = set()
         for number, (at, end) in enumerate(pairwise(self._starts)):
             kind = parts.kind_of[number]
             own = change[at:end]
@@ -254,13 +255,15 @@ class ByParts:
             if len(met):
                 between.append((len(diagonal) - 1, at + met))
             if len(spare) and len(met):
+                resting.add(len(diagonal) - 2)
                 edges[len(diagonal) - 2, len(diagonal) - 1] = parts.complement(number, here, spare, met)
         for k, (one, rows) in enumerate(between):
             for other, columns in between[k + 1 :]:
                 edge = change[rows][:, columns]
                 if edge.nnz:
                     edges[one, other] = edge
-        return BlockCholesky(diagonal, edges)
+        # what lies on faces that no part couples rests on the part, as its inside does
+        return BlockCholesky(diagonal, edges, resting if parts.single else ())
 
 
 def _between(parts: Sequence[Index], matrix: Any) -> Any:

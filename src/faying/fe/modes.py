@@ -12,6 +12,7 @@ from faying.typing import Array
 SEED = 20240611
 WIDTH = 8  # of a block of vectors: a factor is read once for all of them
 TOO_HIGH = 30.0  # times the highest frequency of a single unknown: such a shift leaves few digits of the modes
+ROWS = 50_000  # of the basis that are joined at a time
 MOST_STEPS = 1200  # vectors of the basis
 SAME = 1e-6  # relative difference of eigenvalues of A^-1 M below which they may be one
 NOTHING = 1e-13  # of the size of a block: what the basis leaves of it is rounding, and the basis is whole
@@ -168,10 +169,11 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[A
         if width <= often < count and width < n:
             return _krylov(factor, mass, count, 2 * width)
         if whole or (len(values) == count and np.all(converged)):
-            ends = np.cumsum([block.shape[1] for block in basis])[:-1]
-            return values, sum(
-                (block @ rows for block, rows in zip(basis, np.split(vectors, ends), strict=True)), np.zeros((n, 1))
-            )
+            shapes = np.empty((n, len(values)), order="F")
+            for begin in range(0, n, ROWS):
+                here = slice(begin, begin + ROWS)
+                shapes[here] = np.concatenate([block[here] for block in basis], axis=1) @ vectors
+            return values, shapes
         basis.append(last)
     raise NotConverged(
         f"{np.count_nonzero(converged)} of {count} modes have converged after {len(projected)} steps; ask for "
