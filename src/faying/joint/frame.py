@@ -10,11 +10,13 @@ import numpy as np
 from faying.fe.by_parts import PartByPart
 from faying.fe.constraint import constrain, free_motions
 from faying.fe.elasticity import Solid, assemble, rigid_motions
+from faying.fe.memory import in_single
 from faying.fe.mesh import Mesh
 from faying.fe.sides import nodes_of
 from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt, FittedBolt, each_in_its_place
 from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
+from faying.memory import available
 from faying.typing import Array, Index
 
 STILL = 1e-12  # of the greatest stiffness of an unknown: what a motion may ask for that nothing resists
@@ -103,6 +105,12 @@ class Frame:
     def _motions(self) -> Array:
         """Six rigid motions (unknowns, 6) of the whole, whatever resists them."""
         return rigid_motions(self.mesh.points)
+
+    @cached_property
+    def is_large(self) -> bool:
+        """Whether one factor of the whole would take more than half of the memory that is free when this is asked."""
+        free = available()
+        return free is not None and in_single(self.mesh.unknowns) > free / 2
 
     @cached_property
     def by_parts(self) -> PartByPart:

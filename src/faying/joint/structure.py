@@ -11,7 +11,6 @@ from faying.fe.by_parts import PartByPart
 from faying.fe.constraint import constrain
 from faying.fe.elasticity import Solid
 from faying.fe.interface import Interface
-from faying.fe.memory import in_single
 from faying.fe.mesh import Mesh
 from faying.fe.outline import Outline, outline
 from faying.fe.quality import quality
@@ -23,7 +22,6 @@ from faying.joint.joint_law import JointLaw
 from faying.joint.preload import PreloadProblem
 from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.joint.springs import Springs
-from faying.memory import available
 from faying.notes import Note
 from faying.typing import Array, Index
 
@@ -231,10 +229,10 @@ class Structure:
         Raises:
             InputError: there is no such solver here.
         """
-        way, free = chosen(name), available()
+        way = chosen(name)
         if len(self.mesh.parts) < 2 or way not in ("pardiso", BY_PARTS):
             return way
-        if way == "pardiso" and (name or free is None or in_single(self.mesh.unknowns) < free / 2):
+        if way == "pardiso" and (name or not self._frame.is_large):
             return way
         return self._frame.by_parts
 

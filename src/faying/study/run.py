@@ -11,7 +11,7 @@ from faying.errors import NotConverged
 from faying.fe.by_parts import PartByPart
 from faying.fe.constraint import constrain
 from faying.fe.modes import Modes
-from faying.fe.solve import chosen
+from faying.fe.solve import BY_PARTS
 from faying.joint.bolt import FittedBolt
 from faying.joint.structure import Structure, bond
 from faying.joint.support_check import RIGID_BELOW
@@ -154,6 +154,7 @@ def collect(
     every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more]
     every += encounters(states, steps)
     every += [*(note for b in besides for note in b.notes), *_closing_notes(study, rigid)]
+    way = structure.solver(study.modes.solver)
     bolts, more = _bolts(case, states, shapes)
     every += more
     result = Result(
@@ -173,7 +174,7 @@ def collect(
         joints=tuple(j.name for j in structure.joints),
         bolts=tuple(bolt.name for bolt in study.bolts),
         unknowns=structure.mesh.unknowns,
-        solver=chosen(study.modes.solver),
+        solver=way if isinstance(way, str) else BY_PARTS,
         factor_memory=max(s.modes.factorisation.memory for s in states),
         damping=study.modes.damping,
         tightening=() if study.order is None else tuple(study.bolts[i].name for i in study.order),
