@@ -285,7 +285,7 @@ def parts(matrix, **changes):
         (lambda A: {"indices": A.indices - 1}, "index -1 of a matrix of 36 rows"),
         (lambda A: {"indices": A.indices + 0.7}, "its indices are float64, not a row of whole numbers"),
         (lambda A: {"indptr": A.indptr[::-1]}, "do not fit each other"),
-        (lambda A: {"indptr": np.r_[0, 10**15, A.indptr[2:]]}, "the row pointers do not rise"),
+        (lambda A: {"indptr": np.r_[0, 10**15, A.indptr[2:].astype(np.int64)]}, "the row pointers do not rise"),
         (lambda A: {"indptr": A.indptr[:-1]}, "do not fit each other"),
         (lambda A: {"data": A.data[:-1]}, "do not fit each other"),
         (lambda A: {"data": A.data * (1 + 0.1j)}, "is complex; stiffness and mass are real"),
