@@ -70,11 +70,12 @@ class NearbyModes:
 
         span = self._span
         first = None
-        self._look_everywhere()
         change = (stiffness - span.operators[0]).tocsr()
         change.eliminate_zeros()
         touched = np.flatnonzero(np.diff(change.indptr))
         change = change[touched][:, touched]
+        if len(touched):  # else these are modes that have been looked for everywhere already
+            self._look_everywhere()
         for done in range(rounds):
             at_joints = span.vectors[touched]
             forces = change @ at_joints

@@ -100,7 +100,7 @@ class _Columns:
     def add(self, new: Array) -> None:
         used = self._used + new.shape[1]
         if used > self._room.shape[1]:
-            room = np.empty((len(new), used + used // 2), order="F")
+            room = np.empty((len(new), used + used // 8), order="F")
             room[:, : self._used] = self.values
             self._room = room
         self._room[:, self._used : used] = new
