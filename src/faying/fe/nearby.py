@@ -70,7 +70,8 @@ class NearbyModes:
 
         span = self._span
         first = None
-        change = (stiffness - span.operators[0]).tocsr()
+        # the very same matrix is not taken from itself: the difference would have room for both
+        change = stiffness[:0] if stiffness is span.operators[0] else (stiffness - span.operators[0]).tocsr()
         change.eliminate_zeros()
         touched = np.flatnonzero(np.diff(change.indptr))
         change = change[touched][:, touched]
