@@ -127,6 +127,20 @@ def test_faults_stand_at_their_lines_and_go(browser, server, example, tmp_path):
         assert page.locator("#gutter b").count() == 0
 
 
+def test_nothing_is_typed_before_the_study_is_there(browser, server, example, tmp_path):
+    shutil.copy(example / "study.toml", tmp_path)
+    held = []
+    with page_at(browser, server) as page:
+        page.route("**/api/project*", lambda route: held.append(route), times=1)
+        page.reload()
+        while not held:
+            page.wait_for_timeout(20)
+        assert not page.is_editable("#text")
+        held[0].continue_()
+        set_text(page, (tmp_path / "study.toml").read_text() + "# mine\n")
+    assert (tmp_path / "study.toml").read_text().endswith("# mine\n")
+
+
 def test_a_run_is_cancelled_and_leaves_nothing(browser, server, example, tmp_path):
     for name in ("study.toml", "surface.x3p", "two-blocks.step"):
         shutil.copy(example / name, tmp_path)

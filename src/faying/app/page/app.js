@@ -529,6 +529,7 @@ async function showResult() {
 
 open("surface");
 look().then((project) => {
+  $("text").readOnly = false; // what is typed before the study is there would stand against it
   if (project.results.length) open("result");
   else if ($("shapes").value) open("structure");
   else showScan();
