@@ -1,22 +1,16 @@
-"""`faying modes`: of a study, of matrices in files, and over two processes by SLEPc."""
+"""`faying modes`: of a study, of matrices in files, and over two processes of mpiexec."""
 
 import json
-import os
-import shutil
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.io import mmwrite
 from scipy.sparse import load_npz
 
-import faying.fe.slepc_worker as worker
 from faying.cli import main
+from faying.fe.mpi import TOLERANCE
+from tests.helpers.mpi import mpi as mpi
 from tests.helpers.studies import write
-
-WORKER = Path(worker.__file__)
 
 
 @pytest.fixture(scope="module")
@@ -99,55 +93,29 @@ def test_faults(exported, capsys, tmp_path):
     assert "cannot make the folder" in fault(capsys, ["modes", study, "--export", str(tmp_path / "file" / "x")])
 
 
-def test_without_slepc_the_way_is_told(exported, capsys, monkeypatch):
-    monkeypatch.setitem(sys.modules, "slepc4py", None)
-    out = exported / "out"
-    argv = ["modes", "--stiffness", str(out / "stiffness.npz"), "--mass", str(out / "mass.npz"), "--slepc"]
-    text = fault(capsys, argv)
-    assert "needs petsc4py and slepc4py" in text
-    assert "mpiexec -n 4 python3" in text
-
-
-def python_with_slepc():
-    """An interpreter that has slepc4py: this one, or the system's."""
-    look = (
-        "import glob, sys\nfor p in ('petsc', 'slepc'):\n"
-        "    sys.path += glob.glob(f'/usr/lib/{p}dir/{p}*/*-real/lib/python3/dist-packages')\n"
-        "from petsc4py import PETSc\nfrom slepc4py import SLEPc\nimport scipy\n"
-    )
-    for python in (sys.executable, "/usr/bin/python3"):
-        if (
-            Path(python).exists()
-            and not subprocess.run([python, "-c", look], capture_output=True, check=False).returncode
-        ):
-            return python
-    return None
-
-
 @pytest.mark.slow
-def test_slepc_on_two_processes(exported, capsys):
-    python, mpiexec = python_with_slepc(), shutil.which("mpiexec")
-    if python is None or mpiexec is None:
-        pytest.skip("needs mpiexec and a Python with petsc4py and slepc4py (Debian: python3-slepc4py, python3-scipy)")
+def test_over_two_processes(exported, capsys, mpi):
+    """Of the matrices with the coordinates that --export has written."""
     out = exported / "out"
-    files = [str(out / "stiffness.npz"), str(out / "mass.npz")]
-    # Open MPI asks twice before it lets root start two processes on one core
-    environment = os.environ | {
-        "OMPI_ALLOW_RUN_AS_ROOT": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-        "OMPI_MCA_rmaps_base_oversubscribe": "1",
-    }
-    done = subprocess.run(
-        [mpiexec, "-n", "2", python, str(WORKER), *files, "--count", "20", "--shift", "800"],
-        capture_output=True,
-        text=True,
-        check=False,
-        env=environment,
-    )
-    assert done.returncode == 0, done.stderr[-2000:]
-    found = json.loads(done.stdout)
-    assert found["processes"] == 2
-    ours = values(capsys, ["modes", "--stiffness", files[0], "--mass", files[1], "--count", "20", "--shift", "800 Hz"])
-    theirs = np.array(found["frequencies"]["values"])
-    assert np.all(theirs[:6] < 1)
-    assert theirs[6:] == pytest.approx(ours[6:], rel=1e-8)
+    argv = ["modes", "--stiffness", str(out / "stiffness.npz"), "--mass", str(out / "mass.npz")]
+    argv += ["--count", "9", "--shift", "800 Hz"]
+    direct = values(capsys, argv)
+    main_quietly([*argv, "--points", str(out / "points.txt"), "--mpi", "2"])
+    head, costs, _, *lines = capsys.readouterr().out.splitlines()
+    assert "GAMG" in head
+    assert "iterations; memory of the 2 processes" in costs
+    over = np.array([float(line.split()[1]) for line in lines])
+    assert np.all(over[:6] < 1)
+    assert over[6:] == pytest.approx(direct[6:], rel=TOLERANCE / 2)
+
+
+def test_faults_of_points(exported, capsys, tmp_path):
+    out, file = exported / "out", tmp_path / "points.txt"
+    argv = ["modes", "--stiffness", str(out / "stiffness.npz"), "--mass", str(out / "mass.npz"), "--points", str(file)]
+    assert "no file" in fault(capsys, argv)
+    file.write_text("1 2 three\n")
+    assert "should have x y z [m]" in fault(capsys, argv)
+    file.write_text("1 2 3\n")
+    assert "has 1 rows of 3" in fault(capsys, argv)
+    study = str(exported / "study.toml")
+    assert "--points goes with --stiffness" in fault(capsys, ["modes", study, "--points", str(file)])

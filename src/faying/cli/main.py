@@ -1,5 +1,6 @@
 """The group of commands. A command's module is imported only when the command is called for."""
 
+import os
 import signal
 import sys
 import threading
@@ -63,10 +64,21 @@ def _stop(*_: object) -> None:
     raise KeyboardInterrupt
 
 
+def _share_cores() -> None:
+    """Leave the cores to PARDISO, whose threads pay; those of OpenBLAS wait for each other on blocks of few columns.
+
+    Threads that wait do so asleep. What the environment says goes first.
+    """
+    if "OMP_NUM_THREADS" not in os.environ:
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    os.environ.setdefault("KMP_BLOCKTIME", "0")  # ms that a thread of Intel's OpenMP spins after its work
+
+
 def main(argv: list[str] | None = None) -> None:
     """Entry point of the command `faying`. Exit codes: 0 done, 1 failed or stopped, 2 wrong usage."""
     from faying.errors import FayingError
 
+    _share_cores()
     # kill, and a batch system's time limit, clear up as Ctrl-C does
     alone = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
     if alone:

@@ -21,12 +21,22 @@ import click
     "--count", type=click.IntRange(1, 10_000), default=20, show_default=True, help="Modes, rigid motions among them."
 )
 @click.option("--shift", metavar="FREQUENCY", help='Of the shift of the spectrum, for example "100 Hz" [found].')
-@click.option("--slepc", is_flag=True, help="Solve with SLEPc and MUMPS over the processes of mpiexec.")
+@click.option(
+    "--points",
+    type=click.Path(path_type=Path),
+    help="With --stiffness and --mpi: x y z [m] of each node, whose unknowns follow each other in the matrices.",
+)
+@click.option(
+    "--mpi",
+    type=click.IntRange(1, 1_000_000),
+    metavar="PROCESSES",
+    help="Solve with SLEPc over so many processes, which mpiexec starts.",
+)
 @click.option(
     "--export",
     type=click.Path(path_type=Path),
     metavar="DIR",
-    help="Write stiffness.npz, mass.npz and dofs.txt and solve nothing.",
+    help="Write stiffness.npz, mass.npz, dofs.txt and points.txt and solve nothing.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def command(
@@ -37,14 +47,12 @@ def command(
     mass_unit: str,
     count: int,
     shift: str | None,
-    slepc: bool,
+    points: Path | None,
+    mpi: int | None,
     export: Path | None,
     as_json: bool,
 ) -> None:
-    """Real modes of STUDY at its first preload, or of assembled matrices.
-
-    Over several processes: mpiexec -n 4 faying modes --slepc --stiffness stiffness.npz --mass mass.npz
-    """
+    """Real modes of STUDY at its first preload, or of assembled matrices."""
     from faying import units
     from faying.errors import InputError
     from faying.study import Study
@@ -53,24 +61,26 @@ def command(
     if (study is None) == (stiffness is None):
         raise InputError("give either a study or --stiffness and --mass, for example faying modes study.toml")
     if study is not None:
-        if mass is not None:
-            raise InputError("--mass goes with --stiffness; a study brings its own")
+        for name, option in (("--mass", mass), ("--points", points)):
+            if option is not None:
+                raise InputError(f"{name} goes with --stiffness; a study brings its own")
         given = Assembled.of_study(Study.read(study))
     else:
         assert stiffness is not None
-        given = Assembled.of_files(stiffness, mass, stiffness_unit=stiffness_unit, mass_unit=mass_unit)
+        given = Assembled.of_files(stiffness, mass, stiffness_unit=stiffness_unit, mass_unit=mass_unit, points=points)
     if export is not None:
         files = given.write(export)
         click.echo(f"shift {given.shift_frequency:.6g} Hz; written to {export}: {', '.join(f.name for f in files)}")
         return
     frequency = units.parse(shift, "Hz", name="--shift") if shift else given.shift_frequency
-    found = _by_slepc(given, count, frequency) if slepc else _here(given, count, frequency)
-    if found is None:  # another process prints
-        return
+    found = _here(given, count, frequency) if mpi is None else _over_mpi(given, count, frequency, mpi)
     if as_json:
         click.echo(json.dumps(found, indent=2))
         return
     click.echo(f"{found['source']}: {found['unknowns']:,} unknowns, {found['solver']}")
+    if mpi is not None:
+        peaks = ", ".join(f"{peak / 1e9:.3g}" for peak in found["process_memory"]["values"])
+        click.echo(f"{found['iterations']} iterations; memory of the {mpi} processes: {peaks} GB")
     if "mass" in found:
         click.echo(f"mass along x, y, z: {', '.join(f'{m:.6g} kg' for m in found['mass']['values'])}")
     click.echo("")
@@ -102,20 +112,20 @@ def _here(given: Any, count: int, shift: float) -> dict[str, Any]:
     }
 
 
-def _by_slepc(given: Any, count: int, shift: float) -> dict[str, Any] | None:
-    from faying.errors import InputError, NotConverged
-    from faying.fe import slepc_worker
+def _over_mpi(given: Any, count: int, shift: float, processes: int) -> dict[str, Any]:
+    from faying.fe.mpi import modes_over_mpi
 
-    try:
-        frequencies, facts = slepc_worker.lowest(given.stiffness.tocsr(), given.mass.tocsr(), count, shift)
-    except ImportError as fault:
-        raise InputError(
-            f"--slepc needs petsc4py and slepc4py in this Python ({fault}); install them, or write the matrices with "
-            f"--export DIR and run them where they are: mpiexec -n 4 python3 {slepc_worker.__file__} "
-            f"DIR/stiffness.npz DIR/mass.npz --count {count} --shift {shift:.6g}"
-        ) from None
-    except RuntimeError as fault:
-        raise NotConverged(f"SLEPc: {fault}; ask for fewer modes, or give --shift nearer to the first") from None
-    if facts.pop("rank"):
-        return None
-    return facts | {"source": given.source, "frequencies": {"unit": "Hz", "values": frequencies.tolist()}}
+    modes = modes_over_mpi(
+        given.stiffness, given.mass, count, shift_frequency=shift, processes=processes, points=given.points
+    )
+    return {
+        "source": given.source,
+        "unknowns": int(given.mass.shape[0]),
+        "solver": modes.solver,
+        "processes": processes,
+        "iterations": modes.iterations,
+        "process_memory": {"unit": "B", "values": modes.peak.tolist()},
+        "process_cpu": {"unit": "s", "values": modes.cpu.tolist()},
+        "error_of_squares": modes.error.tolist(),
+        "frequencies": {"unit": "Hz", "values": modes.frequencies.tolist()},
+    }

@@ -2,6 +2,7 @@
 
 import json
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,16 +19,27 @@ from faying.cli.progress import Form, Shown, progress_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--no-files", is_flag=True, help="Write no files, only print.")
 @click.option("--uff", is_flag=True, help="Write modes and frequency responses as universal files, too (.uff).")
+@click.option(
+    "--mpi",
+    type=click.IntRange(1, 1_000_000),
+    metavar="PROCESSES",
+    help="Solve by multigrid over so many processes, which mpiexec starts, in place of a factorisation.",
+)
 @progress_options
-def command(study: Path, out: Path | None, as_json: bool, no_files: bool, uff: bool, progress: Form | None) -> None:
+def command(
+    study: Path, out: Path | None, as_json: bool, no_files: bool, uff: bool, mpi: int | None, progress: Form | None
+) -> None:
     """Run STUDY: surface, contact law, preload, modes; write NetCDF, CSV, figures and a report."""
     from faying.errors import InputError
+    from faying.fe.solve import MPI
     from faying.files import together
     from faying.output import report
     from faying.study import Study, run, universal
     from faying.study.run import stages
 
     plan = Study.read(study)
+    if mpi is not None:
+        plan = replace(plan, modes=replace(plan.modes, solver=f"{MPI}:{mpi}"))
     if uff and no_files:
         raise InputError("--uff writes files and --no-files forbids them; leave one out")
     if uff:

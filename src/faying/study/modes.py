@@ -8,17 +8,19 @@ from faying.fe.interface import Interface
 from faying.fe.memory import check_modes
 from faying.fe.modes import Modes, lowest_modes
 from faying.fe.nearby import NearbyModes, refined_modes
-from faying.fe.solve import Factorisation
+from faying.fe.shifted import Shifted
+from faying.fe.single import factorise_roughly
+from faying.fe.solve import Factoriser
 from faying.joint.equilibrium import PreloadState
 from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
 from faying.joint.support_check import checked_preload
-from faying.study.case import Case
+from faying.study.case import SPARE_MODES, Case
 from faying.typing import Array
 
 EXACT = 1e-8  # of the squared frequencies, complex or not: 5e-9 of a frequency, 1e-8 of a loss factor, 1e-4 of a shape
-FEW = 6  # rounds of enrichment that cost about what a factorisation and its modes do
-KEPT = 6  # times the modes of one state: what the basis keeps
+FEW = 6  # rounds of enrichment that cost about what a factorisation and the two rounds after it do
+KEPT = 8  # times the modes of one state: what the basis keeps
 
 
 def settled(case: Case, number: int, problem: PreloadProblem) -> PreloadState:
@@ -44,11 +46,11 @@ class SharedModes:
     """Real modes of a case under one set of springs after another, by one factorisation where that will do.
 
     The first springs give the factorisation and the basis; those that differ so much that the basis does not reach them
-    in a few rounds are solved anew, and what comes later starts there.
+    in a few rounds get a factorisation of their own, which serves what comes later.
     """
 
     def __init__(self) -> None:
-        self._near: NearbyModes | None = None
+        self.near: NearbyModes | None = None  # where the modes were found last
 
     def of(self, case: Case, springs: Sequence[Springs[Interface]]) -> tuple[Modes, Any, Any]:
         """Real modes, and the stiffness and loss that they belong to, as `modes_of` gives them."""
@@ -60,34 +62,53 @@ class SharedModes:
 
         tolerance: of the squared frequencies, relative.
         """
-        count = case.study.modes.count
-        if self._near is not None:
+        if self.near is not None:
             try:
-                return self._near.under(
-                    stiffness, count, tolerance=tolerance, spare=case.mode_count - case.rigid_count - count, rounds=FEW
-                )
+                return self._from_near(case, stiffness, tolerance)
             except NotConverged:
-                self._near = None  # before the next factorisation: one at a time in memory
+                self._factorise(case, stiffness)
+            try:
+                return self._from_near(case, stiffness, tolerance)
+            except NotConverged:
+                self.near = None  # before the next factorisation: one at a time in memory
         mass = case.structure.vibrating[1]
         modes = modes_with(case, stiffness, mass, rigid=case.structure.rigid)
-        self._near = NearbyModes(modes, stiffness, mass, rigid=case.rigid_count, most=KEPT * len(modes.frequencies))
+        self.near = NearbyModes(modes, stiffness, mass, rigid=case.rigid_count, most=KEPT * len(modes.frequencies))
         return modes
 
-    @property
-    def factorisation(self) -> Factorisation | None:
-        """The factorisation that is shared; None before there is one."""
-        return None if self._near is None else self._near.modes.factorisation
+    def _from_near(self, case: Case, stiffness: Any, tolerance: float) -> Modes:
+        assert self.near is not None
+        count = case.study.modes.count
+        spare = case.mode_count - case.rigid_count - count
+        return self.near.under(stiffness, count, tolerance=tolerance, spare=spare, rounds=FEW)
+
+    def _factorise(self, case: Case, stiffness: Any) -> None:
+        """Factorise a stiffness [N/m] that the factorisation at hand is far from; the basis stays."""
+        assert self.near is not None
+        matrix = Shifted(stiffness=stiffness, mass=case.structure.vibrating[1], shift=self.near.modes.shift)
+        solver = case.structure.solver(case.study.modes.solver)
+        self.near.take(factorise_roughly(matrix, rigid=case.structure.rigid, solver=solver), stiffness)
 
 
-def modes_with(case: Case, stiffness: Any, mass: Any, count: int | None = None, *, rigid: Array | None = None) -> Modes:
+def modes_with(
+    case: Case,
+    stiffness: Any,
+    mass: Any,
+    count: int | None = None,
+    *,
+    rigid: Array | None = None,
+    solver: str | Factoriser | None = None,
+) -> Modes:
     """Real modes of any stiffness [N/m] and mass [kg], by the solver and the shift of a case.
 
-    rigid: the motions (n, r) that the stiffness leaves free, with which a factorisation in single precision will do;
-    None where they are not known.
+    count: those of the case where None, its spare ones to no tolerance. rigid: the motions (n, r) that the stiffness
+    leaves free, with which a factorisation in single precision will do; None where they are not known. solver: in place
+    of that of the case.
     """
+    spare = SPARE_MODES if count is None else 0
     count = count or case.mode_count
     check_modes(count, stiffness.shape[0])
-    frequency, solver = case.shift_frequency, case.structure.solver(case.study.modes.solver)
+    frequency, solver = case.shift_frequency, solver or case.structure.solver(case.study.modes.solver)
     if rigid is None:
         return lowest_modes(stiffness, mass, count, shift_frequency=frequency, solver=case.study.modes.solver)
-    return refined_modes(stiffness, mass, count, rigid=rigid, shift_frequency=frequency, solver=solver)
+    return refined_modes(stiffness, mass, count, rigid=rigid, shift_frequency=frequency, solver=solver, spare=spare)

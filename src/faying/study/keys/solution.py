@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from faying.errors import InputError
-from faying.fe.solve import BY_PARTS
+from faying.fe.solve import BY_PARTS, MPI
 from faying.study.keys.reader import Table, direction, point
 
 MOST_MODES, MOST_POINTS, MOST_PASSES = 10_000, 1_000_000, 100
@@ -29,7 +29,7 @@ class ModesChoice:
         choice = cls(
             count=table.count("count", 10, most=MOST_MODES),
             damping=table.text("damping", "hysteretic", ("hysteretic", "viscous")),
-            solver=table.text("solver", None, ("pardiso", BY_PARTS, "mumps", "cholmod", "superlu")),
+            solver=table.text("solver", None, ("pardiso", BY_PARTS, "mumps", "cholmod", "superlu", MPI)),
             shift_frequency=table.quantity("shift_frequency", "Hz", None),
         )
         table.close()
