@@ -8,7 +8,7 @@ from scipy.optimize import brentq, fsolve
 
 import faying
 from faying.fe.damped import damped_modes
-from faying.fe.elasticity import assemble
+from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
 from faying.fe.solve import available, chosen, factorise
@@ -80,6 +80,29 @@ def test_rigid_motions(bar):
     modes = lowest_modes(*sprung(bar, 1e12, 1e12), 10, shift_frequency=SHIFT)
     assert np.all(modes.frequencies[:6] < 1e-2)
     assert modes.frequencies[6] > 10
+
+
+@pytest.mark.parametrize("apart", [False, True])
+@pytest.mark.parametrize("count", [4, 12, 20])
+def test_rigid_motions_that_are_given_change_no_mode(bar, apart, count):
+    """One body of two halves, with six of them, and two that nothing joins, with twelve; some ask for fewer."""
+    mesh, K, M, _ = bar
+    motions = rigid_motions(mesh.points)
+    if apart:
+        motions = np.concatenate([np.where(mine[:, None], motions, 0.0) for mine in halves(mesh)], axis=1)
+    else:
+        K, M = sprung(bar, 1e12, 1e12)
+    found = lowest_modes(K, M, count, shift_frequency=SHIFT, rigid=motions)
+    wanted = lowest_modes(K, M, count, shift_frequency=SHIFT)
+    assert found.frequencies == pytest.approx(wanted.frequencies, rel=1e-7, abs=1e-2)
+    gram = found.shapes.T @ (M @ found.shapes)
+    np.testing.assert_allclose(gram, np.eye(count), atol=1e-9)
+
+
+def halves(mesh):
+    """Which unknowns belong to each half."""
+    first = np.repeat(np.isin(np.arange(len(mesh.points)), mesh.part_nodes("p0")), 3)
+    return first, ~first
 
 
 def test_stiffer_joints_never_lower_a_frequency_and_all_lie_between_free_and_tied(bar):

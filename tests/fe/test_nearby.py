@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from scipy.sparse import diags_array
 
+from faying.errors import NotConverged
 from faying.fe.modes import lowest_modes
-from faying.fe.nearby import nearby_modes
+from faying.fe.nearby import NearbyModes, nearby_modes
+from faying.fe.solve import factorise
 
 N = 60
 
@@ -34,3 +36,30 @@ def test_the_same_spring_gives_the_same_modes():
     K, M = chain(1e5)
     modes = lowest_modes(K, M, 8, shift_frequency=5.0)
     assert nearby_modes(modes, K, M, rigid=1, count=5)[0] == pytest.approx(modes.frequencies[1:6], rel=1e-10)
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0, 1e-2, 1e3])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
+def test_the_error_that_is_said_is_not_much_less_than_the_true_one(factor, tolerance):
+    """Also where it was taken from the diagonal; the inverse that measures it leaves out what lies near a mode."""
+    K, M = chain(1e5)
+    near = NearbyModes(lowest_modes(K, M, 12, shift_frequency=5.0), K, M, rigid=1)
+    changed = chain(1e5 * factor)[0]
+    found = near.under(changed, 6, tolerance=tolerance)
+    wanted = lowest_modes(changed, M, 7, shift_frequency=5.0).frequencies[1:]
+    true = np.abs((found.frequencies[1:] / wanted) ** 2 - 1)
+    assert np.all(true <= 1.5 * found.error[1:] + 1e-11)
+    assert np.all(found.error[1:] < tolerance)
+
+
+def test_another_factorisation_on_the_way_changes_nothing_but_the_rounds():
+    K, M = chain(1e5)
+    modes = lowest_modes(K, M, 12, shift_frequency=5.0)
+    near = NearbyModes(modes, K, M, rigid=1)
+    changed = chain(1e8)[0]
+    with pytest.raises(NotConverged, match="changed springs"):
+        near.under(changed, 6, tolerance=1e-12, rounds=1)
+    near.take(factorise((changed + modes.shift * M).tocsr()), changed)
+    found = near.under(changed, 6, tolerance=1e-12, rounds=4)
+    wanted = lowest_modes(changed, M, 7, shift_frequency=5.0)
+    assert found.frequencies[1:] == pytest.approx(wanted.frequencies[1:], rel=1e-11)

@@ -22,7 +22,7 @@ class Chain:
     def __init__(self, loads=LOADS):
         self.loads, self.evaluated = np.asarray(loads), 0
 
-    def frequencies(self, values, report=None):
+    def frequencies(self, values, report=None, allowed=0.0):
         self.evaluated += len(values)
         c, n, scale = values[:, :3].T[..., None]
         contact = c * (self.loads / 1e4) ** n
@@ -41,7 +41,7 @@ class DampedChain(Chain):
     units = ("N/m", "", "", "")
     priors = (*Chain.priors[:3], Distribution(kind="lognormal", centre=0.02, spread=1.0))
 
-    def frequencies(self, values, report=None):
+    def frequencies(self, values, report=None, allowed=0.0):
         f, reasons = super().frequencies(values)
         stiffer = values.copy()
         stiffer[:, 0] *= 1.001
@@ -63,7 +63,7 @@ class Linear:
     def logs(self, values):
         return np.log(100) + np.einsum("lmd,nd->nlm", self.slopes, (values - 1) / 0.1)
 
-    def frequencies(self, values, report=None):
+    def frequencies(self, values, report=None, allowed=0.0):
         return np.exp(self.logs(values)), [""] * len(values)
 
 
@@ -74,5 +74,5 @@ class Altered:
         self.model, self.change = model, change
         self.names, self.units, self.priors = model.names, model.units, model.priors
 
-    def frequencies(self, values, report=None):
+    def frequencies(self, values, report=None, allowed=0.0):
         return self.change(values, *self.model.frequencies(values))

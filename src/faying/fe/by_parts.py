@@ -19,6 +19,7 @@ from faying.fe.block_cholesky import BlockCholesky
 from faying.fe.condensed_part import CondensedPart
 from faying.fe.memory import in_single
 from faying.fe.shifted import block
+from faying.fe.solve import BY_PARTS
 from faying.memory import available
 from faying.typing import Array, Index
 
@@ -27,6 +28,7 @@ ALIKE = 1e-9  # relative difference of two parts' forces under the same motion t
 CHANGED = 1e-11  # relative change of the forces inside the parts beyond which they are factorised anew
 ROOM = 0.3  # of the free memory that the factors of all parts may take before they go to the disk
 ROUNDING = 1e-8  # of the greatest: rigid motions that touched unknowns cannot tell apart
+FEW = 8  # right-hand sides solved together: each takes some times its room
 SEED = 20261123
 
 
@@ -45,6 +47,8 @@ class PartByPart:
     """
 
     name = NAME
+    key = BY_PARTS
+    cheap = False
 
     def __init__(
         self,
@@ -100,9 +104,9 @@ class _Parts:
         first = {kind: self.kind_of.index(kind) for kind in self.kind_of}
         free = available()
         need = sum((1 if single else 2) * in_single(len(parts[k])) for k in first.values())
-        self._on_disk = len(first) > 1 and (stored if stored is not None else free is not None and need > ROOM * free)
+        self.on_disk = len(first) > 1 and (stored if stored is not None else free is not None and need > ROOM * free)
         self.folder = None
-        if self._on_disk:
+        if self.on_disk:
             self.folder = Path(tempfile.mkdtemp(prefix="faying-"))
             weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
         self._factors: dict[int, CondensedPart] = {}
@@ -112,7 +116,7 @@ class _Parts:
             part, inside = parts[number], self.local[number]
             self._factors[kind] = CondensedPart(block(matrix, part, part), inside, single=single)
             self._corrections[kind] = self._correction(kind, matrix, part, motions[part], inside)
-            if self._on_disk:
+            if self.on_disk:
                 self._store(kind)
         edges = [block(matrix, part[i], part[i]) for part, i in zip(parts, self.local, strict=True)]
         self.edges = edges  # of the matrix that was condensed, on the touched unknowns
@@ -121,7 +125,7 @@ class _Parts:
         self._probe[self.touched] = 0.0
         self._answer = matrix @ self._probe
         sizes = [factor.memory for factor in self._factors.values()]
-        self.memory = max(sizes) if self._on_disk else sum(sizes)
+        self.memory = max(sizes) if self.on_disk else sum(sizes)
 
     def fits(self, matrix: Any) -> bool:
         """Whether a matrix differs from that of these parts in touched unknowns alone."""
@@ -167,7 +171,7 @@ class _Parts:
     def factor(self, kind: int) -> CondensedPart:
         """The factor of a kind of part, in memory."""
         factor = self._factors[kind]
-        if self._on_disk and self._at_hand != kind:
+        if self.on_disk and self._at_hand != kind:
             if self._at_hand is not None:
                 self._store(self._at_hand)
             factor.restore()
@@ -193,7 +197,16 @@ class ByParts:
 
     def solve(self, right: Array) -> Array:
         """Solve for one right-hand side (n,) or several (n, m)."""
-        columns = right[:, None] if right.ndim == 1 else right
+        if right.ndim == 1:
+            return self._solve(right[:, None])[:, 0]
+        # a factor that comes from the disk comes once for all of them
+        step = max(right.shape[1], 1) if self._parts.on_disk else FEW
+        found = np.empty(right.shape, order="F")
+        for k in range(0, right.shape[1], step):
+            found[:, k : k + step] = self._solve(right[:, k : k + step])
+        return found
+
+    def _solve(self, columns: Array) -> Array:
         width = columns.shape[1]
         parts = self._parts
         halves: list[Array] = [np.zeros((0, 0))] * len(parts.parts)
@@ -217,13 +230,7 @@ class ByParts:
             whole = parts.factor(kind).backward(half, ends)
             for place, number in enumerate(same):
                 found[parts.parts[number]] = whole[:, place * width : (place + 1) * width]
-        return found[:, 0] if right.ndim == 1 else found
-
-    def again(self, matrix: Any) -> "ByParts":
-        """Factorise another matrix that differs in touched unknowns alone. Raises RuntimeError where it does not."""
-        if not self._parts.fits(matrix):
-            raise RuntimeError("what lies inside a part has changed: it is factorised anew")
-        return ByParts(self._parts, matrix)
+        return found
 
     def _core(self, matrix: Any) -> BlockCholesky:
         """The factor of the matrix on the touched unknowns once all others are eliminated.

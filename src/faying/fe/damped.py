@@ -1,12 +1,11 @@
 """Complex modes of a structure with loss on its joints, hysteretic or viscous.
 
 The loss is that of a few faces, so the complex modes lie near the span of the real modes and of the static response to
-the loss forces they cause. The equations are projected on that span; what the projected modes leave in the full
-equations, sent through the factorisation that the real modes have left, is both the estimate of their error and the
-next enrichment of the span.
+the loss forces they cause. The equations are projected on that span, or on the larger one in which the real modes of
+several stiffnesses were found; what the projected modes leave in the full equations, sent through the factorisation
+that the real modes have left, is both the estimate of their error and the next enrichment of the span.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -14,10 +13,12 @@ import numpy as np
 
 from faying.errors import NotConverged
 from faying.fe.modes import Modes
-from faying.fe.span import Span, without
+from faying.fe.nearby import LEAST, Measure, NearbyModes
 from faying.typing import Array, Complex, Index
 
+Kind = Literal["hysteretic", "viscous"]
 ROUNDS = 25  # enrichments after which the loss must be so great that nothing here applies
+SLIGHT = 0.01  # of the tolerance: what mends less is left out
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +59,7 @@ def damped_modes(
     *,
     rigid: int,
     count: int | None = None,
-    kind: Literal["hysteretic", "viscous"] = "hysteretic",
+    kind: Kind = "hysteretic",
     tolerance: float = 1e-6,
 ) -> DampedModes:
     """Find complex modes of K + i C (hysteretic, C [N/m]) or K + i w C (viscous, C [N s/m]).
@@ -67,16 +68,26 @@ def damped_modes(
     this; count: how many complex modes are wanted, all elastic ones where None; tolerance: of the estimated relative
     error of the complex eigenvalues. Raises NotConverged where it is not reached.
     """
+    near = NearbyModes(modes, stiffness, mass, rigid=rigid)
+    if loss.count_nonzero():
+        near.add(modes.factorisation.solve(np.asfortranarray(loss @ modes.shapes[:, rigid:])))
+    return damped_near(near, modes, stiffness, loss, count=count, kind=kind, tolerance=tolerance)
+
+
+def damped_near(
+    near: NearbyModes,
+    modes: Modes,
+    stiffness: Any,
+    loss: Any,
+    *,
+    count: int | None = None,
+    kind: Kind = "hysteretic",
+    tolerance: float = 1e-6,
+) -> DampedModes:
+    """Find complex modes, as `damped_modes` does, in the basis in which the real ones were found, which grows."""
+    rigid, mass, span = near.rigid, near.span.mass, near.span
     elastic = modes.shapes[:, rigid:]
     count = elastic.shape[1] if count is None else min(count, elastic.shape[1])
-    rigid_shapes = modes.shapes[:, :rigid]
-    rigid_momentum = np.asarray(mass @ rigid_shapes)
-
-    def answered(forces: Array) -> Array:
-        """What the factorisation answers to forces (n, k), less rigid motions."""
-        found = modes.factorisation.solve(np.asfortranarray(forces))
-        return np.asarray(found - rigid_shapes @ (rigid_momentum.T @ found))
-
     if not loss.count_nonzero():
         return DampedModes(
             frequencies=modes.frequencies[rigid : rigid + count],
@@ -84,22 +95,23 @@ def damped_modes(
             error=modes.error[rigid : rigid + count],
             shapes=elastic[:, :count].astype(complex),
         )
-    span = Span(mass, stiffness, elastic, others=[loss])
-    _enrich(span, answered(loss @ elastic), least=0.0)
-    error = np.full(count, np.inf)
+    measure = near.measure(2 * count)
+    lossy = np.flatnonzero(np.diff(loss.tocsr().indptr))
+    inside = loss.tocsr()[lossy][:, lossy]
     for _ in range(ROUNDS):
-        squared, root, inner = _eigen(span.small, count, kind)
-        vectors, moved = _times(span.vectors, inner), _times(span.momentum, inner)
-        lost = loss @ vectors.real + 1j * (loss @ vectors.imag)
+        values, inner = near.projected(stiffness)
+        order = np.argsort(np.abs(values))[rigid:]
+        inner = inner[:, order]
+        at_joints = span.vectors[lossy] @ inner
+        squared, root, mix = _eigen(np.abs(values[order]), at_joints.T @ (inside @ at_joints), count, kind)
+        vectors = _times(span.vectors, inner @ mix)
+        held, moved, lost = (_times(operator, vectors) for operator in (stiffness, mass, loss))
         if kind == "hysteretic":
-            miss = _times(span.force, inner) + 1j * lost - moved * squared
+            miss = held + 1j * lost - moved * squared
         else:
-            miss = _times(span.force, inner) + lost * root + moved * root**2
-        parts = np.concatenate([miss.real, miss.imag], axis=1)
-        solved = answered(parts)
-        energy = np.einsum("ij,ij->j", parts, solved).reshape(2, count).sum(axis=0)
+            miss = held + lost * root + moved * root**2
         size = np.abs(squared) * np.einsum("im,im->m", vectors.conj(), moved).real
-        error = np.abs(energy) / size
+        error, mend = _measured(measure, miss, size, tolerance)
         if error.max() < tolerance:
             return DampedModes(
                 frequencies=_frequency(squared, root, kind),
@@ -107,12 +119,28 @@ def damped_modes(
                 error=error,
                 shapes=vectors / np.sqrt(np.einsum("im,im->m", vectors, moved)),
             )
-        if not _enrich(span, solved / np.sqrt(np.tile(size, 2)), least=0.01 * tolerance):
+        if not _enrich(near, stiffness, mend, least=SLIGHT * tolerance):
             break
     raise NotConverged(
         f"complex modes: the estimated error stays at {error.max():.1e} (tolerance {tolerance:.0e}); the loss "
         "of the joint may be too great for modes to mean anything"
     )
+
+
+def _measured(measure: Measure, miss: Complex, size: Array, tolerance: float) -> tuple[Array, Array]:
+    """Estimated relative errors (m,) of eigenvalues, and what mends those beyond the tolerance (n, k).
+
+    miss: what the modes leave of the equations (n, m); size (m,): what an error is relative to; measure: of real parts
+    and imaginary parts (2 m).
+    """
+    parts, sizes = np.concatenate([miss.real, miss.imag], axis=1), np.tile(size, 2)
+    error = measure.guessed(parts, sizes, np.arange(len(sizes)))
+    poor = ~(error.reshape(2, -1).sum(axis=0) < tolerance)
+    chosen = np.flatnonzero(np.tile(poor, 2) & ~(error < SLIGHT * tolerance))
+    mend = parts[:, :0]
+    if len(chosen):
+        error[chosen], mend = measure.solved(np.asfortranarray(parts[:, chosen]), sizes[chosen], chosen)
+    return error.reshape(2, -1).sum(axis=0), mend / np.sqrt(sizes[chosen])
 
 
 def _frequency(squared: Complex, root: Complex, kind: str) -> Array:
@@ -123,57 +151,49 @@ def _loss_factor(squared: Complex, root: Complex, kind: str) -> Array:
     return squared.imag / squared.real if kind == "hysteretic" else -2 * root.real / np.abs(root)
 
 
-def followers(overlap: Complex) -> Index:
-    """Index of the complex mode (m,) that follows each real one, from their overlap (m, complex modes).
+def lowest_complex(frequencies: Array, count: int) -> Index:
+    """Index of the lowest complex modes (count,), in rising order of their frequencies.
 
-    Each real mode, in turn, takes the one left that overlaps it most. Raises NotConverged where there are too few.
+    Each frequency is the Rayleigh quotient of the stiffness with its shape, so that none lies low by accident. Raises
+    NotConverged where there are too few.
     """
-    if overlap.shape[1] < len(overlap):
+    if len(frequencies) < count:
         raise NotConverged(
-            f"complex modes: only {overlap.shape[1]} of {len(overlap)} modes oscillate; the dampers are so "
-            "strong that the others only creep back"
+            f"complex modes: only {len(frequencies)} of {count} modes oscillate; the dampers are so strong that the "
+            "others only creep back"
         )
-    picked: list[int] = []
-    for row in np.abs(overlap):
-        picked.append(next(int(i) for i in np.argsort(-row) if int(i) not in picked))
-    return np.array(picked, dtype=np.int64)
+    return np.argsort(frequencies)[:count]
 
 
-def _times(vectors: Array, inner: Complex) -> Complex:
-    """Real vectors times complex coefficients, without a complex copy of the vectors."""
-    return np.asarray(vectors @ inner.real + 1j * (vectors @ inner.imag))
+def _times(real: Any, other: Complex) -> Complex:
+    """A real matrix, dense or sparse, times a complex one, without a complex copy of the first."""
+    return np.asarray(real @ other.real + 1j * (real @ other.imag))
 
 
-def _enrich(span: Span, new: Array, *, least: float) -> int:
-    """Add columns; directions whose share of the stiffness energy is below `least` are left out."""
-    stiffness = span.operators[0]
-    scale = np.einsum("ij,ij->j", new, stiffness @ new).max()
-    new = without(new, span.vectors, span.momentum)
+def _enrich(near: NearbyModes, stiffness: Any, new: Array, *, least: float) -> int:
+    """Add columns; combinations of them whose stiffness energy is below `least` are left out."""
     gram = new.T @ (stiffness @ new)
     values, rotation = np.linalg.eigh((gram + gram.T) / 2)
-    new = new @ rotation[:, values > max(least, 1e-12 * scale)]
-    return span.add(new / np.linalg.norm(new, axis=0)) if new.shape[1] else 0
+    new = new @ rotation[:, values > max(least, 1e-12 * values.max(initial=0.0))]
+    return near.span.add(new, least=LEAST) if new.shape[1] else 0
 
 
-def _eigen(small: Sequence[Array], count: int, kind: str) -> tuple[Complex, Complex, Complex]:
-    """Squares w^2 (1 + i eta), roots lambda and coefficients (size, count) of modes that follow the real ones.
+def _eigen(stiffness: Array, loss: Array, count: int, kind: str) -> tuple[Complex, Complex, Complex]:
+    """Squares w^2 (1 + i eta), roots lambda and coefficients (size, count) of the lowest modes.
 
-    small: stiffness and loss on a basis that is orthonormal with the mass.
+    stiffness (size,), loss (size, size): in real modes, mass-normalised.
     """
     from scipy.linalg import eig
 
-    K, C = small
     if kind == "hysteretic":
-        values, vectors = eig(K + 1j * C)
+        values, vectors = eig(np.diag(stiffness) + 1j * loss)
         squared, root = values, 1j * np.sqrt(values)
     else:
-        n = len(K)
-        companion = np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]])
+        n = len(stiffness)
+        companion = np.block([[np.zeros((n, n)), np.eye(n)], [-np.diag(stiffness), -loss]])
         root, both = eig(companion)
         above = root.imag > 0
         root, vectors = root[above], both[:n, above]
-        vectors = vectors / np.linalg.norm(vectors, axis=0)
         squared = -(root**2)
-    order = followers(vectors[:count])
-    order = order[np.argsort(_frequency(squared[order], root[order], kind))]
+    order = lowest_complex(_frequency(squared, root, kind), count)
     return squared[order], root[order], vectors[:, order]

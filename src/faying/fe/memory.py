@@ -29,7 +29,7 @@ def check(needed: float, unknowns: int, solver: str) -> None:
         return
     advice = [
         "a coarser mesh (memory grows as the power 4/3 of the unknowns)",
-        "faying modes --slepc under mpiexec, which spreads the matrices over processes and machines",
+        "--mpi PROCESSES of faying run and faying modes, whose memory grows with the unknowns alone",
     ]
     if solver != "PARDISO":
         advice.insert(0, "PARDISO, which needs less (add --extra pardiso to uv run, or pip install pypardiso)")

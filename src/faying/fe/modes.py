@@ -44,42 +44,52 @@ def lowest_modes(
     shift_frequency: float,
     solver: str | None = None,
     factor: Factorisation | None = None,
+    rigid: Array | None = None,
+    tolerance: float = TOLERANCE,
 ) -> Modes:
     """Find the `count` lowest modes by block Lanczos iteration with a negative shift.
 
     stiffness [N/m], mass [kg]: sparse and symmetric; shift_frequency [Hz] sets the shift -(2 pi f)^2, at which
-    K + |shift| M is positive definite even for free bodies; factor: of that matrix, made here where None. Raises
-    InputError where more modes are asked for than there are masses, the shift is above every mode, the structure is
-    unstable, or memory is short, and NotConverged where the iteration stops short.
+    K + |shift| M is positive definite even for free bodies; factor: of that matrix, made here where None; rigid: the
+    motions (n, r) that nothing resists, which are not looked for where they are given; tolerance: residual of
+    A^-1 M x = theta x over theta, A the factorised matrix. Raises InputError where more modes are asked for than there
+    are masses, the shift is above every mode, the structure is unstable, or memory is short, and NotConverged where the
+    iteration stops short.
     """
-    _check_shift(stiffness, mass, shift_frequency)
+    check_shift(stiffness, mass, shift_frequency)
     shift = (2 * np.pi * shift_frequency) ** 2
     most = int(np.count_nonzero(mass.diagonal() > 0))
     if not 0 < count <= most:
         raise InputError(f"{count} modes of a structure with {most} unknowns that have mass; ask for 1 to {most}")
     if factor is None:
         factor = factorise((stiffness + shift * mass).tocsr(), solver)
-    inverse, shapes = _krylov(factor, mass, count, min(WIDTH, stiffness.shape[0]))
+    still, _, _ = _orthonormal(np.zeros((stiffness.shape[0], 0)) if rigid is None else rigid, mass)
+    inverse, shapes = np.full(still.shape[1], 1 / shift), still
+    if count > still.shape[1]:
+        width = min(WIDTH, stiffness.shape[0])
+        more = _krylov(factor, mass, count - still.shape[1], width, still=still, tolerance=tolerance)
+        inverse, shapes = np.concatenate([inverse, more[0]]), np.concatenate([shapes, more[1]], axis=1)
+        del more
     if len(inverse) < count:
         raise InputError(f"{count} modes of a structure whose masses allow {len(inverse)}; ask for 1 to {len(inverse)}")
     values, shapes = _ritz(stiffness, mass, shapes)
-    if np.any(np.abs(np.sort(values + shift) * np.sort(inverse)[::-1] - 1) > SAME):
+    if np.any(np.abs(np.sort(values + shift) * np.sort(inverse)[::-1] - 1) > max(SAME, tolerance)):
         # motions without mass have crept in, which the projection on the mass does not see: one more solve has none
         shapes, _, _ = _orthonormal(factor.solve(np.asfortranarray(mass @ shapes)), mass)
         values, shapes = _ritz(stiffness, mass, shapes)
     _check_stable(stiffness, values, shapes, shift)
-    order = np.argsort(np.abs(values))
+    order = np.argsort(np.abs(values))[:count]
     return Modes(
         frequencies=np.sqrt(np.abs(values[order])) / (2 * np.pi),
         shapes=shapes[:, order],
-        error=np.full(count, TOLERANCE),
+        error=np.full(count, tolerance),
         factorisation=factor,
         factorised=stiffness,
         shift=shift,
     )
 
 
-def _check_shift(stiffness: Any, mass: Any, shift_frequency: float) -> None:
+def check_shift(stiffness: Any, mass: Any, shift_frequency: float) -> None:
     """Raise InputError for a shift that is no frequency, or above all modes that the mesh has."""
     if not (np.isfinite(shift_frequency) and shift_frequency > 0):
         raise InputError(f"a shift of {shift_frequency:g} Hz: give one above 0, near the first elastic mode")
@@ -96,12 +106,15 @@ def _check_shift(stiffness: Any, mass: Any, shift_frequency: float) -> None:
 def _check_stable(stiffness: Any, values: Array, shapes: Array, shift: float) -> None:
     """Raise InputError where an eigenvalue is negative beyond rounding: its motion would grow, not vibrate."""
     worst = int(np.argmin(values))
-    rounding = 1e-12 * float(np.abs(shapes[:, worst]) @ (abs(stiffness) @ np.abs(shapes[:, worst])))
-    if values[worst] < -max(1e-4 * shift, rounding):
+    limit = 1e-4 * shift
+    if values[worst] >= -limit:
+        return
+    limit = max(limit, 1e-12 * float(np.abs(shapes[:, worst]) @ (abs(stiffness) @ np.abs(shapes[:, worst]))))
+    if values[worst] < -limit:
         rate = np.sqrt(-values[worst]) / (2 * np.pi)
         raise InputError(
-            f"the structure is unstable: {np.count_nonzero(values < -max(1e-4 * shift, rounding))} eigenvalues are "
-            f"negative, the lowest -({rate:.4g} Hz)^2; check the signs of the stiffness matrix and of its springs"
+            f"the structure is unstable: {np.count_nonzero(values < -limit)} eigenvalues are negative, the "
+            f"lowest -({rate:.4g} Hz)^2; check the signs of the stiffness matrix and of its springs"
         )
 
 
@@ -124,15 +137,20 @@ def _ritz(stiffness: Any, mass: Any, shapes: Array) -> tuple[Array, Array]:
     """Eigenvalues and vectors in the span of the shapes: restores what the shifted inverse loses on the lowest."""
     from scipy.linalg import eigh
 
-    small, gram = shapes.T @ (stiffness @ shapes), shapes.T @ (mass @ shapes)
+    small, gram = (np.zeros((shapes.shape[1], shapes.shape[1])) for _ in range(2))
+    for k in range(0, shapes.shape[1], WIDTH):  # few at a time: images take as much room as shapes
+        few = slice(k, k + WIDTH)
+        small[:, few], gram[:, few] = (shapes.T @ (matrix @ shapes[:, few]) for matrix in (stiffness, mass))
     values, turn = eigh((small + small.T) / 2, (gram + gram.T) / 2)
     return values, shapes @ turn
 
 
-def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[Array, Array]:
+def _krylov(
+    factor: Factorisation, mass: Any, count: int, width: int, *, still: Array, tolerance: float
+) -> tuple[Array, Array]:
     """The greatest eigenvalues (count,) of A^-1 M and their vectors (n, count), orthonormal with the mass.
 
-    Fewer where the mass has a lower rank.
+    Fewer where the mass has a lower rank. Vectors `still` (n, r), orthonormal with the mass, are left out of it.
 
     Block Lanczos with full reorthogonalisation (Grimes, Lewis, Simon 1994, doi:10.1137/S0895479888151111), without
     restarts: a factor takes far more memory than the basis. An eigenvalue that comes as often as the blocks are wide
@@ -141,8 +159,9 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[A
     n = mass.shape[0]
     generator = np.random.default_rng(SEED)
     last = factor.solve(mass @ generator.standard_normal((n, width)))
+    last -= still @ (still.T @ (mass @ last))
     last, momentum, _ = _orthonormal(last, mass)
-    before, before_momentum, rows = np.zeros((n, 0)), np.zeros((n, 0)), np.zeros((last.shape[1], 0))
+    before, rows = np.zeros((n, 0)), np.zeros((last.shape[1], 0))
     basis, projected = [last], np.zeros((0, 0))  # as blocks: to join them would take them twice
     for _ in range(MOST_STEPS // width):
         image = factor.solve(momentum)
@@ -152,22 +171,23 @@ def _krylov(factor: Factorisation, mass: Any, count: int, width: int) -> tuple[A
         edge = np.zeros((last.shape[1], old))
         edge[:, old - before.shape[1] :] = rows
         projected = np.block([[projected, edge.T], [edge, corner]])
+        size = float(np.sqrt(np.einsum("ij,ij->j", image, mass @ image).max()))
+        image -= last @ corner
+        image -= before @ rows.T
         moved = mass @ image
-        size = float(np.sqrt(np.einsum("ij,ij->j", image, moved).max()))
-        image -= last @ corner + before @ rows.T
-        moved -= momentum @ corner + before_momentum @ rows.T
-        for block in basis:
+        for block in (still, *basis):
             image -= block @ (block.T @ moved)
-        before, before_momentum = last, momentum
+        before = last
         last, momentum, rows = _orthonormal(image, mass, nothing=NOTHING * size)
+        del image, moved  # before the next solution takes room
         values, vectors = np.linalg.eigh(projected)
         values, vectors = values[::-1][:count], vectors[:, ::-1][:, :count]
-        converged = np.linalg.norm(rows @ vectors[old:], axis=0) <= TOLERANCE * values
+        converged = np.linalg.norm(rows @ vectors[old:], axis=0) <= tolerance * values
         whole = not last.shape[1]
         found = values if whole else values[converged]
         often = max((int(np.count_nonzero(np.abs(found / value - 1) < SAME)) for value in found), default=0)
         if width <= often < count and width < n:
-            return _krylov(factor, mass, count, 2 * width)
+            return _krylov(factor, mass, count, 2 * width, still=still, tolerance=tolerance)
         if whole or (len(values) == count and np.all(converged)):
             shapes = np.empty((n, len(values)), order="F")
             for begin in range(0, n, ROWS):

@@ -6,22 +6,24 @@ from typing import Any
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.fe.by_parts import PartByPart
-from faying.fe.modes import Modes, lowest_modes
+from faying.fe.modes import TOLERANCE, Modes, lowest_modes
 from faying.fe.shifted import Shifted
 from faying.fe.single import Single, factorise_roughly
-from faying.fe.solve import factorise
+from faying.fe.solve import Factorisation, Factoriser, factorise
 from faying.fe.span import Span
 from faying.typing import Array, Index
 
 ROUNDS = 40  # enrichments of the basis
 SLOWEST = 0.3  # decades that a round is taken to gain where it has gained less so far
+START = 1e-4  # residual of modes, as `lowest_modes` takes it, that are to be refined
 REFINED = 1e-10  # estimated relative error of the squared frequencies of refined modes
 WATCHED = 4  # modes beyond those wanted that must have found their place above them
 PLACED = 1e-2  # estimated relative error of their squared frequencies
 EVERYWHERE = 6  # vectors of no symmetry that each new stiffness begins with
 SEED = 20261124
 LEAST = 1e-10  # share of a new vector that must be new
+FEW, ROOM = 8, 2_000_000  # vectors, or numbers, that are worked on together: the larger
+DOUBT = 3.0  # times by which the energy of a residual may have grown against that by the diagonal since the last round
 
 
 class NearbyModes:
@@ -40,13 +42,28 @@ class NearbyModes:
     """
 
     def __init__(self, modes: Modes, stiffness: Any, mass: Any, *, rigid: int, most: int | None = None) -> None:
-        self.modes, self.rigid, self._most = modes, rigid, most
-        self._span = Span(mass, stiffness, modes.shapes)
+        self.span = Span(mass, stiffness, modes.shapes)
+        self.modes = replace(modes, shapes=modes.shapes[:, :0].copy())  # they are in the basis
+        self.rigid, self._most = rigid, most
+        self._looked = False
+        self._changed: tuple[Any, Any, Index] | None = None  # of the last stiffness
+        self.diagonal = stiffness.diagonal() + modes.shift * mass.diagonal()
+        self._measure = self.measure(0)
+
+    def take(self, factor: Factorisation, stiffness: Any) -> None:
+        """Go on with the factorisation of another stiffness [N/m] (n, n), shifted alike; the basis stays."""
+        self.modes = replace(self.modes, factorisation=factor, factorised=stiffness)
+        self.diagonal = stiffness.diagonal() + self.modes.shift * self.span.mass.diagonal()
+        self._measure = self.measure(0)
+
+    def measure(self, count: int) -> "Measure":
+        """What measures so many residuals by the factorisation at hand."""
+        return Measure(self.diagonal, self.modes.factorisation, count)
 
     def add(self, vectors: Array) -> None:
         """Take vectors (n, k) that are likely to be near modes to come, such as those of a stiffness between."""
-        size = np.sqrt(np.einsum("ij,ij->j", vectors, self._span.mass @ vectors))
-        self._span.add(vectors / size, least=LEAST)
+        for some in _few(np.arange(vectors.shape[1]), len(vectors)):
+            self.span.add(vectors[:, some], least=LEAST)
 
     def under(
         self, stiffness: Any, count: int, *, tolerance: float = 1e-7, spare: int = 0, rounds: int = ROUNDS
@@ -66,31 +83,26 @@ class NearbyModes:
         Raises:
             NotConverged: where the tolerance is not reached.
         """
-        from scipy.linalg import eigh
-
-        span = self._span
+        span = self.span
         first = None
-        # the very same matrix is not taken from itself: the difference would have room for both
-        change = stiffness[:0] if stiffness is span.operators[0] else (stiffness - span.operators[0]).tocsr()
-        change.eliminate_zeros()
-        touched = np.flatnonzero(np.diff(change.indptr))
-        change = change[touched][:, touched]
-        if len(touched):  # else these are modes that have been looked for everywhere already
+        touched = self._change(stiffness)[1]
+        if len(touched) and not self._looked:  # else these are modes that have been looked for everywhere already
             self._look_everywhere()
+        targets = np.full(count + (WATCHED if len(touched) else 0), PLACED)
+        targets[:count] = tolerance
+        errors, settled = np.ones(len(targets)), np.zeros(len(targets))
+        if self._measure.count != len(targets):
+            self._measure = self.measure(len(targets))
         for done in range(rounds):
-            at_joints = span.vectors[touched]
-            forces = change @ at_joints
-            values, inner = eigh(span.small[0] + at_joints.T @ forces)
+            values, inner = self.projected(stiffness)
             order = np.argsort(np.abs(values))
-            wanted = order[self.rigid : self.rigid + count + WATCHED]
-            squared, mix = values[wanted], inner[:, wanted]
-            left = span.force @ mix - span.momentum @ (mix * squared)
-            left[touched] += forces @ mix
-            solved = self.modes.factorisation.solve(np.asfortranarray(left))
-            error = np.abs(np.einsum("ij,ij->j", left, solved)) / np.abs(squared)
-            targets = np.full(len(error), PLACED)
-            targets[:count] = tolerance
-            excess = float((error / targets).max())
+            wanted = order[self.rigid : self.rigid + len(targets)]
+            squared, error, target = values[wanted], errors[: len(wanted)], targets[: len(wanted)]
+            # what has settled only comes nearer as the basis grows, unless another mode comes down from above
+            open_ = np.flatnonzero((error >= target) | (squared < settled[: len(wanted)] * (1 - error)))
+            settled[open_] = squared[open_]
+            error[open_], mend = self._error(stiffness, inner[:, wanted], squared, open_, target)
+            excess = float((error / target).max())
             if excess < 1:
                 found = self._found(values, inner, order[: self.rigid + count + spare], error[:count])
                 self._keep(inner[:, order])
@@ -98,14 +110,55 @@ class NearbyModes:
             first = first or excess
             if done + _rounds_left(excess, first, done) > rounds:
                 break
-            new = solved[:, error > targets / 10]
-            new = new / np.sqrt(np.einsum("ij,ij->j", new, span.mass @ new))
-            if not span.add(new, least=LEAST):
+            if not sum([span.add(some, least=LEAST) for some in mend]):
                 break
         raise NotConverged(
             f"modes under changed springs: the estimated error stays at {error[:count].max():.1e} (tolerance "
             f"{tolerance:.0e})"
         )
+
+    def _error(
+        self, stiffness: Any, mix: Array, squared: Array, which: Index, targets: Array
+    ) -> tuple[Array, list[Array]]:
+        """Estimated relative error of squared frequencies (k,), and what mends those that miss a target, few at a time.
+
+        mix: coefficients (m, w) of the modes that are looked for, with their squared circular frequencies (w,) and
+        targets (w,); which (k,): of them.
+        """
+        errors, mend = np.zeros(len(squared)), []
+        for some in _few(which, len(self.diagonal)):
+            left = _left_over(stiffness, self.span.mass, self.span.vectors @ mix[:, some], squared[some])
+            size = np.abs(squared[some])
+            errors[some] = self._measure.guessed(left, size, some)
+            far = ~(errors[some] < targets[some])
+            poor = some[far]
+            if len(poor):
+                left = left[:, far]  # the others' room is free before the solution takes its own
+                errors[poor], solved = self._measure.solved(left, size[far], poor)
+                mend.append(solved[:, errors[poor] > targets[poor] / 10])
+        return errors[which], mend
+
+    def projected(self, stiffness: Any) -> tuple[Array, Array]:
+        """Squared circular frequencies (m,) and coefficients (m, m) of the modes of a stiffness in the basis."""
+        from scipy.linalg import eigh
+
+        change, touched = self._change(stiffness)
+        at_joints = self.span.vectors[touched]
+        values, inner = eigh(self.span.small + at_joints.T @ (change @ at_joints))
+        return np.asarray(values), np.asarray(inner)
+
+    def _change(self, stiffness: Any) -> tuple[Any, Index]:
+        """What a stiffness has beyond that of the basis: (k, k) on the unknowns that differ, and these (k,)."""
+        if self._changed is None or self._changed[0] is not stiffness:
+            before = self.span.stiffness
+            if stiffness is before:  # the difference would take the room of both
+                self._changed = stiffness, stiffness[:0, :0], np.zeros(0, dtype=np.int64)
+            else:
+                change = (stiffness - before).tocsr()
+                change.eliminate_zeros()
+                touched = np.flatnonzero(np.diff(change.indptr))
+                self._changed = stiffness, change[touched][:, touched], touched
+        return self._changed[1:]
 
     def _look_everywhere(self) -> None:
         """Take directions of all kinds into the basis.
@@ -113,26 +166,72 @@ class NearbyModes:
         The residuals of modes of one symmetry have none of another: a mode that comes down from beyond the basis would
         be missed by all of them, and nothing would tell.
         """
-        mass, factor = self._span.mass, self.modes.factorisation
+        mass, factor = self.span.mass, self.modes.factorisation
         found = np.random.default_rng(SEED).standard_normal((mass.shape[0], EVERYWHERE))
         for _ in range(2):  # towards the low modes
             found = factor.solve(np.asfortranarray(mass @ found))
             found /= np.sqrt(np.einsum("ij,ij->j", found, mass @ found))
-        self._span.add(found, least=LEAST)
+        self.span.add(found, least=LEAST)
+        self._looked = True
 
     def _found(self, values: Array, inner: Array, order: Index, error: Array) -> Modes:
         return replace(
             self.modes,
             error=np.concatenate([np.zeros(self.rigid), error, np.full(len(order) - self.rigid - len(error), np.nan)]),
             frequencies=np.sqrt(np.abs(values[order])) / (2 * np.pi),
-            shapes=self._span.vectors @ inner[:, order],
+            shapes=self.span.vectors @ inner[:, order],
         )
 
     def _keep(self, inner: Array) -> None:
         """Where the basis holds too much, keep the lowest three quarters of what it may, as the last modes have it."""
-        span = self._span
+        span = self.span
         if self._most is not None and span.vectors.shape[1] > self._most:
-            self._span = Span(span.mass, span.operators[0], span.vectors @ inner[:, : 3 * self._most // 4])
+            span.turn(inner[:, : 3 * self._most // 4])
+            self._looked = False
+
+
+class Measure:
+    """Measures residuals by their energy in the inverse of a factorised stiffness.
+
+    That takes a solution. The energy in the inverse of the diagonal takes none and is some times less, and these times
+    hardly change from round to round and from stiffness to stiffness: a mode that has found its place by it needs no
+    solution.
+
+    Args:
+        diagonal: of the factorised matrix (n,).
+        factor: its factorisation.
+        count: residuals that are measured again and again, each known by its number.
+    """
+
+    def __init__(self, diagonal: Array, factor: Factorisation, count: int) -> None:
+        self._diagonal, self._factor, self.count = diagonal, factor, count
+        self._ratio = np.full(count, np.inf)  # of the energies of the last residual of each
+
+    def guessed(self, left: Array, size: Array, which: Index) -> Array:
+        """Energies over sizes (k,) of residuals (n, k), by the diagonal; which (k,): their numbers."""
+        typical = np.median(self._ratio)
+        return np.asarray(DOUBT * np.maximum(self._ratio[which], typical) * self._rough(left, size))
+
+    def solved(self, left: Array, size: Array, which: Index) -> tuple[Array, Array]:
+        """Energies over sizes (k,) of residuals (n, k), one or more, and the solutions (n, k)."""
+        answer = self._factor.solve(left)
+        found = np.abs(np.einsum("ij,ij->j", left, answer)) / size
+        self._ratio[which] = found / self._rough(left, size)
+        return found, answer
+
+    def _rough(self, left: Array, size: Array) -> Array:
+        return np.array([column @ (column / self._diagonal) for column in left.T]) / size
+
+
+def _few(columns: Index, size: int) -> list[Index]:
+    """Columns (k,) of vectors (size,), as many at a time as take little room: work takes several times that."""
+    width = max(FEW, ROOM // size)
+    return [columns[k : k + width] for k in range(0, len(columns), width)]
+
+
+def _left_over(stiffness: Any, mass: Any, shapes: Array, squared: Array) -> Array:
+    """Forces (n, m) that shapes (n, m) with squared circular frequencies (m,) leave out of balance."""
+    return np.asfortranarray(stiffness @ shapes - mass @ (shapes * squared))
 
 
 def _rounds_left(excess: float, first: float, done: int) -> float:
@@ -149,7 +248,8 @@ def refined_modes(
     *,
     rigid: Array,
     shift_frequency: float,
-    solver: str | PartByPart | None = None,
+    solver: str | Factoriser | None = None,
+    spare: int = 0,
 ) -> Modes:
     """Find the lowest modes by a factorisation in single precision, and refine them in double.
 
@@ -161,6 +261,7 @@ def refined_modes(
         shift_frequency: [Hz], as `lowest_modes` takes it.
         solver: name of the factorisation, or what factorises part by part; those that have no single precision, or
             where that is too coarse, give modes in double precision.
+        spare: how many of the highest modes may be as they come, to no tolerance.
 
     Returns:
         Modes as exact as those of `lowest_modes`, with a factorisation that may be in single precision.
@@ -171,19 +272,25 @@ def refined_modes(
     shift = (2 * np.pi * shift_frequency) ** 2
     matrix = Shifted(stiffness=stiffness.tocsr(), mass=mass.tocsr(), shift=shift)
     factor = factorise_roughly(matrix, rigid=rigid, solver=solver)
-    modes = lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=factor)
+    tolerance = START if isinstance(factor, Single) else TOLERANCE
+    modes = lowest_modes(
+        stiffness, mass, count, shift_frequency=shift_frequency, factor=factor, rigid=rigid, tolerance=tolerance
+    )
     still = rigid.shape[1]
-    if not isinstance(factor, Single) or count <= still:
+    wanted = count - still - spare
+    if not isinstance(factor, Single) or wanted <= 0:
         return modes
+    near = NearbyModes(modes, stiffness, mass, rigid=still)
+    del modes  # they are in the basis, which grows
     try:
-        return NearbyModes(modes, stiffness, mass, rigid=still).under(stiffness, count - still, tolerance=REFINED)
+        return near.under(stiffness, wanted, tolerance=REFINED, spare=spare)
     except NotConverged:
-        del factor, modes  # before the next factorisation: one at a time in memory
-    if isinstance(solver, PartByPart):
+        del factor, near  # before the next factorisation: one at a time in memory
+    if isinstance(solver, Factoriser):
         factor = solver.factorise(matrix, single=False)
     else:
         factor = factorise(matrix.whole(), solver)
-    return lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=factor)
+    return lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=factor, rigid=rigid)
 
 
 def nearby_modes(

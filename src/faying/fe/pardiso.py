@@ -73,7 +73,7 @@ class Pardiso:
         rows = np.repeat(np.arange(len(blocks.indptr) - 1, dtype=np.int32), np.diff(blocks.indptr))
         self._kept = blocks.indices >= rows
         if self._kept.sum() * self._block**2 > np.iinfo(np.int32).max:
-            raise InputError("the matrix has more than 2^31 entries; use faying modes --slepc under mpiexec")
+            raise InputError("the matrix has more than 2^31 entries; use faying modes --mpi PROCESSES")
         counts = np.bincount(rows[self._kept], minlength=len(blocks.indptr) - 1)
         self._starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
         self._columns = blocks.indices[self._kept].astype(np.int32)
@@ -156,7 +156,7 @@ class Pardiso:
         if fault.value == -2:
             raise InputError(
                 f"PARDISO ran out of memory on {self._size:,} unknowns; take a coarser mesh, or faying modes "
-                "--slepc under mpiexec"
+                "--mpi PROCESSES"
             )
         if fault.value in SINGULAR:
             raise NotConverged(

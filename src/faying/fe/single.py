@@ -5,15 +5,12 @@ single precision spoils first are the softest motions, and the softest of all ar
 exactly and never goes through the factor.
 """
 
-from typing import Any
-
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.fe.by_parts import PartByPart
 from faying.fe.pardiso import Pardiso
 from faying.fe.shifted import Shifted
-from faying.fe.solve import Factorisation, chosen, factorise
+from faying.fe.solve import Factorisation, Factoriser, chosen, factorise
 from faying.typing import Array
 
 POOR = 0.2  # relative error of a solution beyond which double precision is due
@@ -26,21 +23,23 @@ class Single:
     Args:
         matrix: K + s M, (n, n), s above 0.
         rigid: motions (n, r) that the stiffness K leaves free, r = 0 where there are none.
-        by_parts: what factorises it part by part; None: as a whole.
+        maker: what factorises it; None: PARDISO, as a whole.
 
     Raises:
         NotConverged: the factor has too few digits of this matrix, or none.
     """
 
-    def __init__(self, matrix: Shifted, rigid: Array, by_parts: PartByPart | None = None) -> None:
+    def __init__(self, matrix: Shifted, rigid: Array, maker: Factoriser | None = None) -> None:
         mass = matrix.mass
         gram = rigid.T @ (mass @ rigid)
         self._rigid = rigid @ np.linalg.inv(np.linalg.cholesky((gram + gram.T) / 2)).T
         self._momentum, self._shift = np.asarray(mass @ self._rigid), matrix.shift
         self._factor: Factorisation = (
-            Pardiso(matrix.whole(), single=True) if by_parts is None else by_parts.factorise(matrix, single=True)
+            Pardiso(matrix.whole(), single=True) if maker is None else maker.factorise(matrix, single=True)
         )
         self.name, self.memory = self._factor.name, self._factor.memory
+        if maker is not None and maker.cheap:  # what solves step by step sees its own residual
+            return
         # a motion of all wave lengths, as the softest of the elastic modes are the worst
         wanted = self.solve(mass @ np.random.default_rng(SEED).standard_normal(matrix.shape[0]))
         error = self.solve(matrix @ wanted) - wanted
@@ -54,23 +53,19 @@ class Single:
         found -= self._rigid @ (self._momentum.T @ found - amount / self._shift)
         return np.asarray(found)
 
-    def again(self, matrix: Any) -> Factorisation:
-        """Raise RuntimeError: another matrix may have other rigid motions."""
-        raise RuntimeError("a factorisation in single precision is made anew")
 
-
-def factorise_roughly(matrix: Shifted, *, rigid: Array, solver: str | PartByPart | None = None) -> Factorisation:
+def factorise_roughly(matrix: Shifted, *, rigid: Array, solver: str | Factoriser | None = None) -> Factorisation:
     """Factorise in single precision where the solver can and the matrix allows, else in double.
 
     Args:
         matrix, rigid: as `Single` takes them.
-        solver: name of the factorisation, as `factorise` takes it, or what factorises part by part.
+        solver: name of the factorisation, as `factorise` takes it, or what factorises otherwise.
 
     Raises:
         NotConverged: the matrix is singular.
         InputError: memory is short.
     """
-    if isinstance(solver, PartByPart):
+    if isinstance(solver, Factoriser):
         try:
             return Single(matrix, rigid, solver)
         except NotConverged:

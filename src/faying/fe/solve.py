@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -23,7 +23,25 @@ class Factorisation(Protocol):
     def solve(self, right: Array) -> Array:
         """Solve for one right-hand side (n,) or several (n, m)."""
 
-    def again(self, matrix: Any) -> "Factorisation":
+
+@runtime_checkable
+class Factoriser(Protocol):
+    """Factorises the matrices of one structure, or does what stands for it.
+
+    key: what results call it; cheap: whether to factorise costs no more than a few solutions.
+    """
+
+    key: str
+    cheap: bool
+
+    def factorise(self, matrix: Any, *, single: bool) -> Factorisation:
+        """Factorise a symmetric positive definite `Shifted` (n, n) to single or to double precision."""
+
+
+class Repeatable(Factorisation, Protocol):
+    """A factorisation whose analysis serves further matrices."""
+
+    def again(self, matrix: Any) -> "Repeatable":
         """Factorise another matrix with the same pattern, both CSR with sorted indices.
 
         The analysis is kept if it can.
@@ -39,10 +57,6 @@ class Released:
 
     def solve(self, right: Array) -> Array:
         """Raise RuntimeError: there is nothing left to solve with."""
-        raise RuntimeError(f"the factorisation by {self.name} was released")
-
-    def again(self, matrix: Any) -> "Factorisation":
-        """Raise RuntimeError, too."""
         raise RuntimeError(f"the factorisation by {self.name} was released")
 
 
@@ -130,7 +144,8 @@ class _SuperLU:
 
 _MODULE = {"pardiso": "pypardiso", "mumps": "mumps", "cholmod": "sksparse.cholmod", "superlu": "scipy"}
 BY_PARTS = "pardiso-by-parts"  # a way to use PARDISO on structures; as a whole where there are no parts
-_BACKENDS: dict[str, Callable[[Any], Factorisation]] = {
+MPI = "mpi"  # or mpi:PROCESSES, a way to solve with structures; it factorises nothing
+_BACKENDS: dict[str, Callable[[Any], Repeatable]] = {
     "pardiso": Pardiso,
     BY_PARTS: Pardiso,
     "mumps": _Mumps,
@@ -149,6 +164,8 @@ def available() -> tuple[str, ...]:
 
     def works(module: str) -> bool:
         try:
+            if module == "pypardiso":
+                _point_to_mkl()
             import_module(module)
         except Exception:
             return False
@@ -157,13 +174,25 @@ def available() -> tuple[str, ...]:
     return tuple(name for name, module in _MODULE.items() if works(module))
 
 
+def _point_to_mkl() -> None:
+    """Tell pypardiso where MKL is, where its package says so: to look through all files takes most of a second."""
+    from importlib.metadata import PackageNotFoundError, files
+
+    try:
+        found = [file for file in files("mkl") or () if "mkl_rt" in file.name]
+    except PackageNotFoundError:
+        return
+    if found:
+        os.environ.setdefault("PYPARDISO_MKL_RT", str(found[0].locate()))
+
+
 def chosen(name: str | None = None) -> str:
     """Return the factorisation to use: `name`, else the environment's FAYING_SOLVER, else the fastest there is."""
     asked = name or os.environ.get("FAYING_SOLVER") or None
     have = available()
     if asked is None:
         return have[0]
-    if asked == BY_PARTS and "pardiso" in have:
+    if (asked == BY_PARTS and "pardiso" in have) or is_mpi(asked):
         return asked
     if asked not in have:
         raise InputError(
@@ -173,9 +202,23 @@ def chosen(name: str | None = None) -> str:
     return asked
 
 
-def factorise(matrix: Any, name: str | None = None) -> Factorisation:
-    """Factorise a sparse symmetric positive definite matrix. Raises NotConverged where it is singular."""
-    return _BACKENDS[chosen(name)](matrix)
+def is_mpi(name: str) -> bool:
+    """Whether the name of a solver means processes of mpiexec."""
+    return name.split(":")[0] == MPI
+
+
+def factorise(matrix: Any, name: str | None = None) -> Repeatable:
+    """Factorise a sparse symmetric positive definite matrix.
+
+    Raises NotConverged where it is singular, InputError for a solver that factorises nothing.
+    """
+    way = chosen(name)
+    if is_mpi(way):
+        raise InputError(
+            f"this asks for a factorisation, which the solver {way!r} has none of; name another, such as "
+            f"{available()[0]!r}, or none"
+        )
+    return _BACKENDS[way](matrix)
 
 
 def conjugate_gradients(

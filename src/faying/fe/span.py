@@ -1,17 +1,19 @@
-"""A basis that grows, orthonormal with the mass, and what operators make of it."""
+"""A basis that grows, orthonormal with the mass, and the stiffness projected on it."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from faying.typing import Array
 
+CLOSE = 1e-14  # of what is orthonormal: overlap up to which it is
+ROOM = 8_000_000  # numbers for which room is made ahead, at least
+ROWS = 10_000  # that are combined at a time
 ROUNDING = 1e-13  # of the largest: squares of directions below it are rounding
 
 
 def extension(new: Array, basis: Array, image: Array, operator: Any, *, least: float = 0.0) -> tuple[Array, Array]:
-    """Directions that columns add to a basis.
+    """Directions that columns add to a basis whose image is kept.
 
     Args:
         new: columns (n, k).
@@ -26,82 +28,118 @@ def extension(new: Array, basis: Array, image: Array, operator: Any, *, least: f
         last, and operator @ columns.
     """
     new = new - basis @ (image.T @ new)
-    gram = new.T @ (operator @ new)
-    squares, turn = np.linalg.eigh((gram + gram.T) / 2)
-    keep = squares > max(least, ROUNDING * squares.max(initial=0.0))
-    new = new @ (turn[:, keep] / np.sqrt(squares[keep]))
+    new = new @ _directions(new.T @ (operator @ new), least)
     new = new - basis @ (image.T @ new)  # what rounding leaves of the first pass
     moved = np.asarray(operator @ new)
-    gram = new.T @ moved  # a direction that was small has lost digits of its size
-    squares, turn = np.linalg.eigh((gram + gram.T) / 2)
-    mend = (turn / np.sqrt(squares)) @ turn.T
+    mend = _inverse_root(new.T @ moved)  # a direction that was small has lost digits of its size
     return new @ mend, moved @ mend
 
 
-def without(new: Array, basis: Array, image: Array) -> Array:
-    """Columns (n, k) less what a basis (n, m), orthonormal in an operator, has of them; image: operator @ basis."""
-    for _ in range(2):  # what rounding leaves of the first pass, the second takes
-        new = new - basis @ (image.T @ new)
-    return new
+def _directions(gram: Array, least: float) -> Array:
+    """Combinations (k, r) of columns with products `gram` (k, k), orthonormal, the largest last.
+
+    least: square below which a direction is left out; what is rounding beside the largest is left out anyhow.
+    """
+    squares, turn = np.linalg.eigh((gram + gram.T) / 2)
+    keep = squares > max(least, ROUNDING * squares.max(initial=0.0))
+    return np.asarray(turn[:, keep] / np.sqrt(squares[keep]))
+
+
+def _inverse_root(gram: Array) -> Array:
+    """What makes columns with products `gram` (k, k), near to 1, orthonormal with the least change."""
+    squares, turn = np.linalg.eigh((gram + gram.T) / 2)
+    return np.asarray((turn / np.sqrt(squares)) @ turn.T)
+
+
+def grown(small: Array, operator: Any, basis: Array, new: Array) -> Array:
+    """An operator projected on a basis (n, m) and on columns (n, k) added to it, from its projection on the basis."""
+    image = operator @ new
+    corner, side = new.T @ image, basis.T @ image
+    return np.block([[small, side], [side.T, (corner + corner.T) / 2]])
 
 
 class Span:
-    """Vectors (n, m), orthonormal with the mass, the images of the mass and the stiffness, and operators projected.
+    """Vectors (n, m), orthonormal with the mass, and a stiffness projected on them.
+
+    Their images are not kept: a product of a sparse matrix with a few combinations of them costs less than the same
+    combinations of the images, and these would take twice the room of the vectors.
 
     Args:
         mass, stiffness: sparse (n, n).
         first: the vectors to begin with.
-        others: further operators, whose projections alone are kept.
     """
 
-    def __init__(self, mass: Any, stiffness: Any, first: Array, others: Sequence[Any] = ()) -> None:
-        self.mass, self.operators = mass, (stiffness, *others)
-        self._columns = [_Columns(one) for one in (first, mass @ first, stiffness @ first)]
-        self.small = [first.T @ self.force, *(first.T @ (operator @ first) for operator in others)]
+    def __init__(self, mass: Any, stiffness: Any, first: Array) -> None:
+        self.mass, self.stiffness = mass, stiffness
+        self._columns = Columns(first)
+        self.small: Array = first.T @ (stiffness @ first)
 
     @property
     def vectors(self) -> Array:
         """The vectors (n, m)."""
-        return self._columns[0].values
-
-    @property
-    def momentum(self) -> Array:
-        """Mass @ vectors (n, m)."""
-        return self._columns[1].values
-
-    @property
-    def force(self) -> Array:
-        """Stiffness @ vectors (n, m)."""
-        return self._columns[2].values
+        return self._columns.values
 
     def add(self, new: Array, *, least: float = 0.0) -> int:
-        """Add what is new in columns (n, k), as `extension` does; return how many vectors that makes."""
-        new, momentum = extension(new, self.vectors, self.momentum, self.mass, least=least)
-        force = np.asarray(self.operators[0] @ new)
-        for i, operator in enumerate(self.operators):
-            image = force if i == 0 else operator @ new
-            corner, side = new.T @ image, self.vectors.T @ image
-            self.small[i] = np.block([[self.small[i], side], [side.T, (corner + corner.T) / 2]])
-        for kept, more in zip(self._columns, (new, momentum, force), strict=True):
-            kept.add(more)
+        """Add what is new in columns (n, k); return how many vectors that makes.
+
+        least: share of a column's square, in the mass, that must be new; what is rounding is left out anyhow.
+        """
+        basis, moved = self.vectors, self.mass @ new
+        size = np.sqrt(np.einsum("ij,ij->j", new, moved))
+        new = (new - basis @ (basis.T @ moved)) / size
+        moved = self.mass @ new
+        turn = _directions(new.T @ moved, least)
+        new, moved = new @ turn, moved @ turn
+        image = self.stiffness @ new
+        # the basis is long, and it is its reading that takes time
+        left, side = np.split(basis.T @ np.concatenate([moved, image], axis=1), 2, axis=1)
+        gram = new.T @ moved - left.T @ left  # a direction that was small has lost digits of its size
+        corner = new.T @ image
+        del moved, image  # before there is room for more vectors
+        if np.abs(left).max(initial=0.0) > CLOSE:
+            known = self.small @ left
+            new = new - basis @ left
+            corner += left.T @ known - left.T @ side - side.T @ left
+            side = side - known
+        mend = _inverse_root(gram)
+        side, corner = side @ mend, mend @ corner @ mend
+        self.small = np.block([[self.small, side], [side.T, (corner + corner.T) / 2]])
+        self._columns.add(new @ mend)
         return int(new.shape[1])
 
+    def turn(self, rotation: Array) -> None:
+        """Replace the vectors by combinations of them, the columns of `rotation` (m, k), orthonormal."""
+        self._columns.turn(rotation)
+        self.small = rotation.T @ self.small @ rotation
 
-class _Columns:
+
+class Columns:
     """Columns (n, m) of a matrix that grows, without a copy of all of it for each that comes."""
 
     def __init__(self, first: Array) -> None:
         self._room, self._used = np.asfortranarray(first), first.shape[1]
+        self._own = self._room is not first
 
     @property
     def values(self) -> Array:
+        """The columns (n, m)."""
         return self._room[:, : self._used]
 
     def add(self, new: Array) -> None:
+        """Put columns (n, k) behind those that are here."""
         used = self._used + new.shape[1]
         if used > self._room.shape[1]:
-            room = np.empty((len(new), used + used // 8), order="F")
+            room = np.empty((len(new), used + max(used // 4, ROOM // max(len(new), 1))), order="F")
             room[:, : self._used] = self.values
-            self._room = room
+            self._room, self._own = room, True
         self._room[:, self._used : used] = new
         self._used = used
+
+    def turn(self, rotation: Array) -> None:
+        """Replace the columns (n, m) by combinations of them, k <= m columns of `rotation` (m, k), in their place."""
+        if not self._own:
+            self._room, self._own = self._room.copy(order="F"), True
+        self._used = rotation.shape[1]
+        for begin in range(0, len(self._room), ROWS):
+            here = self._room[begin : begin + ROWS]
+            here[:, : self._used] = here[:, : len(rotation)] @ rotation

@@ -44,8 +44,8 @@ def solve_beside(case: Case, choice: BesideChoice, shared: SharedModes, progress
     try:
         other = changed(case, choice)
         problem = other.structure.assembly(solver=case.study.modes.solver)
-        if shared.factorisation is not None:
-            problem.take(shared.factorisation, case.shift_frequency)
+        if shared.near is not None:
+            problem.take(shared.near.modes.factorisation, case.shift_frequency)
         loads = range(len(case.study.loads))
         states = tuple(_slim(solve(other, k, problem, shared, progress, ranges=False)) for k in loads)
     except FayingError as fault:

@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from faying.errors import NotConverged
+from faying.errors import InputError, NotConverged
 from faying.fe.by_parts import PartByPart
 from faying.fe.constraint import constrain
 from faying.fe.modes import Modes
-from faying.fe.solve import BY_PARTS
+from faying.fe.over_mpi import OverMpi
+from faying.fe.solve import chosen, is_mpi
 from faying.joint.bolt import FittedBolt
 from faying.joint.structure import Structure, bond
 from faying.joint.support_check import RIGID_BELOW
@@ -51,6 +52,8 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         NotConverged: an iteration stops short.
     """
     study = Study.read(study)
+    if study.backbone is not None and is_mpi(chosen(study.modes.solver)):
+        raise InputError("[backbone] asks for a factorisation; leave it out, or the processes of MPI")
     if study.backbone is not None:
         friction_of(study, study.backbone)  # raises, before the work, where nothing can slip
     progress = Progress(len(stages(study)), report)
@@ -95,22 +98,28 @@ def stages(study: Study) -> list[str]:
 
 def bounds(case: Case) -> tuple[Array, Array, list[Note]]:
     """Frequencies [Hz] of the elastic modes with the faces of every joint apart, and with them bonded; notes."""
-    free = modes_with(case, *case.structure.vibrating, rigid=case.structure.loose())
-    bonded, notes = _bonded(case)
-    elastic = slice(case.rigid_count, case.rigid_count + case.study.modes.count)
+    count = case.rigid_count + case.study.modes.count
+    free = modes_with(case, *case.structure.vibrating, count, rigid=case.structure.loose())
+    bonded, notes = _bonded(case, count)
+    elastic = slice(case.rigid_count, count)
     still = np.where(free.frequencies < RIGID_BELOW * case.shift_frequency, 0.0, free.frequencies)
     return still[elastic], bonded.frequencies[elastic], notes
 
 
-def _bonded(case: Case) -> tuple[Modes, list[Note]]:
+def _bonded(case: Case, count: int) -> tuple[Modes, list[Note]]:
     structure = case.structure
     K, M = structure.vibrating
-    by_parts = isinstance(structure.solver(case.study.modes.solver), PartByPart)
+    way = structure.solver(case.study.modes.solver)
+    by_parts = isinstance(way, PartByPart)
     merge = None if by_parts else structure.bonded()
     if merge is not None and not len(structure.fixed):
         K, M = ((merge.T @ matrix @ merge).tocsr() for matrix in (K, M))
-        rigid = (merge.T @ structure.rigid) / np.asarray(merge.sum(axis=0)).ravel()[:, None]
-        return modes_with(case, K, M, rigid=rigid), []
+        share = np.asarray(merge.sum(axis=0)).ravel()
+        rigid = (merge.T @ structure.rigid) / share[:, None]
+        if isinstance(way, OverMpi):
+            points = (merge.T @ structure.mesh.points.ravel() / share).reshape(-1, 3)
+            return modes_with(case, K, M, count, rigid=rigid, solver=OverMpi(points, way.processes)), []
+        return modes_with(case, K, M, count, rigid=rigid), []
     apart = (
         [] if by_parts else [joint.name for joint in structure.joints if bond(structure.mesh, [joint.faces]) is None]
     )
@@ -125,7 +134,7 @@ def _bonded(case: Case) -> tuple[Modes, list[Note]]:
     for joint in structure.joints:
         springs = joint.interface.springs(*2 * (np.full(len(joint.interface.weights), stiff),))
         K = K + constrain(springs, structure.fixed, 0.0)
-    return modes_with(case, K, M, rigid=structure.rigid), [Note(code="bonded-by-springs", text=text)]
+    return modes_with(case, K, M, count, rigid=structure.rigid), [Note(code="bonded-by-springs", text=text)]
 
 
 def collect(
@@ -157,6 +166,8 @@ def collect(
     way = structure.solver(study.modes.solver)
     bolts, more = _bolts(case, states, shapes)
     every += more
+    if isinstance(way, OverMpi):
+        every.append(Note(code="mpi", text=f"{way.summary}; nothing counts the modes"))
     result = Result(
         title=study.title,
         loads=case.loads,
@@ -174,7 +185,7 @@ def collect(
         joints=tuple(j.name for j in structure.joints),
         bolts=tuple(bolt.name for bolt in study.bolts),
         unknowns=structure.mesh.unknowns,
-        solver=way if isinstance(way, str) else BY_PARTS,
+        solver=way if isinstance(way, str) else way.key,
         factor_memory=max(s.modes.factorisation.memory for s in states),
         damping=study.modes.damping,
         tightening=() if study.order is None else tuple(study.bolts[i].name for i in study.order),

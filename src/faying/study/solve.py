@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from faying.fe.damped import DampedModes, damped_modes
+from faying.fe.damped import DampedModes, damped_near
 from faying.fe.interface import Interface
 from faying.fe.modes import Modes
 from faying.joint.equilibrium import PreloadState
@@ -86,15 +86,9 @@ def solve(
     modes, stiffness, loss = shared.of(case, springs)
     check_motions(structure, modes)
     problem.take(modes.factorisation, case.shift_frequency)
-    damped = damped_modes(
-        modes,
-        stiffness,
-        mass,
-        loss,
-        rigid=case.rigid_count,
-        count=study.modes.count,
-        kind=study.modes.damping,
-        tolerance=EXACT,
+    assert shared.near is not None
+    damped = damped_near(
+        shared.near, modes, stiffness, loss, count=study.modes.count, kind=study.modes.damping, tolerance=EXACT
     )
     loaded = LoadedStructure(
         study=study, structure=structure, modes=modes, damped=damped, stiffness=stiffness, mass=mass, loss=loss

@@ -1,0 +1,71 @@
+"""`faying run` of the T-specimen from the command line: three preloads and twelve, start-up, files and figures too.
+
+    python benchmarks/run.py [--repeats 3]
+
+Its own law and JK, each alone: with [[beside]] the two share a factorisation and the mesh. The scan's contact is solved
+before, as in any run but the first (`faying run` keeps it), on one thread. Medians of CPU seconds, mesher included.
+"""
+
+import argparse
+import os
+import re
+import resource
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ[name] = "1"
+EXAMPLE = Path(__file__).parent.parent / "examples" / "t-specimen"
+LOADS = {
+    "4, 8, 12 kN": (4, 8, 12),
+    "twelve, 4 to 12 kN": [4 + 8 * k / 11 for k in range(12)],
+    "twelve, 1 to 12 kN": range(1, 13),
+}
+
+
+def study(law, loads):
+    """The example's study under one law and at some loads, without its test, which is one at three loads."""
+    text = (EXAMPLE / "study.toml").read_text(encoding="utf-8")
+    text = re.sub(r"# The law of the scan.*?(?=\[\[bolt\]\])", "", text, flags=re.DOTALL)
+    text = re.sub(r"\[test\].*", "", text, flags=re.DOTALL)
+    wanted = ", ".join(f'"{load:.6g} kN"' for load in loads)
+    return re.sub(r"preload = \[.*\]", f"preload = [{wanted}]", text) + (f'\n[law]\nmodel = "{law}"\n' if law else "")
+
+
+def seconds(folder):
+    """CPU seconds of one run, children included."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    command = [sys.executable, "-m", "faying", "run", str(folder / "study.toml"), "--quiet"]
+    subprocess.run(command, check=True, capture_output=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def main():
+    ask = argparse.ArgumentParser()
+    ask.add_argument("--repeats", type=int, default=3)
+    given = ask.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for file in ("t-specimen.step", "milled.x3p"):
+            shutil.copy(EXAMPLE / file, folder)
+        for law in ("", "jk"):
+            base = None
+            for label, loads in LOADS.items():
+                (folder / "study.toml").write_text(study(law, loads), encoding="utf-8")
+                if base is None:
+                    seconds(folder)
+                found = statistics.median(seconds(folder) for _ in range(given.repeats))
+                base = base or found
+                print(
+                    f"{law or 'default law':12s} {label:20s} {found:6.1f} CPU s, {found / base:.2f} of three",
+                    flush=True,
+                )
+
+
+if __name__ == "__main__":
+    main()
