@@ -18,6 +18,7 @@ from faying.study.keys.law import LawChoice
 from faying.study.keys.solution import ModesChoice
 from faying.study.recipe import Recipe
 from faying.study.sweep import sweep
+from tests.helpers.cluster import cluster_of
 from tests.helpers.studies import write
 
 
@@ -170,15 +171,31 @@ def test_processes_give_the_same(plan, done, tmp_path, monkeypatch):
     assert there.frequencies == pytest.approx(done.frequencies, rel=1e-6)
 
 
-@pytest.mark.slow
-def test_a_cluster_gives_the_same(plan, done, tmp_path, monkeypatch):
-    distributed = pytest.importorskip("distributed", reason="the extra dask is not installed")
-    monkeypatch.setattr(module, "CHUNK", 6)
-    with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
-    ) as cluster:
-        there = sweep(plan, axes(), tmp_path / "out.nc", dask=cluster.scheduler_address)
-    assert there.frequencies == pytest.approx(done.frequencies, rel=1e-6)
+def test_a_cluster_gives_the_same_when_a_worker_dies_half_way(plan, tmp_path, monkeypatch):
+    """To the last bit: each chunk begins anew, and libraries take one thread here and there."""
+    pytest.importorskip("distributed", reason="the extra dask is not installed")
+    monkeypatch.setattr(module, "CHUNK", 1)
+    real, bases = module._begun, []
+
+    def once(*given):
+        bases.extend([] if bases else [real(*given)])
+        return bases[0]
+
+    monkeypatch.setattr(module, "_begun", once)
+    here = sweep(plan, axes(), tmp_path / "here.nc")
+    told = []
+    with cluster_of(tmp_path, 2) as cluster:
+
+        def report(stage, done, total):
+            told.append(done)
+            if stage == "evaluations" and done == total // 2 and len(cluster.alive()) == 2:
+                cluster.kill("worker-0")
+
+        there = sweep(plan, axes(), tmp_path / "there.nc", dask=cluster.address, report=report)
+        assert cluster.alive() == ["worker-1"]
+    assert told[-12:] == list(range(1, 13))
+    for name in ("frequencies", "loss_factors", "estimate", "greatest_pressure", "open_share", "beyond_share"):
+        assert np.array_equal(getattr(there, name), getattr(here, name)), name
 
 
 def test_points_beyond_the_law_are_held_there_and_counted(plan, tmp_path):

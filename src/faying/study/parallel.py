@@ -1,10 +1,7 @@
 """Chunks of evaluations, here, in processes of this machine or on a Dask cluster."""
 
 from collections.abc import Callable, Iterable, Sequence
-from importlib import import_module
-from typing import Any
 
-from faying.errors import InputError
 from faying.typing import Array
 
 Rows = dict[str, Array]
@@ -12,7 +9,7 @@ Work = Callable[[Sequence[int]], Rows]
 
 
 def each(
-    work: Work, chunks: Sequence[Sequence[int]], jobs: int, dask: str | None
+    work: Work, chunks: Sequence[Sequence[int]], jobs: int, dask: str | None, what: str = "points"
 ) -> Iterable[tuple[Sequence[int], Rows]]:
     """Evaluate chunk by chunk and yield indices and rows as they come.
 
@@ -21,28 +18,21 @@ def each(
         chunks: The indices of each chunk.
         jobs: Processes on this machine.
         dask: Address of a Dask scheduler, in place of processes.
+        what: What the indices count, in messages.
 
     Raises:
-        InputError: No Dask scheduler answers, or its package is missing.
+        InputError: No Dask scheduler answers, its package is missing, or its cluster has other versions.
+        FayingError: The cluster could not do the work.
     """
     if dask is None and jobs == 1:
         for indices in chunks:
             yield indices, work(indices)
         return
     if dask is not None:
-        try:
-            distributed: Any = import_module("distributed")
-        except ImportError:
-            raise InputError("--dask needs the package distributed: add --extra dask to uv run") from None
-        try:
-            client = distributed.Client(dask, timeout="10s")
-        except OSError as fault:
-            raise InputError(f"no Dask scheduler answers at {dask} ({fault}); start one with: dask scheduler") from None
-        with client:
-            there = client.scatter(work, broadcast=True)
-            futures = {client.submit(_done, there, list(indices)): indices for indices in chunks}
-            for future in distributed.as_completed(futures):
-                yield futures[future], future.result()[1]
+        from faying.study.cluster import on_cluster
+
+        if chunks:
+            yield from on_cluster(work, chunks, dask, what)
         return
     from joblib import Parallel, delayed
 

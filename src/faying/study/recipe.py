@@ -103,20 +103,32 @@ class Recipe:
     places: tuple["Place", ...] = ()  # of each joint, where its form varies; empty where none does
     # laws made lately, with their tables: along an axis of preload they stay the same
     _lately: dict[tuple[Any, ...], JointLaw] = field(default_factory=dict, repr=False, compare=False)
+    # the last point asked for, with the design that it is of
+    _points: dict[int, tuple[Design, Point]] = field(default_factory=dict, repr=False, compare=False)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"design": self.design, "pairs": self.pairs, "places": self.places, "_lately": {}}
+        return {"design": self.design, "pairs": self.pairs, "places": self.places, "_lately": {}, "_points": {}}
+
+    def _point(self, index: int) -> Point:
+        """The study at one point: asked for three times in turn, made once."""
+        known = self._points.get(index)
+        if known is not None and known[0] is self.design:
+            return known[1]
+        point = self.design.point(index)
+        self._points.clear()
+        self._points[index] = self.design, point
+        return point
 
     def gaps(self, index: int) -> list[Array] | None:
         """Gap [m] (q,) of each joint at one point; None where no form varies."""
         if not self.places:
             return None
-        joints = self.design.point(index).study.joints
+        joints = self._point(index).study.joints
         return [place.gap(joint.form) for place, joint in zip(self.places, joints, strict=True)]
 
     def laws(self, index: int) -> tuple[list[JointLaw], Array, list[float | None]]:
         """Law of each joint, force of each bolt [N] and friction of each joint at one point."""
-        point = self.design.point(index)
+        point = self._point(index)
         laws = []
         for number, (joint, surface) in enumerate(zip(point.study.joints, point.surfaces, strict=True)):
             choice = point.study.law_of(joint)
@@ -136,5 +148,5 @@ class Recipe:
         parts = self.design.varied_parts
         if not parts:
             return None
-        found = self.design.point(index).scales
+        found = self._point(index).scales
         return [found.get(part, (1.0, 1.0)) for part in parts]
