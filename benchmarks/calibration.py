@@ -8,6 +8,7 @@ five bins (Talts et al. 2018, arXiv:1804.06788).
 """
 
 import argparse
+import math
 import os
 import time
 from pathlib import Path
@@ -28,10 +29,10 @@ class Kept:
         self.model, self.known = model, {}
         self.names, self.units, self.priors = model.names, model.units, model.priors
 
-    def frequencies(self, values, report=None):
+    def frequencies(self, values, report=None, allowed=math.inf):
         key = values.tobytes()
         if key not in self.known:
-            self.known[key] = self.model.frequencies(values, report)
+            self.known[key] = self.model.frequencies(values, report, allowed)
         return self.known[key]
 
 

@@ -9,12 +9,14 @@ import faying
 from faying.fe.damped import damped_modes
 from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
+from faying.files import write_arrays
 from faying.joint.attachments import Support
 from faying.joint.bolt import Bolt
 from faying.joint.joint_law import JointLaw
 from faying.joint.part_shares import PartShares
-from faying.joint.reduce import Reduction
+from faying.joint.reduce import STATIC_SHARE, Reduction
 from faying.joint.structure import Joint, Structure
+from faying.study.part_folder import load_arrays
 from tests.helpers.boxes import stack
 
 STEEL = faying.CATALOGUE["45 steel"]
@@ -77,6 +79,57 @@ def test_the_estimate_covers_the_error(trained):
         assert error.max() < variant.estimate.max() + 5e-7  # the share of the force balance
 
 
+@pytest.fixture(scope="module")
+def compressed():
+    """Bases before and after they were compressed to what 96 variants between the corners need."""
+    structure = beam()
+    reduction = Reduction.of(structure, [law()], np.array([1000.0]), count=COUNT)
+    for D, G, F in CORNERS:
+        reduction.train([law(D, G)], np.array([F]), [None], tolerance=LOOSE)
+    before = reduction.model
+    rng = np.random.default_rng(4)
+    for _ in range(96):
+        one = [law(rng.uniform(2.3, 2.5), 10 ** rng.uniform(-10.5, -9.5))]
+        reduction.learn(one, reduction.evaluate(one, np.array([rng.uniform(300.0, 3000.0)]), [None]))
+    reduction.compress(LOOSE)
+    return reduction, before
+
+
+LOOSE = 1e-4
+
+
+@pytest.mark.parametrize(
+    ("D", "G", "F"),
+    [*CORNERS, (2.41, 1e-10, 900.0), (2.33, 5e-11, 2100.0), (2.48, 2e-10, 400.0), (2.36, 2.5e-10, 1500.0)],
+)
+def test_compressed_bases_serve_what_they_were_trained_on_and_what_lies_between(compressed, D, G, F):
+    """By the residual in the full equations: variants trained on stay right, others become hardly worse."""
+    reduction, before = compressed
+    after = reduction.model
+    assert len(after.static_stiffness) < len(before.static_stiffness)
+    assert len(after.dynamic_mass) < len(before.dynamic_mass)
+    laws, forces = [law(D, G)], np.array([F])
+    found = after.equilibrium(laws, forces, [None])
+    error, _ = reduction.static_error(laws, forces, [None], found)
+    assert error < 2 * STATIC_SHARE * LOOSE
+    assert reduction.frequency_error(laws, forces, [None], found, COUNT) < 3 * LOOSE
+    wide, narrow = (model.evaluate(laws, forces, [None]).frequencies for model in (before, after))
+    assert narrow == pytest.approx(wide, rel=LOOSE)
+
+
+def test_few_variants_leave_the_basis_for_equilibrium_as_it_is():
+    """Less than three for two vectors that they need: others need more."""
+    from faying.joint.needs import for_states
+
+    rng = np.random.default_rng(5)
+    states = rng.standard_normal((12, 5)) @ rng.standard_normal((5, 40))
+    assert for_states(states, 1e-6, 0) is None
+    assert for_states(states, 1e-6, 7) is None
+    kept = for_states(states, 1e-6, 40)
+    assert kept.shape == (12, 5)
+    assert kept @ (kept.T @ states) == pytest.approx(states, abs=1e-9)
+
+
 def test_enrichment_lowers_the_estimates():
     """From stiff joints to soft ones: at the variant that is trained on, and at its neighbours."""
     reduction = Reduction.of(beam(), [law()], np.array([1000.0]), count=COUNT)
@@ -110,6 +163,26 @@ def test_the_reduced_model_travels(trained):
     laws, force = [law(2.4, 1e-10)], np.array([800.0])
     there = pickle.loads(pickle.dumps(reduction.model)).evaluate(laws, force, [None])
     assert there.frequencies == pytest.approx(reduction.evaluate(laws, force, [None]).frequencies, rel=1e-9)
+
+
+def test_bases_that_were_kept_grow_on_as_if_they_had_not_been(tmp_path):
+    structure, kept = beam(), tmp_path / "bases.npz"
+    once = Reduction.of(structure, [law()], np.array([1000.0]), count=COUNT)
+    once.train([law(2.3, 3e-11)], np.array([300.0]), [None], tolerance=TOLERANCE)
+    once.compress(TOLERANCE)
+    write_arrays(kept, once.arrays())
+    again = Reduction.resumed(structure, load_arrays(kept))
+    other = [law(2.5, 3e-10)], np.array([3000.0]), [None]
+    before = once.evaluate(*other)
+    for one in (once, again):
+        assert one.evaluate(*other).frequencies == pytest.approx(before.frequencies, rel=1e-10)
+        one.train(*other, tolerance=TOLERANCE)
+        one.compress(TOLERANCE)
+    assert again.trained == once.trained == 2
+    grown, expected = again.evaluate(*other), once.evaluate(*other)
+    assert grown.frequencies == pytest.approx(expected.frequencies, rel=1e-9)
+    assert grown.loss_factors == pytest.approx(expected.loss_factors, rel=1e-6)
+    assert grown.estimate == pytest.approx(expected.estimate, rel=0.1, abs=1e-9)
 
 
 @pytest.mark.parametrize("friction", [None, 0.05])
@@ -156,6 +229,24 @@ def test_secants_end_in_the_balance_that_newton_finds(trained, monkeypatch, fric
     assert secants.solve(load, 1.02 * exact.displacement, 1e-9) is None
     again = grouped.equilibrium(laws, forces, [friction])
     assert again.pressures[0] == pytest.approx(exact.pressures[0], abs=1e-6 * exact.pressures[0].max())
+
+
+def test_springs_of_one_pressure_carry_the_load(trained):
+    """The start of an equilibrium: springs that are linear about one pressure balance the bolt, and carry its mean."""
+    from faying.joint.secant import evenly_pressed
+
+    model = trained[1].model
+    (motion,), one, load = model._motions(model.static_relative, 0), law(), model.static_loads @ [900.0]
+    u = evenly_pressed(model.matrices[0], [(motion, one)], load)
+    force = load - model.matrices[0] @ u
+    # what is left is the force of the springs, which is that of one pressure and stiffness at all points
+    wanted, moved = motion.relative.T, (motion.relative @ u).reshape(-1, 3)
+    exact = model.equilibrium([one], np.array([900.0]), [None])
+    mean = float(motion.weights @ exact.pressures[0] / motion.weights.sum())
+    k_n, k_t = (float(k) for k in one.stiffness(np.asarray(mean)))
+    p = mean - k_n * (moved[:, 0] + motion.gap + float(one.approach(mean)))
+    local = np.column_stack([-p, k_t * moved[:, 1], k_t * moved[:, 2]]) * motion.weights[:, None]
+    assert np.linalg.norm(force - wanted @ local.ravel()) < 0.2 * np.linalg.norm(load)
 
 
 def test_wrong_number_of_forces(trained):
@@ -244,3 +335,15 @@ def test_a_scaled_law_is_the_law_with_that_scale():
     w = one.approach(1e6)
     assert w == pytest.approx(law().approach(1e6) / 1.7, rel=1e-9)
     assert one.pressure(np.array([w]))[0] == pytest.approx([1e6], rel=1e-6)
+
+
+@pytest.mark.parametrize("open_share", [0.0, 0.3, 1.0])
+def test_springs_of_groups_are_the_sum_over_the_points(open_share):
+    """Points without springs are left out where they are many; the sum is that over all of them."""
+    from faying.joint.groups import sprung
+
+    rng = np.random.default_rng(3)
+    motion, springs = rng.standard_normal((60, 3, 5)), rng.random((60, 3))
+    springs[: int(60 * open_share)] = 0.0
+    expected = np.einsum("qim,qi,qin->mn", motion, springs, motion)
+    assert sprung(motion.reshape(180, 5), springs) == pytest.approx(expected, rel=1e-12, abs=1e-12)

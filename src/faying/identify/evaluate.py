@@ -11,6 +11,7 @@ import numpy as np
 from faying.errors import FayingError
 from faying.identify.ensemble import Ensemble
 from faying.identify.identity import by_name, named
+from faying.identify.points import at_shares, sobol
 from faying.identify.store import Store
 from faying.joint.joint_law import JointLaw
 from faying.joint.reduced import ReducedModel, Variant
@@ -21,13 +22,17 @@ from faying.progress import Report, silent
 from faying.study.keys.test import TestChoice
 from faying.study.parallel import Rows, each
 from faying.study.recipe import Recipe, contact_shares
-from faying.study.trainer import FAR, Trainer
+from faying.study.trainer import Trainer
 from faying.typing import Array, Index
 
-TOLERANCE = 1e-4  # relative error of a frequency that the bases are made for: far below the scatter of any test
+TRAINED = 1e-4  # relative error of a frequency where the bases are trained
+# estimate of the error of a frequency up to which the bases do not grow for a sample; the error is less, mostly
+LIMIT = 5e-3
 CHUNK = 32  # samples evaluated in one go
-ROUNDS = 6  # of training at samples that the bases do not fit
+ROUNDS = 2  # of training at samples that the bases do not fit
 WORST = 4  # samples trained on in each round
+LEARNT = 64  # samples, at all of their loads, to whose needs the bases are compressed
+NEW = 16  # of those that bases do not fit, worst first: to whose needs they are compressed after they have grown
 GAINED = 0.9  # of the samples that the bases do not fit: a round that leaves more of them is the last
 
 
@@ -69,7 +74,7 @@ class Evaluator:
                 "named": np.full(modes, np.nan),
                 "named_loss": np.full(modes, np.nan),
                 "modes": np.full(tested, np.nan),
-                "estimate": np.nan,
+                "estimate": np.full(ensemble.loads, np.nan),
                 "open_share": np.full(ensemble.loads, np.nan),
                 "beyond_share": np.full(ensemble.loads, np.nan),
                 "reasons": "",
@@ -124,7 +129,7 @@ class Evaluator:
             "named": by_name(frequencies, names),
             "named_loss": by_name(loss, names),
             "modes": self._modes(model, found, names),
-            "estimate": max(float(one.estimate.max()) for one in found),
+            "estimate": np.array([one.estimate.max() for one in found]),
             "open_share": np.array([share for share, _ in shares]),
             "beyond_share": np.array([share for _, share in shares]),
         }
@@ -172,7 +177,6 @@ class Reduced:
         ensemble: The samples.
         jobs, dask: Processes on this machine, or the address of a Dask scheduler.
         report: Called with a stage, the samples done, and their number; 0 of 0 while the bases grow.
-        tolerance: Relative error of a frequency that the bases are made for.
         store: Keeps bases and samples on disk, so that interrupted work goes on; None keeps nothing.
     """
 
@@ -183,37 +187,92 @@ class Reduced:
         jobs: int = 1,
         dask: str | None = None,
         report: Report | None = None,
-        tolerance: float = TOLERANCE,
         store: Store | None = None,
     ) -> None:
         self.jobs, self.dask = jobs, dask
         self.report: Report = report or silent
         self.report("mesh", 0, 0)
-        self.trainer = Trainer.of(ensemble.study, ensemble, tolerance, self.report)
+        inputs = ensemble.inputs
+        spread = ensemble.with_values(at_shares(inputs.priors, sobol(len(inputs.columns), LEARNT, 0)))
+        self.trainer = Trainer.of(ensemble.study, spread, TRAINED, self.report)
         self.store = store or Store(None, what="samples")
         self.seen: tuple[Array, Array] | None = None
         self._work: dict[int, Evaluator] = {}  # in the bases as they are, with the median under each law
         kept = self.store.model()
         if kept is None:
-            self._train()
+            self._train((), _all_loads(spread, range(LEARNT)))
         else:
             self.model, self.seen = kept
 
-    def _train(self, points: Sequence[int] = ()) -> None:
-        """Make or enrich the bases, and what the points of the test see of them."""
-        self.model, self._work = self.trainer.model(points), {}
+    def _train(self, points: Sequence[int], learn: Sequence[int]) -> None:
+        """Make or enrich the bases at some points and compress them to the needs of others; what the test sees."""
+        if points:
+            self._resume()
+        self.model, self._work = self.trainer.model(points, learn), {}
         test, reduction = self.trainer.study.test, self.trainer.reduction
-        if test is not None and reduction is not None:
+        assert reduction is not None
+        if test is not None:
             self.seen = reduction.probe(probe(self.trainer.structure, test))
-        self.store.keep_model(self.model, self.seen)
+        self.store.keep(self.model, self.seen, reduction)
 
-    def rows(self, ensemble: Ensemble, what: str = "samples", law: int = 0, *, allowed: float = 0.0) -> Rows:
+    def _resume(self) -> None:
+        """Take up the bases that interrupted work has left, where there are none yet."""
+        bases = None if self.trainer.reduction is not None else self.store.bases()
+        if bases is not None:
+            self.trainer.resume(bases)
+
+    def errors(self, ensemble: Ensemble, rows: Rows) -> Array:
+        """Relative errors of the frequencies [-] (2, n) at some samples, each at the load of its greatest estimate.
+
+        By what the bases leave in the full equations: at the samples of the greatest estimates, and at as many evenly
+        down to the least; NaN where there are too few, or no answer. The estimate of a sample tells which are worse
+        than others; these tell how wrong they are.
+        """
+        self._resume()
+        if self.trainer.reduction is None:  # what was kept is damaged
+            self.trainer.trained()
+        worst = _worst(rows)
+        ranked = np.argsort(-worst)[: np.count_nonzero(worst)]
+        places = np.concatenate([np.arange(WORST), np.linspace(WORST, len(ranked) - 1, WORST + 1)[1:]]).astype(int)
+        self.report("check", 0, 0)
+        points = self._points(ensemble, rows, ranked[np.unique(places[places < len(ranked)])])
+        found = np.full(2 * WORST, np.nan)
+        found[: len(points)] = [self.trainer.error(index) for index in points]
+        return found.reshape(2, WORST)
+
+    def rows(self, ensemble: Ensemble, what: str = "samples", law: int = 0, *, allowed: float = LIMIT) -> Rows:
         """Rows of all samples of an ensemble that has the same training; those that the bases do not fit, anew.
 
-        what: the name under which they are kept on disk; law: under which the median names the modes; allowed: relative
-        error of a frequency, above the tolerance, up to which the bases do not grow for a sample.
+        what: the name under which they are kept on disk; law: under which the median names the modes; allowed: estimate
+        of the error of a frequency up to which the bases do not grow for a sample.
         """
-        limit = FAR * max(self.trainer.tolerance, allowed)
+        known = self.store.rows(f"{what}-all", 0)
+        if known is not None:
+            return known
+        out = self._first(ensemble, what, law)
+        for _ in range(ROUNDS):
+            worst = _worst(out)
+            far = np.flatnonzero(worst > allowed)
+            if not len(far):
+                break
+            self.report(f"enrichment: {len(far)} samples", 0, 0)
+            ranked = far[np.argsort(-worst[far])]
+            self._train(self._points(ensemble, out, ranked[:WORST]), _all_loads(ensemble, ranked[:NEW]))
+            for indices, rows in self._evaluated(ensemble, [far.tolist()], law):
+                _put(out, ensemble.count, indices, rows)
+            if np.count_nonzero(out["estimate"].max(axis=1) > allowed) > GAINED * len(far):
+                break
+        self.store.keep_rows(f"{what}-all", 0, out)
+        return out
+
+    def _points(self, ensemble: Ensemble, rows: Rows, chosen: Index) -> list[int]:
+        """Points of some samples, each at the load of its greatest estimate; the trainer then has their ensemble."""
+        self.trainer.recipe = replace(self.trainer.recipe, design=ensemble)
+        loads = np.argmax(np.nan_to_num(rows["estimate"][chosen]), axis=1)
+        return [int(point) for point in (ensemble.training + chosen) * ensemble.loads + loads]
+
+    def _first(self, ensemble: Ensemble, what: str, law: int) -> Rows:
+        """Rows of all samples in the bases as they are, or as they were when the samples were kept."""
         out: Rows = {}
         chunks = [list(range(i, min(i + CHUNK, ensemble.count))) for i in range(0, ensemble.count, CHUNK)]
         left = []
@@ -230,19 +289,6 @@ class Reduced:
             self.report("evaluations", done, ensemble.count)
             _put(out, ensemble.count, indices, rows)
             self.store.keep_rows(what, indices[0] // CHUNK, rows)
-        for _ in range(ROUNDS):
-            far = np.flatnonzero(out["estimate"] > limit)
-            if not len(far):
-                break
-            worst = far[np.argsort(-out["estimate"][far])][:WORST]
-            self.report(f"enrichment: {len(far)} samples", 0, 0)
-            points = [int(ensemble.training + k) * ensemble.loads + ensemble.loads - 1 for k in worst]
-            self.trainer.recipe = replace(self.trainer.recipe, design=ensemble)
-            self._train(points)
-            for indices, rows in self._evaluated(ensemble, [far.tolist()], law):
-                _put(out, ensemble.count, indices, rows)
-            if np.count_nonzero(out["estimate"][far] > limit) > GAINED * len(far):
-                break
         return out
 
     def _evaluated(
@@ -254,7 +300,18 @@ class Reduced:
             work = Evaluator(model=self.model.grouped(), recipe=recipe, seen=self.seen)
             self._work[law] = work.with_median(law)
         work = replace(self._work[law], recipe=recipe, test=ensemble.study.test)
-        return each(partial(_rows, work), chunks, self.jobs, self.dask)
+        return each(partial(_rows, work), chunks, self.jobs, self.dask, "samples")
+
+
+def _all_loads(ensemble: Ensemble, samples: Iterable[int]) -> list[int]:
+    """Points of some samples at all loads, counted without those for training."""
+    loads = ensemble.loads
+    return [int(ensemble.training + sample) * loads + load for sample in samples for load in range(loads)]
+
+
+def _worst(rows: Rows) -> Array:
+    """Greatest estimate of each sample over its loads (n,), 0 where it has no answer."""
+    return np.asarray(np.nanmax(rows["estimate"], axis=1, initial=0.0))
 
 
 def _put(out: Rows, count: int, indices: Sequence[int], rows: Rows) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, log2
+from math import ceil, hypot, inf, log2
 
 import numpy as np
 
@@ -34,6 +34,7 @@ CHECKS = 50  # points of the posterior at which the surrogate is compared with t
 ROUNDS = 3  # most times that the surrogate is drawn closer
 WORSE = 2.0  # over the leave-one-out error: a surrogate that is rough
 IDLE, BLUNT = 0.1, 0.5  # errors over the scatter of the test that do not matter, and that blur the posterior
+GAINED = 0.8  # of the error that a surrogate claims: one drawn closer that still claims more is the last
 AGREE = 0.1  # of the scatter: misfits so near to the best are as good
 WIDENED = 1.6  # points about the posterior, over its own spread
 
@@ -150,8 +151,10 @@ class _Points:
     reasons: tuple[str, ...]
 
     @classmethod
-    def at(cls, model: Model, values: Array, shape: tuple[int, ...], report: Report | None) -> "_Points":
-        frequencies, reasons = model.frequencies(values, report)
+    def at(
+        cls, model: Model, values: Array, shape: tuple[int, ...], report: Report | None, allowed: float = inf
+    ) -> "_Points":
+        frequencies, reasons = model.frequencies(values, report, allowed)
         frequencies = np.array(frequencies, dtype=float)
         if frequencies.shape != (len(values), *shape):
             raise InputError(
@@ -220,8 +223,8 @@ class _Question:
 
         return temper(log_likelihood, self.priors, count=self.count, seed=self.seed, report=self.report)
 
-    def evaluate(self, values: Array) -> _Points:
-        return _Points.at(self.model, values, self.test.shape, self.report)
+    def evaluate(self, values: Array, allowed: float) -> _Points:
+        return _Points.at(self.model, values, self.test.shape, self.report, allowed)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -230,7 +233,7 @@ class _Check:
 
     difference: rms of ln f (load, column); error: what the surrogate says of itself there; missed, claimed: both as one
     number, of the frequencies; rough: whether it misses by far more than that; blunt: whether its own error blurs the
-    posterior.
+    posterior; allowed: estimate of the model's error that does not matter beside that and the scatter of the test.
     """
 
     points: _Points
@@ -240,31 +243,34 @@ class _Check:
     claimed: float
     rough: bool
     blunt: bool
+    allowed: float
 
     @classmethod
     def of(cls, question: _Question, emulator: Emulator, posterior: Tempered, rng: np.random.Generator) -> "_Check":
         chosen = posterior.samples[rng.choice(len(posterior.samples), min(CHECKS, len(posterior.samples)), False)]
         size, modes = question.size, question.modes
-        points = question.evaluate(chosen[:, :size])
         logs, errors = emulator.predict(chosen[:, :size])
+        error = np.sqrt((errors**2).mean(axis=0))
+        scatter = np.broadcast_to(np.median(question.noise(posterior.samples)[0], axis=0), error.shape)
+        used, pitch = question.used, np.arange(error.shape[1]) < modes
+        claimed = _rms(error[used & pitch])
+        allowed = hypot(float(scatter[0, 0]), claimed)  # its error is a fifth of an estimate, mostly
+        points = question.evaluate(chosen[:, :size], allowed)
         apart = np.log(points.frequencies) - logs
         count = np.isfinite(apart).sum(axis=0)
         square = np.where(np.isfinite(apart), apart, 0.0) ** 2
         difference = np.sqrt(np.where(count > 0, square.sum(axis=0) / np.maximum(count, 1), np.nan))
-        error = np.sqrt((errors**2).mean(axis=0))
-        scatter = np.broadcast_to(np.median(question.noise(posterior.samples)[0], axis=0), difference.shape)
-        used = question.used
         seen = used & (count > 0)
         rough = difference[seen] > np.maximum(WORSE * error[seen], IDLE * scatter[seen])
-        pitch = np.arange(difference.shape[1]) < modes
         return cls(
             points=points,
             difference=difference,
             error=error,
             missed=_rms(difference[seen & pitch]),
-            claimed=_rms(error[used & pitch]),
+            claimed=claimed,
             rough=bool(np.any(rough)),
             blunt=any(_rms(error[part] / scatter[part]) > BLUNT for part in (used & pitch, used & ~pitch)),
+            allowed=allowed,
         )
 
 
@@ -284,17 +290,19 @@ class _Answer:
 
 
 def _sampled(question: _Question, emulator: Emulator, points: _Points) -> _Answer:
-    """Sample, check, and draw the surrogate closer until it holds, at most three times."""
-    rng = np.random.default_rng([question.seed, 1])
+    """Sample, check, and draw the surrogate closer until it holds or gains nothing more, at most three times."""
+    rng, claimed = np.random.default_rng([question.seed, 1]), inf
     for rounds in range(ROUNDS + 1):
         surrogate = emulator
         posterior = question.sample(surrogate)
         check = _Check.of(question, surrogate, posterior, rng)
-        if rounds == ROUNDS or not (check.rough or check.blunt):
+        gains = check.rough or (check.blunt and check.claimed < GAINED * claimed)
+        if rounds == ROUNDS or not gains:
             break
+        claimed = check.claimed
         samples = posterior.samples[:, : question.size]
         about = _about(question.model.priors, samples, rng)
-        points = points + check.points + question.evaluate(about)
+        points = points + check.points + question.evaluate(about, check.allowed)
         emulator = surrogate.closer(points.values, points.frequencies, samples)
     return _Answer(posterior=posterior, emulator=surrogate, points=points + check.points, check=check, rounds=rounds)
 
@@ -353,7 +361,7 @@ def _identification(question: _Question, answer: _Answer) -> Identification:
         offset_sd=np.sqrt(found.variance.mean(axis=0) + found.mean.var(axis=0))[:modes],
         surrogate_error=check.error[:, :modes],
         checked=check.difference[:, :modes],
-        fit=_fit(question, answer.emulator, scatter, peak),
+        fit=_fit(question, answer, scatter, peak),
         singular=what_is_seen(answer.emulator, peak, question.used, (scatter, discrepancy), model.names),
         notes=notes,
     )
@@ -369,19 +377,21 @@ def _predictive(question: _Question, answer: _Answer, found: Offsets) -> Array:
     return np.asarray(np.exp(logs + offset[:, None, :] + scatter * rng.standard_normal(logs.shape)))
 
 
-def _fit(question: _Question, emulator: Emulator, scatter: Array, peak: Array) -> Fit:
+def _fit(question: _Question, answer: _Answer, scatter: Array, peak: Array) -> Fit:
     """The least-squares fit: of all ends of the search, the one at which the model itself is nearest to the test."""
-    ends = least_squares_ends(emulator, question.test, question.used, scatter, peak, question.seed)
-    found, used, modes = question.evaluate(ends).frequencies, question.used, question.modes
+    ends = least_squares_ends(answer.emulator, question.test, question.used, scatter, peak, question.seed)
+    found, used, modes = question.evaluate(ends, inf).frequencies, question.used, question.modes
     apart = np.log(question.test[used] / found[:, used])
     misfit = np.sqrt(np.mean((apart / np.broadcast_to(scatter, used.shape)[used]) ** 2, axis=1))  # in sd of the scatter
     ranked = np.where(np.isnan(misfit), np.inf, misfit)
     best = int(ranked.argmin())
-    of_frequencies = np.nonzero(used)[1] < modes
+    if np.isfinite(ranked[best]):  # the bases grow for this one alone
+        found[best] = question.evaluate(ends[[best]], answer.check.allowed).frequencies[0]
+    nearest, seen = found[best][:, :modes], used[:, :modes]
     return Fit(
         values=ends[best],
-        frequencies=found[best][:, :modes],
-        misfit=float(np.sqrt(np.mean(apart[best, of_frequencies] ** 2))) if of_frequencies.any() else float("nan"),
+        frequencies=nearest,
+        misfit=_rms(np.log(question.test[:, :modes][seen] / nearest[seen])),
         starts=len(ends),
         agreeing=int((ranked <= ranked[best] + AGREE).sum()) if np.isfinite(ranked[best]) else 0,
     )

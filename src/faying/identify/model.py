@@ -1,5 +1,6 @@
 """What an identification asks of a model."""
 
+from math import inf
 from typing import Protocol
 
 from faying.distribution import Distribution
@@ -28,12 +29,13 @@ class Model(Protocol):
         """Distributions of the parameters."""
         ...
 
-    def frequencies(self, values: Array, report: Report | None = None) -> tuple[Array, list[str]]:
+    def frequencies(self, values: Array, report: Report | None = None, allowed: float = inf) -> tuple[Array, list[str]]:
         """The frequencies of the test's modes, and after them their loss factors where the test has these.
 
         Args:
             values: of the parameters (n, d), SI.
             report: told what is done, how much of it, and of how much.
+            allowed: the model's own estimate of a frequency's relative error up to which it is good enough.
 
         Returns:
             Frequencies [Hz] (n, load, mode), or with loss factors [-] (n, load, twice as many), NaN where a sample has

@@ -10,25 +10,25 @@ import numpy as np
 from faying import units
 from faying.errors import InputError
 from faying.identify.ensemble import Ensemble, scattering
-from faying.identify.evaluate import TOLERANCE, Reduced
+from faying.identify.evaluate import LIMIT, Reduced
 from faying.identify.identification import Identification, mixed
 from faying.identify.identify import identify_model
 from faying.identify.identity import paired, settled
 from faying.identify.noise import DISCREPANCY_SD, LOSS_DISCREPANCY_SD, LOSS_TEST_SD, TEST_SD, Losses
-from faying.identify.predict import check, cut_notes
+from faying.identify.predict import check, cut_notes, of_bases
 from faying.identify.store import Store
 from faying.joint.loads import preload_index
 from faying.progress import Report, silent
 from faying.study.keys.test import TestChoice
 from faying.study.keys.uncertain import UncertainChoice
 from faying.study.keys.varied import MODEL
+from faying.study.parallel import Rows
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
 from faying.study.variation import check_key
 from faying.typing import Array, Index
 
 COUNT = 1000  # samples of the posterior
-SLIGHT = 0.1  # error of the bases over the scatter of the test that does not matter
 
 
 class StudyModel:
@@ -42,14 +42,14 @@ class StudyModel:
         self.priors = tuple(column.distribution for column in columns)
         self.units = tuple(column.unit for column in columns)
         self.calls = 0
-        choice = scattering(ensemble.study)
-        self.scatter = (choice.test or TEST_SD).median  # of a measured frequency, relative
+        self.last: tuple[Ensemble, Rows] | None = None  # samples that had to be good, and their rows
         self.modes: Index | None = None  # of the bases that are the test's
 
-    def frequencies(self, values: Array, report: Report | None = None) -> tuple[Array, list[str]]:
+    def frequencies(self, values: Array, report: Report | None = None, allowed: float = inf) -> tuple[Array, list[str]]:
         """Frequencies of the test's modes (n, load, mode) [Hz] at values (n, d), and why a sample has none.
 
-        Where the test has loss factors, those of the same modes follow.
+        Where the test has loss factors, those of the same modes follow. The bases grow where a frequency may miss by
+        more than is allowed.
         """
         self.calls += 1
         inputs, what = self.ensemble.inputs, f"{self.calls:03d}"
@@ -59,10 +59,10 @@ class StudyModel:
             what = f"{self.law}-{what}"
         else:
             self.stage.begin("evaluations", report)
-        # over the priors the error of the bases is slight beside that of the polynomials; about the posterior a part of
-        # the scatter of the test is
-        allowed = inf if self.calls == 1 else SLIGHT * self.scatter
-        rows = self.reduced.rows(self.ensemble.with_values(values), what, self.law, allowed=allowed)
+        samples = self.ensemble.with_values(values)
+        rows = self.reduced.rows(samples, what, self.law, allowed=allowed)
+        if allowed < inf and len(values) > 1:
+            self.last = samples, rows
         test = self.ensemble.study.test
         assert test is not None
         if self.modes is None:
@@ -133,7 +133,7 @@ def identify(
         )
     left = left_out(study, leave_out)
     file = None if out is None else Path(out)
-    mark = fingerprint(study, left, seed, count, TOLERANCE)
+    mark = fingerprint(study, left, seed, count, LIMIT)
     with Store(file, mark, what="identification") as store:
         found = _identified(study, left, seed=seed, count=count, jobs=jobs, dask=dask, store=store, report=report)
         if file is not None:
@@ -174,9 +174,11 @@ def _identified(
     _check_laws(study, choice)
     stage, ensemble = _Stage(report), Ensemble.of(study, 8, seed)
     reduced = Reduced(ensemble, jobs=jobs, dask=dask, report=stage, store=store)
-    found = [
-        identify_model(
-            StudyModel(ensemble, reduced, stage, law),
+    found, cut = [], cut_notes(ensemble.inputs.columns)
+    for law in range(max(len(choice.models), 1)):
+        model = StudyModel(ensemble, reduced, stage, law)
+        one = identify_model(
+            model,
             np.array(test.frequencies),
             np.array(study.loads),
             leave_out=left,
@@ -187,10 +189,8 @@ def _identified(
             losses=_losses(test, choice),
             report=report,
         )
-        for law in range(max(len(choice.models), 1))
-    ]
-    cut = cut_notes(ensemble.inputs.columns)
-    found = [replace(one, notes=(*cut, *one.notes)) for one in found]
+        bases = [] if model.last is None else of_bases(reduced.errors(*model.last))
+        found.append(replace(one, notes=(*cut, *one.notes, *bases)))
     if not choice.models:
         return found[0]
     return mixed(dict(zip([name for name, _ in choice.models], found, strict=True)), dict(choice.models), seed=seed)

@@ -8,7 +8,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.identify.ensemble import Ensemble, by_reason
-from faying.identify.evaluate import TOLERANCE, Reduced
+from faying.identify.evaluate import LIMIT, Reduced
 from faying.identify.identity import paired, settled
 from faying.identify.prediction import Prediction
 from faying.identify.store import Store
@@ -18,11 +18,11 @@ from faying.study.parallel import Rows
 from faying.study.part_folder import fingerprint
 from faying.study.provenance import provenance
 from faying.study.study import Study
-from faying.study.trainer import FAR
 from faying.typing import Array
 
 FEWEST, MOST = 8, 1_000_000  # samples
 BEYOND = 0.1  # share of the contact beyond the end of the law from which a sample is told
+TOLERANCE = 1e-3  # relative error of a frequency by the bases from which it is told
 MOVED = 0.1  # of the distance from 5 to 95 % that half of the samples may move either by
 
 
@@ -62,7 +62,7 @@ def predict(
     check(study, samples, seed)
     ensemble = Ensemble.of(study, samples, seed)
     file = None if out is None else Path(out)
-    with Store(file, fingerprint(study, samples, seed, TOLERANCE), what="prediction") as store:
+    with Store(file, fingerprint(study, samples, seed, LIMIT), what="prediction") as store:
         reduced = Reduced(ensemble, jobs=jobs, dask=dask, report=report, store=store)
         found = predicted(study, ensemble, reduced, reduced.rows(ensemble), seed)
         if file is not None:
@@ -101,7 +101,7 @@ def predicted(study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, se
         title=study.title,
         inputs=ensemble.inputs,
         seed=seed,
-        tolerance=reduced.trainer.tolerance,
+        tolerance=TOLERANCE,
         basis=(len(reduced.model.static_stiffness), len(reduced.model.dynamic_mass)),
         loads=np.array(study.loads),
         values=ensemble.values[ensemble.training :],
@@ -113,7 +113,7 @@ def predicted(study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, se
         provenance=provenance(study),
         **tested,
     )
-    return found.with_notes([*_notes(study, found), *_of_bases(rows["estimate"], reduced.trainer.tolerance)])
+    return found.with_notes([*_notes(study, found), *of_bases(reduced.errors(ensemble, rows))])
 
 
 def _notes(study: Study, found: Prediction) -> list[Note]:
@@ -148,16 +148,18 @@ def _notes(study: Study, found: Prediction) -> list[Note]:
     return out
 
 
-def _of_bases(estimate: Array, tolerance: float) -> list[Note]:
-    """Samples that the bases do not fit to their tolerance; the estimate is that of a basis `FAR` times coarser."""
-    far = estimate[np.isfinite(estimate) & (estimate > FAR * tolerance)]
-    if not len(far):
+def of_bases(errors: Array) -> list[Note]:
+    """Say what the small bases miss, from errors of a frequency (2, n): at the worst samples, and at some others."""
+    known = [row[np.isfinite(row)] for row in errors]
+    if not np.any(np.concatenate(known) > TOLERANCE):
         return []
-    text = (
-        f"the bases fit {len(far)} of {len(estimate)} samples less well than to {tolerance:.0e} of a frequency; they "
-        f"may miss by about {far.max() / FAR:.1e} there"
-    )
-    return [Note(code="bases", text=text)]
+    places = ("the worst by their own estimate", "some others from all over")
+    told = [
+        f"{row.max():.1e} at {place} ({len(row)} looked at)"
+        for row, place in zip(known, places, strict=True)
+        if len(row)
+    ]
+    return [Note(code="bases", text=f"the small bases miss a frequency of a sample by up to {', '.join(told)}")]
 
 
 def cut_notes(columns: Sequence[Any]) -> list[Note]:

@@ -1,6 +1,7 @@
 """What a prediction or an identification keeps on disk: the bases, and every chunk of samples as it is done."""
 
 from faying.files import write_arrays
+from faying.joint.reduce import Reduction
 from faying.joint.reduced import ReducedModel
 from faying.study.parallel import Rows
 from faying.study.part_folder import Kept, load_arrays
@@ -22,11 +23,16 @@ class Store(Kept):
             return None
         return model, (seen["basis"], seen["rigid"]) if "basis" in seen else None
 
-    def keep_model(self, model: ReducedModel, seen: tuple[Array, Array] | None) -> None:
-        """Keep the bases."""
+    def keep(self, model: ReducedModel, seen: tuple[Array, Array] | None, reduction: Reduction) -> None:
+        """Keep the bases: projected, and in full, so that they can grow on."""
         if self.folder is not None:
+            write_arrays(self.folder / "bases.npz", reduction.arrays())
             write_arrays(self.folder / "seen.npz", {} if seen is None else {"basis": seen[0], "rigid": seen[1]})
             write_arrays(self.folder / "model.npz", model.arrays())
+
+    def bases(self) -> dict[str, Array] | None:
+        """The bases in full, for `Reduction.resumed`; None where they are missing or damaged."""
+        return None if self.folder is None else load_arrays(self.folder / "bases.npz")
 
     def rows(self, what: str, number: int) -> Rows | None:
         """A chunk of samples that was kept; None where it is missing or damaged."""

@@ -24,7 +24,7 @@ from faying.joint.structure import Structure
 from faying.joint.vdi2230 import cone_compliance
 from faying.typing import Array
 
-ACCURACY = 1e-8  # of the residual of a solution; the compliance is right to its square
+ACCURACY = 1e-6  # of the residual of a solution; the compliance is right to its square
 MOST_STEPS = 2000
 ROUND = 0.03  # of the area of a ring between its least and greatest radius: a face that differs by more is none
 BESIDE = 1.5  # outer diameters of the seat within which a joint belongs to a bolt
@@ -66,11 +66,12 @@ def clamping(structure: Structure, stiffness: Any, modes: Modes, springs: Sequen
     bolts = structure.fitted_bolts
     own, members = np.full(len(bolts), np.nan), np.full(len(bolts), np.nan)
     traction = [np.zeros((len(bolts), len(s.k_n))) for s in springs]
+    loads = np.stack([fitted.load for fitted in bolts], axis=1)
+    loads[structure.fixed] = 0.0
+    motions = _solved(stiffness, loads, structure, modes, [fitted.bolt.name for fitted in bolts])
     for index, fitted in enumerate(bolts):
-        load = fitted.load.copy()
-        load[structure.fixed] = 0.0
-        motion = _solved(stiffness, load, structure, modes, fitted.bolt.name)
-        loaded = float(load @ motion)
+        motion = motions[:, index]
+        loaded = float(loads[:, index] @ motion)
         left = 1 - fitted.rigidity * loaded
         motion /= left  # of the members under 1 N, without what this bolt itself gives
         for spread, s in zip(traction, springs, strict=True):
@@ -85,16 +86,20 @@ def clamping(structure: Structure, stiffness: Any, modes: Modes, springs: Sequen
     return Clamping(bolt=own, members=members, traction=tuple(traction))
 
 
-def _solved(stiffness: Any, load: Array, structure: Structure, modes: Modes, name: str) -> Array:
-    """K^-1 f for a load that balances, by conjugate gradients with the shifted factorisation of the modes."""
-    rigid = np.linalg.qr(structure.rigid)[0] if structure.rigid.size else np.zeros((len(load), 0))
-    balanced = (load - rigid @ (rigid.T @ load))[:, None]
+def _solved(stiffness: Any, loads: Array, structure: Structure, modes: Modes, names: Sequence[str]) -> Array:
+    """K^-1 f for loads (n, b) that balance, by conjugate gradients with the shifted factorisation of the modes."""
+    rigid = np.linalg.qr(structure.rigid)[0] if structure.rigid.size else np.zeros((len(loads), 0))
+    balanced = loads - rigid @ (rigid.T @ loads)
     try:
         return conjugate_gradients(
             lambda x: stiffness @ x, modes.factorisation, balanced, accuracy=ACCURACY, limit=MOST_STEPS
-        )[:, 0]
+        )
     except NotConverged:
-        raise NotConverged(f"bolt {name!r}: the parts that it clamps have no stiffness against its force") from None
+        if len(names) == 1:
+            text = f"bolt {names[0]!r}: the parts that it clamps have no stiffness against its force"
+            raise NotConverged(text) from None
+    alone = [_solved(stiffness, loads[:, k : k + 1], structure, modes, [name]) for k, name in enumerate(names)]
+    return np.concatenate(alone, axis=1)
 
 
 def _work(structure: Structure, springs: Sequence[Springs[Interface]], fitted: FittedSolidBolt, motion: Array) -> float:

@@ -12,6 +12,7 @@ from faying.fe.constraint import constrain, free_motions
 from faying.fe.elasticity import Solid, assemble, rigid_motions
 from faying.fe.memory import in_single
 from faying.fe.mesh import Mesh
+from faying.fe.over_mpi import OverMpi, processes_named
 from faying.fe.sides import nodes_of
 from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt, FittedBolt, each_in_its_place
@@ -123,6 +124,21 @@ class Frame:
         pulled = np.flatnonzero(np.any(self.loads != 0, axis=1))
         touched = np.union1d(np.union1d(unknowns_of(nodes), pulled), self.fixed)
         return PartByPart([unknowns_of(mesh.part_nodes(part)) for part in mesh.parts], touched, self._motions)
+
+    def over_mpi(self, name: str) -> OverMpi:
+        """What solves with the matrices of the structure over processes, by a name as `processes_named` takes it.
+
+        The processes serve all laws and loads.
+        """
+        processes = processes_named(name)
+        found = self._over_mpi.get(processes)
+        if found is None:
+            found = self._over_mpi[processes] = OverMpi(self.mesh.points, processes)
+        return found
+
+    @cached_property
+    def _over_mpi(self) -> dict[int, OverMpi]:
+        return {}
 
     def loose(self) -> Array:
         """Motions (unknowns, r) of the parts, each rigid by itself, that nothing resists with all joints apart."""

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from faying.typing import Array, Index
 
 SIZE = 8  # most points of a group
+MOST = 0.95  # of the points: where fewer have springs, the others are left out
 SEEN = 6  # of the motions of a joint, strongest first, by which points are alike
 
 
@@ -22,7 +23,13 @@ def sprung(relative: Any, springs: Array) -> Array:
     Springs and losses are never negative: half the work through their roots. A motion in single precision gives as many
     digits.
     """
-    rooted = np.sqrt(springs).astype(relative.dtype).reshape(-1, 1) * relative
+    closed = np.flatnonzero(springs.any(axis=1))
+    if len(closed) < MOST * len(springs):
+        # one copy, by rows of three, takes less than what it saves
+        rooted = relative.reshape(len(springs), -1).take(closed, axis=0).reshape(-1, relative.shape[1])
+        rooted *= np.sqrt(springs[closed]).astype(relative.dtype).reshape(-1, 1)
+    else:
+        rooted = np.sqrt(springs).astype(relative.dtype).reshape(-1, 1) * relative
     return np.asarray((rooted.T @ rooted).astype(float))  # NumPy sees that both are one, and does half of it
 
 
@@ -47,8 +54,8 @@ class Groups:
     def of(cls, weights: Array, relative: Array) -> Self:
         """Group points of areas `weights` [m2] (q,) by their relative motion (3q, m): halves of halves."""
         motion = relative.reshape(len(weights), -1)
-        left, size, _ = np.linalg.svd(motion - motion.mean(axis=0), full_matrices=False)
-        seen = left[:, :SEEN] * size[:SEEN]
+        moved = motion - motion.mean(axis=0)
+        seen = moved @ np.linalg.eigh(moved.T @ moved)[1][:, : -SEEN - 1 : -1]
         groups, left_over = [], [np.arange(len(weights))]
         while left_over:
             here = left_over.pop()

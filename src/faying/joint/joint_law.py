@@ -10,6 +10,7 @@ import numpy as np
 from faying.contact.law import ContactLaw
 from faying.contact.response import Response
 from faying.errors import InputError
+from faying.joint.contact_table import ContactTable
 from faying.joint.pressure_curve import PressureCurve, cells, equal_steps, fade
 from faying.joint.springs import Motion, Springs
 from faying.typing import Array, Index
@@ -243,12 +244,28 @@ class JointLaw:
         if np.size(approach) <= self.few:
             p, k_n = self.pressure(approach)
             return p, k_n, self.stiffness(p)[1]
-        p, k_n, log_p, cell = self._curve.placed(approach)
-        grid, (_, log_t), _ = self._samples
-        low = grid[cell]
-        share = np.clip((log_p - low) / (grid[cell + 1] - low), 0.0, 1.0)
-        log_k = (1 - share) * log_t[cell] + share * log_t[cell + 1] + self._fade * np.minimum(log_p - grid[0], 0.0)
-        return p, k_n, np.where(approach > 0, np.exp(log_k), 0.0)
+        table = self._table
+        if table is None:
+            p, k_n = self.pressure(approach)
+            return p, k_n, self.stiffness(p)[1]
+        factor = self.scale / self._first.scale
+        shut = approach > 0
+        closing = np.where(shut, approach, self._curve.end)
+        log_p, steep, log_t = table.at(np.log(closing * factor))
+        p = np.exp(log_p) * shut
+        return p, p * steep / closing, np.exp(log_t) * (factor * shut)
+
+    @property
+    def _first(self) -> "JointLaw":
+        """The law whose tables this one shares; itself where it shares none."""
+        return self if self._unscaled is None else self._unscaled._first
+
+    @cached_property
+    def _table(self) -> ContactTable | None:
+        """For `contact`; a law that is scaled takes it at approaches times its factor."""
+        if self._unscaled is not None:
+            return self._first._table
+        return ContactTable.of(self._curve, self._samples[1][1], self._fade)
 
     def lasting_approach(self, pressure: Array) -> tuple[Array, Array] | None:
         """Bounds of the approach [m] that is left when pressures [Pa] are taken off; None where the law is elastic.

@@ -1,7 +1,8 @@
 """From bolt forces to the pressure on the joints, with the full matrices of the parts.
 
 Each Newton step is solved by conjugate gradients preconditioned with one factorisation at a reference state of the
-joints, since only the joint changes; the factorisation is renewed when it has aged.
+joints, since only the joint changes; the factorisation is renewed when it has aged. Where it costs no more than a few
+solutions (multigrid over MPI), each Newton step takes its own.
 """
 
 from collections.abc import Callable, Sequence
@@ -10,17 +11,17 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.by_parts import PartByPart
 from faying.fe.constraint import constrain
 from faying.fe.interface import Interface
 from faying.fe.shifted import Shifted
 from faying.fe.single import factorise_roughly
-from faying.fe.solve import Factorisation
+from faying.fe.solve import Factorisation, Factoriser
 from faying.joint.equilibrium import Equilibrium, StickSlip
 from faying.joint.joint_law import JointLaw
 from faying.typing import Array, Index
 
 AGED = 40  # conjugate-gradient steps after which a new factorisation is cheaper: one step costs a fiftieth of it
+CHEAP = 3  # the same where a factorisation costs no more than a few solutions
 
 # a tangent factorisation takes one or two steps a decade, and Newton has some fifteen decades in all before it once the
 # faces lie about where they end up: between these decades of imbalance, above this rate, a new one pays
@@ -44,12 +45,13 @@ class PreloadProblem(Equilibrium):
         joints: Sequence[tuple[Interface, JointLaw]],
         *,
         shift_frequency: float,
-        solver: str | PartByPart | None = None,
+        solver: str | Factoriser | None = None,
         friction: Sequence[float | None] | None = None,
         fixed: Index | None = None,
     ) -> None:
         super().__init__(stiffness, joints, friction=friction)
         self.solver = solver
+        self._cheap = isinstance(solver, Factoriser) and solver.cheap
         self.fixed = np.zeros(0, dtype=np.int64) if fixed is None else fixed
         self.shift_frequency = shift_frequency
         self._mass, self._shift = constrain(mass, self.fixed, 0.0), (2 * np.pi * shift_frequency) ** 2
@@ -91,8 +93,9 @@ class PreloadProblem(Equilibrium):
         push = self._admissible(push)
         near = Shifted(stiffness=springs, mass=self._mass, shift=self._shift)
         if self.factor is not None:  # of a like state, taken from elsewhere
-            found, count = self._conjugate_gradients(lambda x: self._held(near @ x), push, ROUGH)
-            if count < AGED:
+            limit = CHEAP if self._cheap else AGED
+            found, count = self._conjugate_gradients(lambda x: self._held(near @ x), push, ROUGH, limit=limit)
+            if count < limit:
                 return found
         self._factorise(springs)
         assert self.factor is not None
@@ -142,6 +145,8 @@ class PreloadProblem(Equilibrium):
 
     def _worn(self, force: Array) -> bool:
         """Whether a new factorisation costs less than the conjugate-gradient steps that the old one still asks for."""
+        if self._cheap:
+            return True
         left = np.log10(float(np.linalg.norm(force)) / self._scale)  # decades of imbalance, below 0
         return bool(LATE < left < EARLY and self._rate > SLOW)
 

@@ -51,19 +51,19 @@ class PressureCurve:
         return float(np.exp(self.log_w[-1]))
 
     @cached_property
-    def _cubic(self) -> Array:
+    def cubic(self) -> Array:
         """Coefficients (4, cells) of ln p in ln w from the beginning of a cell; a shift of ln w leaves them."""
         from scipy.interpolate import CubicHermiteSpline
 
         if self._unscaled is not None:
-            return self._unscaled._cubic
+            return self._unscaled.cubic
         return np.asarray(CubicHermiteSpline(self.log_w, self.log_p, self.slope).c)
 
     @cached_property
-    def _index(self) -> tuple[Index, float]:
+    def index(self) -> tuple[Index, float]:
         """Cell at equal steps of ln w from its beginning, and the step: none is longer than the shortest cell."""
         if self._unscaled is not None:
-            return self._unscaled._index
+            return self._unscaled.index
         return equal_steps(self.log_w)
 
     @cached_property
@@ -85,8 +85,8 @@ class PressureCurve:
         shut = approach > 0
         x = np.log(np.where(shut, approach, self.end))
         inside = np.clip(x, log_w[0], log_w[-1])
-        cell = cells(log_w, inside, *self._index)
-        cubic = self._cubic[:, cell]
+        cell = cells(log_w, inside, *self.index)
+        cubic = self.cubic[:, cell]
         dx = inside - log_w[cell]
         value = ((cubic[0] * dx + cubic[1]) * dx + cubic[2]) * dx + cubic[3]
         steep = (3 * cubic[0] * dx + 2 * cubic[1]) * dx + cubic[2]

@@ -8,8 +8,8 @@ is kept, most needed first, so that its leading part is a coarser basis: the dif
 estimate that every evaluation carries.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Self
 
 import numpy as np
@@ -17,13 +17,16 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.fe.constraint import constrain
 from faying.fe.modes import lowest_modes
+from faying.fe.shifted import Shifted
+from faying.fe.single import factorise_roughly
 from faying.fe.solve import Factorisation
-from faying.fe.span import ROUNDING, extension
+from faying.joint.basis import Basis
 from faying.joint.equilibrium import PreloadState, StickSlip
 from faying.joint.joint_law import JointLaw
+from faying.joint.needs import for_modes, for_states, padded
 from faying.joint.part_shares import PartShares, ReducedShares, Scales
 from faying.joint.reduced import ReducedModel, ReducedMotion, Variant
-from faying.joint.springs import Springs
+from faying.joint.springs import Springs, stacked, unstacked
 from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions, checked_preload
 from faying.typing import Array
@@ -32,6 +35,7 @@ FEW_STEPS = 60  # enrichments of one variant after which something else must be 
 EXTRA_MODES = 25  # real modes of the reference beyond those wanted: they speed the enrichment of the highest ones
 # the force balance enters a frequency through k(p), to first order; the modes enter by the square of their error
 STATIC_SHARE = 15.0
+LEFT_OUT = 0.1  # of the tolerance of an eigenvalue: energy of a direction of the basis for vibration that is not taken
 
 
 def _pressed(traces: Sequence[Any], laws: Sequence[JointLaw], found: PreloadState) -> float:
@@ -51,66 +55,57 @@ def _parts(values: Any) -> list[Array]:
     return [values.real, values.imag] if np.any(values.imag) else [np.asarray(values.real)]
 
 
-@dataclass
-class Basis:
-    """Vectors (n, m), orthonormal in the energy of `reference`, with traces on the joints and projected operators."""
-
-    reference: Any
-    operators: tuple[Any, ...]
-    traces: Sequence[Any]
-    rigid: Array
-    rigid_momentum: Array
-    vectors: Array = field(init=False)
-    image: Array = field(init=False)  # reference @ vectors
-    small: list[Array] = field(init=False)
-    relative: list[Array] = field(init=False)
-
-    def __post_init__(self) -> None:
-        n = self.reference.shape[0]
-        self.vectors = self.image = np.zeros((n, 0))
-        self.small = [np.zeros((0, 0)) for _ in self.operators]
-        self.relative = [np.zeros((3 * len(trace.weights), 0)) for trace in self.traces]
-
-    def add(self, new: Array, *, least: float = 0.0) -> int:
-        """Add columns (n, k); return how many directions were new.
-
-        least: energy, in the units of the columns, below which a direction is left out; rounding is left out anyhow.
-        """
-        # what rounding leaves of rigid motions would grow with every solve, and come back as modes of no frequency
-        new = new - self.rigid @ (self.rigid_momentum.T @ new)
-        scale = float(np.einsum("ij,ij->j", new, self.reference @ new).max())
-        found, image = extension(new, self.vectors, self.image, self.reference, least=max(least, ROUNDING * scale))
-        self.append(found[:, ::-1], image[:, ::-1])
-        return int(found.shape[1])
-
-    def append(self, new: Array, image: Array | None = None) -> None:
-        """Take columns (n, k) as they are: orthonormal, with each other and with those that are here.
-
-        image: reference @ new, computed where None.
-        """
-        self.image = np.concatenate([self.image, self.reference @ new if image is None else image], axis=1)
-        for i, operator in enumerate(self.operators):
-            image = operator @ new
-            corner, side = new.T @ image, self.vectors.T @ image
-            self.small[i] = np.block([[self.small[i], side], [side.T, (corner + corner.T) / 2]])
-        self.relative = [
-            np.concatenate([old, trace.relative @ new], axis=1)
-            for old, trace in zip(self.relative, self.traces, strict=True)
-        ]
-        self.vectors = np.concatenate([self.vectors, new], axis=1)
-
-    def turn(self, rotation: Array) -> None:
-        """Replace the vectors by combinations of them, the columns of `rotation` (size, k), orthonormal."""
-        self.vectors, self.image = self.vectors @ rotation, self.image @ rotation
-        self.small = [rotation.T @ matrix @ rotation for matrix in self.small]
-        self.relative = [relative @ rotation for relative in self.relative]
-
-
 class Reduction:
     """Bases for equilibrium and vibration of one structure, grown from variants; `model` is what evaluates others."""
 
     def __init__(
-        self,
+        self, structure: Structure, *, factor: Factorisation, reference: Any, shares: PartShares | None = None
+    ) -> None:
+        """Empty bases about a factorised reference.
+
+        reference (n, n): stiffness + joints + shift x mass, of which `factor` is the factorisation; shares: of the
+        parts whose stiffness and mass variants may scale.
+        """
+        from scipy.linalg import cholesky, solve_triangular
+
+        self.stiffness, self.mass = structure.vibrating
+        self.stiffness_static = constrain(structure.standing, structure.fixed, 0.0)
+        self.traces, self.factor, self.reference = [joint.interface for joint in structure.joints], factor, reference
+        self.fixed, mass, rigid = structure.fixed, self.mass, structure.rigid
+        self.loads = structure.loads.copy()
+        self.loads[self.fixed] = 0.0
+        if rigid.shape[1]:
+            root = cholesky(rigid.T @ (mass @ rigid))
+            rigid = solve_triangular(root, rigid.T, trans="T").T
+        motions: dict[str, Any] = {"rigid": rigid, "rigid_momentum": np.asarray(mass @ rigid)}
+        self.shares, more = shares, (() if shares is None else shares.standing)
+        self.static = Basis(
+            reference=reference,
+            operators=(self.stiffness_static, *more),
+            traces=self.traces,
+            rows=[self.loads.T],
+            **motions,
+        )
+        more = () if shares is None else (*shares.stiffness, *shares.mass)
+        self._pushed = [] if shares is None else [np.asarray(share @ rigid).T for share in shares.mass]
+        self.dynamic = Basis(
+            reference=reference,
+            operators=(self.stiffness, mass, *more),
+            traces=self.traces,
+            rows=self._pushed,
+            **motions,
+        )
+        # springs (4, points of all joints) of the reference, with its shift
+        self._reference: tuple[Array, float] | None = None
+        # modes of the variants trained on, in the basis for vibration as it was then: real and imaginary parts
+        self._needed: list[Array] = []
+        # equilibria of variants, over their energy, in the basis for equilibrium as it was then
+        self._states: list[Array] = []
+        self.trained = self.learnt = 0  # number of variants that the bases have been made to fit, and are compressed by
+
+    @classmethod
+    def about(
+        cls,
         structure: Structure,
         *,
         factor: Factorisation,
@@ -119,63 +114,86 @@ class Reduction:
         shapes: Array,
         count: int,
         shares: PartShares | None = None,
-    ) -> None:
-        """Start from a factorised reference.
+    ) -> Self:
+        """Start from a solution of the reference.
 
-        reference (n, n): stiffness + joints + shift x mass, of which `factor` is the factorisation; state (n,): a
-        displacement in equilibrium; shapes (n, m): elastic modes at the reference, more than the `count` that is asked
-        for; shares: of the parts whose stiffness and mass variants may scale.
+        factor, reference, shares: of the empty bases; state (n,): a displacement in equilibrium; shapes (n, m): elastic
+        modes at the reference, more than the `count` that is asked for.
         """
-        from scipy.linalg import cholesky, solve_triangular
+        made = cls(structure, factor=factor, reference=reference, shares=shares)
+        made.static.add(state[:, None])
+        made.static.add(factor.solve(np.asfortranarray(made.loads)))
+        made.dynamic.add(shapes)
+        made._project(count, made.dynamic.vectors.shape[1])
+        return made
 
-        self.stiffness, self.mass = structure.vibrating
-        self.stiffness_static = constrain(structure.standing, structure.fixed, 0.0)
-        self.traces, self.factor, self.reference = [joint.interface for joint in structure.joints], factor, reference
-        self.fixed, mass, rigid = structure.fixed, self.mass, structure.rigid
-        self.loads = loads = structure.loads.copy()
-        loads[self.fixed] = 0.0
-        if rigid.shape[1]:
-            root = cholesky(rigid.T @ (mass @ rigid))
-            rigid = solve_triangular(root, rigid.T, trans="T").T
-        motions = {"rigid": rigid, "rigid_momentum": np.asarray(mass @ rigid)}
-        self.shares, more = shares, (() if shares is None else shares.standing)
-        self.static = Basis(
-            reference=reference, operators=(self.stiffness_static, *more), traces=self.traces, **motions
-        )
-        self.static.add(state[:, None])
-        self.static.add(factor.solve(np.asfortranarray(loads)))
-        more = () if shares is None else (*shares.stiffness, *shares.mass)
-        self.dynamic = Basis(
-            reference=reference, operators=(self.stiffness, mass, *more), traces=self.traces, **motions
-        )
-        self.dynamic.add(shapes)
-        self._seen: list[tuple[tuple[JointLaw, ...], tuple[Array, ...], Scales | None]] = []
+    def _project(self, count: int, coarse: int) -> None:
+        """Make `model` of the bases as they are."""
         self.model = ReducedModel(
             weights=[trace.weights for trace in self.traces],
             gaps=[trace.gap for trace in self.traces],
             static_stiffness=self.static.small[0],
-            static_loads=self.static.vectors.T @ loads,
+            static_loads=self.static.seen[0].T,
             static_relative=self.static.relative,
             dynamic_stiffness=self.dynamic.small[0],
             dynamic_mass=self.dynamic.small[1],
             dynamic_relative=self.dynamic.relative,
             count=count,
-            coarse=self.dynamic.vectors.shape[1],
+            coarse=coarse,
             shares=self._reduced_shares(),
         )
+
+    def arrays(self) -> dict[str, Array]:
+        """All that `resumed` needs beside the structure, to be kept in a file; of bases that `of` has begun."""
+        assert self._reference is not None
+        return {
+            "count": np.array(self.model.count),
+            "coarse": np.array(self.model.coarse),
+            "static": self.static.vectors,
+            "dynamic": self.dynamic.vectors,
+            "reference": self._reference[0],
+            "shift": np.array(self._reference[1]),
+            "needed": padded(self._needed, self.dynamic.vectors.shape[1]),
+            "states": padded(self._states, self.static.vectors.shape[1]),
+            "trained": np.array(self.trained),
+            "learnt": np.array(self.learnt),
+        }
+
+    @classmethod
+    def resumed(
+        cls,
+        structure: Structure,
+        kept: Mapping[str, Array],
+        *,
+        solver: str | None = None,
+        shares: PartShares | None = None,
+    ) -> Self:
+        """The bases that `arrays` has given, their reference factorised again."""
+        springs = unstacked(kept["reference"], [joint.interface for joint in structure.joints])
+        shifted = Shifted(
+            stiffness=structure.joined(springs)[0], mass=structure.vibrating[1], shift=float(kept["shift"])
+        )
+        factor = factorise_roughly(shifted, rigid=structure.rigid, solver=solver)
+        made = cls(structure, factor=factor, reference=shifted.whole(), shares=shares)
+        made._reference = kept["reference"], float(kept["shift"])
+        made.static.append(kept["static"])
+        made.dynamic.append(kept["dynamic"])
+        made._needed, made._states = [kept["needed"]], [kept["states"]]
+        made.trained, made.learnt = int(kept["trained"]), int(kept["learnt"])
+        made._project(int(kept["count"]), int(kept["coarse"]))
+        return made
 
     def _reduced_shares(self) -> ReducedShares | None:
         """The shares of the parts in both bases."""
         if self.shares is None:
             return None
-        count, rigid = len(self.shares.parts), self.dynamic.rigid
-        pushed = [np.asarray(mass @ rigid) for mass in self.shares.mass]
+        count = len(self.shares.parts)
         return ReducedShares(
             standing=np.stack(self.static.small[1:]),
             stiffness=np.stack(self.dynamic.small[2 : 2 + count]),
             mass=np.stack(self.dynamic.small[2 + count :]),
-            cross=np.stack([momentum.T @ self.dynamic.vectors for momentum in pushed]),
-            corner=np.stack([rigid.T @ momentum for momentum in pushed]),
+            cross=np.stack(self.dynamic.seen),
+            corner=np.stack([momentum @ self.dynamic.rigid for momentum in self._pushed]),
         )
 
     def probe(self, rows: Any) -> tuple[Array, Array]:
@@ -204,32 +222,29 @@ class Reduction:
         found = checked_preload(structure, structure.assembly(solver=solver), [float(f) for f in forces])
         shift = shift_frequency or structure.shift_frequency
         _, mass = structure.vibrating
-        joined, _ = structure.joined(structure.springs(found.pressures))
+        springs = structure.springs(found.pressures)
+        joined, _ = structure.joined(springs)
         rigid_count = structure.rigid_count
         modes = lowest_modes(joined, mass, rigid_count + count + EXTRA_MODES, shift_frequency=shift, solver=solver)
         check_motions(structure, modes)
-        return cls(
+        shifted = Shifted(stiffness=joined, mass=mass, shift=modes.shift)
+        made = cls.about(
             structure,
-            factor=modes.factorisation,
-            reference=(joined + modes.shift * mass).tocsr(),
+            factor=factorise_roughly(shifted, rigid=structure.rigid, solver=solver),
+            reference=shifted.whole(),
             state=found.displacement,
             shapes=modes.shapes[:, rigid_count:],
             count=count,
             shares=shares,
         )
+        made._reference = stacked(springs), modes.shift
+        return made
 
     def _refresh(self, coarse: int | None = None) -> None:
-        self.model = replace(
-            self.model,
-            static_stiffness=self.static.small[0],
-            static_relative=self.static.relative,
-            static_loads=self.static.vectors.T @ self.loads,
-            dynamic_stiffness=self.dynamic.small[0],
-            dynamic_mass=self.dynamic.small[1],
-            dynamic_relative=self.dynamic.relative,
-            coarse=self.model.coarse if coarse is None else coarse,
-            shares=self._reduced_shares(),
-        )
+        """Make `model` anew, under the gaps and scales that it has."""
+        old = self.model
+        self._project(old.count, old.coarse if coarse is None else coarse)
+        self.model = replace(self.model, gaps=old.gaps, scales=old.scales)
 
     def _scaled(self, matrix: Any, shares: Sequence[Any], kind: int, x: Any) -> Any:
         """Product of a matrix of the structure with x, its parts scaled; kind: 0 for stiffness, 1 for mass."""
@@ -276,7 +291,7 @@ class Reduction:
         """Enrich until the equilibrium of a variant is right to `tolerance` in energy; return it."""
         error = np.inf
         for _ in range(FEW_STEPS):
-            found = self.model.equilibrium(laws, forces, friction, start)
+            found = self.model.equilibrium_from(laws, forces, friction, start)
             error, mend = self.static_error(laws, forces, friction, found)
             if error < tolerance:
                 return found
@@ -312,12 +327,16 @@ class Reduction:
         lossy = any(np.any(d.loss_n) or np.any(d.loss_t) for d in springs)
         if not lossy:
             values, vectors = values.real, vectors.real
-        x = self.dynamic.vectors @ vectors
+        parts = np.concatenate(_parts(vectors), axis=1) if lossy else vectors
+        x = self.dynamic.vectors @ parts  # real, so that the products with the matrices are
         stiffness, mass = ((), ()) if self.shares is None else (self.shares.stiffness, self.shares.mass)
-        residual = self._scaled(self.stiffness, stiffness, 0, x)
+        force = self._scaled(self.stiffness, stiffness, 0, x)
         if self.model.scales is not None and self.model.shares is not None:
-            x = x + self.dynamic.rigid @ (self.model.shares.motion(self.model.scales) @ vectors)
-        residual = residual - self._scaled(self.mass, mass, 1, x) * values
+            x = x + self.dynamic.rigid @ (self.model.shares.motion(self.model.scales) @ parts)
+        moved = self._scaled(self.mass, mass, 1, x)
+        if parts.shape[1] > vectors.shape[1]:
+            force, moved = (both[:, : len(values)] + 1j * both[:, len(values) :] for both in (force, moved))
+        residual = force - moved * values
         for trace, relative, d in zip(self.traces, self.dynamic.relative, springs, strict=True):
             n, t = trace.weights * d.k_n, trace.weights * d.k_t
             if lossy:
@@ -327,6 +346,20 @@ class Reduction:
         residual[self.fixed] = 0.0
         return np.asarray(residual)
 
+    def frequency_error(
+        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], found: PreloadState, count: int
+    ) -> float:
+        """Estimated relative error of the first frequencies [-], by what modes and equilibrium leave in the equations.
+
+        Of the equilibrium that is what the frequencies change by under the pressures that one correction gives.
+        """
+        modal, _ = self.modal_error(laws, found.pressures, np.inf, slice(count))
+        _, mend = self.static_error(laws, forces, friction, found)
+        moved = [(trace.relative @ mend)[::3] for trace in self.traces]
+        mended = [law.pressure(-gap - by)[0] for law, gap, by in zip(laws, found.openings, moved, strict=True)]
+        old, new = (self.model.modes(self.model.springs(laws, p))[0].real for p in (found.pressures, mended))
+        return float(modal.max() + np.abs(new / old - 1)[:count].max()) / 2  # of a square of a frequency
+
     def train_dynamic(self, laws: Sequence[JointLaw], pressures: Sequence[Array], tolerance: float) -> None:
         """Enrich until all modes of a variant are right; tolerance: of the complex eigenvalues."""
         poor: Any = np.arange(self.model.count)
@@ -335,7 +368,7 @@ class Reduction:
             poor = poor[error > tolerance]  # the others only gain by what is added
             if not len(poor):
                 return
-            new = self.dynamic.add(mend, least=0.02 * tolerance)
+            new = self.dynamic.add(mend, least=LEFT_OUT * tolerance)
             self._refresh()
             if not new:
                 raise NotConverged(f"reduction: the modes stay wrong by {error.max():.1e} and nothing improves them")
@@ -362,25 +395,37 @@ class Reduction:
         self.model = self.model.with_gaps(gaps).with_scales(scales)
         found = self.train_static(laws, forces, friction, STATIC_SHARE * tolerance, start)
         self.train_dynamic(laws, found.pressures, 2 * tolerance)
-        self._seen.append((tuple(laws), found.pressures, scales))
+        _, vectors, _ = self.model.modes(self.model.springs(laws, found.pressures))
+        self._note(laws, found, vectors)
+        self.trained += 1
         return found.displacement
 
-    @property
-    def trained(self) -> int:
-        """Number of variants that the bases have been made to fit."""
-        return len(self._seen)
+    def _note(self, laws: Sequence[JointLaw], found: PreloadState, vectors: Any) -> None:
+        """Keep in mind what a variant needs of the bases as they are."""
+        self._states.append(found.displacement[:, None] / _pressed(self.traces, laws, found))
+        self._needed += _parts(vectors / np.linalg.norm(vectors, axis=0))
+
+    def learn(self, laws: Sequence[JointLaw], found: Variant) -> None:
+        """Keep in mind what a variant needs that was evaluated in the bases as they are: they are compressed by it."""
+        self._note(laws, found.preload, found.shapes)
+        self.learnt += 1
 
     def compress(self, tolerance: float) -> None:
-        """Keep of the basis for vibration what the modes of all variants trained on need, most needed first."""
-        columns = []
-        for laws, pressures, scales in self._seen:
-            model = self.model.with_scales(scales)
-            _, vectors, _ = model.modes(model.springs(laws, pressures))
-            columns += _parts(vectors / np.linalg.norm(vectors, axis=0))
-        rotation, size, _ = np.linalg.svd(np.concatenate(columns, axis=1), full_matrices=False)
-        share = size**2
-        self.dynamic.turn(rotation[:, share > 0.3 * tolerance])
-        self._refresh(max(int(np.count_nonzero(share > 30 * tolerance)), self.model.count))
+        """Keep of the bases what variants need, most needed first.
+
+        None of those that were learnt may lose more than the tolerance lets it: a frequency by the energy of what is
+        left out of its mode, an equilibrium by that of its displacement.
+        """
+        columns = padded(self._needed, self.dynamic.vectors.shape[1])
+        states = padded(self._states, self.static.vectors.shape[1])
+        turned = for_states(states, STATIC_SHARE * tolerance, self.learnt)
+        if turned is not None:
+            self.static.turn(turned)
+            self._states = [turned.T @ states]
+        rotation, coarse = for_modes(columns, tolerance, learnt=self.learnt > 0)
+        self.dynamic.turn(rotation)
+        self._needed = [rotation.T @ columns]
+        self._refresh(max(coarse, self.model.count))
 
     def evaluate(
         self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None = None

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError, NotConverged
-from faying.fe.damped import followers
+from faying.fe.damped import lowest_complex
 from faying.joint.equilibrium import Equilibrium, PreloadState, StickSlip
 from faying.joint.groups import Groups, sprung
 from faying.joint.joint_law import JointLaw
 from faying.joint.part_shares import ReducedShares, Scales
-from faying.joint.secant import Secants
+from faying.joint.secant import Secants, evenly_pressed
 from faying.joint.springs import Springs
 from faying.typing import Array, Complex
 
@@ -55,6 +55,12 @@ class ReducedMotion:
         return ReducedMotion(
             weights=groups.weights, gap=groups.mean(self.gap), relative=groups.relative, light=groups.light_mean
         )
+
+    @property
+    def quick(self) -> Any:
+        """The motion that tangents and small changes take: seven digits where they are known."""
+        light = self.light if self.groups is None else self.groups.light
+        return self.relative if light is None else light
 
     def springs(self, k_n: Array, k_t: Array) -> Array:
         """Stiffness (m, m) [N/m] of springs per area k_n, k_t [Pa/m] (q,)."""
@@ -100,8 +106,7 @@ def _complex_modes(real: Array, loss: Array, count: int, slight: float = SLIGHT)
         values, inner = eig(np.linalg.solve(span.T @ span, small))  # the matrix on the left is close to one
         vectors = span @ inner
         vectors = vectors / np.linalg.norm(vectors, axis=0)
-    order = followers(vectors[:count])
-    order = order[np.argsort(values[order].real)]
+    order = lowest_complex(values.real, count)
     return values[order], vectors[:, order]
 
 
@@ -117,19 +122,7 @@ class ReducedEquilibrium(Equilibrium):
     _size = 0.0  # of the last force out of balance [N]
 
     def _start(self, load: Array) -> Array:
-        """Every joint at one common pressure, by springs tangent to p(approach) there."""
-        matrix, push = self.stiffness.copy(), load.copy()
-        for trace, law in self.joints:
-            middle = 10 * np.sqrt(law.least_pressure * law.model.greatest_pressure)
-            mean = float(np.clip(middle, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure))
-            k_n, k_t = (float(k) for k in law.stiffness(np.asarray(mean)))
-            share = trace.weights[:, None] * np.array([k_n, k_t, k_t])
-            matrix = matrix + trace.relative.T @ (share.reshape(-1, 1) * trace.relative)
-            offset = mean - k_n * (law.approach(mean) + trace.gap)
-            local = np.zeros((len(offset), 3))
-            local[:, 0] = offset * trace.weights
-            push = push + trace.relative.T @ local.ravel()
-        return np.asarray(np.linalg.solve(matrix, push))
+        return evenly_pressed(self.stiffness, self.joints, load)
 
     def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> tuple[Array, int]:
         from scipy.linalg import LinAlgError, cho_factor, cho_solve
@@ -141,9 +134,7 @@ class ReducedEquilibrium(Equilibrium):
         matrix = self.stiffness.copy()
         for trace, k_n, k_t in self._tangents(u, grips):
             if not k_t[:, 0, 1].any():  # nothing slides
-                light = trace.light if trace.groups is None else trace.groups.light
-                light = trace.relative if light is None else light
-                matrix += sprung(light, np.stack([k_n, k_t[:, 0, 0], k_t[:, 1, 1]], axis=1))
+                matrix += sprung(trace.quick, np.stack([k_n, k_t[:, 0, 0], k_t[:, 1, 1]], axis=1))
                 continue
             local = trace.relative.reshape(len(k_n), 3, -1)
             scaled = np.empty_like(local)
@@ -245,15 +236,18 @@ class ReducedModel:
         if start is not None:
             start = np.concatenate([start, np.zeros(len(load) - len(start))])
         if any(motion.groups is not None for motion in motions):
+            joints = list(zip(motions, laws, strict=True))
+            secants = Secants(stiffness=self.matrices[0], joints=joints, friction=friction)
+            all_grouped = all(motion.groups is not None for motion in motions)
             try:
-                near = self._balance([motion.coarse for motion in motions], laws, friction)
-                start = near.solve(load, start=start, tolerance=NEAR).displacement
-                if all(motion.groups is not None for motion in motions):
-                    joints = list(zip(motions, laws, strict=True))
-                    secants = Secants(stiffness=self.matrices[0], joints=joints, friction=friction)
-                    found = secants.solve(load, start, SECANTS)
-                    if found is not None:
-                        return found
+                near = secants.near(load, start, NEAR) if all_grouped else None
+                if near is None:
+                    groups = self._balance([motion.coarse for motion in motions], laws, friction)
+                    near = groups.solve(load, start=start, tolerance=NEAR).displacement
+                start = near
+                found = secants.solve(load, start, SECANTS) if all_grouped else None
+                if found is not None:
+                    return found
             except NotConverged:
                 pass
         if start is not None:
@@ -263,6 +257,19 @@ class ReducedModel:
                 pass
         exact = [replace(motion, groups=None) for motion in motions]
         return self._balance(exact, laws, friction).solve(load, tolerance=BALANCED)
+
+    def equilibrium_from(
+        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None
+    ) -> PreloadState:
+        """`equilibrium` where the basis grows and groups would not pay: secants from a start, with seven digits."""
+        if start is not None and min(map(len, self.weights)) >= MANY:
+            motions, load = self._motions(self.static_relative, 0), self.static_loads @ forces
+            light = [replace(m, groups=None, light=m.relative.astype(np.float32)) for m in motions]
+            secants = Secants(stiffness=self.matrices[0], joints=list(zip(light, laws, strict=True)), friction=friction)
+            found = secants.solve(load, np.concatenate([start, np.zeros(len(load) - len(start))]), SECANTS)
+            if found is not None:
+                return found
+        return self.equilibrium(laws, forces, friction, start)
 
     def _balance(
         self, motions: Sequence[ReducedMotion], laws: Sequence[JointLaw], friction: Sequence[float | None]

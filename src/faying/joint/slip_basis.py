@@ -15,10 +15,10 @@ from faying.errors import InputError, NotConverged
 from faying.fe.interface import Interface
 from faying.fe.modes import Modes
 from faying.fe.nearby import nearby_modes
+from faying.joint.basis import Basis
 from faying.joint.epmc import ALL_SLIDING, OTHER_MODES, Epmc, EpmcPoint
 from faying.joint.equilibrium import PreloadState
 from faying.joint.microslip import Microslip
-from faying.joint.reduce import Basis
 from faying.joint.slip_model import SlipJoint, SlipModel
 from faying.joint.springs import Springs
 from faying.joint.structure import Structure

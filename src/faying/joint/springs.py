@@ -1,5 +1,6 @@
 """The springs of a joint at one preload, on any description of how its faces move."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -27,6 +28,7 @@ class InterfaceMotion(Protocol):
         """Stiffness matrix [N/m] of springs per area k_n, k_t [Pa/m] (q,)."""
 
 
+STACKED = ("k_n", "k_t", "loss_n", "loss_t")
 Motion = TypeVar("Motion", bound=InterfaceMotion)
 
 
@@ -67,3 +69,17 @@ class Springs(Generic[Motion]):
         """Sum of all normal and all tangential springs [N/m]."""
         w = self.interface.weights
         return float(w @ self.k_n), float(w @ self.k_t)
+
+
+def stacked(springs: Sequence[Springs[Any]]) -> Array:
+    """Stiffness and loss factors (4, points of all joints) of springs, to be kept in a file."""
+    return np.stack([np.concatenate([getattr(one, name) for one in springs]) for name in STACKED])
+
+
+def unstacked(values: Array, motions: Sequence[Motion]) -> list[Springs[Motion]]:
+    """Springs of all joints from what `stacked` has made of them, without their pressures."""
+    parts = np.split(values, np.cumsum([len(motion.weights) for motion in motions])[:-1], axis=1)
+    return [
+        Springs(interface=motion, pressure=np.full(part.shape[1], np.nan), **dict(zip(STACKED, part, strict=True)))
+        for motion, part in zip(motions, parts, strict=True)
+    ]

@@ -7,14 +7,13 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.by_parts import PartByPart
 from faying.fe.constraint import constrain
 from faying.fe.elasticity import Solid
 from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
 from faying.fe.outline import Outline, outline
 from faying.fe.quality import quality
-from faying.fe.solve import BY_PARTS, chosen
+from faying.fe.solve import BY_PARTS, Factoriser, chosen, is_mpi
 from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt, FittedBolt
 from faying.joint.frame import Frame, added
@@ -221,7 +220,7 @@ class Structure:
         """A frequency below the first elastic mode of any compact body of this size [Hz]: .02 c/size."""
         return self._frame.shift_frequency
 
-    def solver(self, name: str | None = None) -> str | PartByPart:
+    def solver(self, name: str | None = None) -> str | Factoriser:
         """What factorises the matrices of this structure, by the name that a study gives; part by part if need be.
 
         Where no name is given, that is where one factor of the whole would take more than half of the free memory.
@@ -230,6 +229,8 @@ class Structure:
             InputError: there is no such solver here.
         """
         way = chosen(name)
+        if is_mpi(way):
+            return self._frame.over_mpi(way)
         if len(self.mesh.parts) < 2 or way not in ("pardiso", BY_PARTS):
             return way
         if way == "pardiso" and (name or not self._frame.is_large):
