@@ -64,7 +64,8 @@ def test_rows_of_modes_and_joints_lead_to_what_is_shown(page, result):
     until(page, "window.view.state.mode === 2")
     page.locator("[data-table=modes] tr").nth(2).get_by_role("button").nth(1).click()  # the first preload
     until(page, "window.view.state.mode === 1 && window.view.state.load === 0")
-    assert "Mode 2: 250 Hz" in page.locator(".fv-head").inner_text()
+    # the text comes once the mode's shape is unpacked, after the state
+    until(page, "document.querySelector('.fv-head').textContent.includes('Mode 2: 250 Hz')")
     until(page, "document.querySelector('[data-table=modes] tr.now').cells[0].textContent === '2'")
     page.get_by_label("Mode", exact=True).select_option("0")
     until(page, "document.querySelector('[data-table=modes] tr.now').cells[0].textContent === '1'")

@@ -1,13 +1,13 @@
 """What pages are made of: style, tables, pictures as text of HTML."""
 
 import json
+from base64 import b64encode
 from html import escape
-from io import BytesIO, StringIO
 from pathlib import Path
 from typing import Any
 
-from faying.files import write_text
-from faying.output.figures.save import RESOLUTION, save
+from faying.files import write_atomically
+from faying.output.figures.save import drawn
 from faying.output.scene import pages
 from faying.output.table import Rows
 
@@ -49,33 +49,24 @@ BITMAPS = ("modes", "shapes")  # tens of thousands of polygons: a bitmap is smal
 
 def picture(name: str, figure: Any) -> str:
     """Return a figure as SVG, or as a bitmap where its name is one of BITMAPS."""
-    if name in BITMAPS:
-        from base64 import b64encode
-
-        buffer = BytesIO()
-        figure.savefig(buffer, format="png", dpi=130)
-        return f'<img alt="{name}" src="data:image/png;base64,{b64encode(buffer.getvalue()).decode()}">'
-    return _inline(_svg(figure))
+    return _inline(name, drawn(figure, _kind(name)))
 
 
 def saved(name: str, figure: Any, file: Path) -> tuple[Path, str]:
-    """Write a figure into a file and return it with the text that a page shows; what both have is drawn once."""
+    """Write a figure into a file and return it with the text that a page shows, drawn once for both."""
+    made = drawn(figure, _kind(name))
+    return write_atomically(file, lambda temporary: temporary.write_bytes(made)), _inline(name, made)
+
+
+def _kind(name: str) -> str:
+    return "png" if name in BITMAPS else "svg"
+
+
+def _inline(name: str, made: bytes) -> str:
+    """A figure as it stands in a page."""
     if name in BITMAPS:
-        save(figure, file)
-        figure.set_layout_engine("none")  # it has found its layout
-        return file, picture(name, figure)
-    svg = _svg(figure)
-    return write_text(file, svg), _inline(svg)
-
-
-def _svg(figure: Any) -> str:
-    text = StringIO()
-    figure.savefig(text, format="svg", dpi=RESOLUTION, metadata={"Date": None})
-    return text.getvalue()
-
-
-def _inline(svg: str) -> str:
-    """An SVG file as it stands in a page."""
+        return f'<img alt="{name}" src="data:image/png;base64,{b64encode(made).decode()}">'
+    svg = made.decode()
     return svg[svg.index("<svg") :]
 
 

@@ -10,7 +10,7 @@ from faying import __version__
 from faying.files import write_text
 from faying.output import page, report_measured
 from faying.output.figures import backbone, response, structure
-from faying.output.figures.save import new_figure
+from faying.output.figures.save import new_figure, uncollected
 from faying.output.scene import of_result, pages, to_text
 from faying.output.sections import sections
 from faying.result import Result
@@ -124,7 +124,6 @@ MAPS = (
 )
 MOVING = ("modes", "pressure")  # figures that the view stands for on a screen
 TEST = "test_"  # the figures of the hammer test begin with it
-BITMAP_FILES = ("modes", "shapes")  # figures whose files are bitmaps, too
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -195,13 +194,14 @@ def write(result: Result, folder: Path) -> list[Path]:
     With a hammer test: comparison.csv, and its figures with test_ before their names.
     """
     made = [result.to_netcdf(folder / "result.nc"), result.to_csv(folder / "modes.csv")]
-    drawn = figures(result)
     if result.hammer is not None:
         made.append(write_text(folder / "comparison.csv", result.hammer.csv_text()))
     pictures = {}
-    for name, figure in drawn.items():
-        kind = name.removeprefix(TEST)
-        file, pictures[name] = page.saved(kind, figure, folder / f"{name}.{'png' if kind in BITMAP_FILES else 'svg'}")
-        made.append(file)
+    with uncollected():
+        for name, figure in figures(result).items():
+            kind = name.removeprefix(TEST)
+            file = folder / f"{name}.{'png' if kind in page.BITMAPS else 'svg'}"
+            file, pictures[name] = page.saved(kind, figure, file)
+            made.append(file)
     made.append(write_text(folder / "report.html", html(result, pictures)))
     return made

@@ -1,4 +1,4 @@
-"""Figure of an identification: each parameter before and after the test, and the frequencies beside the test."""
+"""Figure of an identification: each parameter before and after the test, frequencies and loss beside the test."""
 
 from typing import Any
 
@@ -7,6 +7,7 @@ import numpy as np
 from faying.identify.identification import Identification
 from faying.output.figures.prediction import COLOURS
 from faying.output.figures.save import new_figure, plain
+from faying.typing import Array
 
 
 def figure(found: Identification) -> Any:
@@ -14,18 +15,30 @@ def figure(found: Identification) -> Any:
 
     Above, the 5 to 95 % of each parameter, over its prior's own 5 to 95 %: a bar as long as the prior's tells that the
     test says nothing of it. Below, the predicted 5 to 95 % of each frequency over its median, the test as dots, hollow
-    where it was left out.
+    where it was left out; and the same of loss factors where they were used.
     """
-    names, loads = found.names, found.loads
-    modes = found.test.shape[1]
-    fig = new_figure(6.3, 1.6 + 0.27 * len(names) + 0.3 * modes * len(loads) ** 0.5)
-    upper, lower = fig.subplots(2, 1, height_ratios=[0.6 + 0.27 * len(names), 0.6 + 0.3 * modes * len(loads) ** 0.5])
+    parts = [(found.test, found.predicted, "Hz")]
+    if found.losses is not None and found.predicted_losses is not None:
+        parts.append((found.losses, found.predicted_losses, ""))
+    heights = [0.6 + 0.27 * len(found.names)]
+    heights += [0.6 + 0.3 * found.test.shape[1] * len(found.loads) ** 0.5] * len(parts)
+    fig = new_figure(6.3, 0.4 + sum(heights))
+    upper, *lower = fig.subplots(len(heights), 1, height_ratios=heights)
+    _parameters(upper, found)
+    for ax, (test, predicted, unit) in zip(lower, parts, strict=True):
+        _beside_test(ax, found, test, predicted, unit)
+    return fig
+
+
+def _parameters(ax: Any, found: Identification) -> None:
+    """Each parameter after the test, over its prior."""
+    names = found.names
     prior = np.array([one.quantile(np.array([0.05, 0.5, 0.95])) for one in found.priors])
     width = prior[:, 2] - prior[:, 0]
     after = (found.quantiles().T - prior[:, :1]) / width[:, None]
     y = np.arange(len(names))
-    upper.barh(y, np.ones(len(y)), height=0.55, color="0.88", label="before the test")
-    upper.errorbar(
+    ax.barh(y, np.ones(len(y)), height=0.55, color="0.88", label="before the test")
+    ax.errorbar(
         after[:, 1],
         y,
         xerr=[after[:, 1] - after[:, 0], after[:, 2] - after[:, 1]],
@@ -35,25 +48,28 @@ def figure(found: Identification) -> Any:
         lw=2.2,
         label="after it",
     )
-    upper.set_yticks(
-        y, [plain(f"{name} ({told:.2f})") for name, told in zip(names, found.told, strict=True)], fontsize=8
-    )
-    upper.set_xlabel("5 to 95 % of the prior = 0 to 1; in brackets, sd after over sd before", fontsize=8)
-    upper.invert_yaxis()
-    upper.grid(axis="x", alpha=0.3)
-    upper.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize=8, frameon=False)
-    low, middle, high = found.predicted
+    ax.set_yticks(y, [plain(f"{name} ({told:.2f})") for name, told in zip(names, found.told, strict=True)], fontsize=8)
+    ax.set_xlabel("5 to 95 % of the prior = 0 to 1; in brackets, sd after over sd before", fontsize=8)
+    ax.invert_yaxis()
+    ax.grid(axis="x", alpha=0.3)
+    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize=8, frameon=False)
+
+
+def _beside_test(ax: Any, found: Identification, test: Array, predicted: Array, unit: str) -> None:
+    """Predicted quantiles (3, load, mode) over their median, and what was measured (load, mode)."""
+    low, middle, high = predicted
+    loads, modes = found.loads, test.shape[1]
     for k, load in enumerate(loads):
         place = np.arange(modes) + (k - (len(loads) - 1) / 2) * 0.7 / len(loads)
         colour = COLOURS[k % len(COLOURS)]
         ends = [100 * (1 - low[k] / middle[k]), 100 * (high[k] / middle[k] - 1)]
         label = f"{load / 1e3:g} kN" + (", left out" if found.left_out[k] else "")
-        lower.errorbar(np.zeros(modes), place, xerr=ends, fmt="|", color=colour, lw=2.2, ms=7, label=label)
+        ax.errorbar(np.zeros(modes), place, xerr=ends, fmt="|", color=colour, lw=2.2, ms=7, label=label)
         face = "white" if found.left_out[k] else colour
-        lower.plot(100 * (found.test[k] / middle[k] - 1), place, "o", ms=4.5, mfc=face, mec=colour, mew=1.3)
-    lower.set_yticks(range(modes), [f"{k + 1}: {middle[-1, k]:.0f} Hz" for k in range(modes)])
-    lower.set_xlabel("difference from the median [%]; bars 5 to 95 %, dots measured", fontsize=8)
-    lower.invert_yaxis()
-    lower.grid(axis="x", alpha=0.3)
-    lower.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4, fontsize=8, frameon=False)
-    return fig
+        ax.plot(100 * (test[k] / middle[k] - 1), place, "o", ms=4.5, mfc=face, mec=colour, mew=1.3)
+    last = [f"{value:.0f} {unit}" if unit else f"loss {value:.2g}" for value in middle[-1]]
+    ax.set_yticks(range(modes), [f"{k + 1}: {text}" for k, text in enumerate(last)])
+    ax.set_xlabel("difference from the median [%]; bars 5 to 95 %, dots measured", fontsize=8)
+    ax.invert_yaxis()
+    ax.grid(axis="x", alpha=0.3)
+    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4, fontsize=8, frameon=False)

@@ -97,6 +97,7 @@ def mac_between_loads(ax: Any, result: Result, load: int = -1) -> Any:
                 va="center",
                 fontsize=6,
                 color="white" if table[row, column] > 0.6 else "0.3",
+                in_layout=False,
             )
     count = range(len(table))
     ax.set_xticks(count, [str(k + 1) for k in count], fontsize=7)

@@ -132,6 +132,8 @@ def mode_shape(ax: Any, result: Result, mode: int, load: int = -1) -> Any:
     ax.set_zlim(low[2], high[2])
     ax.set_box_aspect(high - low)
     ax.set_axis_off()
+    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
+        axis.set_visible(False)  # or a layout measures its labels, although none is drawn
     ax.view_init(elev=12, azim=-62)
     ax.set_title(
         f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz"
