@@ -170,7 +170,7 @@ def wait(*given):
     print("drawing", flush=True)
     time.sleep(60)
 
-save.save.__code__ = wait.__code__
+save.drawn.__code__ = wait.__code__
 save.time = time
 from faying.cli import main
 main(sys.argv[1:])

@@ -14,7 +14,7 @@ import numpy as np
 
 from faying.asperity_fe.body import Balance, Body, State
 from faying.errors import NotConverged
-from faying.fe.solve import Factorisation, factorise
+from faying.fe.solve import Repeatable, factorise
 from faying.typing import Array, Index
 
 TOLERANCE = 1e-5  # unbalanced force over the forces that press
@@ -36,7 +36,7 @@ class Solver:
 
     def __init__(self, body: Body, name: str | None = None) -> None:
         self._body, self._name = body, name
-        self._factor: Factorisation | None = None
+        self._factor: Repeatable | None = None
         self.factorisations = 0
 
     def __call__(self, matrix: Any, right: Array) -> Array:

@@ -16,7 +16,7 @@ def mac(a: Any, b: Any, mass: Any | None = None) -> Array:
     modes of one structure are orthogonal in it and in nothing else. Raises InputError where the degrees of freedom
     differ in number.
     """
-    a, b = np.atleast_2d(a), np.atleast_2d(b)
+    a, b = (x if np.any(np.imag(x)) else np.real(x) for x in (np.atleast_2d(a), np.atleast_2d(b)))
     if a.shape[1] != b.shape[1]:
         raise InputError(f"shapes at {a.shape[1]} and at {b.shape[1]} degrees of freedom; give both at the same ones")
     if mass is not None:

@@ -8,13 +8,14 @@ import numpy as np
 from faying.fe.face_facts import FaceFacts, GeometryFacts
 from faying.fe.geometry import ELEMENTS, GRADING, UNKNOWNS
 from faying.fe.memory import guessed, in_single
-from faying.fe.solve import BY_PARTS, chosen
+from faying.fe.solve import BY_PARTS, chosen, is_mpi
 from faying.study.study import Study
 
 SEGMENTS = 2.0  # elements along a radius of curvature, as the mesher is told
 CURVED = 3.0  # so much more than beside a curved face alone: its edges are fine on the planes around, too (counted)
 # CPU seconds from the mesh to the modes of one load, by unknowns: the T-specimen on one thread (docs/speed.md)
 MEASURED = ((38_517, 3.4), (55_032, 4.1), (142_605, 14.0), (502_002, 98.3), (674_781, 137.0), (1_078_110, 514.0))
+OVER_MPI = 11e3  # B for each unknown that the processes of mpiexec take (docs/speed.md)
 MESHED = 1e-4  # CPU seconds per tetrahedron that the mesher takes, about
 BASIS = (
     "unknowns from volume, size and curved faces, within a factor of two; time as a T-specimen of as many took on one "
@@ -49,7 +50,11 @@ class Expected:
         elif unknowns > at[-1]:
             one = took[-1] * (unknowns / at[-1]) ** 2
         seconds = one * solved + (MESHED * unknowns / UNKNOWNS if study.geometry.step is not None else 0.0)
-        memory = in_single(unknowns) if chosen(study.modes.solver) in ("pardiso", BY_PARTS) else guessed(unknowns)
+        way = chosen(study.modes.solver)
+        if is_mpi(way):
+            memory = OVER_MPI * unknowns
+        else:
+            memory = in_single(unknowns) if way in ("pardiso", BY_PARTS) else guessed(unknowns)
         return cls(unknowns=unknowns, memory=memory, seconds=float(seconds))
 
 

@@ -44,7 +44,7 @@ def form_band(case: Case, states: Sequence[State]) -> tuple[FormBand | None, lis
     if given or apart or len(states) < 2 or not _crowned(case, 0.0):
         return None, []
     last = states[-1]
-    reduction = Reduction(
+    reduction = Reduction.about(
         structure,
         factor=last.modes.factorisation,
         reference=(last.modes.factorised + last.modes.shift * structure.vibrating[1]).tocsr(),

@@ -20,7 +20,10 @@ class StudyFaults(InputError):
     def __init__(self, where: str, lines: list[str]) -> None:
         count = f"{len(lines)} fault" + "s" * (len(lines) > 1)
         super().__init__(f"{where}: {count}\n" + "\n".join(f"  - {line}" for line in lines))
-        self.lines = tuple(lines)
+        self.where, self.lines = where, tuple(lines)
+
+    def __reduce__(self) -> tuple[type["StudyFaults"], tuple[str, list[str]]]:
+        return StudyFaults, (self.where, list(self.lines))  # as other processes send it
 
 
 MISSING: Any = object()
