@@ -42,13 +42,14 @@ def start(plate, width):
 def test_values_and_vectors(count):
     plate = Plate(20)
     found = Lobpcg(plate, start(plate, count + 6), count)
-    found.run(1e-10)
     wanted = eigh(plate.A.toarray(), plate.M.toarray(), eigvals_only=True)[:count]
+    found.run(1e-4)  # far above what rounding leaves in the lowest, 1e-10 of it
+    assert np.all(found.values[:count] / wanted - 1 < 20 * found.left[:count] + 1e-9)
+    found.run(1e-10)
     assert found.values[:count] == pytest.approx(wanted, rel=1e-9)
     x = found.vectors[:, :count]
     assert x.T @ (plate.M @ x) == pytest.approx(np.eye(count), abs=1e-10)
     assert np.abs(found.residual(np.arange(count))).max() < 1e-4
-    assert np.all(found.values[:count] / wanted - 1 < 20 * found.left[:count] + 1e-12)
 
 
 def test_exact_start_takes_no_step_and_going_on_sharpens():

@@ -14,6 +14,7 @@ from faying.typing import Array, Index, Mask
 POINTS_PER_COEFFICIENT = 2.0
 HIGHEST = 7  # degree that is tried
 FLATNESS = (1.0, 0.75, 0.5)  # of the norm that limits the terms: 1 is the total degree, .5 leaves few mixed terms
+ROUNDING = 1e-11  # of an output's largest value: an error that is less by no more takes no other terms
 DEPENDENT = 1e-10  # relative pivot below which a column of the design says nothing new
 
 
@@ -75,12 +76,13 @@ class Surrogate:
         coefficients = np.zeros((len(terms), y.shape[1]))
         error = np.full(y.shape[1], np.inf)
         best = np.zeros(y.shape[1], dtype=np.int64)
+        gain = ROUNDING * np.abs(np.where(known, y, 0.0)).max(axis=0)
         for pattern, outputs in _patterns(known):
             for entries, chosen in zip(where, sets, strict=True):
                 if len(entries) > 1 and len(entries) * POINTS_PER_COEFFICIENT > pattern.sum():
                     continue
                 found, left_out = _least_squares(columns[np.ix_(pattern, entries)], y[np.ix_(pattern, outputs)])
-                better = left_out < error[outputs]
+                better = left_out < error[outputs] - gain[outputs]
                 improved = outputs[better]
                 coefficients[:, improved] = 0.0
                 coefficients[np.ix_(entries, improved)] = found[:, better]
