@@ -152,3 +152,30 @@ def test_conjugate_gradients_reach_their_accuracy_for_every_right_hand_side(bars
     assert np.all(np.linalg.norm(A @ found - right, axis=0) <= 1e-8 * np.linalg.norm(right, axis=0))
     with pytest.raises(NotConverged, match="after 2 steps"):
         conjugate_gradients(lambda x: A @ x, factor, right, accuracy=1e-14, limit=2)
+
+
+def test_conjugate_gradients_begin_with_the_best_of_like_solutions(bars):
+    """With the solution among them nothing is left to do; with those of nearby springs little is."""
+    K, M = sprung(bars, 1e13, 5e12)
+    A = (K + S * M).tocsr()
+    factor = factorise((sprung(bars, 1e12, 1e12)[0] + S * M).tocsr())
+    right = np.random.default_rng(3).standard_normal((K.shape[0], 2))
+    steps = []
+
+    def solved(like):
+        steps.append(0)
+
+        def times(x):
+            steps[-1] += 1
+            return A @ x
+
+        return conjugate_gradients(times, factor, right, accuracy=1e-8, like=like)
+
+    wanted = solved(None)
+    near = [factorise((sprung(bars, k, k / 2)[0] + S * M).tocsr()).solve(right) for k in (0.7e13, 1.5e13)]
+    found = solved(np.concatenate(near, axis=1))
+    assert found == pytest.approx(wanted, rel=1e-6, abs=1e-6 * np.abs(wanted).max())
+    # twice the same, and one of no size: the combination is not unique, the solution is
+    again = solved(np.concatenate([wanted, near[0], wanted, 0 * wanted], axis=1))
+    assert again == pytest.approx(wanted, rel=1e-6, abs=1e-6 * np.abs(wanted).max())
+    assert steps[2] == 1 < steps[1] < steps[0]

@@ -61,15 +61,48 @@ def test_balance_and_warm_start():
     assert found.pressures[0] == pytest.approx(direct.pressures[0], rel=1e-6)
 
 
+def test_loads_in_a_row_lead_on_to_the_next():
+    """The same states as from the last one alone, in fewer steps; a load of another kind begins with the last one."""
+    structure = bars(material=STEEL)
+    ahead, alone = structure.assembly(), structure.assembly()
+    steps = np.zeros((6, 2), dtype=int)
+    for number, force in enumerate((3e3, 4e3, 5e3, 6e3, 7e3, 8e3)):
+        alone._past = alone._past[-1:]
+        found, wanted = (problem.solve(squeeze(structure, force)) for problem in (ahead, alone))
+        assert found.pressures[0] == pytest.approx(wanted.pressures[0], rel=1e-7)
+        steps[number] = found.inner_steps, wanted.inner_steps
+    assert np.array_equal(steps[:2, 0], steps[:2, 1])
+    assert steps[2:, 0].sum() < 0.7 * steps[2:, 1].sum()
+    # the same size again, and back: neither divides by zero
+    for force in (8e3, 8e3, 2e3):
+        found = ahead.solve(squeeze(structure, force))
+        assert structure.joints[0].interface.weights @ found.pressures[0] == pytest.approx(force, rel=1e-8)
+    bent = squeeze(structure, 4e3) + 0.1 * face_pair(structure, 4e3)
+    assert ahead._ahead(bent) is ahead._past[-1][1]
+    assert ahead.solve(bent).pressures[0] == pytest.approx(structure.assembly().solve(bent).pressures[0], rel=1e-6)
+    slips = bars(material=STEEL, friction=0.3)
+    assembly = slips.assembly()
+    for force in (1e3, 2e3):
+        assembly.solve(squeeze(slips, force))
+    assert len(assembly._past) == 1  # what slipped depends on what was before, so that there is no curve to go on
+
+
+def face_pair(structure, force):
+    """Load [N] (unknowns,) that presses the bars together along a line beside their axis."""
+    mesh = structure.mesh
+    centre, _, _ = face_centre(mesh.points, mesh.face("p1.right"))
+    line, inward = centre + np.array([0.0, 0.006, 0.0]), np.array([-1.0, 0.0, 0.0])
+    load = face_load(mesh.points, mesh.face("p1.right"), line, inward)
+    return force * (load + face_load(mesh.points, mesh.face("p0.left"), line, -inward))
+
+
 def test_an_eccentric_load_opens_one_side_and_still_balances():
     """A resultant outside the kern: part of the face carries nothing; force and moment are those of the load."""
     structure = bars(material=STEEL)
     mesh = structure.mesh
     centre, _, _ = face_centre(mesh.points, mesh.face("p1.right"))
     line = centre + np.array([0.0, 0.006, 0.0])
-    inward = np.array([-1.0, 0.0, 0.0])
-    load = face_load(mesh.points, mesh.face("p1.right"), line, inward)
-    load += face_load(mesh.points, mesh.face("p0.left"), line, -inward)
+    load = face_pair(structure, 1.0)
     found = structure.assembly().solve(4e3 * load)
     joint, p = structure.joints[0].interface, found.pressures[0]
     assert 0.05 < joint.weights[p == 0].sum() / joint.area < 0.9

@@ -14,6 +14,7 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.fe.modes import Modes
 from faying.fe.nearby import LEAST, Measure, NearbyModes
+from faying.fe.product import product
 from faying.typing import Array, Complex, Index
 
 Kind = Literal["hysteretic", "viscous"]
@@ -38,7 +39,7 @@ class DampedModes:
     def scaled_shapes(self, mass: Any) -> tuple[Array, Array]:
         """Real and imaginary part of the shapes (unknowns, m), scaled so that the real part is mass-normalised."""
         real = self.shapes.real
-        size = np.sqrt(np.einsum("im,im->m", real, mass @ real))
+        size = np.sqrt(np.einsum("im,im->m", real, product(mass, real)))
         return np.asarray(real / size), np.asarray(self.shapes.imag / size)
 
     def real_shapes(self, mass: Any) -> Array:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError, NotConverged
+from faying.fe.product import product
 from faying.fe.solve import Factorisation, factorise, negative_eigenvalues
 from faying.typing import Array
 
@@ -75,7 +76,7 @@ def lowest_modes(
     values, shapes = _ritz(stiffness, mass, shapes)
     if np.any(np.abs(np.sort(values + shift) * np.sort(inverse)[::-1] - 1) > max(SAME, tolerance)):
         # motions without mass have crept in, which the projection on the mass does not see: one more solve has none
-        shapes, _, _ = _orthonormal(factor.solve(np.asfortranarray(mass @ shapes)), mass)
+        shapes, _, _ = _orthonormal(factor.solve(product(mass, shapes)), mass)
         values, shapes = _ritz(stiffness, mass, shapes)
     _check_stable(stiffness, values, shapes, shift)
     order = np.argsort(np.abs(values))[:count]
@@ -140,7 +141,7 @@ def _ritz(stiffness: Any, mass: Any, shapes: Array) -> tuple[Array, Array]:
     small, gram = (np.zeros((shapes.shape[1], shapes.shape[1])) for _ in range(2))
     for k in range(0, shapes.shape[1], WIDTH):  # few at a time: images take as much room as shapes
         few = slice(k, k + WIDTH)
-        small[:, few], gram[:, few] = (shapes.T @ (matrix @ shapes[:, few]) for matrix in (stiffness, mass))
+        small[:, few], gram[:, few] = (shapes.T @ product(matrix, shapes[:, few]) for matrix in (stiffness, mass))
     values, turn = eigh((small + small.T) / 2, (gram + gram.T) / 2)
     return values, shapes @ turn
 
@@ -171,10 +172,10 @@ def _krylov(
         edge = np.zeros((last.shape[1], old))
         edge[:, old - before.shape[1] :] = rows
         projected = np.block([[projected, edge.T], [edge, corner]])
-        size = float(np.sqrt(np.einsum("ij,ij->j", image, mass @ image).max()))
+        size = float(np.sqrt(np.einsum("ij,ij->j", image, product(mass, image)).max()))
         image -= last @ corner
         image -= before @ rows.T
-        moved = mass @ image
+        moved = product(mass, image)
         for block in (still, *basis):
             image -= block @ (block.T @ moved)
         before = last
@@ -208,7 +209,7 @@ def _orthonormal(new: Array, mass: Any, nothing: float = 0.0) -> tuple[Array, Ar
     """
     rows, least = np.eye(new.shape[1]), 1e-14
     for _ in range(2):  # the Gram matrix squares what is small: what the first pass leaves, the second mends
-        momentum = mass @ new
+        momentum = product(mass, new)
         gram = new.T @ momentum
         values, turn = np.linalg.eigh((gram + gram.T) / 2)
         keep = values > max(least * values.max(initial=0.0), nothing**2)

@@ -7,6 +7,7 @@ import numpy as np
 
 from faying.errors import NotConverged
 from faying.fe.modes import TOLERANCE, Modes, lowest_modes
+from faying.fe.product import product
 from faying.fe.shifted import Shifted
 from faying.fe.single import Single, factorise_roughly
 from faying.fe.solve import Factorisation, Factoriser, factorise
@@ -169,8 +170,8 @@ class NearbyModes:
         mass, factor = self.span.mass, self.modes.factorisation
         found = np.random.default_rng(SEED).standard_normal((mass.shape[0], EVERYWHERE))
         for _ in range(2):  # towards the low modes
-            found = factor.solve(np.asfortranarray(mass @ found))
-            found /= np.sqrt(np.einsum("ij,ij->j", found, mass @ found))
+            found = factor.solve(product(mass, found))
+            found /= np.sqrt(np.einsum("ij,ij->j", found, product(mass, found)))
         self.span.add(found, least=LEAST)
         self._looked = True
 
@@ -231,7 +232,7 @@ def _few(columns: Index, size: int) -> list[Index]:
 
 def _left_over(stiffness: Any, mass: Any, shapes: Array, squared: Array) -> Array:
     """Forces (n, m) that shapes (n, m) with squared circular frequencies (m,) leave out of balance."""
-    return np.asfortranarray(stiffness @ shapes - mass @ (shapes * squared))
+    return np.asfortranarray(product(stiffness, shapes) - product(mass, shapes * squared))
 
 
 def _rounds_left(excess: float, first: float, done: int) -> float:

@@ -28,12 +28,17 @@ def _library() -> Any:
     return function
 
 
+def mkl() -> Any:
+    """MKL, as pypardiso has found it."""
+    from pypardiso.scipy_aliases import pypardiso_solver
+
+    return pypardiso_solver.libmkl
+
+
 @cache
 def handle(way: str) -> Any:
     """The function pardiso_handle_store or pardiso_handle_restore of MKL: (state, folder, fault)."""
-    from pypardiso.scipy_aliases import pypardiso_solver
-
-    function = getattr(pypardiso_solver.libmkl, f"pardiso_handle_{way}")
+    function = getattr(mkl(), f"pardiso_handle_{way}")
     function.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p]
     return function
 

@@ -222,7 +222,13 @@ def factorise(matrix: Any, name: str | None = None) -> Repeatable:
 
 
 def conjugate_gradients(
-    product: Callable[[Array], Array], factor: Factorisation, right: Array, *, accuracy: float, limit: int = 200
+    product: Callable[[Array], Array],
+    factor: Factorisation,
+    right: Array,
+    *,
+    accuracy: float,
+    limit: int = 200,
+    like: Array | None = None,
 ) -> Array:
     """Solve for several right-hand sides (n, m) by conjugate gradients, each on its own.
 
@@ -232,11 +238,16 @@ def conjugate_gradients(
         right: (n, m).
         accuracy: of the residual relative to the right-hand side.
         limit: steps.
+        like: solutions (n, k) of like equations; it starts from the best combination of them.
 
     Raises:
         NotConverged: the residual stays above the accuracy.
     """
     found, rest = np.zeros_like(right), np.array(right)
+    if like is not None:
+        image = product(like)
+        shares = np.linalg.lstsq(like.T @ image, like.T @ right, rcond=1e-12)[0]
+        found, rest = like @ shares, right - image @ shares
     target = accuracy * np.linalg.norm(right, axis=0)
     step, slope = np.zeros_like(right), np.ones(right.shape[1])
     for _ in range(limit):

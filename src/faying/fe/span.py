@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from faying.fe.product import product
 from faying.typing import Array
 
 CLOSE = 1e-14  # of what is orthonormal: overlap up to which it is
@@ -72,7 +73,7 @@ class Span:
     def __init__(self, mass: Any, stiffness: Any, first: Array) -> None:
         self.mass, self.stiffness = mass, stiffness
         self._columns = Columns(first)
-        self.small: Array = first.T @ (stiffness @ first)
+        self.small: Array = first.T @ product(stiffness, first)
 
     @property
     def vectors(self) -> Array:
@@ -84,13 +85,13 @@ class Span:
 
         least: share of a column's square, in the mass, that must be new; what is rounding is left out anyhow.
         """
-        basis, moved = self.vectors, self.mass @ new
+        basis, moved = self.vectors, product(self.mass, new)
         size = np.sqrt(np.einsum("ij,ij->j", new, moved))
         new = (new - basis @ (basis.T @ moved)) / size
-        moved = self.mass @ new
+        moved = product(self.mass, new)
         turn = _directions(new.T @ moved, least)
         new, moved = new @ turn, moved @ turn
-        image = self.stiffness @ new
+        image = product(self.stiffness, new)
         # the basis is long, and it is its reading that takes time
         left, side = np.split(basis.T @ np.concatenate([moved, image], axis=1), 2, axis=1)
         gram = new.T @ moved - left.T @ left  # a direction that was small has lost digits of its size

@@ -15,6 +15,7 @@ from faying.errors import NotConverged
 from faying.fe.faces import NamedFaces, face_centre
 from faying.fe.interface import Interface
 from faying.fe.modes import Modes
+from faying.fe.product import product
 from faying.fe.sides import nodes_of
 from faying.fe.solve import conjugate_gradients
 from faying.joint.bolt import BoltPlace, FittedBolt
@@ -39,11 +40,13 @@ class Clamping:
             what its members leave of the whole, and holds the contact under its head.
         members: delta_P, by how much the seats approach each other for 1 N of clamp force [m/N] (b,).
         traction: per joint, pressure [Pa] at its points for 1 N of clamp force in each bolt (b, q) [Pa/N].
+        motions: displacements (unknowns, b) [m/N] for 1 N of pull in each bolt, all of them tight.
     """
 
     bolt: Array
     members: Array
     traction: tuple[Array, ...]
+    motions: Array
 
     @property
     def load_factor(self) -> Array:
@@ -51,7 +54,14 @@ class Clamping:
         return self.members / (self.bolt + self.members)
 
 
-def clamping(structure: Structure, stiffness: Any, modes: Modes, springs: Sequence[Springs[Interface]]) -> Clamping:
+def clamping(
+    structure: Structure,
+    stiffness: Any,
+    modes: Modes,
+    springs: Sequence[Springs[Interface]],
+    *,
+    like: Array | None = None,
+) -> Clamping:
     """Find what the bolts of a preloaded structure clamp.
 
     Args:
@@ -59,6 +69,7 @@ def clamping(structure: Structure, stiffness: Any, modes: Modes, springs: Sequen
         stiffness: its tangent stiffness [N/m] with all bolts tight and the springs of its joints.
         modes: its modes, for their factorisation.
         springs: of each joint, at this preload.
+        like: `motions` (unknowns, k) at other preloads, to start from.
 
     Raises:
         NotConverged: the members have no stiffness against a bolt's force.
@@ -68,12 +79,12 @@ def clamping(structure: Structure, stiffness: Any, modes: Modes, springs: Sequen
     traction = [np.zeros((len(bolts), len(s.k_n))) for s in springs]
     loads = np.stack([fitted.load for fitted in bolts], axis=1)
     loads[structure.fixed] = 0.0
-    motions = _solved(stiffness, loads, structure, modes, [fitted.bolt.name for fitted in bolts])
+    motions = _solved(stiffness, loads, structure, modes, [fitted.bolt.name for fitted in bolts], like)
     for index, fitted in enumerate(bolts):
         motion = motions[:, index]
         loaded = float(loads[:, index] @ motion)
         left = 1 - fitted.rigidity * loaded
-        motion /= left  # of the members under 1 N, without what this bolt itself gives
+        motion = motion / left  # of the members under 1 N, without what this bolt itself gives
         for spread, s in zip(traction, springs, strict=True):
             opening = np.asarray(s.interface.relative @ motion).reshape(-1, 3)[:, 0]
             spread[index] = -s.k_n * opening
@@ -83,22 +94,29 @@ def clamping(structure: Structure, stiffness: Any, modes: Modes, springs: Sequen
         else:
             members[index] = _work(structure, springs, fitted, motion)
             own[index] = 1 / (fitted.rigidity * left) - members[index]
-    return Clamping(bolt=own, members=members, traction=tuple(traction))
+    return Clamping(bolt=own, members=members, traction=tuple(traction), motions=motions)
 
 
-def _solved(stiffness: Any, loads: Array, structure: Structure, modes: Modes, names: Sequence[str]) -> Array:
+def _solved(
+    stiffness: Any, loads: Array, structure: Structure, modes: Modes, names: Sequence[str], like: Array | None
+) -> Array:
     """K^-1 f for loads (n, b) that balance, by conjugate gradients with the shifted factorisation of the modes."""
     rigid = np.linalg.qr(structure.rigid)[0] if structure.rigid.size else np.zeros((len(loads), 0))
     balanced = loads - rigid @ (rigid.T @ loads)
     try:
         return conjugate_gradients(
-            lambda x: stiffness @ x, modes.factorisation, balanced, accuracy=ACCURACY, limit=MOST_STEPS
+            lambda x: product(stiffness, x),
+            modes.factorisation,
+            balanced,
+            accuracy=ACCURACY,
+            limit=MOST_STEPS,
+            like=like,
         )
     except NotConverged:
         if len(names) == 1:
             text = f"bolt {names[0]!r}: the parts that it clamps have no stiffness against its force"
             raise NotConverged(text) from None
-    alone = [_solved(stiffness, loads[:, k : k + 1], structure, modes, [name]) for k, name in enumerate(names)]
+    alone = [_solved(stiffness, loads[:, k : k + 1], structure, modes, [name], like) for k, name in enumerate(names)]
     return np.concatenate(alone, axis=1)
 
 

@@ -22,6 +22,8 @@ from faying.typing import Array, Mask
 ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall further
 FAR_OFF = 0.03  # of the imbalance, which a Newton step far from equilibrium leaves
 SETTLED = 1e-4  # imbalance below which k_t and the limit of friction are kept
+ALIKE = 1e-9  # relative difference of two loads up to which one is a multiple of the other
+STATES = 4  # under multiples of one load, from which the next is extrapolated
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,7 +89,7 @@ class StickSlip:
 
 
 class Equilibrium(ABC):
-    """Newton on equilibrium, for one load after another: each starts from the last."""
+    """Newton on equilibrium, for one load after another: each starts from those before."""
 
     def __init__(
         self, stiffness: Any, joints: Sequence[tuple[Any, JointLaw]], *, friction: Sequence[float | None] | None = None
@@ -96,7 +98,8 @@ class Equilibrium(ABC):
         self.joints = list(joints)
         self.friction = list(friction) if friction is not None else [None] * len(self.joints)
         self._anchors = [np.zeros((len(trace.weights), 2)) for trace, _ in self.joints]
-        self._last: Array | None = None
+        self._past: list[tuple[float, Array]] = []  # size [N] of multiples of one load, and displacements under them
+        self._pattern: Array | None = None  # that load, of size 1
         self._known: tuple[Array, list[tuple[Array, Array, Array]]] | None = None
         self.nearest: Array | None = None  # displacement nearest to balance in the last `solve`
         self.factorisations = 0
@@ -129,8 +132,9 @@ class Equilibrium(ABC):
     ) -> PreloadState:
         """Find equilibrium under nodal forces `load` [N] (unknowns,).
 
-        start: displacement to start from [m], the last one found where None; shanks: stiffness [N/m] of bolts that are
-        tight; tolerance: of the residual force relative to the load, or what rounding leaves of it where that is more.
+        start: displacement to start from [m], found from the loads before where None; shanks: stiffness [N/m] of bolts
+        that are tight; tolerance: of the residual force relative to the load, or what rounding leaves of it where that
+        is more.
         Beyond the end of a law its curve goes on, so that whoever keeps the pressures looks whether it covers them.
         Raises InputError when the load cannot balance, and NotConverged when Newton stops short.
         """
@@ -138,10 +142,11 @@ class Equilibrium(ABC):
             raise InputError("no bolt pulls: the load is zero everywhere; give at least one bolt a preload")
         self._check_load(load)
         self.stiffness = self.parts if shanks is None else self.parts + shanks
-        start = self._last if start is None else start
+        if start is None:
+            start = self._ahead(load) if self._past else self._start(load)
         newton = _Newton(self, load, tolerance, report)
-        u, grips = newton.run(self._start(load) if start is None else start, steps)
-        self._last = u
+        u, grips = newton.run(start, steps)
+        self._remember(load, u, alone=shanks is None)
         slipping = self._move_anchors(u, grips)
         openings, pressures = self.contact(u)
         return PreloadState(
@@ -154,6 +159,29 @@ class Equilibrium(ABC):
             inner_steps=newton.inner,
             factorisations=self.factorisations,
         )
+
+    def _ahead(self, load: Array) -> Array:
+        """Displacement to start from: the last one, or what leads on from the last few, whichever is nearer to balance.
+
+        Those under multiples of one load lie on a smooth curve, through which polynomials go.
+        """
+        last = self._past[-1][1]
+        size = float(np.linalg.norm(load))
+        if self._pattern is None or np.linalg.norm(load / size - self._pattern) > ALIKE:
+            return last
+        choices = [last, *(_led_on(self._past[-k:], size) for k in range(2, len(self._past) + 1))]
+        left = [np.linalg.norm(self._out_of_balance(u, load, self._grips(u))) for u in choices]
+        return choices[int(np.argmin(left))]
+
+    def _remember(self, load: Array, u: Array, *, alone: bool) -> None:
+        """Keep a displacement for the loads to come; alone: no bolt was tight under it."""
+        size = float(np.linalg.norm(load))
+        smooth = alone and all(friction is None for friction in self.friction)  # slip depends on what was before
+        pattern = load / size if smooth else None
+        if pattern is None or self._pattern is None or np.linalg.norm(pattern - self._pattern) > ALIKE:
+            self._past.clear()
+        self._pattern = pattern
+        self._past = [*(one for one in self._past if one[0] != size), (size, u)][-STATES:]
 
     def _move_anchors(self, u: Array, grips: list[StickSlip]) -> tuple[float, ...]:
         """Carry the shear that is left to the next load; return the share of the sliding area of each joint."""
@@ -292,15 +320,16 @@ class _Newton:
         """Return the displacement and the tangential state in equilibrium. Raises NotConverged after `most` steps."""
         balance, load = self.balance, self.load
         scale = float(np.linalg.norm(load))
-        least, tolerance = np.inf, self.tolerance
+        least, tolerance, rounding = np.inf, self.tolerance, None
         grips = balance._grips(u)
         while True:
             force = balance._out_of_balance(u, load, grips)
             self.size = float(np.linalg.norm(force)) / scale
             if self.size < least:
                 least, balance.nearest = self.size, u
-            if self.size < max(tolerance, ROUNDED) and tolerance < (rounding := balance._rounding(u) / scale):
-                tolerance = rounding
+            if rounding is None and self.size < max(tolerance, ROUNDED):
+                rounding = balance._rounding(u) / scale  # u hardly moves from here on
+                tolerance = max(tolerance, rounding)
             if self.size < tolerance:
                 fresh = balance._grips(u)
                 change = max(_grip_change(new, old) for new, old in zip(fresh, grips, strict=True))
@@ -323,6 +352,16 @@ class _Newton:
             self.steps, self.inner = self.steps + 1, self.inner + count
             if self.report:
                 self.report(f"Newton {self.steps}: imbalance {self.size:.1e}, {count} inner steps")
+
+
+def _led_on(past: Sequence[tuple[float, Array]], size: float) -> Array:
+    """Lagrange's polynomial through displacements under loads of some sizes, at another size."""
+    sizes = np.array([one for one, _ in past])
+    out = np.zeros_like(past[0][1])
+    for k, (own, u) in enumerate(past):
+        others = np.delete(sizes, k)
+        out += np.prod((size - others) / (own - others)) * u
+    return out
 
 
 def _grip_change(new: StickSlip, old: StickSlip) -> float:

@@ -21,6 +21,7 @@ from faying.surface.roughness import mean_peak_to_valley
 from faying.typing import Array
 
 NAN = float("nan")
+LIKE = 3  # loads before, whose motions are combined to start from
 CARRIES = 0.01  # of a bolt's force: a joint that carries less of it plays no part in its embedding
 
 
@@ -35,7 +36,9 @@ def bolt_numbers(case: Case, states: Sequence[State], shapes: Sequence[Array]) -
     if not bolts:
         return None
     stacks = [stack_of(structure, index) for index in range(len(bolts))]
-    found = [_clamped(structure, state) for state in states]
+    found: list[Clamping] = []
+    for state in states:
+        found.append(_clamped(structure, state, found[-LIKE:]))
     bolt, members = (np.stack([getattr(c, name) for c in found]) for name in ("bolt", "members"))
     forces = np.array([s.preload.bolt_forces for s in states])
     motion = np.stack([_modal_forces(structure, one) for one in shapes])
@@ -59,9 +62,10 @@ def bolt_numbers(case: Case, states: Sequence[State], shapes: Sequence[Array]) -
     )
 
 
-def _clamped(structure: Structure, state: State) -> Clamping:
+def _clamped(structure: Structure, state: State, before: Sequence[Clamping]) -> Clamping:
     stiffness, _ = structure.joined(state.springs)
-    return clamping(structure, stiffness, state.modes, state.springs)
+    like = np.concatenate([one.motions for one in before], axis=1) if before else None
+    return clamping(structure, stiffness, state.modes, state.springs, like=like)
 
 
 def _modal_forces(structure: Structure, shapes: Array) -> Array:
