@@ -47,13 +47,16 @@ class Curve:
     rest_damping: float
 
 
-def collected(curve: Curve) -> Backbone:
-    """Return the curve as it is kept."""
+def collected(curve: Curve, *, bounded: bool = True) -> Backbone:
+    """Return the curve as it is kept; where not `bounded`, without error bounds, static cycle and notes."""
     study, structure, line = curve.case.study, curve.case.structure, curve.line
     low = curve.choice.amplitude[0]
     first = next((k for k, p in enumerate(line.points) if p.level >= low * (1 - 1e-3)), len(line.points) - 1)
     points, residuals = line.points[first:], curve.residuals[first:]
-    bounds, witness = error_bounds(curve, points), _witness(curve, points)
+    bounds, witness, notes = ErrorBounds(), None, []
+    if bounded:
+        bounds, witness = error_bounds(curve, points), _witness(curve, points)
+        notes = _notes(curve, bounds, witness)
     interfaces = [joint.interface for joint in structure.joints]
     row = curve.epmc.observer
     assert row is not None
@@ -84,15 +87,15 @@ def collected(curve: Curve) -> Backbone:
         laws=tuple(joint.law.model.name for joint in structure.joints),
         witness=witness,
         bounds=replace(bounds, residual=float(max(residuals))),
-        notes=tuple(_notes(curve, bounds, witness)),
+        notes=tuple(notes),
         provenance=provenance(study),
         **_along(curve, points),
-        **_measured(curve.choice.measured),
+        **measured_points(curve.choice.measured),
     )
 
 
-def _measured(path: Path | None) -> dict[str, Any]:
-    """The measured points of a file, as the curve holds them."""
+def measured_points(path: Path | None) -> dict[str, Any]:
+    """The measured points of a file, as curves hold them; none without a file."""
     if path is None:
         return {}
     points = MeasuredBackbone.read(path)

@@ -12,7 +12,7 @@ from faying.joint.joint_law import JointLaw
 from faying.joint.part_shares import Scales
 from faying.joint.structure import Structure
 from faying.materials import Material
-from faying.study.case import joint_law
+from faying.study.case import Case, joint_law, materials_of
 from faying.study.keys.surface import Surface
 from faying.study.study import Study
 from faying.study.variation import Point
@@ -150,3 +150,27 @@ class Recipe:
             return None
         found = self._point(index).scales
         return [found.get(part, (1.0, 1.0)) for part in parts]
+
+    def case(self, structure: Structure, index: int) -> Case:
+        """One point, ready to be solved in full at its one load.
+
+        structure: that of the design, of whose parts E and density are scaled where they vary.
+        """
+        point = self._point(index)
+        laws, forces, friction = self.laws(index)
+        joints = [
+            replace(joint, law=replace(law, few=JointLaw.few), friction=mu)  # inverted as a run inverts it
+            for joint, law, mu in zip(structure.joints, laws, friction, strict=True)
+        ]
+        for k, gap in enumerate(self.gaps(index) or ()):
+            joints[k] = replace(joints[k], interface=replace(joints[k].interface, gap=gap))
+        materials = structure.materials
+        if point.scales:
+            materials = materials_of(point.study, structure.mesh)
+            for part, (stiffness, mass) in point.scales.items():
+                solid = materials[part]
+                materials[part] = replace(solid, E=solid.E * stiffness, density=(solid.density or 0.0) * mass)
+        pulled = zip(point.study.bolts, forces.tolist(), strict=True)
+        study = replace(point.study, bolts=tuple(replace(bolt, preload=(force,)) for bolt, force in pulled))
+        structure = replace(structure, joints=tuple(joints), materials=materials)
+        return Case(study=study, structure=structure, surfaces=point.surfaces)
