@@ -23,6 +23,13 @@ from faying.cli.progress import Form, Shown, progress_options
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw the intervals (svg, png, pdf).")
 @click.option("--tornado", type=click.Path(dir_okay=False, path_type=Path), help="Draw the shares of the variance.")
 @click.option("--scatter", type=click.Path(dir_okay=False, path_type=Path), help="Draw inputs against frequencies.")
+@click.option(
+    "--backbones",
+    type=click.IntRange(8, 1_000_000),
+    metavar="N",
+    help="Follow the mode of [backbone] to large amplitudes in the first N samples.",
+)
+@click.option("--bands", type=click.Path(dir_okay=False, path_type=Path), help="Draw the bands of the backbones.")
 @click.option("--html", type=click.Path(dir_okay=False, path_type=Path), help="Write tables and figures as one page.")
 @click.option("--json", "as_json", is_flag=True, help="Print the quantiles and shares as JSON.")
 @progress_options
@@ -36,15 +43,21 @@ def command(
     plot: Path | None,
     tornado: Path | None,
     scatter: Path | None,
+    backbones: int | None,
+    bands: Path | None,
     html: Path | None,
     as_json: bool,
     progress: Form | None,
 ) -> None:
     """Intervals of the frequencies of STUDY under the scatter that its [uncertain] states, and what causes them.
 
+    With --backbones also those of a mode's frequency and damping against its amplitude.
+
     What is done is kept beside the output; the same command goes on after an interruption.
     """
+    from faying.errors import InputError
     from faying.files import new_folder, write_text
+    from faying.identify.follow import choice_of
     from faying.identify.predict import check, predict
     from faying.output.figures import prediction as drawing
     from faying.output.figures.save import check_figure, save
@@ -52,12 +65,21 @@ def command(
     from faying.output.report_predicted import predicted
     from faying.study import Study
 
-    figures = {drawing.intervals: plot, drawing.tornado: tornado, drawing.scatter_matrix: scatter}
+    if bands and not backbones:
+        raise InputError("--bands draws backbones; ask for them with --backbones 32")
+    figures = {
+        drawing.intervals: plot,
+        drawing.tornado: tornado,
+        drawing.scatter_matrix: scatter,
+        drawing.backbones: bands,
+    }
     for file in figures.values():
         if file:
             check_figure(file)
     plan = Study.read(study)
     check(plan, samples, seed)
+    if backbones:
+        choice_of(plan, samples, backbones)
     out = out or plan.folder / "results" / "prediction.nc"
     with new_folder(out.parent, "give another file with --out"), Shown("predict", progress) as report:
         found = predict(
@@ -68,6 +90,7 @@ def command(
             dask=dask,
             out=out,
             report=report,
+            backbones=backbones or 0,
         )
     files = [out, *(save(draw(found), file) for draw, file in figures.items() if file)]
     if html:

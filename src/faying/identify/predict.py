@@ -9,6 +9,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.identify.ensemble import Ensemble, by_reason
 from faying.identify.evaluate import LIMIT, Reduced
+from faying.identify.follow import Follower, choice_of, sliding
 from faying.identify.identity import paired, settled
 from faying.identify.prediction import Prediction
 from faying.identify.store import Store
@@ -35,6 +36,7 @@ def predict(
     dask: str | None = None,
     out: str | Path | None = None,
     report: Report | None = None,
+    backbones: int = 0,
 ) -> Prediction:
     """Evaluate a study under the scatter of its numbers, as its [uncertain] says.
 
@@ -48,23 +50,32 @@ def predict(
         dask: address of a Dask scheduler, in place of processes.
         out: file to write, ending in .nc; what is done is kept beside it, and the same call goes on where it stopped.
         report: called with a stage, the samples done, and their number; 0 of 0 while the bases grow.
+        backbones: samples, the first of all, in which the mode of [backbone] is followed, each in full: 8 to `samples`;
+            0 for none.
 
     Returns:
         The samples with their frequencies; `quantiles()` and `shares()` say what they come to.
 
     Raises:
         InputError: nothing in the study scatters, it does not fit, or no sample has an answer.
+        NotConverged: the mode of the backbones is not found at the median.
 
     Source:
         Sobol's sequence: Joe and Kuo 2008, doi:10.1137/070709359, as SciPy has it.
     """
     study = Study.read(study)
     check(study, samples, seed)
+    choice = choice_of(study, samples, backbones) if backbones else None
     ensemble = Ensemble.of(study, samples, seed)
+    if choice is not None:
+        sliding(ensemble, choice, 0)  # raises, before the mesh
     file = None if out is None else Path(out)
     with Store(file, fingerprint(study, samples, seed, LIMIT), what="prediction") as store:
         reduced = Reduced(ensemble, jobs=jobs, dask=dask, report=report, store=store)
+        follower = None if choice is None else Follower.of(ensemble, choice, reduced)
         found = predicted(study, ensemble, reduced, reduced.rows(ensemble), seed)
+        if follower is not None:
+            found = found.with_backbones(follower.follow(backbones, reduced))
         if file is not None:
             found.save(file)
         store.finish()

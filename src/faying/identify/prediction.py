@@ -9,6 +9,7 @@ from typing import Any, Self
 import numpy as np
 
 from faying.errors import InputError
+from faying.identify.backbones import Backbones
 from faying.identify.ensemble import Inputs
 from faying.identify.shares import Shares, shares
 from faying.identify.surrogate import Surrogate
@@ -32,6 +33,9 @@ class Quantiles:
         loss_factors: (q, load, mode) [-]; NaN where no law predicts loss.
         slopes: Change with preload (q, mode) [Hz/N], by a line through all loads; NaN for a single load.
         paired: Frequencies of the test's modes (q, load, test mode) [Hz]; None where the study has no test.
+        backbone_frequencies: Of the backbones (q, amplitude) [Hz], NaN where fewer than half of them go on; None
+            without backbones.
+        backbone_damping: Their damping ratios to critical (q, amplitude) [-], likewise.
     """
 
     levels: tuple[float, ...]
@@ -39,6 +43,8 @@ class Quantiles:
     loss_factors: Array
     slopes: Array
     paired: Array | None
+    backbone_frequencies: Array | None = None
+    backbone_damping: Array | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -52,6 +58,7 @@ class Prediction(Recorded):
         tolerance: Relative error of a frequency that the bases were made for.
         basis: Sizes of the bases for equilibrium and vibration.
         reasons: Why samples have no answer, and how many.
+        backbones: Of the first samples; None where they were not asked for.
         notes: What there is to say.
         frequencies_of_test, test_source: The test, where the study has one.
     """
@@ -79,6 +86,7 @@ class Prediction(Recorded):
     )
     test_source: str = ""
     reasons: dict[str, int] = field(default_factory=dict)
+    backbones: Backbones | None = None
     notes: tuple[Note, ...] = ()
     provenance: Provenance | None = None
 
@@ -101,7 +109,7 @@ class Prediction(Recorded):
         return int(np.count_nonzero(self.sound))
 
     def quantiles(self, levels: Sequence[float] = LEVELS) -> Quantiles:
-        """Quantiles of frequencies, loss factors and slopes.
+        """Quantiles of frequencies, loss factors, slopes and backbones.
 
         Args:
             levels: Shares from 0 to 1 of the samples that lie below.
@@ -111,7 +119,11 @@ class Prediction(Recorded):
         """
         if not len(levels) or not all(0 <= level <= 1 for level in levels):
             raise InputError(f"levels {tuple(levels)} should be shares from 0 to 1, for example (.05, .5, .95)")
-        return self._quantiles(tuple(map(float, levels)), self.sound)
+        found = self._quantiles(tuple(map(float, levels)), self.sound)
+        if self.backbones is None:
+            return found
+        frequencies, damping = self.backbones.quantiles(levels)
+        return replace(found, backbone_frequencies=frequencies, backbone_damping=damping)
 
     def _quantiles(self, levels: tuple[float, ...], which: Any) -> Quantiles:
         if not np.any(which):
@@ -250,6 +262,8 @@ class Prediction(Recorded):
                 "predicted": {"unit": "Hz", "values": listed(found.paired)},
                 "covered": {"between 5 and 95 %": inside, "of": count},
             }
+        if self.backbones is not None:
+            out["backbones"] = self.backbones.to_dict(LEVELS)
         try:
             found_shares, error = self.shares()
         except InputError as fault:
@@ -287,6 +301,10 @@ class Prediction(Recorded):
             if getattr(self, name) is not None
         }
         return xarray.Dataset(data, coords={"input": list(self.names)}).set_coords("loads")
+
+    def with_backbones(self, backbones: Backbones) -> Self:
+        """The same with the backbones of its first samples, and what there is to say of them."""
+        return replace(self, backbones=backbones, notes=(*self.notes, *backbones.notes))
 
     def with_notes(self, notes: Sequence[Note]) -> Self:
         """The same with more to say."""

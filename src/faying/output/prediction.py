@@ -11,6 +11,7 @@ from faying.output.table import text as aligned
 
 WIDTH = 80  # columns of a terminal
 SHOWN = 0.03  # share of the variance from which an input is named
+MOST = 12  # accelerations in the table of backbones, but for the last
 POOR = 0.3  # leave-one-out error of the polynomial, over the scatter, from which shares of the variance say little
 
 
@@ -52,6 +53,31 @@ def losses(found: Prediction) -> Rows:
         cells = [" .. ".join(f"{v:.1e}" for v in q[:, load, mode]) for load in range(q.shape[1])]
         rows.append([str(mode + 1), *cells])
     return rows
+
+
+def backbones(found: Prediction) -> Rows:
+    """One row per acceleration, some of all: frequency and damping of the backbones, and how many go so far."""
+    curves = found.backbones
+    if curves is None:
+        return []
+    rows: Rows = [["a [m/s2]", "f [Hz]", "damping [%]", "curves"]]
+    frequencies, damping = curves.quantiles(LEVELS)
+    last = len(curves.acceleration) - 1
+    for k in sorted({*range(0, last, -(-last // MOST)), last}):
+        cells = ["-", "-"]
+        if curves.enough[k]:
+            cells = [_three(frequencies[:, k]), " .. ".join(f"{100 * z:.3g}" for z in damping[:, k])]
+        rows.append([f"{curves.acceleration[k]:.4g}", *cells, f"{curves.reached[k]} of {curves.answered}"])
+    return rows
+
+
+def observed_at(found: Prediction) -> str:
+    """Which mode the backbones are of, under which preload, and where they are observed; empty without any."""
+    curves = found.backbones
+    if curves is None:
+        return ""
+    at = ", ".join(f"{1e3 * x:.4g}" for x in curves.at)
+    return f"mode {curves.mode} at {curves.preload / 1e3:g} kN, acceleration at ({at}) mm"
 
 
 def beside_test(found: Prediction) -> Rows:
@@ -113,6 +139,9 @@ def text(found: Prediction) -> str:
         parts.append("\nloss factors, 5 % .. median .. 95 %\n" + _narrow(lines))
     if lines := slopes(found):
         parts.append("\nchange with preload, 5 % .. median .. 95 %\n" + aligned(lines))
+    if lines := backbones(found):
+        head = textwrap.fill(f"backbones, 5 % .. median .. 95 %: {observed_at(found)}", WIDTH)
+        parts.append(f"\n{head}\n" + aligned(lines))
     if lines := beside_test(found):
         head = textwrap.fill(f"beside the test ({found.test_source}): {inside} of {count} inside", WIDTH)
         parts.append(f"\n{head}\n" + aligned(lines))

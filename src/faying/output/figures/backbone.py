@@ -34,7 +34,7 @@ def panel(ax: Any, curves: Sequence[Backbone], quantity: str, measured: Sequence
     """
     own = curves[0].measured
     measured = [*([] if own is None else [own]), *measured]
-    factor = _factor(quantity)
+    factor = factor_of(quantity)
     for k, curve in enumerate(curves):
         color = f"C{k % 10}"
         ax.plot(
@@ -58,16 +58,16 @@ def panel(ax: Any, curves: Sequence[Backbone], quantity: str, measured: Sequence
                 label="static cycle" if k == 0 else None,
             )
     for k, points in enumerate(measured):
-        _marks(ax, points, quantity, k)
-    return _framed(ax, quantity)
+        marks(ax, points, quantity, k)
+    return framed(ax, quantity)
 
 
-def _marks(ax: Any, points: MeasuredBackbone, quantity: str, k: int) -> None:
+def marks(ax: Any, points: MeasuredBackbone, quantity: str, k: int) -> None:
     """Draw measured points, marked as the k-th of their kind."""
     known = np.isfinite(getattr(points, quantity))
     ax.plot(
         points.acceleration[known],
-        _factor(quantity) * getattr(points, quantity)[known],
+        factor_of(quantity) * getattr(points, quantity)[known],
         "xv+s"[k % 4],
         color="0.25",
         ms=4.5,
@@ -77,12 +77,12 @@ def _marks(ax: Any, points: MeasuredBackbone, quantity: str, k: int) -> None:
     )
 
 
-def _factor(quantity: str) -> float:
+def factor_of(quantity: str) -> float:
     """From SI to what is drawn."""
     return 100.0 if quantity == "damping" else 1.0
 
 
-def _framed(ax: Any, quantity: str) -> Any:
+def framed(ax: Any, quantity: str) -> Any:
     """Scales, grid and names of the axes."""
     ax.set_xscale("log")
     _readable(ax.xaxis)
@@ -156,8 +156,8 @@ def measured(points: MeasuredBackbone) -> Any:
     fig = new_figure(6.3, 6.2)
     upper, lower = fig.subplots(2, 1, sharex=True)
     for ax, quantity in ((upper, "frequency"), (lower, "damping")):
-        _marks(ax, points, quantity, 0)
-        _framed(ax, quantity)
+        marks(ax, points, quantity, 0)
+        framed(ax, quantity)
     lower.set_xlabel("acceleration [m/s²]")
     upper.set_title(plain(points.source) or "free decay", fontsize=10)
     return fig

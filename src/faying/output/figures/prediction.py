@@ -4,7 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from faying.identify.prediction import Prediction
+from faying.errors import InputError
+from faying.identify.prediction import LEVELS, Prediction
+from faying.output.figures.backbone import ROUNDING, factor_of, framed, marks
 from faying.output.figures.save import new_figure, plain, prefixed
 
 MOST_INPUTS = 6  # of the scatter matrix
@@ -88,4 +90,37 @@ def scatter_matrix(found: Prediction) -> Any:
             if row == len(modes) - 1:
                 ax.set_xlabel(plain(found.names[k]) + (f"\n[{unit}]" if unit else ""), fontsize=7)
         axes[row, 0].set_ylabel(f"mode {mode + 1} [Hz]", fontsize=8)
+    return fig
+
+
+def backbones(found: Prediction) -> Any:
+    """Return the figure of the backbones: 5 to 95 % and the median of frequency and damping, measured points over them.
+
+    Thin lines are the samples, some of which may go farther than the quantiles. Raises InputError without backbones.
+    """
+    curves = found.backbones
+    if curves is None:
+        raise InputError("this prediction has no backbones; ask for them with --backbones 32")
+    fig = new_figure(6.3, 6.2)
+    upper, lower = fig.subplots(2, 1, sharex=True)
+    a = curves.acceleration
+    bands = curves.quantiles(LEVELS)
+    for ax, quantity, values, band in (
+        (upper, "frequency", curves.frequencies, bands[0]),
+        (lower, "damping", curves.damping, bands[1]),
+    ):
+        factor = factor_of(quantity)
+        least = ROUNDING * np.nanmax(values, initial=0.0)  # below it nothing slips yet
+        low, middle, high = factor * np.where(band > least, band, np.nan)
+        for k, line in enumerate(factor * np.where(values > least, values, np.nan)):
+            ax.plot(a, line, color="0.6", lw=0.5, alpha=0.6, label="samples" if k == 0 else None)
+        ax.fill_between(a, low, high, color=COLOURS[0], alpha=0.25, lw=0, label="5 to 95 %")
+        ax.plot(a, middle, color=COLOURS[0], lw=1.8, label="median")
+        if curves.measured is not None:
+            marks(ax, curves.measured, quantity, 0)
+        framed(ax, quantity)
+    at = ", ".join(f"{1e3 * x:.4g}" for x in curves.at)
+    lower.set_xlabel(f"acceleration at ({at}) mm [m/s²]")
+    upper.set_title(f"{plain(found.title)}: mode {curves.mode}, {curves.preload / 1e3:g} kN", fontsize=10)
+    fig.legend(*upper.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     return fig
