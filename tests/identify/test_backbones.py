@@ -19,6 +19,7 @@ from faying.identify.backbones import Backbones
 from faying.identify.ensemble import Ensemble
 from faying.identify.follow import Follower, sliding
 from faying.identify.prediction import Prediction
+from faying.joint.form import Form
 from faying.output import prediction as tables
 from faying.output.figures import prediction as drawing
 from faying.output.report_predicted import predicted
@@ -96,6 +97,17 @@ def test_a_sample_has_the_curve_of_the_study_with_its_numbers(plan, found):
         f, z = curve.at_acceleration(np.minimum(curves.acceleration, curve.acceleration[-1]))
         np.testing.assert_allclose(curves.frequencies[sample], f, rtol=1e-8)
         np.testing.assert_allclose(curves.damping[sample], z, rtol=1e-5)
+
+
+def test_a_form_that_scatters_is_that_of_the_study_with_it():
+    study = study_of('[uncertain]\njoint.form.crown_along = "0.1 um to 0.9 um"')
+    work = follower(study, [[0.7e-6]])
+    joint = replace(study.joints[0], form=Form(crown_along=0.7e-6))
+    curve = faying.backbone(replace(study, joints=(joint,), uncertain=None), at=work.choice.at)
+    rows = work.rows([0])
+    f, z = curve.at_acceleration(np.minimum(work.grid, curve.acceleration[-1]))
+    np.testing.assert_allclose(rows["frequencies"][0], f, rtol=1e-8)
+    np.testing.assert_allclose(rows["damping"][0], z, rtol=1e-5)
 
 
 def test_at_rest_a_curve_begins_at_the_frequency_of_the_prediction(found):
@@ -181,10 +193,13 @@ def test_quantiles_stop_where_fewer_than_half_of_the_curves_go_on():
     assert not given([[10.0, 9.0]]).notes
 
 
-def test_without_any_curve_there_are_no_quantiles():
+def test_without_any_curve_there_are_no_quantiles(found):
     curves = given(np.full((3, 2), np.nan), reasons={"no answer": 3})
     assert np.isnan(curves.quantiles((0.5,))).all()
     assert not curves.enough.any()
+    shown = replace(found, backbones=curves)
+    assert tables.backbones(shown)[1][1:] == ["-", "-", "0 of 0"]
+    assert drawing.backbones(shown).axes
 
 
 def test_it_is_written_and_read(found, tmp_path):
