@@ -168,12 +168,12 @@ def lowest_complex(frequencies: Array, count: int) -> Index:
 
 def _times(real: Any, other: Complex) -> Complex:
     """A real matrix, dense or sparse, times a complex one, without a complex copy of the first."""
-    return np.asarray(real @ other.real + 1j * (real @ other.imag))
+    return np.asarray(product(real, other.real) + 1j * product(real, other.imag))
 
 
 def _enrich(near: NearbyModes, stiffness: Any, new: Array, *, least: float) -> int:
     """Add columns; combinations of them whose stiffness energy is below `least` are left out."""
-    gram = new.T @ (stiffness @ new)
+    gram = new.T @ product(stiffness, new)
     values, rotation = np.linalg.eigh((gram + gram.T) / 2)
     new = new @ rotation[:, values > max(least, 1e-12 * values.max(initial=0.0))]
     return near.span.add(new, least=LEAST) if new.shape[1] else 0
