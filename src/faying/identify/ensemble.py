@@ -1,7 +1,7 @@
 """Samples of a study whose numbers scatter, each at all of its loads."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Self
 
@@ -203,6 +203,8 @@ class Ensemble:
     inputs: Inputs
     values: Array
     training: int
+    # the last sample asked for, at all loads: its points differ in the forces alone
+    _last: dict[int, Point] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @classmethod
     def of(cls, study: Study, count: int, seed: int) -> "Ensemble":
@@ -278,8 +280,18 @@ class Ensemble:
     def point(self, index: int) -> Point:
         """The study at one sample and load."""
         sample, load = divmod(index, self.loads)
-        point = Point(study=self.study, surfaces=self.surfaces, forces=np.array(self.study.forces(load)))
+        if sample not in self._last:
+            found = self._at(sample)
+            self._last.clear()
+            self._last[sample] = found
+        found = self._last[sample]
+        return replace(found, forces=found.forces[load])
+
+    def _at(self, sample: int) -> Point:
+        """The study at one sample, with the forces [N] of all loads (loads, b)."""
+        forces = np.array([self.study.forces(load) for load in range(self.loads)])
         try:
+            point = Point(study=self.study, surfaces=self.surfaces, forces=forces)
             return self.inputs.put(point, self.values[sample], self.study)
         except FayingError as fault:
             raise InputError(f"a sample of the study cannot be: {fault}") from None

@@ -28,6 +28,7 @@ from faying.typing import Array, Index
 TRAINED = 1e-4  # relative error of a frequency where the bases are trained
 # estimate of the error of a frequency up to which the bases do not grow for a sample; the error is less, mostly
 LIMIT = 5e-3
+BALANCED = 1e-6  # imbalance that samples are left with: a frequency is right to half of it
 CHUNK = 32  # samples evaluated in one go
 ROUNDS = 2  # of training at samples that the bases do not fit
 WORST = 4  # samples trained on in each round
@@ -99,7 +100,7 @@ class Evaluator:
             start = found[-1].preload.displacement if found else None
             if usual:
                 start = usual[load] if start is None else start + usual[load] - usual[load - 1]
-            found.append(model.evaluate(laws, forces, friction, start))
+            found.append(model.evaluate(laws, forces, friction, start, BALANCED))
         return model, found, laws
 
     def with_median(self, law: int) -> "Evaluator":

@@ -17,16 +17,13 @@ class ContactTable:
     saves, there is no such table.
 
     Args:
-        begins: ln approach [m] from which each cell counts (c,).
-        cubic: ln p is ((c3 dx + c2) dx + c1) dx + c0 in a cell, one row for each coefficient (4, c).
-        tangential: ln k_t is a + b ln p in a cell: a and b (2, c).
+        cells: of each cell (c, 7) the ln approach [m] from which it counts; c0 to c3, with which ln p is
+            ((c3 dx + c2) dx + c1) dx + c0 in it; a and b, with which ln k_t is a + b ln p.
         index, first, per_step: the cell at equal steps of ln approach from `first`, and steps in one unit of it.
         ends: ln approach at which each cell but the last ends (c - 1,).
     """
 
-    begins: Array
-    cubic: Array
-    tangential: Array
+    cells: Array
     index: Index
     first: float
     per_step: float
@@ -48,10 +45,10 @@ class ContactTable:
         offset = np.concatenate([[log_t[0]], log_t[:-1], log_t[-1:]]) - flat * np.concatenate(
             [[log_p[0]], log_p[:-1], log_p[-1:]]
         )
+        begins = np.concatenate([log_w[:1], log_w])
+        cubic = np.concatenate([low, curve.cubic, high], axis=1)[::-1]
         return cls(
-            begins=np.concatenate([log_w[:1], log_w]),
-            cubic=np.ascontiguousarray(np.concatenate([low, curve.cubic, high], axis=1)[::-1]),
-            tangential=np.stack([offset, flat]),
+            cells=np.stack([begins, *cubic, offset, flat], axis=1),
             # one step more at each end, for all that lies beyond
             index=np.concatenate([[0], index + 1, [len(log_w)]]),
             first=float(log_w[0]) - step,
@@ -64,11 +61,10 @@ class ContactTable:
         place = np.minimum(np.maximum((log_w - self.first) * self.per_step, 0.0), len(self.index) - 1.0)
         cell = self.index.take(place.astype(np.intp), mode="clip")
         cell += log_w >= self.ends.take(cell, mode="clip")
-        np.minimum(cell, len(self.begins) - 1, out=cell)
-        dx = log_w - self.begins.take(cell, mode="clip")
-        c0, c1, c2, c3 = (row.take(cell, mode="clip") for row in self.cubic)
+        np.minimum(cell, len(self.cells) - 1, out=cell)
+        begin, c0, c1, c2, c3, offset, power = self.cells.take(cell, axis=0, mode="clip").T
+        dx = log_w - begin
         c3 *= dx
         log_p = ((c3 + c2) * dx + c1) * dx + c0
         steep = (3 * c3 + 2 * c2) * dx + c1
-        offset, power = (row.take(cell, mode="clip") for row in self.tangential)
         return log_p, steep, offset + power * log_p

@@ -192,6 +192,8 @@ class JointLaw:
 
     def loss(self, pressure: Array) -> tuple[Array, Array]:
         """Loss factors normal and tangential [-]; 0, as far as an equation asks, where the law predicts none."""
+        if not self.predicts_loss:
+            return np.zeros(np.shape(pressure)), np.zeros(np.shape(pressure))
         within = self._within(pressure)
         if np.size(pressure) <= self.few:
             return self._ask_loss(within)

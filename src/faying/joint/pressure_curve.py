@@ -68,9 +68,12 @@ class PressureCurve:
 
     @cached_property
     def _inverse(self) -> Any:
+        """ln w at ln p, beyond the first of the table; a shift of ln w leaves it."""
         from scipy.interpolate import CubicHermiteSpline
 
-        return CubicHermiteSpline(self.log_p, self.log_w, 1 / self.slope)
+        if self._unscaled is not None:
+            return self._unscaled._inverse
+        return CubicHermiteSpline(self.log_p, self.log_w - self.log_w[0], 1 / self.slope)
 
     def pressure(self, approach: Array) -> tuple[Array, Array]:
         """Pressure [Pa] and its slope [Pa/m] at approaches [m] of any shape; both 0 where the faces are apart."""
@@ -102,7 +105,7 @@ class PressureCurve:
         x = np.log(np.where(pressure > 0, pressure, 1.0))
         inside = np.clip(x, self.log_p[0], self.log_p[-1])
         end = np.where(x > inside, self.slope[-1], self.slope[0])
-        return np.where(pressure > 0, np.exp(self._inverse(inside) + (x - inside) / end), 0.0)
+        return np.where(pressure > 0, np.exp(self.log_w[0] + self._inverse(inside) + (x - inside) / end), 0.0)
 
 
 def fade(p: Array, k: Array) -> float:

@@ -27,7 +27,7 @@ BLOCK = 36  # real modes beyond those wanted that meet them exactly under the lo
 SPAN = 10  # modes in seven digits beyond those wanted, with which they span what the modes are sought in
 KEPT = 0.1  # of the force out of balance: a tangent that leaves less serves once more
 SECANTS = 1e-7  # imbalance to which secants lead: frequencies are right to a tenth of that
-NEAR = 3e-3  # imbalance of the groups at which all points go on
+NEAR = 1e-2  # imbalance of the groups at which all points go on
 MANY = 400  # points of a joint from which groups pay
 SLIGHT = 1e-6  # relative error of an eigenvalue up to which first order is enough for the higher modes
 
@@ -226,11 +226,17 @@ class ReducedModel:
         return [ReducedMotion(weights=w, gap=gap, relative=motion, groups=group) for w, gap, motion, group in found]
 
     def equilibrium(
-        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None = None
+        self,
+        laws: Sequence[JointLaw],
+        forces: Array,
+        friction: Sequence[float | None],
+        start: Array | None = None,
+        tolerance: float = SECANTS,
     ) -> PreloadState:
         """Equilibrium in the basis under bolt forces [N] (b,).
 
-        start: coefficients found before, maybe in fewer vectors.
+        start: coefficients found before, maybe in fewer vectors; tolerance: imbalance that is left where points are
+        grouped.
         """
         motions, load = self._motions(self.static_relative, 0), self.static_loads @ forces
         if start is not None:
@@ -245,7 +251,7 @@ class ReducedModel:
                     groups = self._balance([motion.coarse for motion in motions], laws, friction)
                     near = groups.solve(load, start=start, tolerance=NEAR).displacement
                 start = near
-                found = secants.solve(load, start, SECANTS) if all_grouped else None
+                found = secants.solve(load, start, tolerance) if all_grouped else None
                 if found is not None:
                     return found
             except NotConverged:
@@ -315,8 +321,6 @@ class ReducedModel:
 
     def _spanned(self, springs: Sequence[Springs[ReducedMotion]]) -> tuple[Complex, Complex, Array]:
         """`modes` in the span of those by groups' seven digits, which are kept but for the energy of the parts."""
-        from scipy.linalg import eigh
-
         turn, K = self._normal
         lossy = any(np.any(s.loss_n) or np.any(s.loss_t) for s in springs)
         rough, wanted = K, min(self.count + (BLOCK if lossy else SPAN), len(K))
@@ -327,7 +331,7 @@ class ReducedModel:
             else:
                 w = s.interface.weights[:, None]
                 rough = rough + turn.T @ sprung(groups.light, w * np.stack([s.k_n, s.k_t, s.k_t], axis=1)) @ turn
-        near, shapes = (found[..., :wanted] for found in eigh(rough, driver="evd"))  # sooner than a part of them
+        near, shapes = (found[..., :wanted] for found in np.linalg.eigh(rough))  # sooner than a part of them
         # the leading vectors of the basis are those of the first columns of `turn`, which is triangular
         cut = slice(0, self.coarse)
         coarser = np.linalg.eigvalsh(rough[cut, cut])
@@ -340,14 +344,19 @@ class ReducedModel:
             small = small + _of_springs(s, moved, s.k_n, s.k_t)
             if lossy:
                 loss = loss + _of_springs(s, moved, s.k_n * s.loss_n, s.k_t * s.loss_t)
-        real, inner = eigh(small)
+        real, inner = np.linalg.eigh(small)
         if not lossy:
             return real[: self.count].astype(complex), (span @ inner[:, : self.count]).astype(complex), estimate
         values, mixed = _complex_modes(real, inner.T @ loss @ inner, self.count)
         return values, span @ (inner @ mixed), estimate
 
     def evaluate(
-        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None = None
+        self,
+        laws: Sequence[JointLaw],
+        forces: Array,
+        friction: Sequence[float | None],
+        start: Array | None = None,
+        tolerance: float = SECANTS,
     ) -> Variant:
         """Evaluate one variant.
 
@@ -356,6 +365,7 @@ class ReducedModel:
             forces: Force of each bolt [N] (b,).
             friction: Coefficient of each joint [-], None where it sticks.
             start: `preload.displacement` of a like variant, from which the equilibrium is sought first.
+            tolerance: Imbalance [-] that is left where points are grouped.
 
         Raises:
             InputError: The forces fit no bolt, or are all zero.
@@ -363,7 +373,7 @@ class ReducedModel:
         """
         if np.shape(forces) != (self.static_loads.shape[1],):
             raise InputError(f"{np.size(forces)} bolt forces for {self.static_loads.shape[1]} bolts; give one for each")
-        found = self.equilibrium(laws, np.asarray(forces, dtype=float), friction, start)
+        found = self.equilibrium(laws, np.asarray(forces, dtype=float), friction, start, tolerance)
         values, shapes, estimate = self.modes(self.springs(laws, found.pressures))
         return Variant(
             shapes=shapes,

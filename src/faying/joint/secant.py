@@ -18,7 +18,8 @@ SLOW = 0.4  # of the imbalance, that a step leaves whose tangent is made anew
 NEWTON = 8  # steps of the groups after which a line search is due
 EVEN = 2  # times that joints of one pressure each are solved: the pressure is that of the last
 GROWN = 10.0  # times the least imbalance found, from which Newton is asked
-FAR = 0.2  # imbalance of a start that is none, and of a state whose tangent serves for one step
+FAR = 0.2  # imbalance of a state whose tangent serves for one step
+NO_START = 0.6  # imbalance of a start that is none
 AGAIN, FALLEN = 0.05, 0.03  # imbalance of a start whose tangent is that of groups, and where the one of points is made
 IN_FULL = 1e-3  # imbalance from which the balance is found in full once; what changes after that needs seven digits
 
@@ -104,7 +105,7 @@ class Secants:
         """
         few = replace(self, joints=[(motion.coarse, law) for motion, law in self.joints])
         scale = float(np.linalg.norm(load))
-        for u, least in ((start, FAR), (None, np.inf)):
+        for u, least in ((start, NO_START), (None, np.inf)):
             if u is None:
                 u = evenly_pressed(self.stiffness, few.joints, load)
             for _ in range(NEWTON):

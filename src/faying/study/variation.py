@@ -51,7 +51,7 @@ class Point:
 
     Args:
         study, surfaces: The study, and the surface of each joint.
-        forces: Of the bolts [N] (b,).
+        forces: Of the bolts [N] (b,), or at all loads (loads, b).
         stiffness: Factor on both stiffnesses of joints, by name [-].
         scales: Factors on the stiffness and the mass of parts, by name [-].
     """
