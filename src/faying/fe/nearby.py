@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import NotConverged
+from faying.fe.changed import Changed, whole
 from faying.fe.modes import TOLERANCE, Modes, lowest_modes
 from faying.fe.product import product
 from faying.fe.shifted import Shifted
@@ -67,7 +68,14 @@ class NearbyModes:
             self.span.add(vectors[:, some], least=LEAST)
 
     def under(
-        self, stiffness: Any, count: int, *, tolerance: float = 1e-7, spare: int = 0, rounds: int = ROUNDS
+        self,
+        stiffness: Any,
+        count: int,
+        *,
+        tolerance: float = 1e-7,
+        spare: int = 0,
+        rounds: int = ROUNDS,
+        shapes: bool = True,
     ) -> Modes:
         """Find the modes under a stiffness.
 
@@ -77,6 +85,7 @@ class NearbyModes:
             tolerance: of the estimated relative error of the squared frequencies.
             spare: further modes that are given as they come, to no tolerance.
             rounds: enrichments, those to come included at the rate of those done, beyond which it gives up.
+            shapes: whether to give any; without them (n, 0).
 
         Returns:
             The rigid motions, `count` elastic modes and the spare ones, with the factorisation of the modes before.
@@ -105,7 +114,7 @@ class NearbyModes:
             error[open_], mend = self._error(stiffness, inner[:, wanted], squared, open_, target)
             excess = float((error / target).max())
             if excess < 1:
-                found = self._found(values, inner, order[: self.rigid + count + spare], error[:count])
+                found = self._found(values, inner, order[: self.rigid + count + spare], error[:count], shapes)
                 self._keep(inner[:, order])
                 return found
             first = first or excess
@@ -150,12 +159,14 @@ class NearbyModes:
 
     def _change(self, stiffness: Any) -> tuple[Any, Index]:
         """What a stiffness has beyond that of the basis: (k, k) on the unknowns that differ, and these (k,)."""
+        before = self.span.stiffness
+        if isinstance(stiffness, Changed) and stiffness.before is before:
+            return stiffness.small, stiffness.touched
         if self._changed is None or self._changed[0] is not stiffness:
-            before = self.span.stiffness
             if stiffness is before:  # the difference would take the room of both
                 self._changed = stiffness, stiffness[:0, :0], np.zeros(0, dtype=np.int64)
             else:
-                change = (stiffness - before).tocsr()
+                change = (whole(stiffness) - before).tocsr()
                 change.eliminate_zeros()
                 touched = np.flatnonzero(np.diff(change.indptr))
                 self._changed = stiffness, change[touched][:, touched], touched
@@ -175,12 +186,12 @@ class NearbyModes:
         self.span.add(found, least=LEAST)
         self._looked = True
 
-    def _found(self, values: Array, inner: Array, order: Index, error: Array) -> Modes:
+    def _found(self, values: Array, inner: Array, order: Index, error: Array, shapes: bool) -> Modes:
         return replace(
             self.modes,
             error=np.concatenate([np.zeros(self.rigid), error, np.full(len(order) - self.rigid - len(error), np.nan)]),
             frequencies=np.sqrt(np.abs(values[order])) / (2 * np.pi),
-            shapes=self.span.vectors @ inner[:, order],
+            shapes=self.span.vectors @ inner[:, order] if shapes else self.modes.shapes[:, :0],
         )
 
     def _keep(self, inner: Array) -> None:

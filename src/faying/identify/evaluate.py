@@ -25,9 +25,9 @@ from faying.study.recipe import Recipe, contact_shares
 from faying.study.trainer import Trainer
 from faying.typing import Array, Index
 
-TRAINED = 1e-4  # relative error of a frequency where the bases are trained
+TRAINED = 1.5e-4  # relative error of a frequency where the bases are trained
 # estimate of the error of a frequency up to which the bases do not grow for a sample; the error is less, mostly
-LIMIT = 5e-3
+LIMIT = 7.5e-3
 BALANCED = 1e-6  # imbalance that samples are left with: a frequency is right to half of it
 CHUNK = 32  # samples evaluated in one go
 ROUNDS = 2  # of training at samples that the bases do not fit

@@ -7,8 +7,8 @@ import numpy as np
 from faying.typing import Array
 
 # times the tolerance: what the leading part of the basis for vibration may miss, from which errors are estimated
-COARSER = 70.0
-FEW_NEED, FEW_COARSE = 0.15, 15.0  # the same of sums over few variants, for all of the basis and for its leading part
+COARSER = 140.0
+FEW_NEED, FEW_COARSE = 0.3, 30.0  # the same of sums over few variants, for all of the basis and for its leading part
 ENOUGH = 1.5  # variants learnt, for each combination of displacements that they need
 
 

@@ -422,7 +422,7 @@ class Reduction:
         if turned is not None:
             self.static.turn(turned)
             self._states = [turned.T @ states]
-        rotation, coarse = for_modes(columns, 2 * tolerance, learnt=self.learnt > 0)
+        rotation, coarse = for_modes(columns, tolerance, learnt=self.learnt > 0)
         self.dynamic.turn(rotation)
         self._needed = [rotation.T @ columns]
         self._refresh(max(coarse, self.model.count))

@@ -262,10 +262,20 @@ class Structure:
 
         The loss is the imaginary part of the stiffness [N/m], or where viscous the damping [N s/m] of the JK paper.
         """
-        K = added(self.vibrating[0], [constrain(s.stiffness(), self.fixed, 0.0) for s in springs])
+        return added(self.vibrating[0], [self.sprung(springs)]), self.lost(springs, viscous=viscous)
+
+    def sprung(self, springs: Sequence[Springs[Interface]]) -> Any:
+        """Stiffness [N/m] of the springs of all joints alone; fixed unknowns cleared."""
+        return added(None, [constrain(s.stiffness(), self.fixed, 0.0) for s in springs])
+
+    def lost(self, springs: Sequence[Springs[Interface]], *, viscous: bool = False) -> Any:
+        """The loss of the springs of all joints, as `joined` gives it."""
+        from scipy.sparse import csr_array
+
         weight = float(self.matrices[1].sum()) / 3 if viscous else 0.0
-        losses = [constrain(s.viscous(weight) if viscous else s.loss(), self.fixed, 0.0) for s in springs]
-        return K, added(None, losses)
+        lossy = [s for s in springs if np.any(s.loss_n) or np.any(s.loss_t)]
+        losses = [s.viscous(weight) if viscous else s.loss() for s in lossy]
+        return added(csr_array(self.matrices[0].shape), [constrain(loss, self.fixed, 0.0) for loss in losses])
 
     def springs(self, pressures: Sequence[Array]) -> tuple[Springs[Interface], ...]:
         """Return the springs of every joint, as they are assembled.

@@ -7,6 +7,7 @@ import numpy as np
 
 from faying.contact.conductance import contact_conductance
 from faying.errors import InputError
+from faying.fe.changed import Changed
 from faying.joint.bolt import FittedBolt
 from faying.joint.clamping import Clamping, Stack, clamping, stack_of
 from faying.joint.structure import Structure
@@ -63,7 +64,7 @@ def bolt_numbers(case: Case, states: Sequence[State], shapes: Sequence[Array]) -
 
 
 def _clamped(structure: Structure, state: State, before: Sequence[Clamping]) -> Clamping:
-    stiffness, _ = structure.joined(state.springs)
+    stiffness = Changed(before=structure.vibrating[0], change=structure.sprung(state.springs))
     like = np.concatenate([one.motions for one in before], axis=1) if before else None
     return clamping(structure, stiffness, state.modes, state.springs, like=like)
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from faying.errors import NotConverged
+from faying.fe.changed import Changed, whole
 from faying.fe.interface import Interface
 from faying.fe.memory import check_modes
 from faying.fe.modes import Modes, lowest_modes
@@ -12,6 +13,7 @@ from faying.fe.shifted import Shifted
 from faying.fe.single import factorise_roughly
 from faying.fe.solve import Factoriser
 from faying.joint.equilibrium import PreloadState
+from faying.joint.frame import added
 from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
 from faying.joint.support_check import checked_preload
@@ -51,36 +53,39 @@ class SharedModes:
 
     def __init__(self) -> None:
         self.near: NearbyModes | None = None  # where the modes were found last
+        self._sprung: Any = None  # stiffness [N/m] of the springs in that of its basis
 
-    def of(self, case: Case, springs: Sequence[Springs[Interface]]) -> tuple[Modes, Any, Any]:
-        """Real modes, and the stiffness and loss that they belong to, as `modes_of` gives them."""
-        stiffness, loss = joined(case, springs)
-        return self.under(case, stiffness), stiffness, loss
+    def of(
+        self, case: Case, springs: Sequence[Springs[Interface]], *, tolerance: float = EXACT, shapes: bool = True
+    ) -> tuple[Modes, Any]:
+        """Real modes, and the stiffness [N/m] that they belong to, which may be a `Changed` one.
 
-    def under(self, case: Case, stiffness: Any, *, tolerance: float = EXACT) -> Modes:
-        """Real modes under a stiffness [N/m] that leaves the rigid motions of the case free.
-
-        tolerance: of the squared frequencies, relative.
+        tolerance: of the squared frequencies, relative; shapes: False where only these are wanted.
         """
+        structure = case.structure
+        sprung = structure.sprung(springs)
         if self.near is not None:
+            # the sum with the parts would take longer than the modes where the basis has them
+            stiffness = Changed(before=self.near.span.stiffness, change=sprung - self._sprung)
             try:
-                return self._from_near(case, stiffness, tolerance)
+                return self._from_near(case, stiffness, tolerance, shapes), stiffness
             except NotConverged:
-                self._factorise(case, stiffness)
+                self._factorise(case, whole(stiffness))
             try:
-                return self._from_near(case, stiffness, tolerance)
+                return self._from_near(case, stiffness, tolerance, shapes), stiffness
             except NotConverged:
                 self.near = None  # before the next factorisation: one at a time in memory
-        mass = case.structure.vibrating[1]
-        modes = modes_with(case, stiffness, mass, rigid=case.structure.rigid)
+        stiffness, mass = added(structure.vibrating[0], [sprung]), structure.vibrating[1]
+        modes = modes_with(case, stiffness, mass, rigid=structure.rigid)
         self.near = NearbyModes(modes, stiffness, mass, rigid=case.rigid_count, most=KEPT * len(modes.frequencies))
-        return modes
+        self._sprung = sprung
+        return modes, stiffness
 
-    def _from_near(self, case: Case, stiffness: Any, tolerance: float) -> Modes:
+    def _from_near(self, case: Case, stiffness: Any, tolerance: float, shapes: bool) -> Modes:
         assert self.near is not None
         count = case.study.modes.count
         spare = case.mode_count - case.rigid_count - count
-        return self.near.under(stiffness, count, tolerance=tolerance, spare=spare, rounds=FEW)
+        return self.near.under(stiffness, count, tolerance=tolerance, spare=spare, rounds=FEW, shapes=shapes)
 
     def _factorise(self, case: Case, stiffness: Any) -> None:
         """Factorise a stiffness [N/m] that the factorisation at hand is far from; the basis stays."""

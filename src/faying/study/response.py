@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from faying.fe.changed import whole
 from faying.fe.constraint import constrain
 from faying.fe.damped import DampedModes
 from faying.fe.modes import Modes
@@ -95,7 +96,7 @@ class LoadedStructure:
         spec = self.study.response
         eta = 0.0 if spec is None else spec.structural_loss
         vibration = Vibration(
-            stiffness=self.stiffness,
+            stiffness=whole(self.stiffness),
             mass=self.mass,
             loss=self.loss,
             rigid=self.structure.rigid_count,

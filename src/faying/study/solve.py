@@ -83,7 +83,8 @@ def solve(
     springs = structure.springs(preload.pressures)
     progress.begin(f"modes at {load / 1e3:g} kN")
     mass = structure.vibrating[1]
-    modes, stiffness, loss = shared.of(case, springs)
+    modes, stiffness = shared.of(case, springs)
+    loss = structure.lost(springs, viscous=study.modes.damping == "viscous")
     check_motions(structure, modes)
     problem.take(modes.factorisation, case.shift_frequency)
     assert shared.near is not None
@@ -150,9 +151,8 @@ def _at_end(end: Literal["low", "high"], case: Case, preload: PreloadState, shar
         return None
     joints = [replace(j, law=replace(j.law, end=end)) if j.law.has_range else j for j in structure.joints]
     changed = replace(structure, joints=tuple(joints))
-    stiffness, _ = changed.joined(changed.springs(preload.pressures))
-    elastic = slice(case.rigid_count, case.rigid_count + case.study.modes.count)
-    return shared.under(case, stiffness, tolerance=RANGE_ERROR).frequencies[elastic]
+    modes, _ = shared.of(case, changed.springs(preload.pressures), tolerance=RANGE_ERROR, shapes=False)
+    return modes.frequencies[case.rigid_count : case.rigid_count + case.study.modes.count]
 
 
 def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[Note]:
