@@ -9,6 +9,7 @@ import shutil
 import tempfile
 import weakref
 from collections.abc import Sequence
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -114,7 +115,7 @@ class _Parts:
         self._corrections: dict[int, tuple[Array, Array]] = {}
         for kind, number in first.items():
             part, inside = parts[number], self.local[number]
-            self._factors[kind] = CondensedPart(block(matrix, part, part), inside, single=single)
+            self._factors[kind] = CondensedPart(partial(block, matrix, part, part), len(part), inside, single=single)
             self._corrections[kind] = self._correction(kind, matrix, part, motions[part], inside)
             if self.on_disk:
                 self._store(kind)

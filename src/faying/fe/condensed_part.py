@@ -1,6 +1,7 @@
 """The factor of one part: what lies inside is eliminated, what others touch is left as a dense matrix."""
 
 import ctypes
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,8 @@ class CondensedPart(Pardiso):
     """A factor of the inside of a part by PARDISO, with the Schur complement on its touched unknowns.
 
     Args:
-        matrix: of the part, symmetric positive definite CSR (n, n).
+        matrix: makes that of the part, symmetric positive definite CSR (n, n).
+        size: n.
         touched: unknowns (t,) that are not eliminated.
         single: whether in single precision.
 
@@ -26,12 +28,13 @@ class CondensedPart(Pardiso):
         InputError: memory is short.
     """
 
-    def __init__(self, matrix: Any, touched: Index, *, single: bool) -> None:
+    def __init__(self, matrix: Callable[[], Any], size: int, touched: Index, *, single: bool) -> None:
         self._touched = touched
         self._stored: Path | None = None
-        self._none, self._all = len(touched) == 0, len(touched) == matrix.shape[0]
+        self._none, self._all = len(touched) == 0, len(touched) == size
         if self._all:  # nothing lies inside
-            self.schur, self.memory = matrix.toarray(), float(matrix.data.nbytes)
+            self.schur = matrix().toarray()
+            self.memory = float(self.schur.nbytes)
             return
         if self._none:
             super().__init__(matrix, single=single)

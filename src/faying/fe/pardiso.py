@@ -62,12 +62,20 @@ class Pardiso:
 
     pypardiso's own call converts the indices and refines every solution in two more passes over the factor; here the
     indices are converted once and nothing is refined: those who iterate on it see their own residuals.
+
+    Args:
+        matrix: the matrix, or a function that makes it, so that nobody holds it while it is factorised.
+        kind: POSITIVE or INDEFINITE.
+        single: whether in single precision.
+        kept: unknowns (t,) that are not eliminated; None eliminates all.
     """
 
     name = "PARDISO"
 
     def __init__(self, matrix: Any, kind: int = POSITIVE, *, single: bool = False, kept: Index | None = None) -> None:
         self._kind, self._type = kind, np.dtype(np.float32 if single else np.float64)
+        if callable(matrix):
+            matrix = matrix()
         matrix.sum_duplicates()  # and sorts the indices
         self._size = matrix.shape[0]
         self._block = BLOCK if kept is None and _in_blocks(matrix) else 1
@@ -83,7 +91,7 @@ class Pardiso:
         self._starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
         self._columns = blocks.indices[self._kept].astype(np.int32)
         self._values = np.asarray(blocks.data[self._kept], dtype=self._type).ravel()
-        del blocks, rows
+        del matrix, blocks, rows
         self._state, self._iparm = np.zeros(64, dtype=np.int64), np.zeros(64, dtype=np.int32)
         iparm = self._iparm
         iparm[0] = 1  # the values below, not the library's
