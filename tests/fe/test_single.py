@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import sparse as sp
 
 import faying
 from faying.errors import NotConverged
@@ -91,6 +92,28 @@ def test_every_solver_gives_refined_modes(bars, solver):
     found = refined_modes(K, M, 10, rigid=rigid_motions(bars[0].points), shift_frequency=SHIFT, solver=solver)
     wanted = lowest_modes(K, M, 10, shift_frequency=SHIFT)
     assert found.frequencies[6:] == pytest.approx(wanted.frequencies[6:], rel=1e-8)
+
+
+@needs_pardiso
+@settings(max_examples=20, deadline=None)
+@given(
+    count=st.integers(1, 40),
+    apart=st.sampled_from([0.0, 1e-6, 1e-3, 2e-2]),
+    copies=st.integers(2, 24),
+    spare=st.integers(0, 6),
+    seed=st.integers(0, 9),
+)
+def test_no_mode_of_a_cluster_is_missed(count, apart, copies, spare, seed):
+    """Chains of 40 masses between walls, almost alike: w^2 = 4 sin^2(i pi / 82) times what each has for itself."""
+    length = 40
+    one = sp.diags_array([np.full(length, 2.0), -np.ones(length - 1), -np.ones(length - 1)], offsets=[0, 1, -1])
+    own = 1 + apart * np.random.default_rng(seed).uniform(size=copies)
+    K, M = sp.block_diag([scale * one for scale in own]).tocsr(), sp.eye_array(copies * length).tocsr()
+    alone = 4 * np.sin(np.arange(1, length + 1) * np.pi / (2 * length + 2)) ** 2
+    wanted = np.sqrt(np.sort(np.outer(own, alone).ravel()))[:count] / (2 * np.pi)
+    none = np.zeros((copies * length, 0))
+    found = refined_modes(K, M, count + spare, rigid=none, shift_frequency=float(wanted[0]), spare=spare)
+    assert found.frequencies[:count] == pytest.approx(wanted, rel=1e-8)
 
 
 @settings(max_examples=8, deadline=None)

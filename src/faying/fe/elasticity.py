@@ -130,11 +130,10 @@ def assemble(mesh: Mesh, materials: Mapping[str, Solid], *, mass: str = "exact")
 
 
 def _add(total: Array, slot: Index, values: Array) -> None:
-    """Add rows of values to the rows `slot` of total, where a slot may occur many times."""
-    order = np.argsort(slot, kind="stable")
-    ranked = slot[order]
-    starts = np.flatnonzero(np.concatenate([[True], ranked[1:] != ranked[:-1]]))
-    total[ranked[starts]] += np.add.reduceat(values[order], starts)
+    """Add rows of values (p, k) to the rows `slot` of total (m, k), where a slot may occur many times."""
+    width = total.shape[1]
+    places = width * slot[:, None] + np.arange(width)  # of single numbers, which NumPy adds ten times as fast as rows
+    np.add.at(total.reshape(-1), places.ravel(), values.ravel())
 
 
 def _with_transpose(upper: Any) -> Any:

@@ -46,35 +46,39 @@ def lowest_modes(
     solver: str | None = None,
     factor: Factorisation | None = None,
     rigid: Array | None = None,
-    tolerance: float = TOLERANCE,
+    tolerance: float | Array = TOLERANCE,
 ) -> Modes:
     """Find the `count` lowest modes by block Lanczos iteration with a negative shift.
 
     stiffness [N/m], mass [kg]: sparse and symmetric; shift_frequency [Hz] sets the shift -(2 pi f)^2, at which
     K + |shift| M is positive definite even for free bodies; factor: of that matrix, made here where None; rigid: the
     motions (n, r) that nothing resists, which are not looked for where they are given; tolerance: residual of
-    A^-1 M x = theta x over theta, A the factorised matrix. Raises InputError where more modes are asked for than there
-    are masses, the shift is above every mode, the structure is unstable, or memory is short, and NotConverged where the
-    iteration stops short.
+    A^-1 M x = theta x over theta, A the factorised matrix, one for all or one for each (count,), infinite for modes
+    that may be as they come, or not at all. Raises InputError where more modes are asked for than there are masses, the
+    shift is above every mode, the structure is unstable, or memory is short, and NotConverged where the iteration stops
+    short.
     """
     check_shift(stiffness, mass, shift_frequency)
     shift = (2 * np.pi * shift_frequency) ** 2
-    most = int(np.count_nonzero(mass.diagonal() > 0))
-    if not 0 < count <= most:
-        raise InputError(f"{count} modes of a structure with {most} unknowns that have mass; ask for 1 to {most}")
+    allowed = np.broadcast_to(tolerance, (max(count, 0),))
+    least, most = int(np.count_nonzero(np.isfinite(allowed))), int(np.count_nonzero(mass.diagonal() > 0))
+    if not 0 < least <= most:
+        raise InputError(f"{least} modes of a structure with {most} unknowns that have mass; ask for 1 to {most}")
     if factor is None:
         factor = factorise((stiffness + shift * mass).tocsr(), solver)
     still, _, _ = _orthonormal(np.zeros((stiffness.shape[0], 0)) if rigid is None else rigid, mass)
     inverse, shapes = np.full(still.shape[1], 1 / shift), still
     if count > still.shape[1]:
         width = min(WIDTH, stiffness.shape[0])
-        more = _krylov(factor, mass, count - still.shape[1], width, still=still, tolerance=tolerance)
+        more = _krylov(factor, mass, width, still=still, allowed=allowed[still.shape[1] :])
         inverse, shapes = np.concatenate([inverse, more[0]]), np.concatenate([shapes, more[1]], axis=1)
         del more
-    if len(inverse) < count:
-        raise InputError(f"{count} modes of a structure whose masses allow {len(inverse)}; ask for 1 to {len(inverse)}")
+    if len(inverse) < least:
+        raise InputError(f"{least} modes of a structure whose masses allow {len(inverse)}; ask for 1 to {len(inverse)}")
     values, shapes = _ritz(stiffness, mass, shapes)
-    if np.any(np.abs(np.sort(values + shift) * np.sort(inverse)[::-1] - 1) > max(SAME, tolerance)):
+    apart = np.abs(np.sort(values + shift) * np.sort(inverse)[::-1] - 1)[:count]
+    allowed = allowed[: len(apart)]
+    if np.any(apart > np.maximum(SAME, allowed)):
         # motions without mass have crept in, which the projection on the mass does not see: one more solve has none
         shapes, _, _ = _orthonormal(factor.solve(product(mass, shapes)), mass)
         values, shapes = _ritz(stiffness, mass, shapes)
@@ -83,7 +87,7 @@ def lowest_modes(
     return Modes(
         frequencies=np.sqrt(np.abs(values[order])) / (2 * np.pi),
         shapes=shapes[:, order],
-        error=np.full(count, tolerance),
+        error=np.where(np.isfinite(allowed), allowed, np.nan),
         factorisation=factor,
         factorised=stiffness,
         shift=shift,
@@ -146,18 +150,18 @@ def _ritz(stiffness: Any, mass: Any, shapes: Array) -> tuple[Array, Array]:
     return values, shapes @ turn
 
 
-def _krylov(
-    factor: Factorisation, mass: Any, count: int, width: int, *, still: Array, tolerance: float
-) -> tuple[Array, Array]:
-    """The greatest eigenvalues (count,) of A^-1 M and their vectors (n, count), orthonormal with the mass.
+def _krylov(factor: Factorisation, mass: Any, width: int, *, still: Array, allowed: Array) -> tuple[Array, Array]:
+    """The greatest eigenvalues of A^-1 M to residuals `allowed` (count,), and their vectors (n, count).
 
-    Fewer where the mass has a lower rank. Vectors `still` (n, r), orthonormal with the mass, are left out of it.
+    Orthonormal with the mass; fewer where it has a lower rank. Vectors `still` (n, r), orthonormal too, are left out.
 
     Block Lanczos with full reorthogonalisation (Grimes, Lewis, Simon 1994, doi:10.1137/S0895479888151111), without
     restarts: a factor takes far more memory than the basis. An eigenvalue that comes as often as the blocks are wide
     may come more often than that, so that wider ones are tried.
     """
-    n = mass.shape[0]
+    n, count = mass.shape[0], len(allowed)
+    wanted = np.isfinite(allowed)
+    same = max(SAME, *allowed[wanted])
     generator = np.random.default_rng(SEED)
     last = factor.solve(mass @ generator.standard_normal((n, width)))
     last -= still @ (still.T @ (mass @ last))
@@ -172,7 +176,8 @@ def _krylov(
         edge = np.zeros((last.shape[1], old))
         edge[:, old - before.shape[1] :] = rows
         projected = np.block([[projected, edge.T], [edge, corner]])
-        size = float(np.sqrt(np.einsum("ij,ij->j", image, product(mass, image)).max()))
+        known = np.concatenate([rows.T, corner])  # what the last two blocks have of the image
+        size = float(np.linalg.norm(known, axis=0).max())
         image -= last @ corner
         image -= before @ rows.T
         moved = product(mass, image)
@@ -183,12 +188,12 @@ def _krylov(
         del image, moved  # before the next solution takes room
         values, vectors = np.linalg.eigh(projected)
         values, vectors = values[::-1][:count], vectors[:, ::-1][:, :count]
-        converged = np.linalg.norm(rows @ vectors[old:], axis=0) <= tolerance * values
+        converged = np.linalg.norm(rows @ vectors[old:], axis=0) <= allowed[: len(values)] * values
         whole = not last.shape[1]
-        found = values if whole else values[converged]
-        often = max((int(np.count_nonzero(np.abs(found / value - 1) < SAME)) for value in found), default=0)
+        found = values if whole else values[converged & wanted[: len(values)]]
+        often = max((int(np.count_nonzero(np.abs(found / value - 1) < same)) for value in found), default=0)
         if width <= often < count and width < n:
-            return _krylov(factor, mass, count, 2 * width, still=still, tolerance=tolerance)
+            return _krylov(factor, mass, 2 * width, still=still, allowed=allowed)
         if whole or (len(values) == count and np.all(converged)):
             shapes = np.empty((n, len(values)), order="F")
             for begin in range(0, n, ROWS):

@@ -17,14 +17,15 @@ from faying.typing import Array, Index
 
 ROUNDS = 40  # enrichments of the basis
 SLOWEST = 0.3  # decades that a round is taken to gain where it has gained less so far
-START = 1e-4  # residual of modes, as `lowest_modes` takes it, that are to be refined
-REFINED = 1e-10  # estimated relative error of the squared frequencies of refined modes
+START = 1e-2  # residual of modes, as `lowest_modes` takes it, that are to be refined
+REFINED = 1e-9  # estimated relative error of the squared frequencies of refined modes
 WATCHED = 4  # modes beyond those wanted that must have found their place above them
 PLACED = 1e-2  # estimated relative error of their squared frequencies
 EVERYWHERE = 6  # vectors of no symmetry that each new stiffness begins with
 SEED = 20261124
 LEAST = 1e-10  # share of a new vector that must be new
 FEW, ROOM = 8, 2_000_000  # vectors, or numbers, that are worked on together: the larger
+NEIGHBOURS = 10  # modes that are taken to lie as near together as two that are found
 DOUBT = 3.0  # times by which the energy of a residual may have grown against that by the diagonal since the last round
 
 
@@ -98,7 +99,7 @@ class NearbyModes:
         touched = self._change(stiffness)[1]
         if len(touched) and not self._looked:  # else these are modes that have been looked for everywhere already
             self._look_everywhere()
-        targets = np.full(count + (WATCHED if len(touched) else 0), PLACED)
+        targets = np.full(count + WATCHED, PLACED)
         targets[:count] = tolerance
         errors, settled = np.ones(len(targets)), np.zeros(len(targets))
         if self._measure.count != len(targets):
@@ -107,14 +108,20 @@ class NearbyModes:
             values, inner = self.projected(stiffness)
             order = np.argsort(np.abs(values))
             wanted = order[self.rigid : self.rigid + len(targets)]
-            squared, error, target = values[wanted], errors[: len(wanted)], targets[: len(wanted)]
+            squared, error = values[wanted], errors[: len(wanted)]
+            target = targets[: len(wanted)].copy()
+            # nearer to the last one wanted than their error they might have their place below it
+            target[count:] = np.clip((squared[count:] / squared[count - 1] - 1) / NEIGHBOURS, tolerance, PLACED)
+            sharper = _sharper(values[order[self.rigid :]], target)
+            target *= sharper
             # what has settled only comes nearer as the basis grows, unless another mode comes down from above
             open_ = np.flatnonzero((error >= target) | (squared < settled[: len(wanted)] * (1 - error)))
             settled[open_] = squared[open_]
             error[open_], mend = self._error(stiffness, inner[:, wanted], squared, open_, target)
             excess = float((error / target).max())
             if excess < 1:
-                found = self._found(values, inner, order[: self.rigid + count + spare], error[:count], shapes)
+                said = (error / sharper)[:count]
+                found = self._found(values, inner, order[: self.rigid + count + spare], said, shapes)
                 self._keep(inner[:, order])
                 return found
             first = first or excess
@@ -122,9 +129,9 @@ class NearbyModes:
                 break
             if not sum([span.add(some, least=LEAST) for some in mend]):
                 break
+        stays = (error / sharper)[:count].max()
         raise NotConverged(
-            f"modes under changed springs: the estimated error stays at {error[:count].max():.1e} (tolerance "
-            f"{tolerance:.0e})"
+            f"modes under changed springs: the estimated error stays at {stays:.1e} (tolerance {tolerance:.0e})"
         )
 
     def _error(
@@ -246,6 +253,20 @@ def _left_over(stiffness: Any, mass: Any, shapes: Array, squared: Array) -> Arra
     return np.asfortranarray(product(stiffness, shapes) - product(mass, shapes * squared))
 
 
+def _sharper(squared: Array, targets: Array) -> Array:
+    """What share of its target (k,) the energy of the residual of each mode may have, from all values (m,) in order.
+
+    The energy is the relative error where the residual has nothing but modes far above. Of a neighbour at a relative
+    distance g that the basis lacks it shows g times the error. Where one neighbour is found there may be others: where
+    many parts are alike, more modes lie side by side than a block of the Lanczos iteration has vectors. Neighbours
+    nearer than the target do no harm.
+    """
+    steps = np.diff(squared, prepend=-np.inf, append=np.inf)
+    apart = np.minimum(steps[:-1], steps[1:])[: len(targets)] / np.abs(squared[: len(targets)])
+    few = targets[: len(apart)]
+    return np.where(NEIGHBOURS * apart < few, 1.0, np.minimum(NEIGHBOURS * apart, 1.0))
+
+
 def _rounds_left(excess: float, first: float, done: int) -> float:
     """How many more enrichments an error that is so many times its target asks for, at the rate of those done."""
     if done < 2:
@@ -284,13 +305,22 @@ def refined_modes(
     shift = (2 * np.pi * shift_frequency) ** 2
     matrix = Shifted(stiffness=stiffness.tocsr(), mass=mass.tocsr(), shift=shift)
     factor = factorise_roughly(matrix, rigid=rigid, solver=solver)
-    tolerance = START if isinstance(factor, Single) else TOLERANCE
-    modes = lowest_modes(
-        stiffness, mass, count, shift_frequency=shift_frequency, factor=factor, rigid=rigid, tolerance=tolerance
-    )
     still = rigid.shape[1]
     wanted = count - still - spare
-    if not isinstance(factor, Single) or wanted <= 0:
+    rough = isinstance(factor, Single) and wanted > 0
+    # those beyond the last one wanted keep another from standing in its place while residuals are large
+    beyond = max(WATCHED - spare, 0) if rough else 0
+    tolerance = np.concatenate([np.full(count, START if rough else TOLERANCE), np.full(beyond, np.inf)])
+    modes = lowest_modes(
+        stiffness,
+        mass,
+        len(tolerance),
+        shift_frequency=shift_frequency,
+        factor=factor,
+        rigid=rigid,
+        tolerance=tolerance,
+    )
+    if not rough:
         return modes
     near = NearbyModes(modes, stiffness, mass, rigid=still)
     del modes  # they are in the basis, which grows

@@ -92,8 +92,7 @@ class Case:
         if not SIZES[0] <= size <= SIZES[1]:
             text = (
                 f"the structure measures {size:.4g} m from corner to corner; if it should not, the unit of its "
-                f"geometry "
-                "is wrong"
+                "geometry is wrong"
             )
             notes.append(Note(code="size", text=text))
         notes += (*law_reasons(structure, surfaces), *structure.notes)
@@ -227,9 +226,6 @@ def checked_mesh(study: Study) -> Mesh:
 def name_faults(study: Study, parts: Sequence[str], faces: Sequence[str]) -> list[tuple[str, str]]:
     """Names of a study that its geometry does not hold: the key of each, and what is wrong."""
     file = study.geometry.file.name
-    faults = [
-        ("part", f"[part] says nothing of {name!r}, which {file} holds") for name in parts if name not in study.parts
-    ]
     held = ", ".join(parts)
     unsaid = [name for name in parts if name not in study.parts]
     faults = [("part", f"[part] says nothing of {name!r}, which {file} holds") for name in unsaid]

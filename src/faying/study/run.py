@@ -98,15 +98,14 @@ def stages(study: Study) -> list[str]:
 
 def bounds(case: Case) -> tuple[Array, Array, list[Note]]:
     """Frequencies [Hz] of the elastic modes with the faces of every joint apart, and with them bonded; notes."""
-    count = case.rigid_count + case.study.modes.count
-    free = modes_with(case, *case.structure.vibrating, count, rigid=case.structure.loose())
-    bonded, notes = _bonded(case, count)
-    elastic = slice(case.rigid_count, count)
+    free = modes_with(case, *case.structure.vibrating, rigid=case.structure.loose())
+    bonded, notes = _bonded(case)
+    elastic = slice(case.rigid_count, case.rigid_count + case.study.modes.count)
     still = np.where(free.frequencies < RIGID_BELOW * case.shift_frequency, 0.0, free.frequencies)
     return still[elastic], bonded.frequencies[elastic], notes
 
 
-def _bonded(case: Case, count: int) -> tuple[Modes, list[Note]]:
+def _bonded(case: Case) -> tuple[Modes, list[Note]]:
     structure = case.structure
     K, M = structure.vibrating
     way = structure.solver(case.study.modes.solver)
@@ -118,8 +117,8 @@ def _bonded(case: Case, count: int) -> tuple[Modes, list[Note]]:
         rigid = (merge.T @ structure.rigid) / share[:, None]
         if isinstance(way, OverMpi):
             points = (merge.T @ structure.mesh.points.ravel() / share).reshape(-1, 3)
-            return modes_with(case, K, M, count, rigid=rigid, solver=OverMpi(points, way.processes)), []
-        return modes_with(case, K, M, count, rigid=rigid), []
+            return modes_with(case, K, M, rigid=rigid, solver=OverMpi(points, way.processes)), []
+        return modes_with(case, K, M, rigid=rigid), []
     apart = (
         [] if by_parts else [joint.name for joint in structure.joints if bond(structure.mesh, [joint.faces]) is None]
     )
@@ -134,7 +133,7 @@ def _bonded(case: Case, count: int) -> tuple[Modes, list[Note]]:
     for joint in structure.joints:
         springs = joint.interface.springs(*2 * (np.full(len(joint.interface.weights), stiff),))
         K = K + constrain(springs, structure.fixed, 0.0)
-    return modes_with(case, K, M, count, rigid=structure.rigid), [Note(code="bonded-by-springs", text=text)]
+    return modes_with(case, K, M, rigid=structure.rigid), [Note(code="bonded-by-springs", text=text)]
 
 
 def collect(
