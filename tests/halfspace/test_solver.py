@@ -131,7 +131,7 @@ def test_projection_is_the_nearest_point(seed, share, upper):
     random = np.random.default_rng(seed)
     v = random.standard_normal(40) * 10.0 ** random.integers(-6, 7)
     total = share * 40 * min(upper, 1.0)
-    x, shift = project(v, 0.0, upper, total)
+    x, shift = project(v.copy(), 0.0, upper, total)
     assert x.sum() == pytest.approx(total, rel=1e-10, abs=1e-16 * np.abs(v).sum())
     # optimality: a shifted copy of v, cut to the bounds
     assert x == pytest.approx(np.clip(v + shift, 0, upper), abs=1e-12)

@@ -14,7 +14,7 @@ from faying.errors import InputError
 from faying.typing import AnyArray, Array
 
 PART = 1 << 17  # values of a part: 1 MB in double precision, within the second cache
-COLUMNS = 32  # columns transformed together, at least
+STRIP = 64  # columns that are stored together, at least
 Precision = Literal["double", "single"]
 Device = Literal["cpu", "gpu"]
 
@@ -45,6 +45,21 @@ def total(a: AnyArray) -> float:
 def dot(a: AnyArray, b: AnyArray) -> float:
     """Scalar product of two flat arrays, added up in double precision."""
     return sum(total(a[s] * b[s]) for s in parts(a))
+
+
+def add_times(out: AnyArray, factor: float, rows: AnyArray) -> None:
+    """Add factor times some rows (c, n) to others of the same shape."""
+    for k in range(out.shape[0]):
+        for s in parts(out[k, :]):
+            out[k, s] += factor * rows[k, s]
+
+
+def deviation(a: AnyArray) -> float:
+    """Standard deviation of a flat array, in double precision."""
+    mean, size = total(a) / a.shape[0], a.shape[0]
+    xp = namespace(a)
+    off = (xp.astype(a[s], xp.float64) - mean for s in parts(a))
+    return float(np.sqrt(sum(total(d * d) for d in off) / size))
 
 
 @final
@@ -83,10 +98,15 @@ class Place:
         step = max(1, PART * (self.workers or 1) // shape[1]) if self.host else shape[0]
         return [slice(k, min(k + step, shape[0])) for k in range(0, shape[0], step)]
 
-    def columns(self, shape: tuple[int, int]) -> list[slice]:
-        """Blocks of columns of a spectrum."""
-        count = shape[1]
-        step = max(COLUMNS, PART // 2 // shape[0]) * (self.workers or 1) if self.host else count
+    def strips(self, columns: int) -> tuple[int, int]:
+        """In how many strips of how many columns a spectrum is stored."""
+        width = -(-columns // max(1, columns // STRIP)) if self.host else columns
+        return -(-columns // width), width
+
+    def batches(self, shape: tuple[int, ...]) -> list[slice]:
+        """Strips that are transformed together, of a spectrum (strips, rows, width)."""
+        count, rows, width = shape
+        step = max(1, PART // 2 // (rows * width)) * (self.workers or 1) if self.host else count
         return [slice(k, min(k + step, count)) for k in range(0, count, step)]
 
     def along_rows(self, x: AnyArray, length: int) -> AnyArray:
@@ -106,15 +126,34 @@ class Place:
         return self.xp.fft.irfft(spectrum, n=length, axis=1)
 
     def along_columns(self, spectrum: AnyArray, *, back: bool = False) -> None:
-        """Transform the columns of a spectrum in place, or take that back."""
+        """Transform the columns of strips (strips, rows, width) in place, or take that back."""
         if self.host:
             from scipy.fft import fft, ifft
 
-            done = (ifft if back else fft)(spectrum, axis=0, overwrite_x=True, workers=self.workers)
+            done = (ifft if back else fft)(spectrum, axis=1, overwrite_x=True, workers=self.workers)
             if not np.may_share_memory(done, spectrum):
                 spectrum[...] = done
         else:
-            spectrum[...] = (self.xp.fft.ifft if back else self.xp.fft.fft)(spectrum, axis=0)
+            spectrum[...] = (self.xp.fft.ifft if back else self.xp.fft.fft)(spectrum, axis=1)
+
+    def sums_between(self, values: AnyArray, offsets: AnyArray) -> AnyArray:
+        """Sums of flat values from each offset to the next."""
+        if self.host:
+            out = np.zeros(len(offsets) - 1)
+            some = offsets[:-1] < offsets[1:]
+            if some.any():
+                out[some] = np.add.reduceat(values, offsets[:-1][some], dtype=np.float64)
+            return out
+        running = self.xp.cumulative_sum(values, dtype=self.xp.float64, include_initial=True)
+        ends = self.xp.take(running, offsets)
+        return ends[1:] - ends[:-1]
+
+    def rows_between(self, rows: AnyArray, edges: AnyArray) -> AnyArray:
+        """Sums of rows from each edge to the next; none are the same."""
+        if self.host:
+            return np.add.reduceat(rows, edges[:-1], axis=0)
+        ends = self.xp.take(self.xp.cumulative_sum(rows, axis=0, include_initial=True), edges, axis=0)
+        return ends[1:, :] - ends[:-1, :]
 
     def convolve(self, field: AnyArray, symbol: AnyArray) -> AnyArray:
         """Product of a small field with a symbol in Fourier space."""

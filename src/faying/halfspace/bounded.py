@@ -70,8 +70,17 @@ def _least(a: AnyArray) -> float:
     return min(float(xp.min(a[s])) for s in parts(a))
 
 
+def _clip(v: AnyArray, lower: Bound, upper: Bound) -> None:
+    xp = namespace(v)
+    for s in parts(v):
+        v[s] = xp.clip(v[s], _at(lower, s), _at(upper, s))
+
+
 def project(v: AnyArray, lower: Bound, upper: Bound, total: float) -> tuple[AnyArray, float]:
-    """Nearest point to v between the bounds whose sum is `total`, and the shift that gives it: clip(v + shift)."""
+    """Nearest point to v between the bounds whose sum is `total`, and the shift that gives it: clip(v + shift).
+
+    The point takes the place of v.
+    """
     xp = namespace(v)
     size = int(v.shape[0])
     scale = max(abs(total), 0.0 if isinstance(upper, (int, float)) else float(xp.sum(xp.abs(upper))), 1e-300)
@@ -88,7 +97,8 @@ def project(v: AnyArray, lower: Bound, upper: Bound, total: float) -> tuple[AnyA
 
     shift, (found, free) = 0.0, look(0.0)
     if abs(total - found) <= near:
-        return xp.clip(v, lower, upper), 0.0  # a shift of rounding size would lift every cell off its bound
+        _clip(v, lower, upper)
+        return v, 0.0  # a shift of rounding size would lift every cell off its bound
     low = min(float(xp.min(_at(lower, s) - v[s])) for s in parts(v))
     high = total / size - _least(v)
     if _is_finite(upper):
@@ -107,10 +117,9 @@ def project(v: AnyArray, lower: Bound, upper: Bound, total: float) -> tuple[AnyA
         if trial in (shift, low, high):
             break
         shift = trial
-    out = v + shift
-    for s in parts(out):
-        out[s] = xp.clip(out[s], _at(lower, s), _at(upper, s))
-    return out, shift
+    v += shift
+    _clip(v, lower, upper)
+    return v, shift
 
 
 def duality_gap(x: AnyArray, gradient: AnyArray, lower: Bound, upper: Bound, level: float) -> float:
@@ -171,12 +180,14 @@ class Problem:
     datum: float = 0.0
     unit: float = 1.0
 
-    def gradient_at(self, x: AnyArray, level: float, *, precise: bool) -> tuple[AnyArray, float]:
-        """A x - b + level, and the largest displacement; without `precise` the product is in single precision."""
+    def gradient_at(
+        self, x: AnyArray, level: float, *, precise: bool, out: AnyArray | None = None
+    ) -> tuple[AnyArray, float]:
+        """A x - b + level (in `out`), and the largest displacement; without `precise` a product in single precision."""
         kernel = self.kernel
         xp, width = kernel.place.xp, kernel.shape[1]
         pieces = [slice(rows.start * width, rows.stop * width) for rows in kernel.rows]
-        out = xp.empty(x.shape[0], dtype=x.dtype)
+        out = xp.empty(x.shape[0], dtype=x.dtype) if out is None else out
         largest = 0.0
         work = xp.float64 if precise else xp.float32
 
@@ -219,15 +230,28 @@ class _Search:
         self.bounded = _is_finite(self.upper)
         self.varies = not isinstance(self.upper, (int, float))
         self.datum = 0.0
-        self.g: AnyArray = problem.load
+        self.g: AnyArray = problem.load  # until `run`
         self.doubt = 0.0  # what single precision may have left in g
+        self._spare: list[AnyArray] = []  # to be written anew: memory that is given back costs time to get again
+
+    def _empty(self) -> AnyArray:
+        """An array like x, with any content."""
+        return self._spare.pop() if self._spare else self.xp.empty(self.x.shape[0], dtype=self.real)
+
+    def _over(self, *arrays: AnyArray) -> None:
+        """Keep for `_empty` what is neither x nor g."""
+        self._spare += [a for a in arrays if a is not self.x and a is not self.g]
+
+    def _take(self, x: AnyArray, g: AnyArray) -> None:
+        """Let these be x and g."""
+        old, self.x, self.g = (self.x, self.g), x, g
+        self._over(*old)
 
     def refresh(self, level: float, *, precise: bool) -> None:
         """Make the gradient from x alone."""
         self.applications += 1
-        del self.g  # its memory goes to the new one
         self.datum += level
-        self.g, largest = self.problem.gradient_at(self.x, self.datum, precise=precise)
+        largest = self.problem.gradient_at(self.x, self.datum, precise=precise, out=self.g)[1]
         self.doubt = 0.0 if precise else ROUNDING * largest
 
     def _imbalance(self) -> float:
@@ -246,7 +270,7 @@ class _Search:
         n = self.problem.load.shape[0]
         first = self.xp.full(n, self.total / n, dtype=self.real) if start is None else start()
         self.x = project(first, self.lower, self.upper, self.total)[0]
-        del first
+        self.g = self._empty()
         self.refresh(0.0, precise=False)
         stuck, best, since = False, np.inf, 0
         for step in range(STEPS + 1):
@@ -295,7 +319,7 @@ class _Search:
         xp, pace, level = self.xp, self.pace, 0.0
         every = Cells(self.kernel, xp.ones(self.x.shape[0], dtype=xp.bool))
         for _ in range(1 if once else 12):
-            y = xp.empty(self.x.shape[0], dtype=self.real)
+            y = self._empty()
             for s in parts(y):
                 y[s] = self.x[s] - pace * self.g[s]
             y, shift = project(y, self.lower, self.upper, self.total)
@@ -307,12 +331,12 @@ class _Search:
             down = sum(total((self.g[s] + level) * y[s]) for s in parts(y))
             if down + curvature / 2 < 0:
                 self.doubt += doubt
-                self.g = g
                 for s in parts(y):
                     y[s] += self.x[s]
-                    y[s] = xp.clip(y[s], _at(self.lower, s), _at(self.upper, s))
-                self.x = y
+                _clip(y, self.lower, self.upper)
+                self._take(y, g)
                 break
+            self._over(y, g)
             if curvature <= 0:
                 break
             pace *= min(max(-down / curvature, 0.1), 0.7)
@@ -356,25 +380,29 @@ class _Search:
                 break
             if least == 0.0:
                 first = first or (cells, way)
+            before = x, g
             x, g, change, left, more = self._moved(x, g, cells, way, level)
+            self._over(*before)
             energy, doubt = energy + change, doubt + more
             if energy < least:
-                self.x, self.g, least = x, g, energy
-                self.doubt, doubt, first = self.doubt + doubt, 0.0, None
+                self._take(x, g)
+                least, self.doubt, doubt, first = energy, self.doubt + doubt, 0.0, None
             few = cells.size - left.size < FEW * cells.size
             cells = left
             if few or left.size < 2:
                 break
             level = -total(cells.values(g)) / cells.size
+        self._over(x, g)
         if least < 0 or first is None:
             return least < 0
         for share in HALVES:
             cells, way = first
             x, g, change, _, more = self._moved(self.x, self.g, cells, share * way, level)
             if change < 0:
-                self.x, self.g = x, g
+                self._take(x, g)
                 self.doubt += more
                 return True
+            self._over(x, g)
         return False
 
     def _way(self, g: AnyArray, cells: Cells, level: float, reduction: float, limit: int) -> AnyArray | None:
@@ -397,7 +425,7 @@ class _Search:
         """Gradient after adding v on the cells, v.A v, and what single precision may have left in the gradient."""
         xp, before = self.xp, self.g if g is None else g
         self.applications += 1
-        out = xp.empty(before.shape[0], dtype=self.real)
+        out = self._empty()
         size = float(xp.max(xp.abs(v))) or 1.0
         scaled = xp.astype(v / size, xp.float32)
         curvature = largest = 0.0
@@ -420,7 +448,8 @@ class _Search:
         xp = self.xp
         old, lower, upper = cells.values(x), _at(self.lower, cells.mask), _at(self.upper, cells.mask)
         new = project(old + way, lower, upper, total(old))[0]
-        out = xp.asarray(x, copy=True)
+        out = self._empty()
+        out[:] = x
         out[cells.mask] = new
         left = xp.zeros(x.shape[0], dtype=xp.bool)
         left[cells.mask] = (new > lower) & (new < upper)

@@ -6,7 +6,7 @@ from typing import Any, final
 
 import numpy as np
 
-from faying.halfspace.arrays import namespace
+from faying.halfspace.arrays import namespace, parts
 from faying.halfspace.kernels import Kernel
 from faying.typing import AnyArray
 
@@ -61,39 +61,38 @@ class Blocks:
     def __init__(self, cells: Cells) -> None:
         xp, kernel = cells.xp, cells.kernel
         self.shape: tuple[int, int] = (max(1, kernel.shape[0] // BLOCK), max(1, kernel.shape[1] // BLOCK))
-        self.xp, self.rows = xp, kernel.shape[0]
+        self.xp, self.kernel, self.starts = xp, kernel, cells.starts  # not the cells, which hold their blocks
         (of_row, edges), (of_column, across) = (_divided(n, m) for n, m in zip(kernel.shape, self.shape, strict=True))
         self._edges = kernel.place.send(edges)
-        numbers = xp.empty(cells.size, dtype=xp.int32)
-        offsets = xp.empty(kernel.shape[0] * self.shape[1] + 1, dtype=xp.int64)
-        offsets[-1] = cells.size
+        self._numbers = xp.empty(cells.size, dtype=xp.int32)
+        self._offsets = []  # of each piece: where the cells of each row in each block begin, and the end of the last
         of_column = kernel.place.send(of_column.astype(np.int32))
         for i, (rows, piece) in enumerate(zip(kernel.rows, cells.pieces, strict=True)):
             mask = cells.mask[piece]
             lines = kernel.place.send(of_row[rows].astype(np.int32))
-            here = slice(cells.starts[i], cells.starts[i + 1])
             if cells.counts[i]:
                 every = lines[:, None] * self.shape[1] + of_column[None, :]
-                numbers[here] = xp.reshape(every, (-1,))[mask]
+                self._numbers[cells.starts[i] : cells.starts[i + 1]] = xp.reshape(every, (-1,))[mask]
             counted = xp.cumulative_sum(xp.astype(mask, xp.int64), include_initial=True)
             at = np.arange(rows.stop - rows.start)[:, None] * kernel.shape[1] + across[None, :-1]
-            offsets[rows.start * self.shape[1] : rows.stop * self.shape[1]] = (
-                xp.take(counted, kernel.place.send(at.ravel())) + cells.starts[i]
-            )
-        self._numbers, self._offsets = numbers, offsets
+            self._offsets.append(xp.take(counted, kernel.place.send(np.append(at.ravel(), mask.shape[0]))))
 
-    def sums(self, values: AnyArray) -> AnyArray:
-        """Sum over the cells of each block, in double precision."""
-        xp = self.xp
-        running = xp.take(xp.cumulative_sum(values, dtype=xp.float64, include_initial=True), self._offsets)
-        lines = xp.reshape(running[1:] - running[:-1], (self.rows, self.shape[1]))
-        ends = xp.take(xp.cumulative_sum(lines, axis=0, include_initial=True), self._edges, axis=0)
-        return ends[1:, :] - ends[:-1, :]
+    def sums(self, values: AnyArray, weights: AnyArray | None = None) -> AnyArray:
+        """Sum over the cells of each block, of flat values times weights; the sum of rows in double precision."""
+        xp, place = self.xp, self.kernel.place
+        lines = xp.empty((self.kernel.shape[0], self.shape[1]), dtype=xp.float64)
+        for i, rows in enumerate(self.kernel.rows):
+            here = slice(self.starts[i], self.starts[i + 1])
+            given = values[here] if weights is None else values[here] * weights[here]
+            lines[rows, :] = xp.reshape(place.sums_between(given, self._offsets[i]), (-1, self.shape[1]))
+        return place.rows_between(lines, self._edges)
 
-    def spread(self, blocks: AnyArray) -> AnyArray:
-        """Value of each cell's block, in single precision."""
+    def take_off(self, values: AnyArray, k: int, blocks: AnyArray, weights: AnyArray | None = None) -> None:
+        """Subtract each cell's block, times weights, from row k of values (c, cells)."""
         flat = self.xp.astype(self.xp.reshape(blocks, (-1,)), self.xp.float32)
-        return self.xp.take(flat, self._numbers)
+        for s in parts(self._numbers):
+            share = self.xp.take(flat, self._numbers[s])
+            values[k, s] -= share if weights is None else share * weights[s]
 
 
 def _divided(n: int, m: int) -> tuple[Any, Any]:

@@ -18,7 +18,7 @@ from typing import Any, final
 
 import numpy as np
 
-from faying.halfspace.arrays import dot, total
+from faying.halfspace.arrays import add_times, dot, total
 from faying.halfspace.cells import Cells
 from faying.halfspace.kernels import Kernel
 from faying.typing import AnyArray, Array
@@ -134,12 +134,14 @@ class System:
 
     def preconditioned(self, r: AnyArray) -> AnyArray:
         """The module's A^-1 times r."""
-        smooth = [part.solve(part.blocks.sums(part.c * r[k, :])) for k, part in enumerate(self.coarse)]
-        z = r - self.xp.stack([part.blocks.spread(u) for part, u in zip(self.coarse, smooth, strict=True)])
+        smooth = [part.solve(part.blocks.sums(r[k, :], part.c)) for k, part in enumerate(self.coarse)]
+        z = self.xp.asarray(r, copy=True)
+        for k, (part, u) in enumerate(zip(self.coarse, smooth, strict=True)):
+            part.blocks.take_off(z, k, u)
         z = self._inverse(z)
         for k, (part, u) in enumerate(zip(self.coarse, smooth, strict=True)):
             y = part.solve(part.blocks.sums(z[k, :]) - part.apply_E(u))
-            z[k, :] -= part.c * part.blocks.spread(y)
+            part.blocks.take_off(z, k, y, part.c)
         return z
 
 
@@ -170,7 +172,7 @@ def constrained_gradients(
         if curvature <= 0:
             break
         along = rz / curvature
-        s += along * t
+        add_times(s, along, t)
         gain = along * rz
         gained += gain
         if gain <= reduction**2 * gained or turn + 1 == limit:

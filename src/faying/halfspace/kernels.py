@@ -4,7 +4,9 @@ All lengths in units of the column spacing and all stresses in units of E*: the 
 that single precision serves where only a search direction is wanted.
 
 A product goes through its map three times: rows forward, columns forward, times the symbol and back, rows back. Blocks
-of rows and of columns stay in the cache meanwhile, and nothing but the spectrum is ever stored whole.
+of rows and of columns stay in the cache meanwhile, and nothing but the spectrum is ever stored whole. Spectra and
+tables are stored in strips, a few columns each, so that columns transformed together lie together: in whole rows the
+columns of large maps are each on a page of memory of their own, and a product takes twice as long.
 """
 
 from collections.abc import Callable, Sequence
@@ -29,10 +31,10 @@ class Kernel:
     """A symmetric operator traction -> displacement with c components, diagonal or full in the components.
 
     shape (ny, nx) of the map; padded (my, mx), the size of its transforms: equal to shape for a periodic surface, at
-    least twice it less one for a free one. Tables of shape (c, c, my // 2 + 1, mx // 2 + 1), real, hold a quarter of
-    the wave numbers: the diagonal ones are even in q_y, the others odd. symbol, in double precision, and
-    symbol_single; inverse, in single, a positive operator near the inverse, for preconditioning. aspect: dy/dx.
-    strength: symbol times |q|, of long waves.
+    least twice it less one for a free one. Tables of shape (c, c, strips, my // 2 + 1, width), real, hold a quarter of
+    the wave numbers, 0 beyond the last of q_x: the diagonal ones are even in q_y, the others odd. symbol, in double
+    precision, and symbol_single; inverse, in single, a positive operator near the inverse, for preconditioning.
+    aspect: dy/dx. strength: symbol times |q|, of long waves.
     """
 
     shape: tuple[int, int]
@@ -53,7 +55,7 @@ class Kernel:
     @property
     def moves_mean(self) -> bool:
         """Whether a uniform traction displaces anything."""
-        return float(self.symbol[0, 0, 0, 0]) != 0
+        return float(self.symbol[0, 0, 0, 0, 0]) != 0
 
     @property
     def own(self) -> float:
@@ -62,7 +64,8 @@ class Kernel:
         weight = [
             np.where((np.arange(n // 2 + 1) == 0) | (2 * np.arange(n // 2 + 1) == n), 1.0, 2.0) for n in self.padded
         ]
-        sums = weight[0] @ self.place.fetch(self.symbol[0, 0, ...]) @ weight[1]
+        table = self.place.fetch(self.symbol[0, 0, ...])
+        sums = weight[0] @ table.transpose(1, 0, 2).reshape(len(weight[0]), -1)[:, : len(weight[1])] @ weight[1]
         return float(sums / (self.padded[0] * self.padded[1]))
 
     @cached_property
@@ -90,24 +93,28 @@ class Kernel:
         place, (my, mx), nx = self.place, self.padded, self.shape[1]
         spectra = self.spectra.take(table)
         for k, spectrum in enumerate(spectra):
-            spectrum[self.shape[0] :, :] = 0.0
+            spectrum[:, self.shape[0] :, :] = 0.0
             for i, rows in enumerate(self.rows):
                 block = read(k, i)
-                spectrum[rows, :] = 0.0 if block is None else place.along_rows(block, mx)
-        for columns in place.columns((my, mx // 2 + 1)):
-            for spectrum in spectra:
-                place.along_columns(spectrum[:, columns])
-            upper = my // 2 + 1
-            _multiply([s[:upper, columns] for s in spectra], table[:, :, :, columns], 1.0)
+                if block is None:
+                    spectrum[:, rows, :] = 0.0
+                else:
+                    self.spectra.put(spectrum, rows, place.along_rows(block, mx))
+        upper = my // 2 + 1
+        for some in place.batches(tuple(spectra[0].shape)):
+            strips = [spectrum[some, :, :] for spectrum in spectra]
+            for strip in strips:
+                place.along_columns(strip)
+            _multiply([s[:, :upper, :] for s in strips], table[:, :, some, :, :], 1.0)
             if my > 2:
-                mirrored = table[:, :, 1 : my - upper + 1, columns]
-                _multiply([s[upper:, columns] for s in spectra], mirrored[:, :, ::-1, :], -1.0)
-            for spectrum in spectra:
-                place.along_columns(spectrum[:, columns], back=True)
+                mirrored = table[:, :, some, 1 : my - upper + 1, :]
+                _multiply([s[:, upper:, :] for s in strips], mirrored[:, :, :, ::-1, :], -1.0)
+            for strip in strips:
+                place.along_columns(strip, back=True)
         for k, spectrum in enumerate(spectra):
             for i, rows in enumerate(self.rows):
                 if needed is None or needed[i]:
-                    write(k, i, place.back_along_rows(spectrum[rows, :], mx)[:, :nx])
+                    write(k, i, place.back_along_rows(self.spectra.rows(spectrum, rows), mx)[:, :nx])
 
 
 def _multiply(spectra: list[AnyArray], table: AnyArray, sign: float) -> None:
@@ -126,17 +133,34 @@ class Spectra:
     """The work arrays of a kernel's transforms; those in single precision are kept from one product to the next."""
 
     def __init__(self, padded: tuple[int, int], components: int, place: Place) -> None:
-        self._shape, self._components, self._place = (padded[0], padded[1] // 2 + 1), components, place
+        self._length, self._components, self._place = padded[1] // 2 + 1, components, place
+        strips, width = place.strips(self._length)
+        self._shape = strips, padded[0], width
         self._kept: list[AnyArray] = []
 
     def take(self, table: AnyArray) -> list[AnyArray]:
-        """One spectrum a component, in the precision of the table, with any content."""
+        """One spectrum a component, in the precision of the table, with any content but 0 beyond the last column."""
         xp = self._place.xp
         if table.dtype == xp.float64:
-            return [xp.empty(self._shape, dtype=xp.complex128) for _ in range(self._components)]
+            return [xp.zeros(self._shape, dtype=xp.complex128) for _ in range(self._components)]
         if not self._kept:
-            self._kept = [xp.empty(self._shape, dtype=xp.complex64) for _ in range(self._components)]
+            self._kept = [xp.zeros(self._shape, dtype=xp.complex64) for _ in range(self._components)]
         return self._kept
+
+    def put(self, spectrum: AnyArray, rows: slice, values: AnyArray) -> None:
+        """Store rows of values (rows, columns) in a spectrum."""
+        xp, width = self._place.xp, self._shape[2]
+        whole = self._length // width
+        inside = xp.reshape(values[:, : whole * width], (-1, whole, width))
+        spectrum[:whole, rows, :] = xp.permute_dims(inside, (1, 0, 2))
+        if whole * width < self._length:
+            spectrum[whole, rows, : self._length - whole * width] = values[:, whole * width :]
+
+    def rows(self, spectrum: AnyArray, rows: slice) -> AnyArray:
+        """Rows of a spectrum, (rows, columns)."""
+        xp, (strips, _, width) = self._place.xp, self._shape
+        inside = xp.permute_dims(spectrum[:, rows, :], (1, 0, 2))
+        return xp.reshape(inside, (-1, strips * width))[:, : self._length]
 
 
 def transform_shape(shape: tuple[int, int], *, periodic: bool) -> tuple[int, int]:
@@ -215,7 +239,7 @@ def _assembled(
     strength: float,
     place: Place,
 ) -> Kernel:
-    symbol, inverse = tables
+    symbol, inverse = (_in_strips(table, place.strips(padded[1] // 2 + 1)) for table in tables)
     single = place.xp.float32
     return Kernel(
         shape=shape,
@@ -228,6 +252,16 @@ def _assembled(
         place=place,
         spectra=Spectra(padded, len(symbol), place),
     )
+
+
+def _in_strips(table: Array, strips: tuple[int, int]) -> Array:
+    """A table (c, c, rows, columns) as the kernel holds it, (c, c, strips, rows, width)."""
+    number, width = strips
+    out = np.zeros((*table.shape[:2], number, table.shape[2], width))
+    for k in range(number):
+        part = table[..., k * width : (k + 1) * width]
+        out[:, :, k, :, : part.shape[-1]] = part
+    return out
 
 
 def _inverse(q: Array) -> Array:

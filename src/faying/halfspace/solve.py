@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.errors import InputError, NotConverged
-from faying.halfspace.arrays import Device, Place, Precision, parts, place_for, total
+from faying.halfspace.arrays import Device, Place, Precision, deviation, parts, place_for, total
 from faying.halfspace.bounded import Minimum, Problem, Progress, Start, best_level, duality_gap, minimise
 from faying.halfspace.kernels import normal_kernel, transform_shape
 from faying.halfspace.solution import HalfSpaceContact
@@ -132,7 +132,7 @@ class _Pressing:
         self.heights, self.spacing, self.options, self.progress = h, spacing, options, progress
         self.top = float(h.max())
         self.map = _Map(h=h, cell=spacing[0], aspect=spacing[1] / spacing[0])
-        self.rms = float(h.std(dtype=float))
+        self.rms = deviation(h.ravel())
         self.limit = np.inf if options.hardness is None else options.hardness / options.E_star
 
     def at(self, mean: float, start: Array | None) -> HalfSpaceContact:
@@ -276,7 +276,7 @@ def _residual(h: Array, spacing: tuple[float, float], traction: Array, limit: fl
     )
     gradient = problem.gradient_at(x, 0.0, precise=True)[0]
     gap = duality_gap(x, gradient, 0.0, limit, best_level(x, gradient, 0.0, limit))
-    return gap / (total(x) * float(h.std(dtype=float)) / spacing[0])
+    return gap / (total(x) * deviation(h.ravel()) / spacing[0])
 
 
 def _at_displacement(problem: _Pressing, displacement: float, start: Array | None) -> HalfSpaceContact:
@@ -405,7 +405,8 @@ def _halved(h: Array) -> Array:
         n = h.shape[axis]
         h = np.moveaxis(h, axis, 0)
         if n % 2 == 0:
-            h = (h[::2] + h[1::2]) / 2
+            h = h[::2] + h[1::2]
+            h /= 2
         else:
             at = (np.arange((n + 1) // 2) + 0.5) * (n / ((n + 1) // 2)) - 0.5
             left = np.clip(at.astype(int), 0, n - 2)
