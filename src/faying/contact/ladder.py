@@ -5,8 +5,6 @@ at every second, and that on a quarter, solved at all: ln k_n(full) is ln k_n(qu
 change little from one pressure to the next and are interpolated. A small map is solved everywhere.
 """
 
-import hashlib
-import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import log
@@ -15,8 +13,8 @@ from typing import Any, Protocol, final
 
 import numpy as np
 
-from faying.errors import InputError, NotConverged
-from faying.files import write_arrays
+from faying.cache import kept
+from faying.errors import NotConverged
 from faying.halfspace.solution import HalfSpaceContact
 from faying.halfspace.solve import halved_map
 from faying.typing import Array
@@ -214,41 +212,18 @@ def cached(make: Callable[[], Ladder], folder: Path | None, key: Mapping[str, ob
 
     Args:
         make: solves it.
-        folder: where it is kept; None keeps nothing. FAYING_CACHE names another folder for all, or is "off".
+        folder: where it is kept; see `faying.cache.kept`.
         key: all that the ladder depends on beside the heights [m].
     """
-    asked = os.environ.get("FAYING_CACHE", "")
-    place = None if asked == "off" else Path(asked) if asked else folder
-    if place is None:
-        return make()
+    own = ("pressure", "points", "change", "window")
+
+    def arrays() -> dict[str, Array]:
+        ladder = make()
+        return {f"value_{name}": value for name, value in ladder.values.items()} | {
+            name: getattr(ladder, name) for name in own
+        }
+
     text = repr(sorted(key.items())) + f" {STORED}"
-    digest = hashlib.sha256(text.encode() + np.ascontiguousarray(heights).tobytes()).hexdigest()
-    file = place / f"half-space-{digest[:24]}.npz"
-    kept = _read(file)
-    if kept is not None:
-        return kept
-    ladder = make()
-    arrays = {f"value_{name}": value for name, value in ladder.values.items()}
-    arrays |= {name: getattr(ladder, name) for name in ("pressure", "points", "change", "window")}
-
-    try:
-        place.mkdir(exist_ok=True)
-        write_arrays(file, arrays)
-    except (InputError, OSError):  # a folder that cannot be written: the ladder is solved anew next time
-        pass
-    return ladder
-
-
-def _read(file: Path) -> Ladder | None:
-    """A ladder as it was kept; None where there is none or its file is damaged."""
-    try:
-        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as data:
-            values = {name.removeprefix("value_"): data[name] for name in data.files if name.startswith("value_")}
-            own = {name: data[name] for name in ("pressure", "points", "change", "window")}
-            return Ladder(values=values, **own)
-    except (OSError, ValueError, KeyError, EOFError):
-        return None
-    except Exception as fault:  # zipfile.BadZipFile, zlib.error: what a cut file raises
-        if type(fault).__module__ in ("zipfile", "zlib"):
-            return None
-        raise
+    data = kept(arrays, folder, kind="half-space", key=text, data=np.ascontiguousarray(heights).tobytes())
+    values = {name.removeprefix("value_"): array for name, array in data.items() if name.startswith("value_")}
+    return Ladder(values=values, **{name: data[name] for name in own})

@@ -3,13 +3,16 @@
 Names are those that the CAD program gave to solids, products and faces. A face without a name gets one by a selector.
 """
 
+import json
 from collections.abc import Container, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from faying.cache import kept
 from faying.errors import InputError
 from faying.fe.cad import CadParts, check_head, kernel, read_parts
 from faying.fe.cad_process import Answer, ask
@@ -26,6 +29,7 @@ from faying.typing import Array, Index
 # joints
 ELEMENTS, UNKNOWNS = 5.0, 4.5
 GRADING = 0.4  # growth of elements away from where they are fine
+STORED = 1  # version of what the cache holds; it rises with any change of what this module makes of a file
 # netgen numbers the middle nodes by these edges; VTK, and so we, by those of its element
 _NETGEN_EDGES = {"tet10": ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)), "tri6": ((1, 2), (0, 2), (0, 1))}
 
@@ -53,6 +57,7 @@ def mesh_step(
     local_size: Mapping[str, float] | None = None,
     faces: Mapping[str, Selector] | None = None,
     snap: float = 0.0,
+    cache: Path | None = None,
 ) -> Mesh:
     """Mesh the solids of a STEP file with second-order tetrahedra, in a process of its own.
 
@@ -62,6 +67,7 @@ def mesh_step(
         local_size: face name -> largest edge there [m].
         faces: name to give -> which faces get it, beside the names of the file.
         snap: faces of two parts that lie no farther apart than this count as touching [m].
+        cache: folder that keeps the mesh for the next call; see `faying.cache.kept`.
 
     Faces that two parts share come out matched node for node, one copy per part.
 
@@ -77,15 +83,22 @@ def mesh_step(
         selectors={label: asdict(one) for label, one in (faces or {}).items()},
         snap=snap,
     )
-    answer = ask(mesh_answer, asdict(request), path=path)
-    parts, owners, data = answer.facts["parts"], answer.facts["faces"], answer.arrays
+
+    def made() -> dict[str, Any]:
+        answer = ask(mesh_answer, asdict(request), path=path)
+        return {"facts": np.asarray(json.dumps(answer.facts)), **answer.arrays}
+
+    plain = asdict(replace(request, path=path.name)) | {"netgen": version("netgen-mesher"), "stored": STORED}
+    data = kept(made, cache, kind="mesh", key=json.dumps(plain, sort_keys=True), data=path.read_bytes())
+    facts = json.loads(data["facts"].item())
+    parts, owners = facts["parts"], facts["faces"]
     return Mesh(
         points=data["points"],
         parts={name: (data[f"part{k}"],) for k, name in enumerate(parts)},
         faces={name: (data[f"face{k}"],) for k, name in enumerate(owners)},
         face_part=owners,
         source=path.name,
-        notes=tuple(Note(**note) for note in answer.facts["notes"]),
+        notes=tuple(Note(**note) for note in facts["notes"]),
     )
 
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from faying import cache
 from faying.decks.included import included
 from faying.errors import InputError
 from faying.fe.mesh import Mesh
@@ -94,7 +95,14 @@ def mesh_of(spec: GeometryChoice) -> Mesh:
         return with_faces(read_mesh(spec.mesh, unit=spec.unit, parts=spec.sets or None), spec)
     from faying.fe.geometry import mesh_step
 
-    return mesh_step(spec.file, size=spec.size, local_size=spec.face_size, faces=spec.face, snap=spec.snap)
+    return mesh_step(
+        spec.file,
+        size=spec.size,
+        local_size=spec.face_size,
+        faces=spec.face,
+        snap=spec.snap,
+        cache=spec.file.parent / cache.FOLDER,
+    )
 
 
 def with_faces(mesh: Mesh, spec: GeometryChoice) -> Mesh:

@@ -5,7 +5,7 @@ from math import isnan
 from pathlib import Path
 from typing import Any
 
-from faying import units
+from faying import cache, units
 from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.two_faces import COUNTERS, Counter, faces_of
 from faying.errors import InputError
@@ -13,8 +13,6 @@ from faying.study.keys.reader import Table
 from faying.surface.fractal import FractalFit
 from faying.surface.read import read_scan
 from faying.surface.scan import Profile, Scan
-
-CACHE = ".faying"  # folder beside a scan that keeps its solved contacts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,7 +79,7 @@ class SurfaceChoice:
             D=self.D,
             G=self.G,
             scan_area=self.scan_area,
-            cache=self.scan.parent / CACHE,
+            cache=self.scan.parent / cache.FOLDER,
         )
         source = f"scan {self.scan.name}: {' x '.join(map(str, scan.heights.shape))} points; {faces.counter}"
         return Surface(
