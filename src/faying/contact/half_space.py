@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.inputs import HeightMap
-from faying.contact.ladder import Ladder, cached, climb
+from faying.contact.ladder import Ladder, cached, cached_numbers, climb
 from faying.contact.law import ContactLaw, Response
 from faying.contact.parameter import TABLE, TEXT, Parameter
 from faying.errors import InputError
@@ -180,14 +180,30 @@ class HalfSpace(ContactLaw):
             out["energy_t"] = slip.tangential_pressure * slip.displacement / 2
         return out
 
+    def stiffness_of_contact(self, pressure: float) -> float:
+        """k_n [Pa/m] of the one contact at a pressure [Pa], solved or read from the cache, not from the ladder."""
+
+        def make() -> Mapping[str, Array]:
+            return {"k_n": np.asarray(self.contact_at(pressure).normal_stiffness(loading=self.stiffness == "loading"))}
+
+        names = ("elastic", "stiffness", "periodic", "tol")
+        key = self._key(names) | {"pressure": float(pressure)}
+        return float(
+            cached_numbers(make, self.cache, "contact", key, np.asarray(self.scan.heights, dtype=float))["k_n"]
+        )
+
+    def _key(self, names: tuple[str, ...]) -> dict[str, object]:
+        """What contacts of this scan depend on beside its heights: entries of these names, spacing, and pair."""
+        key: dict[str, object] = {name: getattr(self, name) for name in names}
+        key |= {"spacing": tuple(map(float, self.scan.spacing)), "nu": self.nu}
+        return key | {"E_star": self.pair.E_star, "hardness": self._hardness}
+
     @cached_property
     def ladder(self) -> Ladder:
         """The numbers of the contacts, solved on first use or read from the cache."""
         heights = np.asarray(self.scan.heights, dtype=float)
         names = ("elastic", "stiffness", "area", "shear_ratio", "periodic", "points", "tol")
-        key = {name: getattr(self, name) for name in names}
-        key |= {"pressure": self.asked, "spacing": tuple(map(float, self.scan.spacing)), "nu": self.nu}
-        key |= {"E_star": self.pair.E_star, "hardness": self._hardness}
+        key = self._key(names) | {"pressure": self.asked}
         if self.shear_ratio > 0:
             key["friction"] = self.pair.friction
 

@@ -223,7 +223,19 @@ def cached(make: Callable[[], Ladder], folder: Path | None, key: Mapping[str, ob
             name: getattr(ladder, name) for name in own
         }
 
-    text = repr(sorted(key.items())) + f" {STORED}"
-    data = kept(arrays, folder, kind="half-space", key=text, data=np.ascontiguousarray(heights).tobytes())
+    data = cached_numbers(arrays, folder, "half-space", key, heights)
     values = {name.removeprefix("value_"): array for name, array in data.items() if name.startswith("value_")}
     return Ladder(values=values, **{name: data[name] for name in own})
+
+
+def cached_numbers(
+    make: Callable[[], Mapping[str, Array]], folder: Path | None, kind: str, key: Mapping[str, object], heights: Array
+) -> Mapping[str, Array]:
+    """Return numbers of a map's contacts from the cache, or make them and keep them there, as `faying.cache.kept` does.
+
+    Args:
+        make, folder, kind: as `kept` takes them.
+        key: all that the numbers depend on beside the heights [m].
+    """
+    text = repr(sorted(key.items())) + f" {STORED}"
+    return kept(make, folder, kind=kind, key=text, data=np.ascontiguousarray(heights).tobytes())

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import log
+from pathlib import Path
 from typing import final
 
 import numpy as np
@@ -67,6 +68,7 @@ def stability(
     counter: Counter = "same",
     method: str = "psd",
     pressure: float,
+    cache: Path | None = None,
 ) -> Stability:
     """Ask a law for k_n on the whole of a scan, on parts of it, and on fewer of its points.
 
@@ -78,6 +80,7 @@ def stability(
         counter: the other face, as `faces_of` takes it; its scan is cut alike.
         method: estimator of D and G.
         pressure: nominal [Pa], above 0.
+        cache: folder that keeps solved contacts; None keeps nothing.
 
     Returns:
         The stiffnesses. Every part is levelled, filled and fitted anew, as a scan of that size would be.
@@ -90,7 +93,7 @@ def stability(
     parts = {name: (cropped(scan, share), cropped(counter, share)) for name, share in CUTS.items()}
     parts |= {WHOLE: (scan, counter), COARSE: (_halved(scan), _halved(counter))}
     fitted = kind.takes(FITTED, given)
-    law = pick(kind, given, faces_of(scan, counter, method=method, fitted=fitted).rough, pair).law
+    law = pick(kind, given, faces_of(scan, counter, method=method, fitted=fitted, cache=cache).rough, pair).law
     kind = label_of(law)
     fitted = kind.takes(FITTED, given)
     values = {WHOLE: stiffness_at(law, pressure)}
@@ -99,7 +102,7 @@ def stability(
         try:
             if not isinstance(one, Scan) or other is None:
                 raise InputError("too few points")
-            surface = faces_of(one, other, method=method, fitted=fitted).rough
+            surface = faces_of(one, other, method=method, fitted=fitted, cache=cache).rough
             values[name] = stiffness_at(pick(kind, given, surface, pair).law, pressure)
         except FayingError:
             values[name] = np.nan
@@ -109,7 +112,7 @@ def stability(
 def stiffness_at(law: ContactLaw, pressure: float) -> float:
     """k_n [Pa/m] at one pressure [Pa]; of the half-space by the one contact, not by its ladder."""
     if isinstance(law, HalfSpace):
-        return law.contact_at(pressure).normal_stiffness(loading=law.stiffness == "loading")
+        return law.stiffness_of_contact(pressure)
     k_n = law.at_pressure(pressure).k_n
     if k_n is None:
         raise InputError(f"{law.name} defines no normal stiffness")

@@ -39,6 +39,8 @@ class DampedModes:
     def scaled_shapes(self, mass: Any) -> tuple[Array, Array]:
         """Real and imaginary part of the shapes (unknowns, m), scaled so that the real part is mass-normalised."""
         real = self.shapes.real
+        if not np.any(self.shapes.imag):  # of unit size in the mass as they are
+            return np.ascontiguousarray(real), np.zeros_like(real)
         size = np.sqrt(np.einsum("im,im->m", real, product(mass, real)))
         return np.asarray(real / size), np.asarray(self.shapes.imag / size)
 

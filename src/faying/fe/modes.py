@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError, NotConverged
-from faying.fe.product import product
+from faying.fe.product import combined, product
 from faying.fe.solve import Factorisation, factorise, negative_eigenvalues
 from faying.typing import Array
 
@@ -147,7 +147,7 @@ def _ritz(stiffness: Any, mass: Any, shapes: Array) -> tuple[Array, Array]:
         few = slice(k, k + WIDTH)
         small[:, few], gram[:, few] = (shapes.T @ product(matrix, shapes[:, few]) for matrix in (stiffness, mass))
     values, turn = eigh((small + small.T) / 2, (gram + gram.T) / 2)
-    return values, shapes @ turn
+    return values, combined(shapes, turn)
 
 
 def _krylov(factor: Factorisation, mass: Any, width: int, *, still: Array, allowed: Array) -> tuple[Array, Array]:
@@ -164,7 +164,7 @@ def _krylov(factor: Factorisation, mass: Any, width: int, *, still: Array, allow
     same = max(SAME, *allowed[wanted])
     generator = np.random.default_rng(SEED)
     last = factor.solve(mass @ generator.standard_normal((n, width)))
-    last -= still @ (still.T @ (mass @ last))
+    last -= combined(still, still.T @ (mass @ last))
     last, momentum, _ = _orthonormal(last, mass)
     before, rows = np.zeros((n, 0)), np.zeros((last.shape[1], 0))
     basis, projected = [last], np.zeros((0, 0))  # as blocks: to join them would take them twice
@@ -178,11 +178,11 @@ def _krylov(factor: Factorisation, mass: Any, width: int, *, still: Array, allow
         projected = np.block([[projected, edge.T], [edge, corner]])
         known = np.concatenate([rows.T, corner])  # what the last two blocks have of the image
         size = float(np.linalg.norm(known, axis=0).max())
-        image -= last @ corner
-        image -= before @ rows.T
+        image -= combined(last, corner)
+        image -= combined(before, rows.T)
         moved = product(mass, image)
         for block in (still, *basis):
-            image -= block @ (block.T @ moved)
+            image -= combined(block, block.T @ moved)
         before = last
         last, momentum, rows = _orthonormal(image, mass, nothing=NOTHING * size)
         del image, moved  # before the next solution takes room
@@ -220,5 +220,5 @@ def _orthonormal(new: Array, mass: Any, nothing: float = 0.0) -> tuple[Array, Ar
         keep = values > max(least * values.max(initial=0.0), nothing**2)
         nothing = 0.0
         root = np.sqrt(values[keep])
-        new, rows = new @ (turn[:, keep] / root), (turn[:, keep] * root).T @ rows
+        new, rows = combined(new, turn[:, keep] / root), (turn[:, keep] * root).T @ rows
     return new, momentum @ (turn[:, keep] / root), rows

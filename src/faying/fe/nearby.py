@@ -8,7 +8,7 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.fe.changed import Changed, whole
 from faying.fe.modes import TOLERANCE, Modes, lowest_modes
-from faying.fe.product import product
+from faying.fe.product import combined, product
 from faying.fe.shifted import Shifted
 from faying.fe.single import Single, factorise_roughly
 from faying.fe.solve import Factorisation, Factoriser, factorise
@@ -144,7 +144,7 @@ class NearbyModes:
         """
         errors, mend = np.zeros(len(squared)), []
         for some in _few(which, len(self.diagonal)):
-            left = _left_over(stiffness, self.span.mass, self.span.vectors @ mix[:, some], squared[some])
+            left = _left_over(stiffness, self.span.mass, combined(self.span.vectors, mix[:, some]), squared[some])
             size = np.abs(squared[some])
             errors[some] = self._measure.guessed(left, size, some)
             far = ~(errors[some] < targets[some])
@@ -198,7 +198,7 @@ class NearbyModes:
             self.modes,
             error=np.concatenate([np.zeros(self.rigid), error, np.full(len(order) - self.rigid - len(error), np.nan)]),
             frequencies=np.sqrt(np.abs(values[order])) / (2 * np.pi),
-            shapes=self.span.vectors @ inner[:, order] if shapes else self.modes.shapes[:, :0],
+            shapes=combined(self.span.vectors, inner[:, order]) if shapes else self.modes.shapes[:, :0],
         )
 
     def _keep(self, inner: Array) -> None:

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.fe.product import product
+from faying.fe.product import combined, product
 from faying.typing import Array
 
 CLOSE = 1e-14  # of what is orthonormal: overlap up to which it is
@@ -87,10 +87,10 @@ class Span:
         """
         basis, moved = self.vectors, product(self.mass, new)
         size = np.sqrt(np.einsum("ij,ij->j", new, moved))
-        new = (new - basis @ (basis.T @ moved)) / size
+        new = (new - combined(basis, basis.T @ moved)) / size
         moved = product(self.mass, new)
         turn = _directions(new.T @ moved, least)
-        new, moved = new @ turn, moved @ turn
+        new, moved = combined(new, turn), moved @ turn
         image = product(self.stiffness, new)
         # the basis is long, and it is its reading that takes time
         left, side = np.split(basis.T @ np.concatenate([moved, image], axis=1), 2, axis=1)
@@ -99,13 +99,13 @@ class Span:
         del moved, image  # before there is room for more vectors
         if np.abs(left).max(initial=0.0) > CLOSE:
             known = self.small @ left
-            new = new - basis @ left
+            new = new - combined(basis, left)
             corner += left.T @ known - left.T @ side - side.T @ left
             side = side - known
         mend = _inverse_root(gram)
         side, corner = side @ mend, mend @ corner @ mend
         self.small = np.block([[self.small, side], [side.T, (corner + corner.T) / 2]])
-        self._columns.add(new @ mend)
+        self._columns.add(combined(new, mend))
         return int(new.shape[1])
 
     def turn(self, rotation: Array) -> None:

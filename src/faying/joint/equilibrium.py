@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError, NotConverged
+from faying.fe.product import product_of_sizes
 from faying.joint.joint_law import JointLaw
 from faying.joint.springs import InterfaceMotion
 from faying.typing import Array, Mask
@@ -206,7 +207,7 @@ class Equilibrium(ABC):
 
         Parts far stiffer than their joints lose digits in K u.
         """
-        return float(2 * np.finfo(float).eps * np.linalg.norm(abs(self.stiffness) @ np.abs(u)))
+        return float(2 * np.finfo(float).eps * np.linalg.norm(product_of_sizes(self.stiffness, u)))
 
     def _move(self, trace: InterfaceMotion, u: Array) -> Array:
         return np.asarray(trace.relative @ u).reshape(-1, 3)

@@ -1,5 +1,6 @@
 """How alike shapes and functions are: MAC, FRAC."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,13 +21,31 @@ def mac(a: Any, b: Any, mass: Any | None = None) -> Array:
     if a.shape[1] != b.shape[1]:
         raise InputError(f"shapes at {a.shape[1]} and at {b.shape[1]} degrees of freedom; give both at the same ones")
     if mass is not None:
-        momentum = (mass @ b.T).T
-        moved = ((a, (mass @ a.T).T), (b, momentum))
-        sizes = [np.einsum("md,md->m", x.conj(), p).real for x, p in moved]
-        product = np.outer(*(np.where(size > 0, size, np.inf) for size in sizes))
-        return np.asarray(np.minimum(np.abs(a.conj() @ momentum.T) ** 2 / product, 1.0))
+        return Weighted.of(b.T, mass).mac(Weighted.of(a.T, mass))
     a, b = _unit(a), _unit(b)
     return np.asarray(np.minimum(np.abs(a.conj() @ b.T) ** 2, 1.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Weighted:
+    """Shapes (d, m) of a whole model, complex or real, with their momenta (d, m) and their sizes (m,) in its mass."""
+
+    shapes: Any
+    momenta: Any
+    sizes: Array
+
+    @classmethod
+    def of(cls, shapes: Any, mass: Any) -> "Weighted":
+        """Weight shapes (d, m) by a mass (d, d) [kg], sparse or not."""
+        shapes = shapes if np.any(np.imag(shapes)) else np.real(shapes)
+        momenta = mass @ shapes
+        sizes = np.einsum("dm,dm->m", shapes.conj(), momenta).real
+        return cls(shapes=shapes, momenta=momenta, sizes=np.where(sizes > 0, sizes, np.inf))
+
+    def mac(self, other: "Weighted") -> Array:
+        """MAC of the other's shapes (d, k) with these (d, m): (k, m)."""
+        overlap = np.abs(other.shapes.conj().T @ self.momenta) ** 2
+        return np.asarray(np.minimum(overlap / np.outer(other.sizes, self.sizes), 1.0))
 
 
 def _unit(a: Any) -> Any:

@@ -1,6 +1,7 @@
 """From the states of a case to the numbers of its bolts, and to the conductance of its joints."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -45,7 +46,8 @@ def bolt_numbers(case: Case, states: Sequence[State], shapes: Sequence[Array]) -
     motion = np.stack([_modal_forces(structure, one) for one in shapes])
     omega = 2 * np.pi * np.stack([s.damped.frequencies for s in states])
     embedding = np.stack([_embedding(structure, c, s) for c, s in zip(found, states, strict=True)], axis=1)
-    guide = np.array([_guide(case, stack) for stack in stacks])
+    height = cache(lambda number: _height(case.surfaces[number]))
+    guide = np.array([_guide(height, stack) for stack in stacks])
     return BoltNumbers(
         compliance=bolt,
         member_compliance=members,
@@ -121,15 +123,15 @@ def _lost(structure: Structure, found: Sequence[Clamping], embedding: Array) -> 
     return np.asarray(np.where(carried > CARRIES, embedding, np.nan_to_num(embedding)).sum(axis=2))
 
 
-def _guide(case: Case, stack: Stack | None) -> float:
+def _guide(height: Callable[[int], float], stack: Stack | None) -> float:
     """Embedding [m] of thread, both seats and the joints of a bolt by the guideline; NaN where no scan gives Rz.
 
-    The seats are taken to be as rough as the roughest of these joints.
+    height: Rz [m] of the surface of each joint. The seats are taken to be as rough as the roughest of these joints.
     """
     if stack is None:
         return NAN
     try:
-        values = [embedding_guide(_height(case.surfaces[number])) for number in stack.joints]
+        values = [embedding_guide(height(number)) for number in stack.joints]
     except InputError:
         return NAN
     return values[0][0] + 2 * max(value[1] for value in values) + sum(value[2] for value in values)

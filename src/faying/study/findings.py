@@ -63,7 +63,7 @@ def against_exact_contact(case: Case, state: State) -> list[Note]:
         assert isinstance(scan, Scan)
         weights = joint.interface.weights
         mean = float(weights[touching] @ pressure[touching] / weights[touching].sum())
-        mean = min(max(mean, law.least_pressure), law.greatest_pressure)
+        mean = min(max(float(f"{mean:.3g}"), law.least_pressure), law.greatest_pressure)  # as it is shown
         chosen = case.study.law_of(choice)
         pair = chosen.pair(*materials_at(case.study, case.structure.mesh, choice))
         at = f"{joint.name}, {mean / 1e6:.3g} MPa"
@@ -77,7 +77,14 @@ def against_exact_contact(case: Case, state: State) -> list[Note]:
             label = label_of(law)
             given = chosen.given if chosen.kind.label == label.label else {}
             found = stability(
-                scan, pair, model=label, given=given, counter=counter, method=surface.method, pressure=mean
+                scan,
+                pair,
+                model=label,
+                given=given,
+                counter=counter,
+                method=surface.method,
+                pressure=mean,
+                cache=surface.rough.cache,
             )
         except FayingError:
             continue

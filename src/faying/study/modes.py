@@ -22,7 +22,7 @@ from faying.typing import Array
 
 EXACT = 1e-8  # of the squared frequencies, complex or not: 5e-9 of a frequency, 1e-8 of a loss factor, 1e-4 of a shape
 FEW = 6  # rounds of enrichment that cost about what a factorisation and the two rounds after it do
-KEPT = 8  # times the modes of one state: what the basis keeps
+KEPT, ROOM = 8, 24_000_000  # what the basis keeps: times the modes of one state, or numbers, whichever is more
 
 
 def settled(case: Case, number: int, problem: PreloadProblem) -> PreloadState:
@@ -77,7 +77,8 @@ class SharedModes:
                 self.near = None  # before the next factorisation: one at a time in memory
         stiffness, mass = added(structure.vibrating[0], [sprung]), structure.vibrating[1]
         modes = modes_with(case, stiffness, mass, rigid=structure.rigid)
-        self.near = NearbyModes(modes, stiffness, mass, rigid=case.rigid_count, most=KEPT * len(modes.frequencies))
+        most = max(KEPT * len(modes.frequencies), ROOM // mass.shape[0])
+        self.near = NearbyModes(modes, stiffness, mass, rigid=case.rigid_count, most=most)
         self._sprung = sprung
         return modes, stiffness
 

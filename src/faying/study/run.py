@@ -31,7 +31,7 @@ from faying.study.modes import SharedModes, modes_with
 from faying.study.provenance import provenance
 from faying.study.solve import State, solve
 from faying.study.study import Study
-from faying.study.tracks import compared, encounters, from_load_to_load, shapes_of, with_first
+from faying.study.tracks import compared, encounters, macs, shapes_of
 from faying.typing import Array
 
 NOT_ZERO = 1e-2  # Hz: a rigid motion above it is noted
@@ -153,7 +153,7 @@ def collect(
     """
     study, structure = case.study, case.structure
     shapes = shapes_of(case, states)
-    steps = from_load_to_load(case, states)
+    steps, with_first = macs(case, states)
     comparison, more = compared(case, states, shapes, steps)
     if comparison is not None and besides:
         comparison = replace(comparison, beside=np.stack([_predicted(b, comparison) for b in besides]))
@@ -173,7 +173,7 @@ def collect(
         free=bounds[0],
         bonded=bounds[1],
         rigid=rigid,
-        mac=with_first(case, states, steps),
+        mac=with_first,
         **_at_loads(states, lossless),
         **_bonded_beyond(states, lossless),
         **_at_points(states),
@@ -220,7 +220,7 @@ def _predicted(beside: Beside, comparison: Comparison) -> Array:
     """Frequencies [Hz] that another law predicts of the test's modes; NaN where it has no answer."""
     if beside.case is not None:
         case, states = beside.case, beside.states
-        found, _ = compared(case, states, shapes_of(case, states), from_load_to_load(case, states))
+        found, _ = compared(case, states, shapes_of(case, states), macs(case, states)[0])
         if found is not None:
             return found.predicted
     return np.full(comparison.frequencies.shape, np.nan)

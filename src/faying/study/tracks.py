@@ -1,11 +1,10 @@
 """The modes of a case over its loads: their shapes, how alike they are, where they cross, which are those of a test."""
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 
-from faying.measured.mac import mac
+from faying.measured.mac import Weighted
 from faying.measured.pairing import Paired, changes, pair_over_loads
 from faying.notes import Note
 from faying.result import Comparison
@@ -20,19 +19,20 @@ def shapes_of(case: Case, states: Sequence[State]) -> list[Array]:
     return [s.damped.real_shapes(mass).T.reshape(len(s.damped.frequencies), -1, 3) for s in states]
 
 
-def from_load_to_load(case: Case, states: Sequence[State]) -> list[Array]:
-    """MAC (m, m), weighted by mass, of the modes at each load with those at the next."""
-    return [_mac(case, a, b) for a, b in pairwise(states)]
+def macs(case: Case, states: Sequence[State]) -> tuple[list[Array], Array]:
+    """MAC, weighted by mass, of the modes of each load with those of the next (m, m), and with those of the first.
 
-
-def with_first(case: Case, states: Sequence[State], steps: Sequence[Array]) -> Array:
-    """MAC (load, m, m), weighted by mass, of the modes at the first load with those at each; steps: load to load."""
-    first = states[0]
-    return np.stack([_mac(case, first, first), *steps[:1], *(_mac(case, first, s) for s in states[2:])])
-
-
-def _mac(case: Case, first: State, second: State) -> Array:
-    return mac(first.damped.shapes.T, second.damped.shapes.T, case.structure.vibrating[1])
+    The latter (load, m, m).
+    """
+    mass = case.structure.vibrating[1]
+    first = before = Weighted.of(states[0].damped.shapes, mass)
+    steps, with_first = [], [first.mac(first)]
+    for state in states[1:]:
+        here = Weighted.of(state.damped.shapes, mass)
+        steps.append(here.mac(before))
+        with_first.append(steps[0] if before is first else here.mac(first))
+        before = here
+    return steps, np.stack(with_first)
 
 
 def encounters(states: Sequence[State], steps: Sequence[Array]) -> list[Note]:
