@@ -11,6 +11,7 @@ from faying.joint.preload import PreloadProblem
 from faying.joint.structure import Structure
 from faying.typing import Array
 
+BALANCED = 1e-9  # of the load: what is out of balance then moves pressures by some 1e-10 of the greatest
 SNUG = 0.01  # of its force, in a solid bolt that is yet to be tightened: without any, it would fall out
 
 
@@ -33,7 +34,7 @@ def tighten(
     force = np.asarray(forces, dtype=float)
     loads = structure.loads
     if order is None:
-        at_once = assembly.solve(loads @ force, report=report)
+        at_once = assembly.solve(loads @ force, tolerance=BALANCED, report=report)
         return replace(at_once, bolt_forces=tuple(float(f) for f in force))
     bolts = structure.fitted_bolts
     missing = sorted(set(range(len(bolts))) - set(order))
@@ -59,7 +60,7 @@ def tighten(
             if index != turn and shank is not None:
                 shanks = shank if shanks is None else shanks + shank
                 load = load + kept * loads[:, index] + shank @ moved
-        found = assembly.solve(load, shanks=shanks, report=report)
+        found = assembly.solve(load, shanks=shanks, tolerance=BALANCED, report=report)
         tight[turn] = (float(force[turn]), found.displacement)
     assert found is not None
     final = found.displacement
