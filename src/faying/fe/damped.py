@@ -14,7 +14,7 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.fe.modes import Modes
 from faying.fe.nearby import LEAST, Measure, NearbyModes
-from faying.fe.product import product
+from faying.fe.product import combined, product
 from faying.typing import Array, Complex, Index
 
 Kind = Literal["hysteretic", "viscous"]
@@ -107,7 +107,7 @@ def damped_near(
         inner = inner[:, order]
         at_joints = span.vectors[lossy] @ inner
         squared, root, mix = _eigen(np.abs(values[order]), at_joints.T @ (inside @ at_joints), count, kind)
-        vectors = _times(span.vectors, inner @ mix)
+        vectors = _combined(span.vectors, inner @ mix)
         held, moved, lost = (_times(operator, vectors) for operator in (stiffness, mass, loss))
         if kind == "hysteretic":
             miss = held + 1j * lost - moved * squared
@@ -168,8 +168,14 @@ def lowest_complex(frequencies: Array, count: int) -> Index:
     return np.argsort(frequencies)[:count]
 
 
+def _combined(vectors: Array, mix: Complex) -> Complex:
+    """Complex combinations (n, k) of real columns (n, m), which are read once for both parts."""
+    real, imaginary = np.split(combined(vectors, np.concatenate([mix.real, mix.imag], axis=1)), 2, axis=1)
+    return np.asarray(real + 1j * imaginary)
+
+
 def _times(real: Any, other: Complex) -> Complex:
-    """A real matrix, dense or sparse, times a complex one, without a complex copy of the first."""
+    """A real sparse matrix times a complex one, without a complex copy of the first."""
     return np.asarray(product(real, other.real) + 1j * product(real, other.imag))
 
 
