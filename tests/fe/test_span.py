@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse import diags_array
 
-from faying.fe.span import Span, extension
+from faying.fe.span import Columns, Span, extension
 
 N = 40
 MASS = diags_array(np.geomspace(1e-3, 1e3, N)).tocsr()
@@ -45,3 +45,24 @@ def test_a_span_keeps_its_projection(columns):
     assert span.add(drawn(columns, seed=3)) == columns
     np.testing.assert_allclose(span.small, span.vectors.T @ (STIFFNESS @ span.vectors), rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(of_mass(span.vectors), np.eye(2 + columns), atol=1e-12)
+
+
+def test_columns_grow_under_a_view_and_after_a_turn_without_losing_any():
+    """Growth moves the numbers where nobody looks at them; a view that is held keeps what it showed."""
+    blocks = [drawn(k, seed=k) for k in (5, 3, 1, 4)]
+    columns, wanted = Columns(blocks[0]), blocks[0]
+    held = []
+    for block in blocks[1:]:
+        columns.add(block)
+        wanted = np.concatenate([wanted, block], axis=1)
+        np.testing.assert_array_equal(columns.values, wanted)
+        held.append((columns.values, wanted))
+    for view, wanted in held:
+        np.testing.assert_array_equal(view, wanted)
+    rotation = np.linalg.qr(drawn(13, seed=9)[:13])[0][:, :6]
+    columns.turn(rotation)
+    columns.add(blocks[1])
+    np.testing.assert_allclose(
+        columns.values, np.concatenate([wanted @ rotation, blocks[1]], axis=1), rtol=1e-13, atol=1e-14
+    )
+    np.testing.assert_array_equal(blocks[0], drawn(5, seed=5))  # what came first is not turned

@@ -16,6 +16,7 @@ TOO_HIGH = 30.0  # times the highest frequency of a single unknown: such a shift
 ROWS = 50_000  # of the basis that are joined at a time
 MOST_STEPS = 1200  # vectors of the basis
 SAME = 1e-6  # relative difference of eigenvalues of A^-1 M below which they may be one
+ROUGHLY = 50  # times a loose tolerance: a factor in single precision may be so far off on the softest modes
 NOTHING = 1e-13  # of the size of a block: what the basis leaves of it is rounding, and the basis is whole
 TOLERANCE = 1e-8  # residual of A^-1 M x = theta x over theta; the error of theta is of its square over the gap
 
@@ -78,7 +79,7 @@ def lowest_modes(
     values, shapes = _ritz(stiffness, mass, shapes)
     apart = np.abs(np.sort(values + shift) * np.sort(inverse)[::-1] - 1)[:count]
     allowed = allowed[: len(apart)]
-    if np.any(apart > np.maximum(SAME, allowed)):
+    if np.any(apart > np.maximum(SAME, ROUGHLY * allowed)):
         # motions without mass have crept in, which the projection on the mass does not see: one more solve has none
         shapes, _, _ = _orthonormal(factor.solve(product(mass, shapes)), mass)
         values, shapes = _ritz(stiffness, mass, shapes)

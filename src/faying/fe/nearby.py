@@ -250,7 +250,9 @@ def _few(columns: Index, size: int) -> list[Index]:
 
 def _left_over(stiffness: Any, mass: Any, shapes: Array, squared: Array) -> Array:
     """Forces (n, m) that shapes (n, m) with squared circular frequencies (m,) leave out of balance."""
-    return np.asfortranarray(product(stiffness, shapes) - product(mass, shapes * squared))
+    left = product(stiffness, shapes)
+    left -= product(mass, shapes * squared)
+    return np.asfortranarray(left)
 
 
 def _sharper(squared: Array, targets: Array) -> Array:

@@ -8,7 +8,6 @@ from faying.fe.product import combined, product
 from faying.typing import Array
 
 CLOSE = 1e-14  # of what is orthonormal: overlap up to which it is
-ROOM = 8_000_000  # numbers for which room is made ahead, at least
 ROWS = 10_000  # that are combined at a time
 ROUNDING = 1e-13  # of the largest: squares of directions below it are rounding
 
@@ -118,29 +117,40 @@ class Columns:
     """Columns (n, m) of a matrix that grows, without a copy of all of it for each that comes."""
 
     def __init__(self, first: Array) -> None:
-        self._room, self._used = np.asfortranarray(first), first.shape[1]
-        self._own = self._room is not first
+        self._size, self._used = first.shape
+        self._numbers = np.asfortranarray(first).reshape(-1, order="F")  # column by column; not its own memory as yet
+        self._own = False
 
     @property
     def values(self) -> Array:
         """The columns (n, m)."""
-        return self._room[:, : self._used]
+        return self._numbers[: self._size * self._used].reshape(self._size, self._used, order="F")
 
     def add(self, new: Array) -> None:
         """Put columns (n, k) behind those that are here."""
-        used = self._used + new.shape[1]
-        if used > self._room.shape[1]:
-            room = np.empty((len(new), used + max(used // 4, ROOM // max(len(new), 1))), order="F")
-            room[:, : self._used] = self.values
-            self._room, self._own = room, True
-        self._room[:, self._used : used] = new
-        self._used = used
+        before, self._used = self._used, self._used + new.shape[1]
+        if self._size * self._used > len(self._numbers):
+            self._grow(self._size * before)
+        self.values[:, before:] = new
 
     def turn(self, rotation: Array) -> None:
         """Replace the columns (n, m) by combinations of them, k <= m columns of `rotation` (m, k), in their place."""
         if not self._own:
-            self._room, self._own = self._room.copy(order="F"), True
+            self._numbers, self._own = self._numbers.copy(), True
+        columns = self.values
         self._used = rotation.shape[1]
-        for begin in range(0, len(self._room), ROWS):
-            here = self._room[begin : begin + ROWS]
-            here[:, : self._used] = here[:, : len(rotation)] @ rotation
+        for begin in range(0, self._size, ROWS):
+            here = columns[begin : begin + ROWS]
+            here[:, : self._used] = combined(here, rotation)
+
+    def _grow(self, known: int) -> None:
+        """Make room for all columns and keep so many numbers that are known."""
+        if self._own:
+            try:
+                self._numbers.resize(self._size * self._used)  # the system moves its pages: no second copy in memory
+                return
+            except ValueError:  # somebody looks at it
+                pass
+        numbers = np.empty(self._size * self._used)
+        numbers[:known] = self._numbers[:known]
+        self._numbers, self._own = numbers, True
