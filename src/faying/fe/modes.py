@@ -81,7 +81,11 @@ def lowest_modes(
     allowed = allowed[: len(apart)]
     if np.any(apart > np.maximum(SAME, ROUGHLY * allowed)):
         # motions without mass have crept in, which the projection on the mass does not see: one more solve has none
-        shapes, _, _ = _orthonormal(factor.solve(product(mass, shapes)), mass)
+        once_more = np.empty(shapes.shape, order="F")
+        for k in range(0, shapes.shape[1], WIDTH):  # few at a time, as below
+            once_more[:, k : k + WIDTH] = factor.solve(product(mass, shapes[:, k : k + WIDTH]))
+        shapes, _, _ = _orthonormal(once_more, mass)
+        del once_more
         values, shapes = _ritz(stiffness, mass, shapes)
     _check_stable(stiffness, values, shapes, shift)
     order = np.argsort(np.abs(values))[:count]

@@ -12,7 +12,7 @@ from faying.fe.product import combined, product
 from faying.fe.shifted import Shifted
 from faying.fe.single import Single, factorise_roughly
 from faying.fe.solve import Factorisation, Factoriser, factorise
-from faying.fe.span import Span
+from faying.fe.span import Span, few
 from faying.typing import Array, Index
 
 ROUNDS = 40  # enrichments of the basis
@@ -24,7 +24,6 @@ PLACED = 1e-2  # estimated relative error of their squared frequencies
 EVERYWHERE = 6  # vectors of no symmetry that each new stiffness begins with
 SEED = 20261124
 LEAST = 1e-10  # share of a new vector that must be new
-FEW, ROOM = 8, 2_000_000  # vectors, or numbers, that are worked on together: the larger
 NEIGHBOURS = 10  # modes that are taken to lie as near together as two that are found
 DOUBT = 3.0  # times by which the energy of a residual may have grown against that by the diagonal since the last round
 
@@ -65,7 +64,7 @@ class NearbyModes:
 
     def add(self, vectors: Array) -> None:
         """Take vectors (n, k) that are likely to be near modes to come, such as those of a stiffness between."""
-        for some in _few(np.arange(vectors.shape[1]), len(vectors)):
+        for some in few(*vectors.shape):
             self.span.add(vectors[:, some], least=LEAST)
 
     def under(
@@ -143,7 +142,7 @@ class NearbyModes:
         targets (w,); which (k,): of them.
         """
         errors, mend = np.zeros(len(squared)), []
-        for some in _few(which, len(self.diagonal)):
+        for some in (which[part] for part in few(len(self.diagonal), len(which))):
             left = _left_over(stiffness, self.span.mass, combined(self.span.vectors, mix[:, some]), squared[some])
             size = np.abs(squared[some])
             errors[some] = self._measure.guessed(left, size, some)
@@ -240,12 +239,6 @@ class Measure:
 
     def _rough(self, left: Array, size: Array) -> Array:
         return np.array([column @ (column / self._diagonal) for column in left.T]) / size
-
-
-def _few(columns: Index, size: int) -> list[Index]:
-    """Columns (k,) of vectors (size,), as many at a time as take little room: work takes several times that."""
-    width = max(FEW, ROOM // size)
-    return [columns[k : k + width] for k in range(0, len(columns), width)]
 
 
 def _left_over(stiffness: Any, mass: Any, shapes: Array, squared: Array) -> Array:

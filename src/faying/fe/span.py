@@ -9,7 +9,14 @@ from faying.typing import Array
 
 CLOSE = 1e-14  # of what is orthonormal: overlap up to which it is
 ROWS = 10_000  # that are combined at a time
+FEW, LITTLE = 8, 2_000_000  # vectors, or numbers, that are worked on together: the larger
 ROUNDING = 1e-13  # of the largest: squares of directions below it are rounding
+
+
+def few(size: int, count: int) -> list[slice]:
+    """Slices of `count` vectors (size,), as many at a time as take little room: work on them takes several times that."""
+    width = max(FEW, LITTLE // size)
+    return [slice(k, k + width) for k in range(0, count, width)]
 
 
 def extension(new: Array, basis: Array, image: Array, operator: Any, *, least: float = 0.0) -> tuple[Array, Array]:
@@ -72,7 +79,9 @@ class Span:
     def __init__(self, mass: Any, stiffness: Any, first: Array) -> None:
         self.mass, self.stiffness = mass, stiffness
         self._columns = Columns(first)
-        self.small: Array = first.T @ product(stiffness, first)
+        del first
+        parts = [self.vectors.T @ product(stiffness, self.vectors[:, some]) for some in few(*self.vectors.shape)]
+        self.small: Array = np.concatenate([np.zeros((self.vectors.shape[1], 0)), *parts], axis=1)
 
     @property
     def vectors(self) -> Array:
@@ -118,8 +127,8 @@ class Columns:
 
     def __init__(self, first: Array) -> None:
         self._size, self._used = first.shape
-        self._numbers = np.asfortranarray(first).reshape(-1, order="F")  # column by column; not its own memory as yet
-        self._own = False
+        self._numbers = np.empty(first.size)  # column by column
+        self.values[:] = first
 
     @property
     def values(self) -> Array:
@@ -130,27 +139,23 @@ class Columns:
         """Put columns (n, k) behind those that are here."""
         before, self._used = self._used, self._used + new.shape[1]
         if self._size * self._used > len(self._numbers):
-            self._grow(self._size * before)
+            self._grow()
         self.values[:, before:] = new
 
     def turn(self, rotation: Array) -> None:
         """Replace the columns (n, m) by combinations of them, k <= m columns of `rotation` (m, k), in their place."""
-        if not self._own:
-            self._numbers, self._own = self._numbers.copy(), True
         columns = self.values
         self._used = rotation.shape[1]
         for begin in range(0, self._size, ROWS):
             here = columns[begin : begin + ROWS]
             here[:, : self._used] = combined(here, rotation)
 
-    def _grow(self, known: int) -> None:
-        """Make room for all columns and keep so many numbers that are known."""
-        if self._own:
-            try:
-                self._numbers.resize(self._size * self._used)  # the system moves its pages: no second copy in memory
-                return
-            except ValueError:  # somebody looks at it
-                pass
-        numbers = np.empty(self._size * self._used)
-        numbers[:known] = self._numbers[:known]
-        self._numbers, self._own = numbers, True
+    def _grow(self) -> None:
+        """Make room for all columns."""
+        size = self._size * self._used
+        try:
+            self._numbers.resize(size)  # the system moves its pages: no second copy in memory
+        except ValueError:  # somebody looks at it
+            numbers = np.empty(size)
+            numbers[: len(self._numbers)] = self._numbers
+            self._numbers = numbers
