@@ -14,7 +14,7 @@ ROUNDING = 1e-13  # of the largest: squares of directions below it are rounding
 
 
 def few(size: int, count: int) -> list[slice]:
-    """Slices of `count` vectors (size,), as many at a time as take little room: work on them takes several times that."""
+    """Slices of `count` vectors (size,), as many at a time as take little room: work takes some times that."""
     width = max(FEW, LITTLE // size)
     return [slice(k, k + width) for k in range(0, count, width)]
 
