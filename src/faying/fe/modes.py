@@ -16,7 +16,6 @@ TOO_HIGH = 30.0  # times the highest frequency of a single unknown: such a shift
 ROWS = 50_000  # of the basis that are joined at a time
 MOST_STEPS = 1200  # vectors of the basis
 SAME = 1e-6  # relative difference of eigenvalues of A^-1 M below which they may be one
-ROUGHLY = 50  # times a loose tolerance: a factor in single precision may be so far off on the softest modes
 NOTHING = 1e-13  # of the size of a block: what the basis leaves of it is rounding, and the basis is whole
 TOLERANCE = 1e-8  # residual of A^-1 M x = theta x over theta; the error of theta is of its square over the gap
 
@@ -79,13 +78,12 @@ def lowest_modes(
     values, shapes = _ritz(stiffness, mass, shapes)
     apart = np.abs(np.sort(values + shift) * np.sort(inverse)[::-1] - 1)[:count]
     allowed = allowed[: len(apart)]
-    if np.any(apart > np.maximum(SAME, ROUGHLY * allowed)):
-        # motions without mass have crept in, which the projection on the mass does not see: one more solve has none
-        once_more = np.empty(shapes.shape, order="F")
-        for k in range(0, shapes.shape[1], WIDTH):  # few at a time, as below
-            once_more[:, k : k + WIDTH] = factor.solve(product(mass, shapes[:, k : k + WIDTH]))
-        shapes, _, _ = _orthonormal(once_more, mass)
-        del once_more
+    if np.any(apart > np.maximum(SAME, allowed)):
+        # motions without mass have crept in, which the projection on the mass does not see, or the rounding of a factor
+        # in single precision: one more solve has none
+        for k in range(0, shapes.shape[1], WIDTH):  # few at a time, as below, and in their place
+            shapes[:, k : k + WIDTH] = factor.solve(product(mass, shapes[:, k : k + WIDTH]))
+        shapes, _, _ = _orthonormal(shapes, mass)
         values, shapes = _ritz(stiffness, mass, shapes)
     _check_stable(stiffness, values, shapes, shift)
     order = np.argsort(np.abs(values))[:count]
@@ -219,11 +217,13 @@ def _orthonormal(new: Array, mass: Any, nothing: float = 0.0) -> tuple[Array, Ar
     """
     rows, least = np.eye(new.shape[1]), 1e-14
     for _ in range(2):  # the Gram matrix squares what is small: what the first pass leaves, the second mends
-        momentum = product(mass, new)
+        momentum = np.empty(new.shape, order="F")
+        for k in range(0, new.shape[1], WIDTH):
+            momentum[:, k : k + WIDTH] = product(mass, new[:, k : k + WIDTH])
         gram = new.T @ momentum
         values, turn = np.linalg.eigh((gram + gram.T) / 2)
         keep = values > max(least * values.max(initial=0.0), nothing**2)
         nothing = 0.0
         root = np.sqrt(values[keep])
         new, rows = combined(new, turn[:, keep] / root), (turn[:, keep] * root).T @ rows
-    return new, momentum @ (turn[:, keep] / root), rows
+    return new, combined(momentum, turn[:, keep] / root), rows

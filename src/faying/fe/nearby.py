@@ -243,8 +243,10 @@ class Measure:
 
 def _left_over(stiffness: Any, mass: Any, shapes: Array, squared: Array) -> Array:
     """Forces (n, m) that shapes (n, m) with squared circular frequencies (m,) leave out of balance."""
-    left = product(stiffness, shapes)
-    left -= product(mass, shapes * squared)
+    shapes = np.ascontiguousarray(shapes)  # once for both products
+    left, moved = product(stiffness, shapes), product(mass, shapes)
+    moved *= squared
+    left -= moved
     return np.asfortranarray(left)
 
 

@@ -113,6 +113,7 @@ class Span:
         mend = _inverse_root(gram)
         side, corner = side @ mend, mend @ corner @ mend
         self.small = np.block([[self.small, side], [side.T, (corner + corner.T) / 2]])
+        del basis  # or the columns could not grow where they are
         self._columns.add(combined(new, mend))
         return int(new.shape[1])
 
