@@ -49,6 +49,7 @@ class NearbyModes:
         self.rigid, self._most = rigid, most
         self._looked = False
         self._changed: tuple[Any, Any, Index] | None = None  # of the last stiffness
+        self._at = self._nowhere = np.zeros(0, dtype=np.int64), np.zeros((0, 0))  # unknowns, and the basis there
         self.diagonal = stiffness.diagonal() + modes.shift * mass.diagonal()
         self._measure = self.measure(0)
 
@@ -159,9 +160,19 @@ class NearbyModes:
         from scipy.linalg import eigh
 
         change, touched = self._change(stiffness)
-        at_joints = self.span.vectors[touched]
+        at_joints = self._rows(touched)
         values, inner = eigh(self.span.small + at_joints.T @ (change @ at_joints))
         return np.asarray(values), np.asarray(inner)
+
+    def _rows(self, touched: Index) -> Array:
+        """The rows (k, m) of the basis at unknowns (k,): those of the last time, as far as they are the same."""
+        vectors, (last, rows) = self.span.vectors, self._at
+        if not np.array_equal(last, touched) or rows.shape[1] > vectors.shape[1]:
+            rows = vectors[touched, :0]
+        if rows.shape[1] < vectors.shape[1]:
+            rows = np.concatenate([rows, vectors[touched, rows.shape[1] :]], axis=1)
+            self._at = touched, rows
+        return rows
 
     def _change(self, stiffness: Any) -> tuple[Any, Index]:
         """What a stiffness has beyond that of the basis: (k, k) on the unknowns that differ, and these (k,)."""
@@ -205,7 +216,7 @@ class NearbyModes:
         span = self.span
         if self._most is not None and span.vectors.shape[1] > self._most:
             span.turn(inner[:, : 3 * self._most // 4])
-            self._looked = False
+            self._looked, self._at = False, self._nowhere
 
 
 class Measure:

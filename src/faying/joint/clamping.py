@@ -25,7 +25,7 @@ from faying.joint.structure import Structure
 from faying.joint.vdi2230 import cone_compliance
 from faying.typing import Array
 
-ACCURACY = 1e-5  # of the residual of a solution: a compliance is right to its square, what lies in a joint to it
+ACCURACY = 1e-4  # of the residual of a solution: a compliance is right to its square, what lies in a joint to it
 MESHED = 1e-6  # the same where a bolt is meshed, whose numbers are all of first order
 MOST_STEPS = 2000
 ROUND = 0.03  # of the area of a ring between its least and greatest radius: a face that differs by more is none

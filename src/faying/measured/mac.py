@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
+from faying.fe.product import product
 from faying.typing import Array
 
 
@@ -38,7 +39,7 @@ class Weighted:
     def of(cls, shapes: Any, mass: Any) -> "Weighted":
         """Weight shapes (d, m) by a mass (d, d) [kg], sparse or not."""
         shapes = shapes if np.any(np.imag(shapes)) else np.real(shapes)
-        momenta = mass @ shapes
+        momenta = product(mass, shapes)
         sizes = np.einsum("dm,dm->m", shapes.conj(), momenta).real
         return cls(shapes=shapes, momenta=momenta, sizes=np.where(sizes > 0, sizes, np.inf))
 
