@@ -184,6 +184,23 @@ def test_the_value_at_a_place_is_that_of_sorting(values):
         assert _in_order(a, place) == np.sort(a)[place]
 
 
+def test_a_place_in_order_needs_no_sort_of_all_where_columns_differ(monkeypatch):
+    """Rows as long as a power of two: a sample at a step of a power of two would see a few of the 8,192 columns."""
+    rows = 16 * SAMPLE // 8192
+    random = np.random.default_rng(5)
+    a = (np.cos(np.arange(8192) / 300) + 0.01 * random.standard_normal((rows, 8192))).ravel()
+    sort, sizes = np.sort, []
+
+    def seen(values, *rest, **more):
+        sizes.append(values.size)
+        return sort(values, *rest, **more)
+
+    monkeypatch.setattr(np, "sort", seen)
+    for place in (0, 1000, a.size // 3, a.size // 2, a.size - 1):
+        assert _in_order(a, place) == sort(a)[place]
+    assert max(sizes) < a.size / 2
+
+
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("periodic", [True, False])
 @pytest.mark.parametrize(("pressure", "hardness"), [(0.01, None), (0.2, None), (0.002, 0.005)])
