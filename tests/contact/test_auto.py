@@ -135,6 +135,23 @@ def test_a_ladder_is_kept_beside_the_scan_and_read_again(tmp_path, monkeypatch):
     assert len(solved) > count
 
 
+def test_the_stiffness_of_one_contact_is_kept_and_read_again(tmp_path, monkeypatch):
+    monkeypatch.delenv("FAYING_CACHE", raising=False)
+    z = gaussian(0.8, 0.06e-3, 8e-6, 1e-6, 6, points=64, side=0.5e-3)
+    law = HalfSpace(Scan(heights=z, spacing=(0.5e-3 / 64,) * 2), PAIR, cache=tmp_path / "kept")
+    first = law.stiffness_of_contact(MIDDLE)
+    assert first == law.contact_at(MIDDLE).normal_stiffness(loading=False)
+    assert law.stiffness_of_contact(1.1 * MIDDLE) != first
+    assert law.with_(stiffness="loading").stiffness_of_contact(MIDDLE) != first
+    assert len(list((tmp_path / "kept").iterdir())) == 3
+
+    def solved(*_, **__):
+        raise AssertionError("solved again")
+
+    monkeypatch.setattr(HalfSpace, "contact_at", solved)
+    assert law.with_().stiffness_of_contact(MIDDLE) == first
+
+
 def test_stability_asks_each_part_as_a_scan_of_its_own():
     z = gaussian(0.8, 0.06e-3, 8e-6, 1e-6, 7, points=128, side=0.5e-3)
     scan = Scan(heights=z, spacing=(0.5e-3 / 128,) * 2)

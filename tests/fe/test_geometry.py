@@ -139,6 +139,30 @@ def test_a_death_of_the_cad_kernel_is_an_error(tmp_path, monkeypatch):
         mesh_step(path, size=8e-3)
 
 
+def test_a_mesh_is_kept_beside_the_file_and_read_again(tmp_path, monkeypatch):
+    import faying.fe.geometry as module
+
+    monkeypatch.delenv("FAYING_CACHE", raising=False)
+    path, kept = step(tmp_path, *plate_and_block()), tmp_path / "kept"
+    first = mesh_step(path, size=8e-3, cache=kept)
+    other = mesh_step(path, size=8e-3, local_size={"foot": 4e-3}, cache=kept)
+    assert len(other.points) > len(first.points)  # another question is another file
+    assert len(list(kept.iterdir())) == 2
+
+    def asked(*_, **__):
+        raise AssertionError("meshed again")
+
+    monkeypatch.setattr(module, "ask", asked)
+    again = mesh_step(path, size=8e-3, cache=kept)
+    np.testing.assert_array_equal(again.points, first.points)
+    assert again.face_part == first.face_part
+    for name in first.parts:
+        np.testing.assert_array_equal(again.parts[name][0], first.parts[name][0])
+    path.write_bytes(path.read_bytes() + b" ")  # another file, even by a space
+    with pytest.raises(AssertionError, match="meshed again"):
+        mesh_step(path, size=8e-3, cache=kept)
+
+
 @pytest.mark.parametrize("cut", [0.2, 0.5, 0.9])
 def test_a_step_file_cut_short_is_an_error(tmp_path, cut):
     path = step(tmp_path, *plate_and_block())

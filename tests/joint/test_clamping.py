@@ -64,6 +64,22 @@ def test_a_sleeve_is_a_rod_with_its_joint_in_series():
     assert found.load_factor[0] == pytest.approx(members / (members + shank), rel=1e-6)
 
 
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-3])
+def test_a_compliance_is_wrong_by_the_square_of_the_residual(accuracy, monkeypatch):
+    """Begun from the motion under uneven springs: the product with the load alone is wrong by a tenth of the residual."""
+    import faying.joint.clamping as module
+
+    structure, K, _, springs, exact = sleeve({"low": SOFT, "high": HARD})
+    share = np.linspace(0.05, 1, len(springs[0].k_n))
+    uneven = [replace(s, k_n=s.k_n * share, k_t=s.k_t * share) for s in springs]
+    before = structure.joined(uneven)[0]
+    modes = lowest_modes(before, structure.vibrating[1], 8, shift_frequency=structure.shift_frequency)
+    like = clamping(structure, before, modes, uneven).motions
+    monkeypatch.setattr(module, "ACCURACY", accuracy)
+    found = clamping(structure, K, modes, springs, like=like)
+    assert found.members == pytest.approx(exact.members, rel=accuracy**2)
+
+
 def test_the_traction_of_a_clamp_force_adds_up_to_it():
     structure, *_, found = sleeve()
     (spread,) = found.traction
