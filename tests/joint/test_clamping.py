@@ -66,7 +66,7 @@ def test_a_sleeve_is_a_rod_with_its_joint_in_series():
 
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-3])
 def test_a_compliance_is_wrong_by_the_square_of_the_residual(accuracy, monkeypatch):
-    """Begun from the motion under uneven springs: the product with the load alone is wrong by a tenth of the residual."""
+    """Begun from the motion under uneven springs: the product with the load alone is off by a tenth of the residual."""
     import faying.joint.clamping as module
 
     structure, K, _, springs, exact = sleeve({"low": SOFT, "high": HARD})
