@@ -24,6 +24,7 @@ PLACED = 1e-2  # estimated relative error of their squared frequencies
 EVERYWHERE = 6  # vectors of no symmetry that each new stiffness begins with
 SEED = 20261124
 LEAST = 1e-10  # share of a new vector that must be new
+NOWHERE = np.zeros(0, dtype=np.int64), np.zeros((0, 0))  # unknowns, and the rows of a basis there
 NEIGHBOURS = 10  # modes that are taken to lie as near together as two that are found
 DOUBT = 3.0  # times by which the energy of a residual may have grown against that by the diagonal since the last round
 
@@ -49,7 +50,7 @@ class NearbyModes:
         self.rigid, self._most = rigid, most
         self._looked = False
         self._changed: tuple[Any, Any, Index] | None = None  # of the last stiffness
-        self._at = self._nowhere = np.zeros(0, dtype=np.int64), np.zeros((0, 0))  # unknowns, and the basis there
+        self._at = NOWHERE
         self.diagonal = stiffness.diagonal() + modes.shift * mass.diagonal()
         self._measure = self.measure(0)
 
@@ -216,7 +217,7 @@ class NearbyModes:
         span = self.span
         if self._most is not None and span.vectors.shape[1] > self._most:
             span.turn(inner[:, : 3 * self._most // 4])
-            self._looked, self._at = False, self._nowhere
+            self._looked, self._at = False, NOWHERE
 
 
 class Measure:

@@ -79,7 +79,6 @@ class Span:
     def __init__(self, mass: Any, stiffness: Any, first: Array) -> None:
         self.mass, self.stiffness = mass, stiffness
         self._columns = Columns(first)
-        del first
         parts = [self.vectors.T @ product(stiffness, self.vectors[:, some]) for some in few(*self.vectors.shape)]
         self.small: Array = np.concatenate([np.zeros((self.vectors.shape[1], 0)), *parts], axis=1)
 
