@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from faying.contact.half_space import HalfSpace
+from faying.contact.ladder import climb, is_twofold, quarters
 from faying.contact.law import ContactLaw
 from faying.errors import InputError
 from faying.halfspace import error_bound, solve_half_space
+from faying.halfspace.solve import halved_map
 from faying.materials import CATALOGUE, RIGID, ContactPair, Material
 
 STEEL = CATALOGUE["45 steel"]
@@ -139,6 +141,29 @@ def test_resolution_error_is_small_on_a_resolved_map_and_large_on_noise(rough):
     noise = SimpleNamespace(heights=np.random.default_rng(0).standard_normal((64, 64)) * 1e-6, spacing=(1e-6, 1e-6))
     rough_error = HalfSpace(noise, PAIR, elastic=True, points=4).resolution_error(300e6)
     assert abs(rough_error["area"]) > 0.3
+
+
+@pytest.mark.parametrize("n", [64, 65, 320, 321])
+def test_a_map_on_its_mirror_image_has_two_quarters_not_four(rough, n):
+    h = rough(n)
+    laid = h + np.roll(h[:, ::-1], n // 2, axis=0)
+    assert is_twofold(laid)
+    assert not is_twofold(h)
+    assert not is_twofold(h + rough(n, 1))
+    assert not is_twofold(np.zeros((n, n)))
+
+    def solve(heights, spacing, pressure, *, start):
+        return SimpleNamespace(traction=heights, k_n=pressure * heights.std())
+
+    def numbers(contact, detail):
+        return {"k_n": contact.k_n, "area": 1.0, "energy_n": 1.0}
+
+    found = climb(laid, (1.0, 1.0), np.geomspace(1, 16, 5), solve, numbers)
+    whole = halved_map(laid, (1.0, 1.0))[0] if n > 256 else laid
+    one, other = (np.log(part.std()) for part, _ in quarters(whole, (1.0, 1.0))[:2])
+    # the mean of two has half of what they differ by as its standard error; that of four with copies would have 1/sqrt 3
+    error = np.hypot((one - other) / 2, (one + other) / 2 - np.log(whole.std()))
+    assert found.window == pytest.approx(np.hypot(error, np.sqrt(2 / n**2)), rel=1e-6)
 
 
 @pytest.mark.parametrize(

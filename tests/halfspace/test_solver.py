@@ -188,6 +188,9 @@ def test_coarse_maps_first_or_a_warm_start_lead_to_the_same_contact(rough, monke
     cold = solve_half_space(h, 1 / 128, E_star=1.0, pressure=0.01, tol=1e-10)
     assert nested.traction == pytest.approx(cold.traction, abs=1e-4 * cold.traction.max())
     assert warm.traction == pytest.approx(cold.traction, abs=1e-4 * cold.traction.max())
+    fewer = solve_half_space(*module.halved_map(h, (1 / 128, 1 / 128)), E_star=1.0, pressure=0.02)
+    finer = solve_half_space(h, 1 / 128, E_star=1.0, pressure=0.01, tol=1e-10, start=fewer)
+    assert finer.traction == pytest.approx(cold.traction, abs=1e-4 * cold.traction.max())
 
 
 @pytest.mark.parametrize("hardness", [None, 0.02])
@@ -297,10 +300,11 @@ def test_bad_input_is_named_with_its_remedy(change, text):
         solve_half_space(given.pop("heights"), given.pop("spacing"), **given)
 
 
-def test_a_start_from_another_map_is_refused(rough):
-    start = solve_half_space(rough(32), 1 / 32, E_star=1.0, pressure=0.01)
+@pytest.mark.parametrize(("points", "side"), [(64, 1.0), (16, 1.2)])
+def test_a_start_on_more_points_or_from_a_map_of_another_size_is_refused(rough, points, side):
+    start = solve_half_space(rough(points), side / points, E_star=1.0, pressure=0.01)
     with pytest.raises(InputError, match="start from a contact of the same map"):
-        solve_half_space(rough(64), 1 / 64, E_star=1.0, pressure=0.01, start=start)
+        solve_half_space(rough(32), 1 / 32, E_star=1.0, pressure=0.01, start=start)
 
 
 def test_certify_wants_pressure_on_the_same_map():

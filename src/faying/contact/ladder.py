@@ -23,8 +23,9 @@ LARGE = 256  # points on the shorter side above which a map is not solved at eve
 STRIDES = 4, 2, 1
 GROWTH = 2.5  # four times the points each way are two doublings; a quarter on top of what the last ones changed
 MOST = log(1e3)  # a range wider than this says no more: next to full contact the stiffness of a map has no limit
+ALIKE = 0.75  # correlation; an odd number of rows leaves half of what the next row differs by
 FEWEST_CELLS = 16  # on the side of a quarter of the window
-STORED = 1  # version of what the cache holds
+STORED = 2  # version of what the cache holds
 
 
 class Solve(Protocol):
@@ -94,34 +95,48 @@ def climb(
     for _ in STRIDES[1:]:
         maps.append(halved_map(*maps[-1]))
     strides = STRIDES if large else (1, 1, 1)
-    parts = quarters(*maps[1 if large else 0])
     n = len(pressure)
-    total = sum(len(_rungs(n, s)) for s in strides) + len(parts) * len(_rungs(n, STRIDES[0]))
-    done = 0
-    rows: list[dict[int, dict[str, float]]] = []
-
-    def solved(heights: Array, spacing: tuple[float, float], rungs: list[int], detail: bool) -> dict[int, Any]:
-        nonlocal done
-        contact, out = None, {}
-        for i in rungs:
-            contact = solve(heights, spacing, float(pressure[i]), start=contact)
-            out[i] = numbers(contact, detail) | {"points": float(np.count_nonzero(contact.traction))}
-            done += 1
-            if progress is not None:
-                progress(done, total)
-        return out
-
+    rungs = [_rungs(n, stride) for stride in strides]
+    twofold = is_twofold(heights)
+    parts = quarters(*maps[1 if large else 0])[: 2 if twofold else 4]
+    few = _rungs(n, STRIDES[0])
+    total = sum(map(len, rungs)) + len(parts) * len(few)
     detailed = len(maps) - 1 if large else 0
-    for level, (level_map, stride) in enumerate(zip(maps, strides, strict=True)):
-        rows.append(solved(*level_map, _rungs(n, stride), level == detailed))
-    pieces = [solved(*part, _rungs(n, STRIDES[0]), False) for part in parts]
+    rows: list[dict[int, dict[str, float]]] = [{} for _ in maps]
+    pieces: list[dict[int, dict[str, float]]] = [{} for _ in parts]
+    done = 0
+
+    def solved(on: tuple[Array, tuple[float, float]], i: int, start: HalfSpaceContact | None) -> HalfSpaceContact:
+        nonlocal done
+        contact = solve(*on, float(pressure[i]), start=start)
+        done += 1
+        if progress is not None:
+            progress(done, total)
+        return contact
+
+    def counted(contact: HalfSpaceContact, detail: bool) -> dict[str, float]:
+        return numbers(contact, detail) | {"points": float(np.count_nonzero(contact.traction))}
+
+    last = None
+    for i in range(n):
+        contact = last  # the coarsest map begins from its own contact at the pressure before, a finer one from a coarser
+        for level in reversed(range(len(maps))):
+            if i in rungs[level]:
+                contact = solved(maps[level], i, contact)
+                rows[level][i] = counted(contact, level == detailed)
+                last = contact if level == len(maps) - 1 else last
+    for piece, part in zip(pieces, parts, strict=True):
+        contact = None
+        for i in few:
+            contact = solved(part, i, contact)
+            piece[i] = counted(contact, False)
     top = min(_closed(level, n) for level in rows)
     if top < 2:
         raise NotConverged(
             f"every point of the scan touches from {pressure[max(top - 1, 0)]:.4g} Pa on: it has no roughness that a "
             "joint feels; check the unit of its heights"
         )
-    return _joined(np.asarray(pressure), rows, pieces, top, detailed)
+    return _joined(np.asarray(pressure), rows, pieces, top, detailed, 2 if twofold else 1)
 
 
 def _rungs(n: int, stride: int) -> list[int]:
@@ -134,9 +149,12 @@ def _closed(level: Mapping[int, Mapping[str, float]], n: int) -> int:
 
 
 def _joined(
-    pressure: Array, rows: list[dict[int, Any]], pieces: list[dict[int, Any]], top: int, detailed: int
+    pressure: Array, rows: list[dict[int, Any]], pieces: list[dict[int, Any]], top: int, detailed: int, copies: int
 ) -> Ladder:
-    """Put the levels together: the coarsest at all pressures, each finer one by what it changes."""
+    """Put the levels together: the coarsest at all pressures, each finer one by what it changes.
+
+    copies: how often the map holds each contact.
+    """
     p = pressure[:top]
     x = np.log(p)
 
@@ -166,7 +184,7 @@ def _joined(
         values=values,
         points=points,
         change=np.stack([full - half, half - coarse]),
-        window=np.sqrt(_spread(pieces, x, at, curve, half if detailed else full) ** 2 + 1 / points),
+        window=np.sqrt(_spread(pieces, x, at, curve, half if detailed else full) ** 2 + copies / points),
     )
 
 
@@ -191,8 +209,19 @@ def _spread(pieces: list[dict[int, Any]], x: Array, at: Any, curve: Any, whole: 
     return np.asarray(np.interp(x, x[kept], np.hypot(error, beside)))
 
 
+def is_twofold(heights: Array) -> bool:
+    """Whether a map is its own mirror image, shifted by half a side, as one laid on its like is.
+
+    Its halves then have the same contacts, and its four quarters are two.
+    """
+    rows = heights.shape[0] // 2
+    first, second = heights[:rows], heights[heights.shape[0] - rows :, ::-1]
+    size = float(first.std() * second.std())
+    return size > 0 and float(((first - first.mean()) * (second - second.mean())).mean()) > ALIKE * size
+
+
 def quarters(heights: Array, spacing: tuple[float, float]) -> list[tuple[Array, tuple[float, float]]]:
-    """The four quarters of a map, each levelled; none where they would be smaller than 16 points a side."""
+    """The four quarters of a map, each levelled, two beside each other first; none if below 16 points a side."""
     rows, columns = (n // 2 for n in heights.shape)
     if min(rows, columns) < FEWEST_CELLS:
         return []

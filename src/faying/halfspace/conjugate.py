@@ -132,6 +132,12 @@ class System:
         shares = [float(t) / total(part.c) * part.c for t, part in zip(totals, self.coarse, strict=True)]
         return self.xp.stack(shares)
 
+    def energy(self, residual: AnyArray, size: float) -> float:
+        """About the energy of the error that leaves size times this residual (c, cells)."""
+        flat = (-1,)
+        z = self.preconditioned(residual)
+        return size**2 * dot(self.xp.reshape(residual, flat), self.xp.reshape(z, flat))
+
     def preconditioned(self, r: AnyArray) -> AnyArray:
         """The module's A^-1 times r."""
         smooth = [part.solve(part.blocks.sums(r[k, :], part.c)) for k, part in enumerate(self.coarse)]

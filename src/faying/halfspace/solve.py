@@ -53,7 +53,7 @@ def solve_half_space(
         periodic: False takes the map as a patch on an unbounded flat half-space that nothing else loads.
         tol: bounds `.residual`, the duality gap over load times rms height: an upper bound on the relative excess of
             energy whatever the iteration did; in (0, 1).
-        start: an earlier contact of the same map, to begin from.
+        start: an earlier contact of the same map, at other loads or on fewer points, to begin from.
         workers: threads of the transforms on the CPU.
         device: "gpu" solves with CuPy on a graphics card, "cpu" with NumPy; None where the heights are, which may be
             an array of any library that follows the array API standard. The contact always holds NumPy arrays.
@@ -81,7 +81,7 @@ def solve_half_space(
         raise InputError("give either pressure or displacement to solve_half_space, one of the two")
     options = _Options(E_star=E_star, hardness=hardness, nu=nu, periodic=periodic, tol=tol, place=place)
     problem = _Pressing(h, (dx, dy), options, progress)
-    first = None if start is None else _first(start, h.shape)
+    first = None if start is None else _first(start, h.shape, (dx, dy))
     if displacement is not None:
         return _at_displacement(problem, displacement, first)
     assert pressure is not None
@@ -89,13 +89,18 @@ def solve_half_space(
     return problem.at(pressure / E_star, first)
 
 
-def _first(start: HalfSpaceContact, shape: tuple[int, ...]) -> Array:
-    if start.heights.shape != shape:
+def _first(start: HalfSpaceContact, shape: tuple[int, int], spacing: tuple[float, float]) -> Array:
+    """Pressures of an earlier contact on the points of a map. Raises InputError where it is of another map."""
+    coarse = start.heights.shape
+    if coarse == shape:
+        return start.traction
+    beside = [abs(m * a - n * b) for m, a, n, b in zip(coarse[::-1], start.spacing, shape[::-1], spacing, strict=True)]
+    if any(m > n for m, n in zip(coarse, shape, strict=True)) or any(np.greater(beside, start.spacing)):
         raise InputError(
-            f"start: a contact of shape {start.heights.shape}, but the map has shape {shape}; "
-            "start from a contact of the same map"
+            f"start: a contact of shape {coarse}, but the map has shape {shape}; "
+            "start from a contact of the same map, of as many points or fewer"
         )
-    return start.traction
+    return _spread(start.traction, shape)
 
 
 @dataclass(frozen=True, kw_only=True)
