@@ -161,7 +161,7 @@ def test_a_map_on_its_mirror_image_has_two_quarters_not_four(rough, n):
     found = climb(laid, (1.0, 1.0), np.geomspace(1, 16, 5), solve, numbers)
     whole = halved_map(laid, (1.0, 1.0))[0] if n > 256 else laid
     one, other = (np.log(part.std()) for part, _ in quarters(whole, (1.0, 1.0))[:2])
-    # the mean of two has half of what they differ by as its standard error; that of four with copies would have 1/sqrt 3
+    # the standard error of a mean of two is half of what they differ by; of four with copies it would be 1/sqrt 12
     error = np.hypot((one - other) / 2, (one + other) / 2 - np.log(whole.std()))
     assert found.window == pytest.approx(np.hypot(error, np.sqrt(2 / n**2)), rel=1e-6)
 

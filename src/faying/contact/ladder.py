@@ -119,7 +119,7 @@ def climb(
 
     last = None
     for i in range(n):
-        contact = last  # the coarsest map begins from its own contact at the pressure before, a finer one from a coarser
+        contact = last  # from the pressure before on the coarsest map, from the coarser map on the finer ones
         for level in reversed(range(len(maps))):
             if i in rungs[level]:
                 contact = solved(maps[level], i, contact)
