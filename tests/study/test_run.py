@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import faying
+from faying.joint.attachments import PointMass, Support
 from faying.study import Study, build, run
 from faying.study.case import Case
 from faying.study.keys.law import LawChoice
@@ -156,6 +157,40 @@ def test_a_preload_that_the_law_does_not_cover_has_two_answers(study):
     change = found.beyond_frequencies[1] / found.frequencies[1] - 1
     assert f"{change.max():.1%}" in notes["beyond-law-matters"].text
     assert "JK cannot answer" in notes["beyond-law-matters"].text
+
+
+@pytest.mark.parametrize(
+    ("changes", "count"),
+    [
+        ({}, 1),
+        ({"supports": (Support(face="lower.seat", directions=("x",)),)}, 1),
+        ({"masses": (PointMass(mass=0.2, point=(0.04, 0.015, 0.015)),)}, 2),
+    ],
+    ids=["free", "supported", "with a mass"],
+)
+def test_the_modes_take_the_factorisation_of_the_preload_where_it_is_of_what_vibrates(
+    study, monkeypatch, changes, count
+):
+    from faying.fe import nearby
+    from faying.fe.modes import lowest_modes
+    from faying.joint import preload
+    from faying.study.case import Case, Progress
+    from faying.study.modes import SharedModes
+    from faying.study.solve import solve
+
+    made = []
+    for module in (preload, nearby):
+        factorise = module.factorise_roughly
+        monkeypatch.setattr(module, "factorise_roughly", lambda *a, f=factorise, **k: made.append(a[0]) or f(*a, **k))
+    case = Case.of(study)
+    case = replace(case, structure=replace(case.structure, **changes))
+    structure = case.structure
+    state = solve(case, 0, structure.assembly(), SharedModes(), Progress(0), ranges=False)
+    assert sum(matrix.shape[0] == structure.mesh.unknowns for matrix in made) == count
+    K, _ = structure.joined(state.springs)
+    exact = lowest_modes(K, structure.vibrating[1], case.mode_count, shift_frequency=case.shift_frequency)
+    elastic = slice(case.rigid_count, case.rigid_count + study.modes.count)
+    assert state.modes.frequencies[elastic] == pytest.approx(exact.frequencies[elastic], rel=5e-9)
 
 
 @pytest.mark.parametrize(

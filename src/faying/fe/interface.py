@@ -15,8 +15,46 @@ from faying.fe.sides import Blocks, padded
 from faying.typing import Array, Index
 
 
+class Motion:
+    """Relative motion of two faces at points that each carry a share of the area; see `Interface`."""
+
+    weights: Array
+    gap: Array
+    relative: Any
+
+    @property
+    def area(self) -> float:
+        """Area of the joint [m2]."""
+        return float(self.weights.sum())
+
+    def springs(self, k_n: Array, k_t: Array) -> Any:
+        """Stiffness matrix [N/m] of springs per area k_n, k_t [Pa/m] (q,) or any other density in their place."""
+        from scipy.sparse import diags_array
+
+        share = self.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1)
+        return (self.relative.T @ diags_array(share.ravel()) @ self.relative).tocsr()
+
+    def forces(self, pressure: Array, shear: Array) -> Array:
+        """Nodal forces [N] (unknowns,) of a pressure [Pa] (q,) that pushes apart and shear tractions [Pa] (q, 2)."""
+        local = np.concatenate([-pressure[:, None], shear], axis=1) * self.weights[:, None]
+        return np.asarray(-(self.relative.T @ local.ravel()))
+
+    def carried(self, spread: Any) -> "CarriedMotion":
+        """The same motion from other displacements, which `spread` (unknowns, m) takes to these."""
+        return CarriedMotion(weights=self.weights, gap=self.gap, relative=(self.relative @ spread).tocsr())
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CarriedMotion(Motion):
+    """Relative motion by an operator (3q, m) from elsewhere; weights [m2] and gap [m] (q,) are those of `Interface`."""
+
+    weights: Array
+    gap: Array
+    relative: Any
+
+
 @dataclass(frozen=True, kw_only=True)
-class Interface:
+class Interface(Motion):
     """Where two faces meet: relative displacement at points that each carry a share of the area.
 
     positions [m] (q, 3); weights, the areas [m2] (q,); normals (q, 3), from the first face to the second; gap, the
@@ -33,11 +71,6 @@ class Interface:
     second_nodes: Index
     second_values: Array
     unknowns: int
-
-    @property
-    def area(self) -> float:
-        """Area of the joint [m2]."""
-        return float(self.weights.sum())
 
     @cached_property
     def frames(self) -> Array:
@@ -65,13 +98,6 @@ class Interface:
         matrix.eliminate_zeros()
         return matrix
 
-    def springs(self, k_n: Array, k_t: Array) -> Any:
-        """Stiffness matrix [N/m] of springs per area k_n, k_t [Pa/m] (q,) or any other density in their place."""
-        from scipy.sparse import diags_array
-
-        share = self.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1)
-        return (self.relative.T @ diags_array(share.ravel()) @ self.relative).tocsr()
-
     def opening(self, displacement: Array) -> Array:
         """Opening along the normal [m] (q,), the gap before the load included; negative where the faces approach."""
         return np.asarray((self.relative @ displacement).reshape(-1, 3)[:, 0] + self.gap)
@@ -79,11 +105,6 @@ class Interface:
     def slip(self, displacement: Array) -> Array:
         """Two slips [m] (q, 2)."""
         return np.asarray((self.relative @ displacement).reshape(-1, 3)[:, 1:])
-
-    def forces(self, pressure: Array, shear: Array) -> Array:
-        """Nodal forces [N] (unknowns,) of a pressure [Pa] (q,) that pushes apart and shear tractions [Pa] (q, 2)."""
-        local = np.concatenate([-pressure[:, None], shear], axis=1) * self.weights[:, None]
-        return np.asarray(-(self.relative.T @ local.ravel()))
 
     def at_nodes(self) -> "Interface":
         """Return the same joint lumped to the nodes of its first face, each with its share of the area.

@@ -7,7 +7,7 @@ import numpy as np
 
 from faying.errors import NotConverged
 from faying.fe.changed import Changed, whole
-from faying.fe.modes import TOLERANCE, Modes, lowest_modes
+from faying.fe.modes import Modes, lowest_modes
 from faying.fe.product import combined, product
 from faying.fe.shifted import Shifted
 from faying.fe.single import Single, factorise_roughly
@@ -314,25 +314,10 @@ def refined_modes(
     shift = (2 * np.pi * shift_frequency) ** 2
     matrix = Shifted(stiffness=stiffness.tocsr(), mass=mass.tocsr(), shift=shift)
     factor = factorise_roughly(matrix, rigid=rigid, solver=solver)
-    still = rigid.shape[1]
-    wanted = count - still - spare
-    rough = isinstance(factor, Single) and wanted > 0
-    # those beyond the last one wanted keep another from standing in its place while residuals are large
-    beyond = max(WATCHED - spare, 0) if rough else 0
-    tolerance = np.concatenate([np.full(count, START if rough else TOLERANCE), np.full(beyond, np.inf)])
-    modes = lowest_modes(
-        stiffness,
-        mass,
-        len(tolerance),
-        shift_frequency=shift_frequency,
-        factor=factor,
-        rigid=rigid,
-        tolerance=tolerance,
-    )
-    if not rough:
-        return modes
-    near = NearbyModes(modes, stiffness, mass, rigid=still)
-    del modes  # they are in the basis, which grows
+    wanted = count - rigid.shape[1] - spare
+    if not (isinstance(factor, Single) and wanted > 0):
+        return lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=factor, rigid=rigid)
+    near = near_factor(factor, stiffness, mass, count, rigid=rigid, shift_frequency=shift_frequency, spare=spare)
     try:
         return near.under(stiffness, wanted, tolerance=REFINED, spare=spare)
     except NotConverged:
@@ -342,6 +327,42 @@ def refined_modes(
     else:
         factor = factorise(matrix.whole(), solver)
     return lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=factor, rigid=rigid)
+
+
+def near_factor(
+    factor: Factorisation,
+    stiffness: Any,
+    mass: Any,
+    count: int,
+    *,
+    rigid: Array,
+    shift_frequency: float,
+    spare: int = 0,
+    most: int | None = None,
+) -> NearbyModes:
+    """Find the lowest modes to a few digits by a factorisation at hand, as a basis for exact ones and those nearby.
+
+    Args:
+        factor: of `stiffness` and `mass` with this shift, in any precision.
+        stiffness, mass, count, rigid, shift_frequency, spare: as `refined_modes` takes them.
+        most: as `NearbyModes` takes it.
+
+    Raises:
+        InputError, NotConverged: as `lowest_modes` does.
+    """
+    # those beyond the last one wanted keep another from standing in its place while residuals are large
+    beyond = max(WATCHED - spare, 0)
+    tolerance = np.concatenate([np.full(count, START), np.full(beyond, np.inf)])
+    modes = lowest_modes(
+        stiffness,
+        mass,
+        len(tolerance),
+        shift_frequency=shift_frequency,
+        factor=factor,
+        rigid=rigid,
+        tolerance=tolerance,
+    )
+    return NearbyModes(modes, stiffness, mass, rigid=rigid.shape[1], most=most)
 
 
 def nearby_modes(

@@ -10,6 +10,7 @@ from faying.typing import Array
 CLOSE = 1e-14  # of what is orthonormal: overlap up to which it is
 ROWS = 10_000  # that are combined at a time
 FEW, LITTLE = 8, 2_000_000  # vectors, or numbers, that are worked on together: the larger
+AHEAD, RESERVED = 10, 24_000_000  # times the first columns, or numbers, for which there is room: the smaller
 ROUNDING = 1e-13  # of the largest: squares of directions below it are rounding
 
 
@@ -127,7 +128,8 @@ class Columns:
 
     def __init__(self, first: Array) -> None:
         self._size, self._used = first.shape
-        self._numbers = np.empty(first.size)  # column by column
+        # column by column; what is not written yet takes no memory
+        self._numbers = np.empty(max(first.size, min(AHEAD * first.size, RESERVED)))
         self.values[:] = first
 
     @property

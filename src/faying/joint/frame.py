@@ -9,6 +9,7 @@ import numpy as np
 
 from faying.fe.by_parts import PartByPart
 from faying.fe.constraint import constrain, free_motions
+from faying.fe.corners import Corners
 from faying.fe.elasticity import Solid, assemble, rigid_motions
 from faying.fe.memory import in_single
 from faying.fe.mesh import Mesh
@@ -44,6 +45,11 @@ class Frame:
     def matrices(self) -> tuple[Any, Any]:
         """Stiffness [N/m] and mass [kg] of the parts alone."""
         return assemble(self.mesh, self.materials)
+
+    @cached_property
+    def corners(self) -> Corners | None:
+        """The corners of the elements; None where every node is one."""
+        return Corners.of(self.mesh)
 
     @cached_property
     def fixed(self) -> Index:
@@ -86,6 +92,12 @@ class Frame:
         M = added(self.matrices[1], [bolt.mass for bolt in self.fitted_bolts])
         M = added(M, [mass.matrix(self.mesh) for mass in self.masses])
         return constrain(K, self.fixed), constrain(M, self.fixed, 0.0)
+
+    @property
+    def is_bare(self) -> bool:
+        """Whether parts and supports are all that vibrates: no bolt has a stiffness or a mass, no mass is added."""
+        bolts = self.fitted_bolts
+        return not self.masses and all(b.stiffness is None and b.released is None and b.mass is None for b in bolts)
 
     @cached_property
     def rigid(self) -> Array:

@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from faying.errors import InputError
+from faying.errors import InputError, NotConverged
 from faying.fe.constraint import constrain
-from faying.fe.interface import Interface
+from faying.fe.corners import Corners
+from faying.fe.interface import Motion
 from faying.fe.shifted import Shifted
 from faying.fe.single import factorise_roughly
 from faying.fe.solve import Factorisation, Factoriser
@@ -27,6 +28,7 @@ CHEAP = 3  # the same where a factorisation costs no more than a few solutions
 # faces lie about where they end up: between these decades of imbalance, above this rate, a new one pays
 EARLY, LATE, SLOW = -0.5, -3.5, 4.8
 
+GUESSED = 1e-3  # imbalance of the equilibrium of the corners, which are wrong by far more
 ROUGH = 1e-2  # accuracy of the start of Newton's iteration where it is found by conjugate gradients
 FLAT = 1e-9  # curvature over that of the factor below which a direction costs no energy
 
@@ -34,7 +36,10 @@ FLAT = 1e-9  # curvature over that of the factor below which a direction costs n
 class PreloadProblem(Equilibrium):
     """Parts with joints between them, ready for one load after another (each starts from the last).
 
-    fixed: unknowns that supports fix; rigid (unknowns, r): rigid motions that nothing resists, r = 0 where supports do.
+    fixed: unknowns that supports fix; rigid (unknowns, r): rigid motions that nothing resists, r = 0 where supports do;
+    corners: those of the mesh, whose own equilibrium says which springs to factorise with; without them, springs at
+    one pressure for each joint. sprung: springs per area (k_n, k_t) [Pa/m] of each joint in the factorisation at hand,
+    where they are near to those under the load; None where they are not.
     """
 
     def __init__(
@@ -42,21 +47,25 @@ class PreloadProblem(Equilibrium):
         stiffness: Any,
         mass: Any,
         rigid: Array,
-        joints: Sequence[tuple[Interface, JointLaw]],
+        joints: Sequence[tuple[Motion, JointLaw]],
         *,
         shift_frequency: float,
         solver: str | Factoriser | None = None,
         friction: Sequence[float | None] | None = None,
         fixed: Index | None = None,
+        corners: Corners | None = None,
     ) -> None:
         super().__init__(stiffness, joints, friction=friction)
         self.solver = solver
         self._cheap = isinstance(solver, Factoriser) and solver.cheap
         self.fixed = np.zeros(0, dtype=np.int64) if fixed is None else fixed
         self.shift_frequency = shift_frequency
+        self.mass = mass
         self._mass, self._shift = constrain(mass, self.fixed, 0.0), (2 * np.pi * shift_frequency) ** 2
         self._rigid = np.linalg.qr(rigid)[0] if rigid.size else rigid
+        self.corners = corners
         self.factor: Factorisation | None = None
+        self.sprung: list[tuple[Array, Array]] | None = None
         self._rate = 0.0  # conjugate-gradient steps for each decade of the residual, with this factorisation
         self._scale = 1.0
 
@@ -67,7 +76,7 @@ class PreloadProblem(Equilibrium):
         factorisation less is held. One that was shifted further, by this frequency [Hz], is left.
         """
         if shift_frequency <= self.shift_frequency:
-            self.factor, self._rate = factor, 0.0
+            self.factor, self.sprung, self._rate = factor, None, 0.0
 
     def _check_load(self, load: Array) -> None:
         scale = self._scale = float(np.linalg.norm(load))
@@ -79,34 +88,67 @@ class PreloadProblem(Equilibrium):
             )
 
     def _start(self, load: Array) -> Array:
-        """Begin with every joint at the mean pressure that the load would give it."""
-        total = float(np.abs(load).sum()) / 4
-        springs = self.stiffness
-        push = load.copy()
-        for joint, law in self.joints:
-            mean = np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure)
-            k_n, k_t = (np.full(len(joint.weights), float(k)) for k in law.stiffness(np.asarray(mean)))
+        """Begin with springs that are tangent to p(approach) where the joints are likely to end up."""
+        near = self._on_corners(load)
+        guess = self._even(load) if near is None else near
+        laid, springs, push = [], self.stiffness, load
+        for (joint, law), (opening, pressure) in zip(self.joints, guess, strict=True):
+            k_n, k_t = law.stiffness(pressure)
+            laid.append((k_n, k_t))
             springs = springs + joint.springs(k_n, k_t)
-            # a spring that is tangent to p(approach) at the mean pressure, in place of the curve
-            offset = mean - k_n * (law.approach(float(mean)) + joint.gap)
-            push = push + joint.forces(np.asarray(offset), np.zeros((len(joint.weights), 2)))
+            offset = np.where(pressure > 0, pressure + k_n * (opening - joint.gap), 0.0)
+            push = push + joint.forces(offset, np.zeros((len(offset), 2)))
         push = self._admissible(push)
-        near = Shifted(stiffness=springs, mass=self._mass, shift=self._shift)
+        matrix = Shifted(stiffness=springs, mass=self._mass, shift=self._shift)
         if self.factor is not None:  # of a like state, taken from elsewhere
             limit = CHEAP if self._cheap else AGED
-            found, count = self._conjugate_gradients(lambda x: self._held(near @ x), push, ROUGH, limit=limit)
+            found, count = self._conjugate_gradients(lambda x: self._held(matrix @ x), push, ROUGH, limit=limit)
             if count < limit:
                 return found
-        self._factorise(springs)
+        self._factorise(springs, None if near is None else laid)
         assert self.factor is not None
         return self.factor.solve(push)
 
-    def _factorise(self, stiffness: Any) -> None:
+    def _even(self, load: Array) -> list[tuple[Array, Array]]:
+        """Opening [m] and pressure [Pa] at the points of every joint: the mean that the load would give it."""
+        total, guess = float(np.abs(load).sum()) / 4, []
+        for joint, law in self.joints:
+            mean = np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure)
+            guess.append((np.full(len(joint.weights), -law.approach(float(mean))), np.full(len(joint.weights), mean)))
+        return guess
+
+    def _on_corners(self, load: Array) -> list[tuple[Array, Array]] | None:
+        """The same in equilibrium where only the corners of the elements move by themselves; None where there is none.
+
+        They are a seventh of the unknowns or less. The parts are then too stiff in bending, and the pressures right to
+        some tenths.
+        """
+        if self.corners is None:
+            return None
+        unknowns, spread = self.corners.unknowns, self.corners.spread
+        rigid = self._rigid[unknowns]
+        problem = PreloadProblem(
+            self.corners.of_matrix(self.stiffness),
+            self.corners.of_matrix(self.mass),
+            rigid,
+            [(joint.carried(spread), law) for joint, law in self.joints],
+            shift_frequency=self.shift_frequency,
+            solver=self.solver if isinstance(self.solver, str) else None,
+            friction=self.friction,
+            fixed=np.flatnonzero(np.isin(unknowns, self.fixed)),
+        )
+        try:
+            found = problem.solve(problem._admissible(spread.T @ load), tolerance=GUESSED)
+        except (NotConverged, InputError):
+            return None
+        return list(zip(found.openings, found.pressures, strict=True))
+
+    def _factorise(self, stiffness: Any, sprung: list[tuple[Array, Array]] | None) -> None:
         self.factor = None  # one at a time in memory
         near = Shifted(stiffness=constrain(stiffness, self.fixed), mass=self._mass, shift=self._shift)
         self.factor = factorise_roughly(near, rigid=self._rigid, solver=self.solver)
         self.factorisations += 1
-        self._rate = 0.0
+        self.sprung, self._rate = sprung, 0.0
 
     def _held(self, force: Array) -> Array:
         """A force with nothing on the unknowns that supports fix."""
@@ -151,11 +193,12 @@ class PreloadProblem(Equilibrium):
         return bool(LATE < left < EARLY and self._rate > SLOW)
 
     def _renew(self, tangents: list[tuple[Any, Array, Array]]) -> None:
-        springs = self.stiffness
+        laid, springs = [], self.stiffness
         for joint, k_n, k_t in tangents:
             shear = np.trace(k_t, axis1=1, axis2=2) / 2
-            springs = springs + joint.springs(k_n / joint.weights, shear / joint.weights)
-        self._factorise(springs)
+            laid.append((k_n / joint.weights, shear / joint.weights))
+            springs = springs + joint.springs(*laid[-1])
+        self._factorise(springs, laid)
 
     def _conjugate_gradients(
         self, product: Callable[[Array], Array], right: Array, accuracy: float, limit: int = AGED

@@ -202,6 +202,11 @@ class Structure:
         return self._frame.vibrating
 
     @property
+    def is_bare(self) -> bool:
+        """Whether the parts under preload are all that vibrates: no bolt adds a stiffness or a mass."""
+        return self._frame.is_bare
+
+    @property
     def rigid(self) -> Array:
         """Rigid motions of the whole that no support resists (unknowns, up to 6)."""
         return self._frame.rigid
@@ -246,15 +251,17 @@ class Structure:
     def assembly(self, *, solver: str | None = None) -> PreloadProblem:
         """Return the preload problem of this structure."""
         pairs = [(joint.interface, joint.law) for joint in self.joints]
+        way = self.solver(solver)
         return PreloadProblem(
             self.standing,
             self.matrices[1],
             self.rigid,
             pairs,
             shift_frequency=self.shift_frequency,
-            solver=self.solver(solver),
+            solver=way,
             friction=[joint.friction for joint in self.joints],
             fixed=self.fixed,
+            corners=None if isinstance(way, Factoriser) and way.cheap else self._frame.corners,
         )
 
     def joined(self, springs: Sequence[Springs[Interface]], *, viscous: bool = False) -> tuple[Any, Any]:
@@ -311,6 +318,14 @@ class Structure:
         along[::3] = 1.0
         of_node = np.asarray(self.matrices[1] @ along)[::3]
         return np.array([of_node[self.mesh.part_nodes(part)].sum() for part in self.mesh.parts])
+
+
+def merged(matrix: Any, merge: Any) -> Any:
+    """A sparse matrix on fewer unknowns, those that `bond` makes: merge' @ matrix @ merge in a fifth of the time."""
+    from scipy.sparse import csr_array
+
+    columns = csr_array((matrix.data, merge.indices[matrix.indices], matrix.indptr), shape=merge.shape)
+    return merge.T.tocsr() @ columns
 
 
 def bond(mesh: Mesh, pairs: Sequence[tuple[str, str]]) -> Any | None:

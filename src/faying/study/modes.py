@@ -5,10 +5,11 @@ from typing import Any
 
 from faying.errors import NotConverged
 from faying.fe.changed import Changed, whole
+from faying.fe.constraint import constrain
 from faying.fe.interface import Interface
 from faying.fe.memory import check_modes
 from faying.fe.modes import Modes, lowest_modes
-from faying.fe.nearby import NearbyModes, refined_modes
+from faying.fe.nearby import NearbyModes, near_factor, refined_modes
 from faying.fe.shifted import Shifted
 from faying.fe.single import factorise_roughly
 from faying.fe.solve import Factoriser
@@ -55,6 +56,34 @@ class SharedModes:
         self.near: NearbyModes | None = None  # where the modes were found last
         self._sprung: Any = None  # stiffness [N/m] of the springs in that of its basis
 
+    def begin(self, case: Case, problem: PreloadProblem) -> None:
+        """Take the factorisation of a preload where its springs are near to those that it led to, if none is at hand.
+
+        It must be of what vibrates: bolts that have a stiffness or a mass of their own are not in it.
+        """
+        structure, factor = case.structure, problem.factor
+        alike = structure.is_bare and problem.shift_frequency == case.shift_frequency
+        if self.near is not None or problem.sprung is None or factor is None or not alike:
+            return
+        laid = [
+            constrain(j.interface.springs(*k), structure.fixed, 0.0)
+            for j, k in zip(structure.joints, problem.sprung, strict=True)
+        ]
+        sprung = added(None, laid)
+        stiffness, mass = added(structure.vibrating[0], [sprung]), structure.vibrating[1]
+        check_modes(case.mode_count, stiffness.shape[0])
+        self.near = near_factor(
+            factor,
+            stiffness,
+            mass,
+            case.mode_count,
+            rigid=structure.rigid,
+            shift_frequency=case.shift_frequency,
+            spare=SPARE_MODES,
+            most=_most(case),
+        )
+        self._sprung = sprung
+
     def of(
         self, case: Case, springs: Sequence[Springs[Interface]], *, tolerance: float = EXACT, shapes: bool = True
     ) -> tuple[Modes, Any]:
@@ -77,8 +106,7 @@ class SharedModes:
                 self.near = None  # before the next factorisation: one at a time in memory
         stiffness, mass = added(structure.vibrating[0], [sprung]), structure.vibrating[1]
         modes = modes_with(case, stiffness, mass, rigid=structure.rigid)
-        most = max(KEPT * len(modes.frequencies), ROOM // mass.shape[0])
-        self.near = NearbyModes(modes, stiffness, mass, rigid=case.rigid_count, most=most)
+        self.near = NearbyModes(modes, stiffness, mass, rigid=case.rigid_count, most=_most(case))
         self._sprung = sprung
         return modes, stiffness
 
@@ -94,6 +122,11 @@ class SharedModes:
         matrix = Shifted(stiffness=stiffness, mass=case.structure.vibrating[1], shift=self.near.modes.shift)
         solver = case.structure.solver(case.study.modes.solver)
         self.near.take(factorise_roughly(matrix, rigid=case.structure.rigid, solver=solver), stiffness)
+
+
+def _most(case: Case) -> int:
+    """How many vectors the basis of a case keeps from one state to the next."""
+    return max(KEPT * case.mode_count, ROOM // case.structure.mesh.unknowns)
 
 
 def modes_with(

@@ -14,7 +14,7 @@ from faying.fe.modes import Modes
 from faying.fe.over_mpi import OverMpi
 from faying.fe.solve import chosen, is_mpi
 from faying.joint.bolt import FittedBolt
-from faying.joint.structure import Structure, bond
+from faying.joint.structure import Structure, bond, merged
 from faying.joint.support_check import RIGID_BELOW
 from faying.notes import Note
 from faying.progress import Report
@@ -112,7 +112,7 @@ def _bonded(case: Case) -> tuple[Modes, list[Note]]:
     by_parts = isinstance(way, PartByPart)
     merge = None if by_parts else structure.bonded()
     if merge is not None and not len(structure.fixed):
-        K, M = ((merge.T @ matrix @ merge).tocsr() for matrix in (K, M))
+        K, M = (merged(matrix, merge) for matrix in (K, M))
         share = np.asarray(merge.sum(axis=0)).ravel()
         rigid = (merge.T @ structure.rigid) / share[:, None]
         if isinstance(way, OverMpi):

@@ -83,6 +83,7 @@ def solve(
     springs = structure.springs(preload.pressures)
     progress.begin(f"modes at {load / 1e3:g} kN")
     mass = structure.vibrating[1]
+    shared.begin(case, problem)
     modes, stiffness = shared.of(case, springs)
     loss = structure.lost(springs, viscous=study.modes.damping == "viscous")
     check_motions(structure, modes)

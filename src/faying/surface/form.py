@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from typing import Any, TypeVar, cast, final
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -137,12 +138,22 @@ def find_spikes(scan: Scan | Profile, threshold: float = SPIKE) -> Mask:
     return np.asarray(candidates & (away > threshold * around), bool)
 
 
+_PREPARED: WeakKeyDictionary[Scan | Profile, dict[tuple[int, bool], Prepared]] = WeakKeyDictionary()
+
+
 def prepared(scan: Scan | Profile, *, degree: int = 1, spikes: bool = True) -> Prepared:
     """Level a scan, treat spikes as missing points (unless spikes=False), fill all missing points, count both.
 
     Raises InputError when more than half the points are missing, all heights are equal, or there are under 16 points
-    each way.
+    each way. What was prepared is kept as long as the scan is.
     """
+    made = _PREPARED.setdefault(scan, {})
+    if (degree, spikes) not in made:
+        made[degree, spikes] = _prepared(scan, degree, spikes)
+    return made[degree, spikes]
+
+
+def _prepared(scan: Scan | Profile, degree: int, spikes: bool) -> Prepared:
     usable(scan)
     missing = scan.missing
     level: Scan | Profile = levelled(scan, degree)
@@ -152,5 +163,6 @@ def prepared(scan: Scan | Profile, *, degree: int = 1, spikes: bool = True) -> P
         cleaned = scan.with_heights(np.where(found, np.nan, scan.heights), f"{count} spikes taken out")
         level = levelled(cleaned, degree)
     known = ~np.isnan(level.heights)
+    known.setflags(write=False)
     usable(level)
     return Prepared(scan=filled(level), known=known, missing=missing, spikes=count)
