@@ -103,19 +103,11 @@ def mesh_step(
 
 
 def mesh_answer(request: dict[str, Any]) -> Answer:
-    """Mesh what `mesh_step` asks for; this runs in the process of its own."""
-    mesh = _mesh_here(_Request(**request))
-    arrays: dict[str, Any] = {f"part{k}": blocks[0] for k, blocks in enumerate(mesh.parts.values())}
-    arrays |= {f"face{k}": blocks[0] for k, blocks in enumerate(mesh.faces.values())}
-    facts = {
-        "parts": list(mesh.parts),
-        "faces": {name: mesh.face_part[name] for name in mesh.faces},
-        "notes": [asdict(note) for note in mesh.notes],
-    }
-    return Answer(facts=facts, arrays={"points": mesh.points} | arrays)
+    """Mesh what `mesh_step` asks for; this runs in the process of its own, and whoever asked checks the mesh."""
+    return _mesh_here(_Request(**request))
 
 
-def _mesh_here(request: _Request) -> Mesh:
+def _mesh_here(request: _Request) -> Answer:
     path, size = Path(request.path), request.size
     local_size = request.local_size
     occ = kernel()
@@ -161,8 +153,7 @@ def _mesh_here(request: _Request) -> Mesh:
             f"{path.name} cannot be meshed with size {size * 1e3:g} mm ({fault}); choose another size, or repair the "
             f"geometry"
         ) from None
-    collected = _collect(mesh, [solid.name for solid in parts], labels, source=path.name)
-    return replace(collected, notes=notes)
+    return _collect(mesh, [solid.name for solid in parts], labels, notes)
 
 
 def _selected(held: CadParts, request: _Request, taken: Container[str]) -> list["Mark"]:
@@ -263,7 +254,7 @@ def _label_pieces(
             )
 
 
-def _collect(mesh: Any, parts: list[str], labels: Labels, *, source: str) -> Mesh:
+def _collect(mesh: Any, parts: list[str], labels: Labels, notes: Sequence[Note]) -> Answer:
     points = np.asarray(mesh.Coordinates(), float) * 1e-3
     tets = mesh.Elements3D().NumPy()
     cells = tets["nodes"][:, :10].astype(np.int64)[:, _to_vtk("tet10")] - 1
@@ -291,13 +282,10 @@ def _collect(mesh: Any, parts: list[str], labels: Labels, *, source: str) -> Mes
     blocks = {name: new_cells[domain == i] for i, name in enumerate(parts)}
     for label, tri in faces.items():
         faces[label] = _outward(new_points, tri, blocks[face_part[label]])
-    return Mesh(
-        points=new_points,
-        parts={name: (cells,) for name, cells in blocks.items()},
-        faces={name: (tri,) for name, tri in faces.items()},
-        face_part=face_part,
-        source=source,
-    )
+    facts = {"parts": parts, "faces": face_part, "notes": [asdict(note) for note in notes]}
+    arrays = {f"part{k}": blocks[name] for k, name in enumerate(parts)}
+    arrays |= {f"face{k}": faces[name] for k, name in enumerate(face_part)}
+    return Answer(facts=facts, arrays={"points": new_points} | arrays)
 
 
 def _outward(points: Any, tri: Index, cells: Index) -> Index:
