@@ -46,15 +46,14 @@ def twin(plan, truth=TRUTH, seed=3, model=None):
         test=None,
     )
     from faying.study.case import Case, Progress
-    from faying.study.modes import SharedModes
+    from faying.study.modes import Preloads, SharedModes
     from faying.study.solve import solve
 
     case = Case.of(other)
     joints = tuple(replace(j, law=replace(j.law, scale=truth["stiffness"])) for j in case.structure.joints)
     case = replace(case, structure=replace(case.structure, joints=joints))
-    problem = case.structure.assembly()
-    shared = SharedModes()
-    states = [solve(case, k, problem, shared, Progress(0)) for k in range(len(plan.loads))]
+    preloads, shared = Preloads(case), SharedModes()
+    states = [solve(case, k, preloads, shared, Progress(0)) for k in range(len(plan.loads))]
     truth = np.stack([s.damped.frequencies for s in states])
     noise = np.random.default_rng(seed).normal(0, 1e-3, truth.shape)
     measured = truth * np.exp(noise)

@@ -175,7 +175,7 @@ def test_the_modes_take_the_factorisation_of_the_preload_where_it_is_of_what_vib
     from faying.fe.modes import lowest_modes
     from faying.joint import preload
     from faying.study.case import Case, Progress
-    from faying.study.modes import SharedModes
+    from faying.study.modes import Preloads, SharedModes
     from faying.study.solve import solve
 
     made = []
@@ -185,12 +185,29 @@ def test_the_modes_take_the_factorisation_of_the_preload_where_it_is_of_what_vib
     case = Case.of(study)
     case = replace(case, structure=replace(case.structure, **changes))
     structure = case.structure
-    state = solve(case, 0, structure.assembly(), SharedModes(), Progress(0), ranges=False)
+    state = solve(case, 0, Preloads(case), SharedModes(), Progress(0), ranges=False)
     assert sum(matrix.shape[0] == structure.mesh.unknowns for matrix in made) == count
     K, _ = structure.joined(state.springs)
     exact = lowest_modes(K, structure.vibrating[1], case.mode_count, shift_frequency=case.shift_frequency)
     elastic = slice(case.rigid_count, case.rigid_count + study.modes.count)
     assert state.modes.frequencies[elastic] == pytest.approx(exact.frequencies[elastic], rel=5e-9)
+
+
+def test_preloads_found_together_are_those_found_one_by_one(study, monkeypatch):
+    from faying.study import modes
+    from faying.study.modes import Preloads, settled
+
+    case = Case.of(study)
+    problem = case.structure.assembly()
+    wanted = [settled(case, k, problem) for k in range(2)]
+    together = Preloads(case)
+    monkeypatch.setattr(modes, "AT_ONCE", case.structure.mesh.unknowns)  # room for one of them
+    apart = Preloads(case)
+    for number, state in enumerate(wanted):
+        for preloads in (together, apart):
+            found = preloads.at(number)
+            assert found.bolt_forces == state.bolt_forces
+            assert found.pressures[0] == pytest.approx(state.pressures[0], abs=1e-7 * state.pressures[0].max())
 
 
 @pytest.mark.parametrize(
@@ -201,13 +218,13 @@ def test_any_continuation_beyond_the_law_lies_in_the_bracket(study, factor):
     from faying.fe.modes import lowest_modes
     from faying.study.beyond import bonded_beyond
     from faying.study.case import Case, Progress
-    from faying.study.modes import SharedModes
+    from faying.study.modes import Preloads, SharedModes
     from faying.study.solve import solve
 
     small = replace(study, bolts=(replace(study.bolts[0], preload=(5e5,)),), modes=ModesChoice(count=4))
     case = Case.of(small)
     structure = case.structure
-    state = solve(case, 0, structure.assembly(), SharedModes(), Progress(0))
+    state = solve(case, 0, Preloads(case), SharedModes(), Progress(0))
     springs = state.springs[0]
     past = springs.pressure > structure.joints[0].law.model.greatest_pressure
     assert 0 < past.mean() < 1

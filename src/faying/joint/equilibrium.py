@@ -8,9 +8,9 @@ matrices (`preload`) or in a small basis (`reduce`).
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -20,10 +20,16 @@ from faying.joint.joint_law import JointLaw
 from faying.joint.springs import InterfaceMotion
 from faying.typing import Array, Mask
 
+Found = TypeVar("Found")
+Steps = Generator[
+    Array, Array, Found
+]  # yields forces (unknowns,), is sent displacements near their answer, and returns
+
 ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall further
 FAR_OFF = 0.03  # of the imbalance, which a Newton step far from equilibrium leaves
 SETTLED = 1e-4  # imbalance below which k_t and the limit of friction are kept
 ALIKE = 1e-9  # relative difference of two loads up to which one is a multiple of the other
+STEPS = 60  # of Newton
 STATES = 4  # under multiples of one load, from which the next is extrapolated
 
 
@@ -101,7 +107,8 @@ class Equilibrium(ABC):
         self._anchors = [np.zeros((len(trace.weights), 2)) for trace, _ in self.joints]
         self._past: list[tuple[float, Array]] = []  # size [N] of multiples of one load, and displacements under them
         self._pattern: Array | None = None  # that load, of size 1
-        self._known: tuple[Array, list[tuple[Array, Array, Array]]] | None = None
+        self._known: dict[int, tuple[Array, list[tuple[Array, Array, Array]]]] = {}
+        self._at_hand = 1  # displacements whose state of the joints is kept
         self.nearest: Array | None = None  # displacement nearest to balance in the last `solve`
         self.factorisations = 0
 
@@ -110,8 +117,22 @@ class Equilibrium(ABC):
         """Return a displacement to start from."""
 
     @abstractmethod
-    def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> tuple[Array, int]:
+    def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> Steps[tuple[Array, int]]:
         """Return the Newton step for an out-of-balance force and how many inner steps it took."""
+
+    @abstractmethod
+    def _near(self, forces: Array) -> Array:
+        """Displacements near the answer to forces (unknowns,) or (unknowns, m), for which the steps of a load ask."""
+
+    def _walked(self, steps: Steps[Found]) -> Found:
+        """What steps return that nobody else goes with."""
+        try:
+            force = next(steps)
+            while True:
+                force = steps.send(self._near(force))
+        except StopIteration as end:
+            found: Found = end.value
+            return found
 
     def _check_load(self, load: Array) -> None:
         """Raise InputError where no equilibrium exists under this load; by default any load will do."""
@@ -128,7 +149,7 @@ class Equilibrium(ABC):
         start: Array | None = None,
         shanks: Any | None = None,
         tolerance: float = 1e-10,
-        steps: int = 60,
+        steps: int = STEPS,
         report: Callable[[str], None] | None = None,
     ) -> PreloadState:
         """Find equilibrium under nodal forces `load` [N] (unknowns,).
@@ -145,9 +166,13 @@ class Equilibrium(ABC):
         self.stiffness = self.parts if shanks is None else self.parts + shanks
         if start is None:
             start = self._ahead(load) if self._past else self._start(load)
-        newton = _Newton(self, load, tolerance, report)
-        u, grips = newton.run(start, steps)
+        newton = Newton(self, load, tolerance, report)
+        u, grips = self._walked(newton.run(start, steps))
         self._remember(load, u, alone=shanks is None)
+        return self._settled(newton, u, grips)
+
+    def _settled(self, newton: "Newton", u: Array, grips: list[StickSlip]) -> PreloadState:
+        """The state that a load has led to; shear that slipped is carried to the next."""
         slipping = self._move_anchors(u, grips)
         openings, pressures = self.contact(u)
         return PreloadState(
@@ -217,14 +242,27 @@ class Equilibrium(ABC):
 
         Asked for several times in a step, found once.
         """
-        if self._known is None or self._known[0] is not u:
+        known = self._known.get(id(u))
+        if known is None or known[0] is not u:
             moves = [self._move(trace, u) for trace, _ in self.joints]
-            found = [
-                (move, *law.pressure(-(move[:, 0] + trace.gap)))
-                for move, (trace, law) in zip(moves, self.joints, strict=True)
-            ]
-            self._known = u, found
-        return self._known[1]
+            known = self._keep(
+                u,
+                [
+                    (move, *law.pressure(-(move[:, 0] + trace.gap)))
+                    for move, (trace, law) in zip(moves, self.joints, strict=True)
+                ],
+            )
+        return known[1]
+
+    def _keep(
+        self, u: Array, state: list[tuple[Array, Array, Array]]
+    ) -> tuple[Array, list[tuple[Array, Array, Array]]]:
+        """Remember the state of the joints under a displacement, and forget the oldest."""
+        self._known.pop(id(u), None)
+        while len(self._known) >= self._at_hand:
+            del self._known[next(iter(self._known))]
+        self._known[id(u)] = u, state
+        return u, state
 
     def _grips(self, u: Array) -> list[StickSlip]:
         grips = []
@@ -258,10 +296,10 @@ class Equilibrium(ABC):
         ahead: list[tuple[Array, Array, Array]] = []
 
         def at(length: float, *, known: bool = True) -> Array:
-            found = u + length * step
+            found = np.asarray(u + length * step)
             if known:
-                self._known = found, ahead
-            return np.asarray(found)
+                self._keep(found, ahead)
+            return found
 
         stretch = self.stiffness @ step
         linear = float(step @ (load - self.stiffness @ u))
@@ -306,7 +344,7 @@ class Equilibrium(ABC):
 
 
 @dataclass
-class _Newton:
+class Newton:
     """Newton's iteration for one load: how far it has come, and what it has cost."""
 
     balance: Equilibrium
@@ -317,7 +355,7 @@ class _Newton:
     steps: int = 0
     inner: int = 0
 
-    def run(self, u: Array, most: int) -> tuple[Array, list[StickSlip]]:
+    def run(self, u: Array, most: int) -> Steps[tuple[Array, list[StickSlip]]]:
         """Return the displacement and the tangential state in equilibrium. Raises NotConverged after `most` steps."""
         balance, load = self.balance, self.load
         scale = float(np.linalg.norm(load))
@@ -346,7 +384,7 @@ class _Newton:
                 )
             # as exact as Newton's own convergence asks, and no more than the tolerance does
             accuracy = max(min(FAR_OFF, 0.1 * self.size), 0.3 * tolerance / self.size)
-            step, count = balance._direction(u, force, grips, accuracy=accuracy)
+            step, count = yield from balance._direction(u, force, grips, accuracy=accuracy)
             u = balance._line_search(u, step, load, grips)
             if self.size > SETTLED:  # far off, k_t follows at once; near the end it is kept so that Newton converges
                 grips = balance._grips(u)

@@ -6,7 +6,7 @@ solutions (multigrid over MPI), each Newton step takes its own.
 """
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from faying.fe.interface import Motion
 from faying.fe.shifted import Shifted
 from faying.fe.single import factorise_roughly
 from faying.fe.solve import Factorisation, Factoriser
-from faying.joint.equilibrium import Equilibrium, StickSlip
+from faying.joint.equilibrium import STEPS, Equilibrium, Newton, PreloadState, Steps, StickSlip
 from faying.joint.joint_law import JointLaw
 from faying.typing import Array, Index
 
@@ -31,6 +31,13 @@ EARLY, LATE, SLOW = -0.5, -3.5, 4.8
 GUESSED = 1e-3  # imbalance of the equilibrium of the corners, which are wrong by far more
 ROUGH = 1e-2  # accuracy of the start of Newton's iteration where it is found by conjugate gradients
 FLAT = 1e-9  # curvature over that of the factor below which a direction costs no energy
+
+
+class Guess(NamedTuple):
+    """Where the joints are likely to end up: opening [m] and pressure [Pa] at the points of each; whether near it."""
+
+    joints: tuple[tuple[Array, Array], ...]
+    near: bool
 
 
 class PreloadProblem(Equilibrium):
@@ -87,64 +94,119 @@ class PreloadProblem(Equilibrium):
                 "pull between two faces of different parts that face each other"
             )
 
+    @property
+    def can_go_together(self) -> bool:
+        """Whether several loads can be solved at once: no joint slips, and a factorisation serves for more than one."""
+        return not self._cheap and all(friction is None for friction in self.friction)
+
+    def solve_together(self, loads: Sequence[Array], *, tolerance: float) -> list[PreloadState | None]:
+        """Find equilibrium under several loads at once, each from the unloaded state, by solutions for all of them.
+
+        A factor is read once for all of them, which takes the time of two or three solutions one by one. No joint may
+        slip, since slip depends on what was before: see `can_go_together`. None stands for loads to which the one
+        factorisation, or Newton, does not lead: `solve` may. Raises InputError as `solve` does.
+
+        loads: nodal forces [N] (unknowns,); tolerance: as `solve` takes it.
+        """
+        for load in loads:
+            self._check_load(load)
+        self.stiffness, self._at_hand = self.parts, 2 * len(loads)
+        walks = [self._whole(*one, tolerance) for one in zip(loads, self._guesses(loads), strict=True)]
+        found: list[PreloadState | None] = [None] * len(loads)
+        answers: dict[int, Array | None] = dict.fromkeys(range(len(loads)))
+        while answers:
+            asked = {}
+            for k, answer in answers.items():
+                try:
+                    asked[k] = next(walks[k]) if answer is None else walks[k].send(answer)
+                except StopIteration as end:
+                    found[k] = end.value
+                except NotConverged:
+                    pass
+            columns = self._near(np.stack(list(asked.values()), axis=1)) if asked else np.empty((0, 0))
+            answers = dict(zip(asked, map(np.ascontiguousarray, columns.T), strict=True))
+        self._at_hand = 1
+        for load, state in zip(loads, found, strict=True):
+            if state is not None:
+                self._remember(load, state.displacement, alone=True)
+        return found
+
+    def _whole(self, load: Array, guess: Guess, tolerance: float) -> Steps[PreloadState]:
+        """From a guess of the joints to equilibrium under a load, with the factorisation as it is."""
+        start = yield from self._begun(load, guess)
+        newton = Newton(self, load, tolerance, None)
+        u, grips = yield from newton.run(start, STEPS)
+        return self._settled(newton, u, grips)
+
     def _start(self, load: Array) -> Array:
-        """Begin with springs that are tangent to p(approach) where the joints are likely to end up."""
-        near = self._on_corners(load)
-        guess = self._even(load) if near is None else near
-        laid, springs, push = [], self.stiffness, load
-        for (joint, law), (opening, pressure) in zip(self.joints, guess, strict=True):
+        [guess] = self._guesses([load])
+        return self._walked(self._begun(load, guess))
+
+    def _begun(self, load: Array, guess: Guess) -> Steps[Array]:
+        """Displacement under springs that are tangent to p(approach) where the joints are likely to end up."""
+        laid, springs, push = [], [], load
+        for (joint, law), (opening, pressure) in zip(self.joints, guess.joints, strict=True):
             k_n, k_t = law.stiffness(pressure)
             laid.append((k_n, k_t))
-            springs = springs + joint.springs(k_n, k_t)
+            springs.append(joint.springs(k_n, k_t))
             offset = np.where(pressure > 0, pressure + k_n * (opening - joint.gap), 0.0)
             push = push + joint.forces(offset, np.zeros((len(offset), 2)))
         push = self._admissible(push)
-        matrix = Shifted(stiffness=springs, mass=self._mass, shift=self._shift)
         if self.factor is not None:  # of a like state, taken from elsewhere
+            parts = Shifted(stiffness=self.stiffness, mass=self._mass, shift=self._shift)
             limit = CHEAP if self._cheap else AGED
-            found, count = self._conjugate_gradients(lambda x: self._held(matrix @ x), push, ROUGH, limit=limit)
+
+            def product(x: Array) -> Array:  # the sum of the matrices takes as long as several
+                return self._held(sum((one @ x for one in springs), parts @ x))
+
+            found, count = yield from self._gradients(product, push, ROUGH, limit=limit)
             if count < limit:
                 return found
-        self._factorise(springs, None if near is None else laid)
-        assert self.factor is not None
-        return self.factor.solve(push)
+            self._stay()
+        self._factorise(springs, laid if guess.near else None)
+        found = yield push
+        return found
 
-    def _even(self, load: Array) -> list[tuple[Array, Array]]:
-        """Opening [m] and pressure [Pa] at the points of every joint: the mean that the load would give it."""
-        total, guess = float(np.abs(load).sum()) / 4, []
-        for joint, law in self.joints:
-            mean = np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure)
-            guess.append((np.full(len(joint.weights), -law.approach(float(mean))), np.full(len(joint.weights), mean)))
-        return guess
+    def _guesses(self, loads: Sequence[Array]) -> list[Guess]:
+        """Where the joints are likely to end up under each load: as the corners of the elements say.
 
-    def _on_corners(self, load: Array) -> list[tuple[Array, Array]] | None:
-        """The same in equilibrium where only the corners of the elements move by themselves; None where there is none.
-
-        They are a seventh of the unknowns or less. The parts are then too stiff in bending, and the pressures right to
-        some tenths.
+        Only the corners move by themselves, a seventh of the unknowns or less. The parts are then too stiff in bending,
+        and pressures right to some tenths.
         """
         if self.corners is None:
-            return None
+            return [self._even(load) for load in loads]
         unknowns, spread = self.corners.unknowns, self.corners.spread
-        rigid = self._rigid[unknowns]
-        problem = PreloadProblem(
+        coarse = PreloadProblem(
             self.corners.of_matrix(self.stiffness),
             self.corners.of_matrix(self.mass),
-            rigid,
+            self._rigid[unknowns],
             [(joint.carried(spread), law) for joint, law in self.joints],
             shift_frequency=self.shift_frequency,
             solver=self.solver if isinstance(self.solver, str) else None,
             friction=self.friction,
             fixed=np.flatnonzero(np.isin(unknowns, self.fixed)),
         )
-        try:
-            found = problem.solve(problem._admissible(spread.T @ load), tolerance=GUESSED)
-        except (NotConverged, InputError):
-            return None
-        return list(zip(found.openings, found.pressures, strict=True))
+        guesses = []
+        for load in loads:
+            try:
+                found = coarse.solve(coarse._admissible(spread.T @ load), tolerance=GUESSED)
+            except (NotConverged, InputError):
+                guesses.append(self._even(load))
+            else:
+                guesses.append(Guess(tuple(zip(found.openings, found.pressures, strict=True)), near=True))
+        return guesses
 
-    def _factorise(self, stiffness: Any, sprung: list[tuple[Array, Array]] | None) -> None:
+    def _even(self, load: Array) -> Guess:
+        """Every joint at the mean pressure that the load would give it."""
+        total, joints = float(np.abs(load).sum()) / 4, []
+        for joint, law in self.joints:
+            mean = np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure)
+            joints.append((np.full(len(joint.weights), -law.approach(float(mean))), np.full(len(joint.weights), mean)))
+        return Guess(tuple(joints), near=False)
+
+    def _factorise(self, springs: list[Any], sprung: list[tuple[Array, Array]] | None) -> None:
         self.factor = None  # one at a time in memory
+        stiffness = sum(springs, self.stiffness)
         near = Shifted(stiffness=constrain(stiffness, self.fixed), mass=self._mass, shift=self._shift)
         self.factor = factorise_roughly(near, rigid=self._rigid, solver=self.solver)
         self.factorisations += 1
@@ -164,7 +226,11 @@ class PreloadProblem(Equilibrium):
             force[self.fixed] = 0.0
         return force
 
-    def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> tuple[Array, int]:
+    def _near(self, forces: Array) -> Array:
+        assert self.factor is not None
+        return self.factor.solve(forces)
+
+    def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> Steps[tuple[Array, int]]:
         tangents = self._tangents(u, grips)
 
         def product(x: Array) -> Array:
@@ -177,36 +243,48 @@ class PreloadProblem(Equilibrium):
 
         if self.factor is None or self._worn(force):
             self._renew(tangents)
-        x, count = self._conjugate_gradients(product, force, accuracy)
+        x, count = yield from self._gradients(product, force, accuracy)
         self._rate = count / -np.log10(accuracy)
         if count >= AGED:
+            self._stay()
             self._renew(tangents)
-            x, more = self._conjugate_gradients(product, force, accuracy, limit=400)
+            x, more = yield from self._gradients(product, force, accuracy, limit=400)
             count += more
         return x, count
 
+    @property
+    def _together(self) -> bool:
+        """Whether several loads go by the same factorisation."""
+        return self._at_hand > 1
+
+    def _stay(self) -> None:
+        """Raise NotConverged where others need the factorisation as it is."""
+        if self._together:
+            raise NotConverged("preload: the factorisation that several loads share is too far from one of them")
+
     def _worn(self, force: Array) -> bool:
         """Whether a new factorisation costs less than the conjugate-gradient steps that the old one still asks for."""
+        if self._together:
+            return False
         if self._cheap:
             return True
         left = np.log10(float(np.linalg.norm(force)) / self._scale)  # decades of imbalance, below 0
         return bool(LATE < left < EARLY and self._rate > SLOW)
 
     def _renew(self, tangents: list[tuple[Any, Array, Array]]) -> None:
-        laid, springs = [], self.stiffness
+        laid = []
         for joint, k_n, k_t in tangents:
             shear = np.trace(k_t, axis1=1, axis2=2) / 2
             laid.append((k_n / joint.weights, shear / joint.weights))
-            springs = springs + joint.springs(*laid[-1])
-        self._factorise(springs, laid)
+        self._factorise([joint.springs(*k) for (joint, _), k in zip(self.joints, laid, strict=True)], laid)
 
-    def _conjugate_gradients(
+    def _gradients(
         self, product: Callable[[Array], Array], right: Array, accuracy: float, limit: int = AGED
-    ) -> tuple[Array, int]:
-        assert self.factor is not None
+    ) -> Steps[tuple[Array, int]]:
+        """Conjugate gradients: the solution and how many steps it took, `limit` where that was not enough."""
         x = np.zeros_like(right)
         r = right.copy()
-        z = self.factor.solve(r)
+        z = yield r
         d, rho = z, float(r @ z)
         target = accuracy * float(np.linalg.norm(right))
         for count in range(1, limit + 1):
@@ -219,7 +297,7 @@ class PreloadProblem(Equilibrium):
             r -= alpha * q
             if np.linalg.norm(r) <= target:
                 return x, count
-            z = self.factor.solve(r)
+            z = yield r
             rho, old = float(r @ z), rho
             d = z + rho / old * d
         return x, limit

@@ -12,7 +12,7 @@ import numpy as np
 
 from faying.errors import InputError, NotConverged
 from faying.fe.damped import lowest_complex
-from faying.joint.equilibrium import Equilibrium, PreloadState, StickSlip
+from faying.joint.equilibrium import Equilibrium, PreloadState, Steps, StickSlip
 from faying.joint.groups import Groups, sprung
 from faying.joint.joint_law import JointLaw
 from faying.joint.part_shares import ReducedShares, Scales
@@ -124,13 +124,14 @@ class ReducedEquilibrium(Equilibrium):
     def _start(self, load: Array) -> Array:
         return evenly_pressed(self.stiffness, self.joints, load)
 
-    def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> tuple[Array, int]:
-        from scipy.linalg import LinAlgError, cho_factor, cho_solve
+    def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> Steps[tuple[Array, int]]:
+        from scipy.linalg import LinAlgError, cho_factor
 
         size = float(np.linalg.norm(force))
         falls, self._size = size < KEPT * self._size, size
         if falls and self._tangent is not None:  # near the end the last tangent does as well
-            return np.asarray(cho_solve(self._tangent, force)), 0
+            step = yield force
+            return step, 0
         matrix = self.stiffness.copy()
         for trace, k_n, k_t in self._tangents(u, grips):
             if not k_t[:, 0, 1].any():  # nothing slides
@@ -144,9 +145,15 @@ class ReducedEquilibrium(Equilibrium):
             matrix += trace.relative.T @ scaled.reshape(trace.relative.shape)
         try:
             self._tangent = cho_factor(matrix)
-            return np.asarray(cho_solve(self._tangent, force)), 0
         except LinAlgError:
             raise NotConverged("preload: the joint opens wholly on the way; load it in smaller steps") from None
+        step = yield force
+        return step, 0
+
+    def _near(self, forces: Array) -> Array:
+        from scipy.linalg import cho_solve
+
+        return np.asarray(cho_solve(self._tangent, forces))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,6 +15,18 @@ BALANCED = 1e-9  # of the load: what is out of balance then moves pressures by s
 SNUG = 0.01  # of its force, in a solid bolt that is yet to be tightened: without any, it would fall out
 
 
+def tighten_together(
+    structure: Structure, assembly: PreloadProblem, forces: Sequence[Sequence[float]]
+) -> list[PreloadState | None]:
+    """As `tighten` for several sets of forces [N] at once, all bolts pulled at once; see `solve_together`."""
+    loads = structure.loads
+    found = assembly.solve_together([loads @ np.asarray(one, dtype=float) for one in forces], tolerance=BALANCED)
+    return [
+        None if state is None else replace(state, bolt_forces=tuple(float(f) for f in one))
+        for state, one in zip(found, forces, strict=True)
+    ]
+
+
 def tighten(
     structure: Structure,
     assembly: PreloadProblem,

@@ -11,7 +11,7 @@ from faying.fe.solve import Released
 from faying.notes import Note
 from faying.study.case import Case, Progress, interface_of, joint_law, law_reasons, materials_at, surfaces_of
 from faying.study.keys.beside import BesideChoice
-from faying.study.modes import SharedModes
+from faying.study.modes import Preloads, SharedModes
 from faying.study.solve import State, solve
 from faying.study.study import Study
 
@@ -46,8 +46,8 @@ def solve_beside(case: Case, choice: BesideChoice, shared: SharedModes, progress
         problem = other.structure.assembly(solver=case.study.modes.solver)
         if shared.near is not None:
             problem.take(shared.near.modes.factorisation, case.shift_frequency)
-        loads = range(len(case.study.loads))
-        states = tuple(_slim(solve(other, k, problem, shared, progress, ranges=False)) for k in loads)
+        loads, preloads = range(len(case.study.loads)), Preloads(other, problem)
+        states = tuple(_slim(solve(other, k, preloads, shared, progress, ranges=False)) for k in loads)
     except FayingError as fault:
         progress.done = done + 2 * len(case.study.loads)
         text = f"{choice.name} beside: no answer: {fault}"

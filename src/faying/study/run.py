@@ -27,7 +27,7 @@ from faying.study.bolt_numbers import bolt_numbers, conductances
 from faying.study.case import Case, Progress
 from faying.study.findings import against_exact_contact, falling
 from faying.study.form_band import form_band
-from faying.study.modes import SharedModes, modes_with
+from faying.study.modes import Preloads, SharedModes, modes_with
 from faying.study.provenance import provenance
 from faying.study.solve import State, solve
 from faying.study.study import Study
@@ -58,9 +58,8 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         friction_of(study, study.backbone)  # raises, before the work, where nothing can slip
     progress = Progress(len(stages(study)), report)
     case = Case.of(study, progress)
-    problem = case.structure.assembly(solver=study.modes.solver)
-    shared = SharedModes()
-    states = [solve(case, number, problem, shared, progress) for number in range(len(study.loads))]
+    preloads, shared = Preloads(case), SharedModes()
+    states = [solve(case, number, preloads, shared, progress) for number in range(len(study.loads))]
     besides = [solve_beside(case, choice, shared, progress) for choice in study.beside]
     progress.begin("modes free and bonded")
     free, bonded, notes = bounds(case)

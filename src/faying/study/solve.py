@@ -8,7 +8,6 @@ from faying.fe.damped import DampedModes, damped_near
 from faying.fe.interface import Interface
 from faying.fe.modes import Modes
 from faying.joint.equilibrium import PreloadState
-from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
 from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions, open_joints
@@ -16,7 +15,7 @@ from faying.measured.model import FullResponse
 from faying.notes import Note
 from faying.study.beyond import Beyond, bonded_beyond, past_end
 from faying.study.case import Case, Progress
-from faying.study.modes import EXACT, SharedModes, settled
+from faying.study.modes import EXACT, Preloads, SharedModes
 from faying.study.response import LoadedStructure, ResponseAtLoad
 from faying.study.strength import pressure_notes
 from faying.typing import Array, Mask
@@ -65,13 +64,13 @@ RANGE_ERROR = 1e-5  # of the squared frequencies at the ends of a range
 def solve(
     case: Case,
     number: int,
-    problem: PreloadProblem,
+    preloads: Preloads,
     shared: SharedModes,
     progress: Progress,
     *,
     ranges: bool = True,
 ) -> State:
-    """Solve a case at one of its loads, counted from 0; preload problem and modes start from the load before.
+    """Solve a case at one of its loads, counted from 0; modes start from those of the load before.
 
     ranges: whether to find the frequencies at the ends of the laws' ranges. Raises InputError where a part is held by
     nothing, NotConverged where the preload stops short.
@@ -79,15 +78,15 @@ def solve(
     study, structure = case.study, case.structure
     load = study.loads[number]
     progress.begin(f"preload {load / 1e3:g} kN")
-    preload = settled(case, number, problem)
+    preload = preloads.at(number)
     springs = structure.springs(preload.pressures)
     progress.begin(f"modes at {load / 1e3:g} kN")
     mass = structure.vibrating[1]
-    shared.begin(case, problem)
+    shared.begin(case, preloads.problem)
     modes, stiffness = shared.of(case, springs)
     loss = structure.lost(springs, viscous=study.modes.damping == "viscous")
     check_motions(structure, modes)
-    problem.take(modes.factorisation, case.shift_frequency)
+    preloads.problem.take(modes.factorisation, case.shift_frequency)
     assert shared.near is not None
     damped = damped_near(
         shared.near, modes, stiffness, loss, count=study.modes.count, kind=study.modes.damping, tolerance=EXACT
