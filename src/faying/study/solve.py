@@ -58,7 +58,7 @@ class State:
         return self.damped.frequencies if self.beyond is None else self.beyond.frequencies
 
 
-RANGE_ERROR = 1e-5  # of the squared frequencies at the ends of a range
+RANGE_ERROR = 1e-4  # of the squared frequencies at the ends of a range, which no digit of a law's range asks for
 
 
 def solve(
