@@ -21,9 +21,7 @@ from faying.joint.springs import InterfaceMotion
 from faying.typing import Array, Mask
 
 Found = TypeVar("Found")
-Steps = Generator[
-    Array, Array, Found
-]  # yields forces (unknowns,), is sent displacements near their answer, and returns
+Steps = Generator[Array, Array, Found]  # yields forces (unknowns,), and is sent displacements near their answer
 
 ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall further
 FAR_OFF = 0.03  # of the imbalance, which a Newton step far from equilibrium leaves

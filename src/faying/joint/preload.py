@@ -2,7 +2,8 @@
 
 Each Newton step is solved by conjugate gradients preconditioned with one factorisation at a reference state of the
 joints, since only the joint changes; the factorisation is renewed when it has aged. Where it costs no more than a few
-solutions (multigrid over MPI), each Newton step takes its own.
+solutions (multigrid over MPI), each Newton step takes its own. Loads under which no joint slips can go together: what
+their iterations ask of the factorisation at the same time, it answers at once.
 """
 
 from collections.abc import Callable, Sequence
@@ -104,7 +105,7 @@ class PreloadProblem(Equilibrium):
 
         A factor is read once for all of them, which takes the time of two or three solutions one by one. No joint may
         slip, since slip depends on what was before: see `can_go_together`. None stands for loads to which the one
-        factorisation, or Newton, does not lead: `solve` may. Raises InputError as `solve` does.
+        factorisation, that of the middle one, or Newton, does not lead: `solve` may. Raises InputError as it does.
 
         loads: nodal forces [N] (unknowns,); tolerance: as `solve` takes it.
         """
@@ -112,8 +113,23 @@ class PreloadProblem(Equilibrium):
             self._check_load(load)
         self.stiffness, self._at_hand = self.parts, 2 * len(loads)
         walks = [self._whole(*one, tolerance) for one in zip(loads, self._guesses(loads), strict=True)]
-        found: list[PreloadState | None] = [None] * len(loads)
-        answers: dict[int, Array | None] = dict.fromkeys(range(len(loads)))
+        order = np.argsort([np.linalg.norm(load) for load in loads])
+        try:
+            found = self._in_step(walks, int(order[(len(loads) - 1) // 2]))
+        finally:
+            self._at_hand = 1
+        for load, state in zip(loads, found, strict=True):
+            if state is not None:
+                self._remember(load, state.displacement, alone=True)
+        return found
+
+    def _in_step(self, walks: Sequence[Steps[PreloadState]], first: int) -> list[PreloadState | None]:
+        """What steps return that are answered together; None where they end in NotConverged.
+
+        first: who begins, and so chooses the springs to factorise with.
+        """
+        found: list[PreloadState | None] = [None] * len(walks)
+        answers: dict[int, Array | None] = dict.fromkeys([first, *range(len(walks))])
         while answers:
             asked = {}
             for k, answer in answers.items():
@@ -125,10 +141,6 @@ class PreloadProblem(Equilibrium):
                     pass
             columns = self._near(np.stack(list(asked.values()), axis=1)) if asked else np.empty((0, 0))
             answers = dict(zip(asked, map(np.ascontiguousarray, columns.T), strict=True))
-        self._at_hand = 1
-        for load, state in zip(loads, found, strict=True):
-            if state is not None:
-                self._remember(load, state.displacement, alone=True)
         return found
 
     def _whole(self, load: Array, guess: Guess, tolerance: float) -> Steps[PreloadState]:
