@@ -45,8 +45,8 @@ class PreloadProblem(Equilibrium):
     """Parts with joints between them, ready for one load after another (each starts from the last).
 
     fixed: unknowns that supports fix; rigid (unknowns, r): rigid motions that nothing resists, r = 0 where supports do;
-    corners: those of the mesh, whose own equilibrium says which springs to factorise with; without them, springs at
-    one pressure for each joint. sprung: springs per area (k_n, k_t) [Pa/m] of each joint in the factorisation at hand,
+    corners: those of the mesh, for whoever has one to set: their own equilibrium says which springs to factorise with;
+    without them, springs at one pressure for each joint. sprung: springs per area (k_n, k_t) [Pa/m] of each joint in the factorisation at hand,
     where they are near to those under the load; None where they are not.
     """
 
@@ -61,7 +61,6 @@ class PreloadProblem(Equilibrium):
         solver: str | Factoriser | None = None,
         friction: Sequence[float | None] | None = None,
         fixed: Index | None = None,
-        corners: Corners | None = None,
     ) -> None:
         super().__init__(stiffness, joints, friction=friction)
         self.solver = solver
@@ -71,7 +70,7 @@ class PreloadProblem(Equilibrium):
         self.mass = mass
         self._mass, self._shift = constrain(mass, self.fixed, 0.0), (2 * np.pi * shift_frequency) ** 2
         self._rigid = np.linalg.qr(rigid)[0] if rigid.size else rigid
-        self.corners = corners
+        self.corners: Corners | None = None
         self.factor: Factorisation | None = None
         self.sprung: list[tuple[Array, Array]] | None = None
         self._rate = 0.0  # conjugate-gradient steps for each decade of the residual, with this factorisation

@@ -252,7 +252,7 @@ class Structure:
         """Return the preload problem of this structure."""
         pairs = [(joint.interface, joint.law) for joint in self.joints]
         way = self.solver(solver)
-        return PreloadProblem(
+        problem = PreloadProblem(
             self.standing,
             self.matrices[1],
             self.rigid,
@@ -261,8 +261,10 @@ class Structure:
             solver=way,
             friction=[joint.friction for joint in self.joints],
             fixed=self.fixed,
-            corners=None if isinstance(way, Factoriser) and way.cheap else self._frame.corners,
         )
+        if not (isinstance(way, Factoriser) and way.cheap):
+            problem.corners = self._frame.corners
+        return problem
 
     def joined(self, springs: Sequence[Springs[Interface]], *, viscous: bool = False) -> tuple[Any, Any]:
         """Stiffness [N/m] with the springs of all joints, and their loss; fixed unknowns cleared.
