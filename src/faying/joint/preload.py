@@ -46,8 +46,8 @@ class PreloadProblem(Equilibrium):
 
     fixed: unknowns that supports fix; rigid (unknowns, r): rigid motions that nothing resists, r = 0 where supports do;
     corners: those of the mesh, for whoever has one to set: their own equilibrium says which springs to factorise with;
-    without them, springs at one pressure for each joint. sprung: springs per area (k_n, k_t) [Pa/m] of each joint in the factorisation at hand,
-    where they are near to those under the load; None where they are not.
+    without them, springs at one pressure for each joint. sprung: springs per area (k_n, k_t) [Pa/m] of each joint in
+    the factorisation at hand, where they are near to those under the load; None where they are not.
     """
 
     def __init__(
