@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 import faying
-from faying.fe.elasticity import rigid_motions
+from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
-from faying.joint.structure import bond
+from faying.joint.structure import bond, merged
 from tests.helpers.boxes import stack
 
 
@@ -75,4 +75,7 @@ def test_tie_merges_matched_faces_only():
     mesh = stack([1.0, 1.0], [2, 2])
     grown = bond(mesh, [("p0.right", "p1.left")])
     assert grown.shape == (mesh.unknowns, mesh.unknowns - 3 * 25)
+    for matrix in assemble(mesh, dict.fromkeys(mesh.parts, faying.CATALOGUE["45 steel"])):
+        wanted = grown.T @ matrix @ grown
+        assert abs(merged(matrix, grown) - wanted).max() <= 1e-14 * abs(wanted).max()
     assert bond(stack([1.0, 1.0], [2, 2], sections=[(2, 2), (3, 3)]), [("p0.right", "p1.left")]) is None
