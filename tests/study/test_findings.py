@@ -76,6 +76,13 @@ def test_frequencies_lie_inside_their_range_and_the_range_inside_the_bounds(defa
     assert np.any(default.high > 1.01 * default.low)
 
 
+def test_a_range_is_shown_to_the_five_digits_that_it_is_found_to(default):
+    ends = replace(default, low=np.full_like(default.low, 1128.456), high=np.full_like(default.high, 40012.3))
+    assert table.ranges(ends)[1][1] == "1128.5 .. 40012"
+    ends = replace(default, low=np.zeros_like(default.low), high=np.full_like(default.high, 9.87654))
+    assert table.ranges(ends)[1][1] == "0.00 .. 9.8765"
+
+
 def test_modes_that_fall_with_preload_are_named_with_the_reason(default):
     first, last = default.frequencies
     fallen = [str(k + 1) for k in np.flatnonzero(last < first * (1 - 1e-6))]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from itertools import product
+from math import floor, log10
 from typing import Any
 
 import numpy as np
@@ -35,14 +36,22 @@ def modes(result: Result) -> Rows:
 
 
 def ranges(result: Result) -> Rows:
-    """One row per mode: the frequencies at both ends of the range of stiffness; empty where no law states one."""
+    """One row per mode: the frequencies at both ends of the range of stiffness, to the digits that they are found to.
+
+    Empty where no law states a range.
+    """
     if result.low is None or result.high is None:
         return []
     rows: Rows = [["mode", *(f"{load / 1e3:g} kN [Hz]" for load in result.loads)]]
     for j in range(len(result.bonded)):
         pairs = zip(result.low[:, j], result.high[:, j], strict=True)
-        rows.append([str(j + 1), *(f"{low:.2f} .. {high:.2f}" for low, high in pairs)])
+        rows.append([str(j + 1), *(f"{_five(low)} .. {_five(high)}" for low, high in pairs)])
     return rows
+
+
+def _five(value: float) -> str:
+    """A number to five digits, not in powers of ten."""
+    return f"{value:.{max(0, 4 - floor(log10(value)))}f}" if value > 0 else f"{value:.2f}"
 
 
 def beyond(result: Result) -> Rows:
