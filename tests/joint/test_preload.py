@@ -326,9 +326,14 @@ def test_a_load_that_the_shared_factorisation_does_not_reach_is_left_to_itself(m
     assert problem.factorisations > 1
 
 
-def test_loads_whose_joints_slip_go_one_after_another():
+def test_loads_whose_joints_slip_or_whose_factorisation_is_of_another_law_go_one_after_another():
     assert bars(material=STEEL).assembly().can_go_together
     assert not bars(material=STEEL, friction=0.2).assembly().can_go_together
     structure = bars(material=STEEL)
+    begun, taken = structure.assembly(), structure.assembly()
+    begun.solve(squeeze(structure, 1e3))
+    assert begun.can_go_together
+    taken.take(begun.factor, begun.shift_frequency)
+    assert not taken.can_go_together
     with pytest.raises(faying.InputError, match="the bolt forces do not balance"):
         structure.assembly().solve_together([squeeze(structure, 1e3), np.ones(structure.mesh.unknowns)], tolerance=1e-9)

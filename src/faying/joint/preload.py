@@ -96,8 +96,13 @@ class PreloadProblem(Equilibrium):
 
     @property
     def can_go_together(self) -> bool:
-        """Whether several loads can be solved at once: no joint slips, and a factorisation serves for more than one."""
-        return not self._cheap and all(friction is None for friction in self.friction)
+        """Whether several loads are better solved at once.
+
+        No joint slips, a factorisation serves for more than one of them, and none was taken that is of something else:
+        that is far from all of them, and better replaced after the first.
+        """
+        taken = self.factor is not None and self.sprung is None
+        return not (self._cheap or taken) and all(friction is None for friction in self.friction)
 
     def solve_together(self, loads: Sequence[Array], *, tolerance: float) -> list[PreloadState | None]:
         """Find equilibrium under several loads at once, each from the unloaded state, by solutions for all of them.
