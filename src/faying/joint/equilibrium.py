@@ -27,7 +27,7 @@ ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall
 FAR_OFF = 0.03  # of the imbalance, which a Newton step far from equilibrium leaves
 SETTLED = 1e-4  # imbalance below which k_t and the limit of friction are kept
 ALIKE = 1e-9  # relative difference of two loads up to which one is a multiple of the other
-STEPS = 60  # of Newton
+MOST_STEPS = 60  # of Newton
 STATES = 4  # under multiples of one load, from which the next is extrapolated
 
 
@@ -147,7 +147,7 @@ class Equilibrium(ABC):
         start: Array | None = None,
         shanks: Any | None = None,
         tolerance: float = 1e-10,
-        steps: int = STEPS,
+        steps: int = MOST_STEPS,
         report: Callable[[str], None] | None = None,
     ) -> PreloadState:
         """Find equilibrium under nodal forces `load` [N] (unknowns,).

@@ -18,7 +18,7 @@ from faying.fe.interface import Motion
 from faying.fe.shifted import Shifted
 from faying.fe.single import factorise_roughly
 from faying.fe.solve import Factorisation, Factoriser
-from faying.joint.equilibrium import STEPS, Equilibrium, Newton, PreloadState, Steps, StickSlip
+from faying.joint.equilibrium import MOST_STEPS, Equilibrium, Newton, PreloadState, Steps, StickSlip
 from faying.joint.joint_law import JointLaw
 from faying.typing import Array, Index
 
@@ -151,7 +151,7 @@ class PreloadProblem(Equilibrium):
         """From a guess of the joints to equilibrium under a load, with the factorisation as it is."""
         start = yield from self._begun(load, guess)
         newton = Newton(self, load, tolerance, None)
-        u, grips = yield from newton.run(start, STEPS)
+        u, grips = yield from newton.run(start, MOST_STEPS)
         return self._settled(newton, u, grips)
 
     def _start(self, load: Array) -> Array:
