@@ -164,7 +164,7 @@ def test_closing_the_page_loses_nothing(browser, server, example, tmp_path):
         page.click("#start")
         until(page, "document.querySelector('#job-line').textContent.includes(' of ')")
     with page_at(browser, server) as page:  # the run went on
-        assert "Mine: two blocks" in page.input_value("#text")
+        until(page, "document.querySelector('#text').value.includes('Mine: two blocks')")
         page.wait_for_selector("#report:not([hidden])", timeout=WAIT)
         assert "Mine" in page.frame_locator("#report").locator("h1").inner_text()
 
