@@ -11,7 +11,7 @@ from faying.fe.mesh import Mesh
 from faying.fe.sides import Blocks
 from faying.typing import Array, Index
 
-CHUNK = 400_000  # pairs of nodes at a time: keeps the blocks in cache and bounds the memory
+CHUNK = 100_000  # pairs of nodes at a time: keeps the blocks in cache and bounds the memory
 
 
 class Solid(Protocol):
@@ -33,14 +33,17 @@ class Solid(Protocol):
 def stiffness_of(g: Array, weights: Array, E: float, nu: float) -> Array:
     """Stiffness (e, a, 3, a, 3) of gradients in space g (e, q, a, 3) at points of weight (e, q) [m3]."""
     lam, mu = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
-    scaled = g * np.sqrt(weights)[..., None, None]
-    e, q, a, _ = scaled.shape
+    # directions before nodes, so that what is swapped below are whole rows of nodes
+    scaled = (g * np.sqrt(weights)[..., None, None]).transpose(0, 1, 3, 2)
+    e, q, _, a = scaled.shape
     flat = scaled.reshape(e, q, 3 * a)
-    products = (flat.transpose(0, 2, 1) @ flat).reshape(e, a, 3, a, 3)
-    trace = np.einsum("eaibi->eab", products)
-    block = lam * products + mu * products.transpose(0, 1, 4, 3, 2)
-    block += mu * trace[:, :, None, :, None] * np.eye(3)[None, None, :, None, :]
-    return block
+    products = (flat.transpose(0, 2, 1) @ flat).reshape(e, 3, a, 3, a)
+    block = lam * products
+    block += mu * products.transpose(0, 3, 2, 1, 4)
+    trace = mu * (products[:, 0, :, 0] + products[:, 1, :, 1] + products[:, 2, :, 2])
+    for direction in range(3):
+        block[:, direction, :, direction] += trace
+    return np.asarray(block.transpose(0, 2, 1, 4, 3))
 
 
 def element_stiffness(points: Array, cells: Index, E: float, nu: float) -> Array:

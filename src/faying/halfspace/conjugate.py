@@ -27,7 +27,7 @@ CUT = 1.5  # wave number at which E^-1 ends, over the highest one of the coarse 
 LEAST = 1e-3  # what is left of E^-1 there, over what was taken off
 COARSE = 1e-3  # reduction of the residual of K
 TURNS = 40
-DENSE = 100  # blocks up to which K is made as a matrix
+DENSE = 200  # blocks up to which K is made as a matrix
 GROWTH = 1e4  # of the residual squared, beyond which only rounding is left of it
 
 

@@ -335,7 +335,7 @@ def bond(mesh: Mesh, pairs: Sequence[tuple[str, str]]) -> Any | None:
 
     None where the meshes of a pair do not match.
     """
-    from scipy.sparse import csr_array
+    from scipy.sparse import csr_array, get_index_dtype
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
 
@@ -353,4 +353,6 @@ def bond(mesh: Mesh, pairs: Sequence[tuple[str, str]]) -> Any | None:
     _, column = connected_components(csr_array((np.ones(len(ends[0])), ends), shape=(n, n)), directed=False)
     count = int(column.max()) + 1
     columns = (3 * column.reshape(-1, 1) + np.arange(3)).ravel()
-    return csr_array((np.ones(3 * n), (np.arange(3 * n), columns)), shape=(3 * n, 3 * count))
+    short = get_index_dtype(maxval=3 * n + 1)  # what is merged by long indices keeps them
+    pieces = np.ones(3 * n), columns.astype(short), np.arange(3 * n + 1, dtype=short)
+    return csr_array(pieces, shape=(3 * n, 3 * count))
