@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -127,16 +128,45 @@ def test_faults_stand_at_their_lines_and_go(browser, server, example, tmp_path):
         assert page.locator("#gutter b").count() == 0
 
 
+@contextmanager
+def waiting(page):
+    """The page loaded anew, the answer to its first question held back to the end."""
+    held = []
+    page.route("**/api/project*", lambda route: held.append(route), times=1)
+    page.reload()
+    while not held:
+        page.wait_for_timeout(20)
+    answer = held[0].fetch()
+    yield
+    held[0].fulfill(response=answer)
+
+
+def test_a_view_that_was_chosen_stays_when_the_project_comes(browser, server, example, tmp_path):
+    for name in ("study.toml", "two-blocks.step"):  # of itself the page opens the structure
+        shutil.copy(example / name, tmp_path)
+    with page_at(browser, server) as page:
+        until(page, "document.querySelector('#tab-structure').ariaSelected === 'true'")
+        with waiting(page):
+            page.click("#tab-run")
+        until(page, "document.querySelector('#text').value.length > 0")
+        assert page.is_visible("#run")
+        assert page.is_hidden("#structure")
+
+
+def test_an_answer_that_comes_late_does_not_replace_a_newer_one(browser, server, example):
+    with page_at(browser, server) as page:
+        with waiting(page):
+            page.set_input_files("#file", example / "surface.x3p")
+            until(page, "document.querySelector('#status').textContent === ''")
+        page.wait_for_selector("#scan-picture:not([hidden])", timeout=WAIT)
+        assert page.input_value("#scans") == "surface.x3p"
+
+
 def test_nothing_is_typed_before_the_study_is_there(browser, server, example, tmp_path):
     shutil.copy(example / "study.toml", tmp_path)
-    held = []
     with page_at(browser, server) as page:
-        page.route("**/api/project*", lambda route: held.append(route), times=1)
-        page.reload()
-        while not held:
-            page.wait_for_timeout(20)
-        assert not page.is_editable("#text")
-        held[0].continue_()
+        with waiting(page):
+            assert not page.is_editable("#text")
         set_text(page, (tmp_path / "study.toml").read_text() + "# mine\n")
     assert (tmp_path / "study.toml").read_text().endswith("# mine\n")
 

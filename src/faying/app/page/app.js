@@ -8,7 +8,8 @@ const PICTURES = ["prediction.svg", "tornado.svg", "identification.svg", "backbo
 const MM = 1e3;
 
 const $ = (id) => document.getElementById(id);
-const state = { project: null, view: null, picks: [], saved: "", timer: 0, shown: "", scan: "", job: null, checks: 0 };
+const state = { project: null, view: null, picks: [], saved: "", timer: 0, shown: "", scan: "", job: null, checks: 0,
+  tab: "", chosen: false, looked: Promise.resolve() };
 
 /* the server */
 
@@ -77,13 +78,18 @@ function open(name) {
   if (name === "result") showResult();
 }
 
+function choose(name) {
+  state.chosen = true; // the page opens no tab of its own after this
+  open(name);
+}
+
 for (const [number, name] of TABS.entries()) {
-  $(`tab-${name}`).addEventListener("click", () => open(name));
+  $(`tab-${name}`).addEventListener("click", () => choose(name));
   $(`tab-${name}`).addEventListener("keydown", (event) => {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (!step) return;
     const next = TABS[(number + step + TABS.length) % TABS.length];
-    open(next);
+    choose(next);
     $(`tab-${next}`).focus();
   });
 }
@@ -96,7 +102,11 @@ function fill(select, entries, wanted) {
   if (entries.some(([value]) => value === wanted)) select.value = wanted;
 }
 
-async function look() {
+function look() { // one after the other: an answer that comes late must not stand over a newer one
+  return (state.looked = state.looked.catch(() => {}).then(read));
+}
+
+async function read() {
   const project = await ask("GET", "project");
   state.project = project;
   $("folder").textContent = project.folder;
@@ -142,11 +152,11 @@ async function upload(files) {
   if (kinds.includes("geometry") || kinds.includes("mesh")) {
     $("shapes").value = last;
     state.shown = "";
-    open("structure");
+    choose("structure");
   } else if (kinds.includes("scan")) {
     $("scans").value = last;
     state.scan = "";
-    open("surface");
+    choose("surface");
   }
 }
 
@@ -530,8 +540,8 @@ async function showResult() {
 open("surface");
 look().then((project) => {
   $("text").readOnly = false; // what is typed before the study is there would stand against it
-  if (project.results.length) open("result");
-  else if ($("shapes").value) open("structure");
-  else showScan();
-  if (project.job?.running) { open("run"); follow(); }
+  const running = project.job?.running;
+  const first = running ? "run" : project.results.length ? "result" : $("shapes").value ? "structure" : "surface";
+  open(state.chosen ? state.tab : first);
+  if (running) follow();
 });
