@@ -33,7 +33,7 @@ def opened(browser, address, *, width=1280, height=800, allowed=("file:", "data:
     page.on("console", lambda m: faults.append(m.text) if m.type in ("error", "warning") else None)
     page.on("pageerror", lambda fault: faults.append(str(fault)))
     page.on("request", lambda r: None if r.url.startswith(tuple(allowed)) else foreign.append(r.url))
-    page.set_default_timeout(30000)
+    page.set_default_timeout(120_000)  # ms: the machine may be slow
     try:
         page.goto(str(address))
         yield page
