@@ -156,7 +156,8 @@ def test_a_view_that_was_chosen_stays_when_the_project_comes(browser, server, ex
 def test_an_answer_that_comes_late_does_not_replace_a_newer_one(browser, server, example):
     with page_at(browser, server) as page:
         with waiting(page):
-            page.set_input_files("#file", example / "surface.x3p")
+            with page.expect_response("**/api/file*"):
+                page.set_input_files("#file", example / "surface.x3p")
             until(page, "document.querySelector('#status').textContent === ''")
         page.wait_for_selector("#scan-picture:not([hidden])", timeout=WAIT)
         assert page.input_value("#scans") == "surface.x3p"
