@@ -11,10 +11,8 @@ import pytest
 from faying.study import template
 from faying.surface.synthesize import spectral
 from faying.surface.write import write_scan
-from tests.helpers.browser import opened, until
+from tests.helpers.browser import WAIT, opened, until
 from tests.helpers.laps import lapped
-
-WAIT = 120_000  # ms: a command is a process of its own, and the machine may be slow
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +39,7 @@ def set_text(page, text):
 def test_a_scan_is_dropped_and_read(browser, server, example, tmp_path):
     with page_at(browser, server) as page:
         page.set_input_files("#file", example / "surface.x3p")
-        page.wait_for_selector("#scan-picture:not([hidden])", timeout=WAIT)
+        page.wait_for_selector("#scan-picture:not([hidden])")
         facts = page.inner_text("#scan-facts")
         assert "320 x 320" in facts
         assert "psd" in facts
@@ -55,12 +53,12 @@ def test_a_scan_without_units_asks_for_them_and_takes_them(browser, server, tmp_
     rows = [f"{x} {y} {height:.3f}" for (y, x), height in np.ndenumerate(heights)]
     (tmp_path / "plain.xyz").write_text("\n".join(rows))
     with page_at(browser, server) as page:
-        page.wait_for_selector("#scan-units:not([hidden])", timeout=WAIT)
+        page.wait_for_selector("#scan-units:not([hidden])")
         assert "unit" in page.inner_text("#scan-fault")
         page.fill("#xy-unit", "um")
         page.fill("#z-unit", "nm")
         page.click("#scan-again")
-        page.wait_for_selector("#scan-picture:not([hidden])", timeout=WAIT)
+        page.wait_for_selector("#scan-picture:not([hidden])")
         assert "64 x 64" in page.inner_text("#scan-facts")
         assert page.is_hidden("#scan-fault")
 
@@ -101,7 +99,7 @@ def test_from_a_step_file_without_names_and_a_scan_to_a_result(browser, server, 
         assert "joint" in page.inner_text("#findings")
         page.click("#start")
         page.wait_for_selector("#report:not([hidden])", timeout=5 * WAIT)
-        page.frame_locator("#report").get_by_role("heading", name="Modes", exact=True).wait_for(timeout=WAIT)
+        page.frame_locator("#report").get_by_role("heading", name="Modes", exact=True).wait_for()
         links = page.locator("#links a").all_inner_texts()
         assert {"result.nc", "modes.csv", "report.html"} <= set(links)
     assert (tmp_path / "results" / "result.nc").is_file()
@@ -159,7 +157,7 @@ def test_an_answer_that_comes_late_does_not_replace_a_newer_one(browser, server,
             with page.expect_response("**/api/file*"):
                 page.set_input_files("#file", example / "surface.x3p")
             until(page, "document.querySelector('#status').textContent === ''")
-        page.wait_for_selector("#scan-picture:not([hidden])", timeout=WAIT)
+        page.wait_for_selector("#scan-picture:not([hidden])")
         assert page.input_value("#scans") == "surface.x3p"
 
 
@@ -196,7 +194,7 @@ def test_closing_the_page_loses_nothing(browser, server, example, tmp_path):
         until(page, "document.querySelector('#job-line').textContent.includes(' of ')")
     with page_at(browser, server) as page:  # the run went on
         until(page, "document.querySelector('#text').value.includes('Mine: two blocks')")
-        page.wait_for_selector("#report:not([hidden])", timeout=WAIT)
+        page.wait_for_selector("#report:not([hidden])")
         assert "Mine" in page.frame_locator("#report").locator("h1").inner_text()
 
 

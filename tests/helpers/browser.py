@@ -7,6 +7,7 @@ from contextlib import contextmanager
 import pytest
 
 ARGUMENTS = ("--no-sandbox", "--disable-dev-shm-usage", "--enable-unsafe-swiftshader")
+WAIT = 120_000  # ms: a command is a process of its own, and the machine may be slow
 # the software renderer says that reading pixels stalls it
 HARMLESS = ("GPU stall due to ReadPixels",)
 
@@ -33,7 +34,7 @@ def opened(browser, address, *, width=1280, height=800, allowed=("file:", "data:
     page.on("console", lambda m: faults.append(m.text) if m.type in ("error", "warning") else None)
     page.on("pageerror", lambda fault: faults.append(str(fault)))
     page.on("request", lambda r: None if r.url.startswith(tuple(allowed)) else foreign.append(r.url))
-    page.set_default_timeout(120_000)  # ms: the machine may be slow
+    page.set_default_timeout(WAIT)
     try:
         page.goto(str(address))
         yield page
@@ -43,9 +44,9 @@ def opened(browser, address, *, width=1280, height=800, allowed=("file:", "data:
         made.close()
 
 
-def until(page, expression, *, seconds=120.0):
+def until(page, expression):
     """Wait until an expression is true; unlike wait_for_function, also under a policy that forbids evaluation."""
-    end = time.monotonic() + seconds
+    end = time.monotonic() + WAIT / 1e3
     while not page.evaluate(f"Boolean({expression})"):
         assert time.monotonic() < end, f"{expression} did not become true"
         page.wait_for_timeout(50)

@@ -9,7 +9,7 @@ const MM = 1e3;
 
 const $ = (id) => document.getElementById(id);
 const state = { project: null, view: null, picks: [], saved: "", timer: 0, shown: "", scan: "", job: null, checks: 0,
-  tab: "", chosen: false, looked: Promise.resolve() };
+  tab: "", looked: Promise.resolve() };
 
 /* the server */
 
@@ -78,18 +78,13 @@ function open(name) {
   if (name === "result") showResult();
 }
 
-function choose(name) {
-  state.chosen = true; // the page opens no tab of its own after this
-  open(name);
-}
-
 for (const [number, name] of TABS.entries()) {
-  $(`tab-${name}`).addEventListener("click", () => choose(name));
+  $(`tab-${name}`).addEventListener("click", () => open(name));
   $(`tab-${name}`).addEventListener("keydown", (event) => {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (!step) return;
     const next = TABS[(number + step + TABS.length) % TABS.length];
-    choose(next);
+    open(next);
     $(`tab-${next}`).focus();
   });
 }
@@ -152,11 +147,11 @@ async function upload(files) {
   if (kinds.includes("geometry") || kinds.includes("mesh")) {
     $("shapes").value = last;
     state.shown = "";
-    choose("structure");
+    open("structure");
   } else if (kinds.includes("scan")) {
     $("scans").value = last;
     state.scan = "";
-    choose("surface");
+    open("surface");
   }
 }
 
@@ -537,11 +532,10 @@ async function showResult() {
 
 /* begin */
 
-open("surface");
 look().then((project) => {
   $("text").readOnly = false; // what is typed before the study is there would stand against it
   const running = project.job?.running;
   const first = running ? "run" : project.results.length ? "result" : $("shapes").value ? "structure" : "surface";
-  open(state.chosen ? state.tab : first);
+  open(state.tab || first); // a view that the user has chosen meanwhile stays
   if (running) follow();
 });
