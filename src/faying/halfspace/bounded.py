@@ -154,14 +154,22 @@ def _in_order(a: AnyArray, place: int) -> float:
 
 
 def best_level(x: AnyArray, gradient: AnyArray, lower: Bound, upper: Bound) -> float:
-    """The level of the least duality gap; for bounds that vary from cell to cell, the mean over the free cells."""
+    """The level of the least duality gap; for bounds that vary from cell to cell, the mean over the free cells.
+
+    Without a free cell the gap is least where the cells with G < 0 could carry, at their upper bounds, what x carries.
+    """
     xp, size = namespace(x), int(x.shape[0])
     if isinstance(upper, (int, float)) and isinstance(lower, (int, float)):
         if not isfinite(upper):
             return -_least(gradient)
         return -_in_order(gradient, min(int((total(x) - size * lower) / (upper - lower)), size - 1))
     free = (x > lower) & (x < upper)
-    return -float(xp.mean(gradient[free])) if bool(xp.any(free)) else -_in_order(gradient, size // 2)
+    if bool(xp.any(free)):
+        return -float(xp.mean(gradient[free]))
+    order = xp.argsort(gradient)
+    room = xp.cumulative_sum((upper - lower)[order])
+    at = int(xp.searchsorted(room, xp.asarray(total(x - lower), dtype=room.dtype)))
+    return -float(gradient[order[min(at, size - 1)]])
 
 
 @final

@@ -27,7 +27,7 @@ class HalfSpaceContact:
         spacing: (dx, dy) [m].
         E_star: contact modulus [Pa].
         nu: Poisson's ratio for tangential loads [-].
-        hardness: [Pa], or None.
+        hardness: [Pa], one number or one for each point (ny, nx), or None.
         periodic: whether the map repeats.
         traction: pressure at each point [Pa] (ny, nx).
         displacement: how far the surface has gone down at each point [m] (ny, nx), of mean 0 for a periodic map.
@@ -43,7 +43,7 @@ class HalfSpaceContact:
     spacing: tuple[float, float]
     E_star: float
     nu: float
-    hardness: float | None
+    hardness: float | Array | None
     periodic: bool
     traction: Array
     displacement: Array
@@ -121,7 +121,7 @@ class HalfSpaceContact:
         """
         touching = self.traction > 0
         dx = float((self.spacing[0] * self.spacing[1]) ** 0.5)
-        least = 0.0 if self.hardness is None else self.pressure / self.hardness
+        least = 0.0 if self.hardness is None else float((self.traction / self.hardness).mean(dtype=float))
         return max(
             least, self.area - (pi - 1 + log(2)) / 24 * self._border(touching & ~self.at_hardness, ~touching) * dx
         )

@@ -28,7 +28,7 @@ def solve_half_space(
     E_star: float,
     pressure: float | None = None,
     displacement: float | None = None,
-    hardness: float | None = None,
+    hardness: float | ArrayLike | None = None,
     nu: float = 0.3,
     periodic: bool = True,
     tol: float = 1e-6,
@@ -48,7 +48,7 @@ def solve_half_space(
         E_star: contact modulus of the pair [Pa], positive.
         pressure: mean over the map [Pa], from 0 to below hardness; or
         displacement: how far the plane comes down from first touch [m], 0 or more. Give one of the two.
-        hardness: the most that a point carries [Pa]; None is elastic.
+        hardness: the most that a point carries [Pa], one number or one for each point (ny, nx); None is elastic.
         nu: Poisson's ratio for tangential loads [-], in (-1, 0.5].
         periodic: False takes the map as a patch on an unbounded flat half-space that nothing else loads.
         tol: bounds `.residual`, the duality gap over load times rms height: an upper bound on the relative excess of
@@ -75,17 +75,18 @@ def solve_half_space(
     """
     place = place_for(heights, device, precision, workers)
     h, (dx, dy) = _checked_map(heights, spacing, place)
-    _check_numbers(E_star, nu, hardness, tol)
+    limit = _checked_hardness(hardness, h.shape)
+    _check_numbers(E_star, nu, tol)
     _check_memory(h.shape, periodic, place)
     if (pressure is None) == (displacement is None):
         raise InputError("give either pressure or displacement to solve_half_space, one of the two")
-    options = _Options(E_star=E_star, hardness=hardness, nu=nu, periodic=periodic, tol=tol, place=place)
+    options = _Options(E_star=E_star, hardness=limit, nu=nu, periodic=periodic, tol=tol, place=place)
     problem = _Pressing(h, (dx, dy), options, progress)
     first = None if start is None else _first(start, h.shape, (dx, dy))
     if displacement is not None:
         return _at_displacement(problem, displacement, first)
     assert pressure is not None
-    _check_pressure(pressure, hardness)
+    _check_pressure(pressure, limit)
     return problem.at(pressure / E_star, first)
 
 
@@ -108,7 +109,7 @@ class _Options:
     """What a solution takes beside the map and the load."""
 
     E_star: float
-    hardness: float | None
+    hardness: float | Array | None
     nu: float
     periodic: bool
     tol: float
@@ -117,17 +118,19 @@ class _Options:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Map:
-    """Heights [m] at one coarseness, the width of its cells [m] and their aspect dy/dx."""
+    """Heights [m] at one coarseness, the width of its cells [m], their aspect dy/dx, the most they carry over E* [-]."""
 
     h: Array
     cell: float
     aspect: float
+    limit: float | Array
 
     def coarser(self) -> "_Map":
         """The map on half as many points each way."""
         small = _halved(self.h)
         across, down = self.h.shape[1] / small.shape[1], self.h.shape[0] / small.shape[0]
-        return _Map(h=small, cell=self.cell * across, aspect=self.aspect * down / across)
+        limit = self.limit if isinstance(self.limit, float) else _halved(self.limit)
+        return _Map(h=small, cell=self.cell * across, aspect=self.aspect * down / across, limit=limit)
 
 
 class _Pressing:
@@ -136,9 +139,9 @@ class _Pressing:
     def __init__(self, h: Array, spacing: tuple[float, float], options: _Options, progress: Progress | None) -> None:
         self.heights, self.spacing, self.options, self.progress = h, spacing, options, progress
         self.top = float(h.max())
-        self.map = _Map(h=h, cell=spacing[0], aspect=spacing[1] / spacing[0])
+        limit = np.inf if options.hardness is None else options.hardness / options.E_star
+        self.map = _Map(h=h, cell=spacing[0], aspect=spacing[1] / spacing[0], limit=limit)
         self.rms = deviation(h.ravel())
-        self.limit = np.inf if options.hardness is None else options.hardness / options.E_star
 
     def at(self, mean: float, start: Array | None) -> HalfSpaceContact:
         """The contact at a mean pressure, scaled; start: pressures [Pa] of any mean."""
@@ -176,7 +179,7 @@ class _Pressing:
             datum=self.top,
             unit=on.cell,
             lower=0.0,
-            upper=self.limit,
+            upper=on.limit if isinstance(on.limit, float) else place.send(on.limit.ravel(), place.real),
             mean=mean,
             # a smooth flat has no roughness to measure by: take what its own load does to one cell
             scale=self.rms / on.cell if self.rms > 0 else mean,
@@ -232,7 +235,7 @@ class _Pressing:
 
     def _certified(self, traction: Array, claimed: float) -> float:
         """The residual of pressures that have been rounded to single precision, in double precision."""
-        residual = _residual(self.heights, self.spacing, traction, self.limit, self.options)
+        residual = _residual(self.heights, self.spacing, traction, self.map.limit, self.options)
         if residual >= self.options.tol > claimed:
             raise NotConverged(
                 f"half-space contact: single precision comes to residual {residual:.1e}, above the tolerance "
@@ -247,7 +250,7 @@ def error_bound(
     traction: ArrayLike,
     *,
     E_star: float,
-    hardness: float | None = None,
+    hardness: float | ArrayLike | None = None,
     periodic: bool = True,
 ) -> float:
     """Return the residual [-], as of `solve_half_space`, of any pressure map [Pa] (ny, nx), whoever made it.
@@ -256,31 +259,35 @@ def error_bound(
     a map of another shape or without any pressure.
     """
     h, (dx, dy) = _checked_map(heights, spacing, Place())
-    _check_numbers(E_star, 0.3, hardness, 0.5)
+    limit = _checked_hardness(hardness, h.shape)
+    _check_numbers(E_star, 0.3, 0.5)
     given = np.asarray(traction)
     if given.shape != h.shape or not (given > 0).any():
         raise InputError(f"traction of shape {given.shape}; give pressures above 0 on a map of shape {h.shape}")
-    options = _Options(E_star=E_star, hardness=hardness, nu=0.3, periodic=periodic, tol=0.5, place=Place())
-    return _residual(h, (dx, dy), given, np.inf if hardness is None else hardness / E_star, options)
+    options = _Options(E_star=E_star, hardness=limit, nu=0.3, periodic=periodic, tol=0.5, place=Place())
+    return _residual(h, (dx, dy), given, np.inf if limit is None else limit / E_star, options)
 
 
-def _residual(h: Array, spacing: tuple[float, float], traction: Array, limit: float, options: _Options) -> float:
+def _residual(
+    h: Array, spacing: tuple[float, float], traction: Array, limit: float | Array, options: _Options
+) -> float:
     """Duality gap over load times rms height of pressures cut to their bounds, in double precision."""
     place = Place(options.place.xp, "double", options.place.workers)
     xp, (ny, nx) = place.xp, h.shape
-    x = xp.clip(place.send(traction.ravel(), xp.float64) / options.E_star, 0.0, limit)
+    most = limit if isinstance(limit, float) else place.send(limit.ravel(), xp.float64)
+    x = xp.clip(place.send(traction.ravel(), xp.float64) / options.E_star, 0.0, most)
     problem = Problem(
         kernel=normal_kernel((ny, nx), spacing[1] / spacing[0], periodic=options.periodic, place=place),
         load=place.send(h.ravel()),
         datum=float(h.max()),
         unit=spacing[0],
         lower=0.0,
-        upper=limit,
+        upper=most,
         mean=0.0,
         scale=1.0,
     )
     gradient = problem.gradient_at(x, 0.0, precise=True)[0]
-    gap = duality_gap(x, gradient, 0.0, limit, best_level(x, gradient, 0.0, limit))
+    gap = duality_gap(x, gradient, 0.0, most, best_level(x, gradient, 0.0, most))
     return gap / (total(x) * deviation(h.ravel()) / spacing[0])
 
 
@@ -309,7 +316,8 @@ def _at_displacement(problem: _Pressing, displacement: float, start: Array | Non
         last = contact.traction
         return (contact.approach - displacement) / displacement
 
-    ceiling = np.log(problem.limit * (1 - 1e-9))
+    most = float(np.mean(problem.map.limit))  # a mean pressure over E* at which every point is at hardness
+    ceiling = np.log(most * (1 - 1e-9))
     low = high = min(float(np.log(displacement / max(problem.heights.shape) / problem.spacing[0])), ceiling - 1)
     below = above = miss(low)
     while below > 0 and low > high - 100:
@@ -318,7 +326,7 @@ def _at_displacement(problem: _Pressing, displacement: float, start: Array | Non
     while above < 0:
         if high >= ceiling:
             raise InputError(
-                f"displacement {displacement:.4g} m lies beyond what the hardness {problem.options.hardness:.4g} Pa "
+                f"displacement {displacement:.4g} m lies beyond what the hardness {most * problem.options.E_star:.4g} Pa "
                 "resists: the whole map is at hardness; give less"
             )
         low, below = high, above
@@ -353,23 +361,33 @@ def _checked_map(
     return _frozen(h), (float(dx), float(dy))
 
 
-def _check_numbers(E_star: float, nu: float, hardness: float | None, tol: float) -> None:
+def _checked_hardness(hardness: float | ArrayLike | None, shape: tuple[int, ...]) -> float | Array | None:
+    """The hardness as one number or as a map that nobody changes."""
+    if hardness is None:
+        return None
+    given = np.asarray(hardness, dtype=float)
+    if given.shape not in ((), shape):
+        raise InputError(f"hardness of shape {given.shape}; give one number, or one for each point of the map {shape}")
+    if not np.all(np.isfinite(given) & (given > 0)):
+        raise InputError(f"hardness = {given.min():.4g} Pa; it must be positive, or None for an elastic contact")
+    return float(given) if given.ndim == 0 else _frozen(given.copy())
+
+
+def _check_numbers(E_star: float, nu: float, tol: float) -> None:
     if not (isfinite(E_star) and E_star > 0):
         raise InputError(f"E_star = {E_star} Pa; it must be positive, for example 110e9")
     if not -1 < nu <= 0.5:
         raise InputError(f"nu = {nu}; it must lie in (-1, 0.5], for example 0.3")
-    if hardness is not None and not (isfinite(hardness) and hardness > 0):
-        raise InputError(f"hardness = {hardness} Pa; it must be positive, or None for an elastic contact")
     if not 0 < tol < 1:
         raise InputError(f"tol = {tol}; it must lie between 0 and 1, for example 1e-6")
 
 
-def _check_pressure(pressure: float, hardness: float | None) -> None:
+def _check_pressure(pressure: float, hardness: float | Array | None) -> None:
     if not (isfinite(pressure) and pressure >= 0):
         raise InputError(f"pressure = {pressure} Pa; give 0 or more")
-    if hardness is not None and pressure >= hardness:
+    if hardness is not None and pressure >= (most := float(np.mean(hardness))):
         raise InputError(
-            f"pressure {pressure:.4g} Pa is not below the hardness {hardness:.4g} Pa: the whole map would be "
+            f"pressure {pressure:.4g} Pa is not below the hardness {most:.4g} Pa: the whole map would be "
             "at hardness and flow; lower the load or check the units"
         )
 
