@@ -1,6 +1,6 @@
 """How hard a metal is against small indentations: Vickers hardness as a power of the diagonal."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 from typing import Self, final
 
@@ -24,6 +24,7 @@ class VickersHardness:
     Args:
         c1: hardness at a diagonal of 1 um [Pa], greater than 0.
         c2: power of the diagonal [-], between -1 and 1; 0 is a hardness without a size.
+        least: hardness of the bulk [Pa], which large indentations have; 0 sets no lower end.
         source: where the numbers come from.
 
     Raises:
@@ -35,11 +36,14 @@ class VickersHardness:
 
     c1: float
     c2: float
+    least: float = 0.0
     source: str = ""
 
     def __post_init__(self) -> None:
         if not (isfinite(self.c1) and self.c1 > 0):
             raise InputError(f"Vickers hardness: c1 = {self.c1:g} Pa; it must be positive, for example 6.2e9")
+        if not (isfinite(self.least) and self.least >= 0):
+            raise InputError(f"Vickers hardness: least = {self.least:g} Pa; it must be 0 or more")
         if not abs(self.c2) < STEEPEST:
             raise InputError(f"Vickers hardness: c2 = {self.c2:g}; it must lie between -1 and 1, for example -0.25")
 
@@ -70,14 +74,21 @@ class VickersHardness:
         k = brinell / BRINELL_UNIT
         c1 = BRINELL_UNIT * (4.0 - 5.77 * k + 4.0 * k**2 - 0.61 * k**3)
         text = f"from HB {brinell * 1e-9:.4g} GPa: Sridhar and Yovanovich 1996, Wear 193, 91-98"
-        return cls(c1=c1, c2=-0.37 + 0.442 * brinell / c1, source=text)
+        return cls(c1=c1, c2=-0.37 + 0.442 * brinell / c1, least=brinell, source=text)
+
+    def times(self, factor: float) -> Self:
+        """Return the law with every hardness times a factor [-]."""
+        return replace(self, c1=factor * self.c1, least=factor * self.least)
 
     def at(self, diagonal: ArrayLike) -> Array:
-        """Return the hardness [Pa] of indentations with diagonals [m], any shape; InputError unless positive."""
+        """Return the hardness [Pa] of indentations with diagonals [m], any shape; InputError unless positive.
+
+        At least that of the bulk: the power law is measured on small indentations and would fall without end.
+        """
         d = np.asarray(diagonal, dtype=float)
         if not np.all((d > 0) & np.isfinite(d)):
             raise InputError("Vickers hardness: the diagonal of an indentation must be positive and finite, in m")
-        return np.asarray(self.c1 * (d / MICROMETRE) ** self.c2)
+        return np.asarray(np.maximum(self.c1 * (d / MICROMETRE) ** self.c2, self.least))
 
     def contact(self, pressure: ArrayLike, sigma: float, slope: float) -> Array:
         """Return the hardness H_c that the spots of a rough contact have on average at nominal pressures.
@@ -105,5 +116,5 @@ class VickersHardness:
                 f"hardness of a contact: pressures, sigma = {sigma:g} m and slope = {slope:g} must be positive and "
                 "finite"
             )
-        size = self.at(1.62 * sigma / slope)
-        return np.asarray(p / (p / size) ** (1 / (1 + 0.071 * self.c2)))
+        size = self.c1 * (1.62 * sigma / slope / MICROMETRE) ** self.c2
+        return np.asarray(np.maximum(p / (p / size) ** (1 / (1 + 0.071 * self.c2)), self.least))

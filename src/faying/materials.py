@@ -5,6 +5,7 @@ from functools import cached_property
 from math import inf, isfinite, isnan
 
 from faying.errors import InputError
+from faying.hardness import BRINELL_RANGE, VickersHardness
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,7 +18,10 @@ class Material:
         nu: Poisson's ratio [-].
         density: [kg/m3].
         yield_strength: [Pa].
-        hardness: [Pa]; 2.8 times the yield strength where not given (Tabor 1951).
+        hardness: flow pressure of the closed laws of asperities [Pa]; 2.8 times the yield strength where not given
+            (Tabor 1951). Without `brinell` or `vickers` it is the hardness of every law and of spots of every size.
+        brinell: measured Brinell hardness [Pa]; HB 170 is 1.67e9 Pa. From 1.3e9 to 7.6e9 Pa it gives `vickers`.
+        vickers: hardness over the size of an indentation, for contact solved on a scan and for laws of conductance.
         friction: static coefficient of friction [-].
         conductivity: of heat [W/(m K)].
         resistivity: electrical [ohm m].
@@ -34,6 +38,8 @@ class Material:
     density: float | None = None
     yield_strength: float | None = None
     hardness: float | None = None
+    brinell: float | None = None
+    vickers: VickersHardness | None = None
     friction: float | None = None
     conductivity: float | None = None
     resistivity: float | None = None
@@ -45,7 +51,8 @@ class Material:
             raise InputError(f"material {self.name!r}: E = {self.E} Pa; it must be positive, for example 200e9")
         if not -1 < self.nu <= 0.5:
             raise InputError(f"material {self.name!r}: nu = {self.nu}; it must lie in (-1, 0.5], for example 0.3")
-        for field in ("density", "yield_strength", "hardness", "conductivity", "resistivity", "bearing_limit"):
+        strengths = ("yield_strength", "hardness", "brinell", "bearing_limit")
+        for field in ("density", *strengths, "conductivity", "resistivity"):
             value = getattr(self, field)
             if value is not None and (isnan(value) or value <= 0):
                 raise InputError(f"material {self.name!r}: {field} = {value}; it must be positive, or left out")
@@ -53,6 +60,20 @@ class Material:
             raise InputError(f"material {self.name!r}: friction = {self.friction}; it must be 0 or more, or left out")
         if self.hardness is None and self.yield_strength is not None:
             object.__setattr__(self, "hardness", 2.8 * self.yield_strength)
+        if self.hardness is None and self.brinell is not None:
+            object.__setattr__(self, "hardness", self.brinell)
+        if self.vickers is None and self.brinell is not None:
+            low, high = BRINELL_RANGE
+            sized = low <= self.brinell <= high
+            law = VickersHardness.from_brinell(self.brinell) if sized else VickersHardness(c1=self.brinell, c2=0.0)
+            object.__setattr__(self, "vickers", law)
+
+    @property
+    def bulk_hardness(self) -> float | None:
+        """Hardness against large indentations [Pa]: Brinell's where it is known, else `hardness`."""
+        if self.brinell is not None:
+            return self.brinell
+        return self.vickers.least if self.vickers is not None and self.vickers.least else self.hardness
 
     @property
     def G(self) -> float:
@@ -110,6 +131,21 @@ class ContactPair:
         """Hardness H of the softer body [Pa]."""
         return self.softer.hardness or inf
 
+    @cached_property
+    def _first_indented(self) -> Material | None:
+        known = [m for m in (self.first, self.second) if m.bulk_hardness is not None]
+        return min(known, key=lambda m: m.bulk_hardness or inf, default=None)
+
+    @property
+    def vickers(self) -> VickersHardness | None:
+        """Hardness over the size of an indentation, of the body of lower bulk hardness; None where it has none."""
+        return None if self._first_indented is None else self._first_indented.vickers
+
+    @property
+    def bulk_hardness(self) -> float:
+        """The lower hardness of the two bodies against large indentations [Pa]; infinite where neither is known."""
+        return inf if self._first_indented is None else self._first_indented.bulk_hardness or inf
+
     @property
     def hardness_coefficient(self) -> float:
         """K = 0.454 + 0.41 nu of the softer body [-]."""
@@ -134,8 +170,10 @@ CATALOGUE = {
             density=7800.0,
             yield_strength=355e6,
             hardness=994e6,
+            brinell=1.67e9,
             friction=0.25,
-            source="Zhang et al. 2024, doi:10.3390/fractalfract8100611, Table 2",
+            source="Zhang et al. 2024, doi:10.3390/fractalfract8100611, Table 2; Brinell hardness: HB 170, the lower "
+            "end of 170 to 210 that producers state for C45 (AISI 1045), hot rolled or normalised",
         ),
         Material(
             name="S355",
@@ -143,10 +181,12 @@ CATALOGUE = {
             nu=0.3,
             density=7850.0,
             yield_strength=355e6,
+            brinell=1.59e9,
             conductivity=53.3,
             bearing_limit=760e6,
             source="EN 1993-1-1, 3.2.6 and Table 3.1; EN 1991-1-1, Table A.4; conductivity at 20 degrees C: "
-            "EN 1993-1-2, 3.4.1.3; bearing limit: VDI 2230:2003, Table A9",
+            "EN 1993-1-2, 3.4.1.3; bearing limit: VDI 2230:2003, Table A9; Brinell hardness: HB 162, from the "
+            "tensile strength 470 to 630 MPa of EN 10025-2 over 3.4",
         ),
         Material(
             name="EN AW-6082 T6",
@@ -154,9 +194,10 @@ CATALOGUE = {
             nu=0.3,
             density=2700.0,
             yield_strength=260e6,
+            brinell=0.93e9,
             conductivity=191.4,
             source="EN 1999-1-1, 3.2.5 and Table 3.2b (extrusions, 5 < t <= 15 mm); conductivity at 20 degrees C: "
-            "EN 1999-1-2, 3.3.3",
+            "EN 1999-1-2, 3.3.3; Brinell hardness: HB 95, typical of the temper",
         ),
     )
 }

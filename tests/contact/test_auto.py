@@ -75,7 +75,7 @@ def test_where_the_scan_is_too_coarse_a_closed_law_near_it_stands_in_for_the_con
     choice = pick("auto", {}, surface, PAIR)
     exact = HalfSpace(surface.scan, PAIR).at_pressure(MIDDLE)
     assert not exact.valid
-    words = "fewer than 30 points" in choice.reason or "more than 25%" in choice.reason
+    words = any(text in choice.reason for text in ("fewer than 10 spots", "more than 25%", "fewer than 4 points"))
     assert words
     near = [r for r in choice.ratios.values() if 1 / CLOSE <= r <= CLOSE]
     if choice.law.name == "GW":
@@ -108,21 +108,21 @@ def test_rubber_has_no_hardness_and_meets_elastically():
     assert law.at_pressure(p).k_n * 1e-6 / p == pytest.approx(2.2, rel=0.35)
 
 
-def test_a_ladder_is_kept_beside_the_scan_and_read_again(tmp_path, monkeypatch):
+def test_a_series_is_stored_beside_the_scan_and_read_again(tmp_path, monkeypatch):
     monkeypatch.delenv("FAYING_CACHE", raising=False)
     z = gaussian(0.8, 0.06e-3, 8e-6, 1e-6, 6, points=64, side=0.5e-3)
     scan = Scan(heights=z, spacing=(0.5e-3 / 64,) * 2)
     solved = []
     law = HalfSpace(scan, PAIR, cache=tmp_path / "kept", progress=lambda done, total: solved.append((done, total)))
     first = law.at_pressure(MIDDLE)
-    assert solved[-1][0] == solved[-1][1] == len(solved)
+    assert solved[-1][0] == solved[-1][1] == len(solved) - 1  # the last call says that all is done
     (file,) = (tmp_path / "kept").iterdir()
     count = len(solved)
     again = law.with_(points=law.points).at_pressure(MIDDLE)
     assert len(solved) == count
     assert again.k_n == first.k_n
     assert again.k_n_low == first.k_n_low
-    law.with_(tol=1e-4).ladder  # noqa: B018  # another question is another file
+    law.with_(tol=1e-4).series  # noqa: B018  # another question is another file
     assert len(solved) > count
     assert len(list((tmp_path / "kept").iterdir())) == 2
     file.write_bytes(file.read_bytes()[:500])  # damaged: solved anew

@@ -1,6 +1,7 @@
 """The contact law computed on a scan, and the contact of real scans at the hardness of steel."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -8,14 +9,14 @@ import numpy as np
 import pytest
 
 from faying.contact.half_space import HalfSpace
-from faying.contact.ladder import climb, is_twofold, quarters
 from faying.contact.law import ContactLaw
+from faying.contact.pressure_series import is_twofold, quarters, solve_series
 from faying.errors import InputError
 from faying.halfspace import error_bound, solve_half_space
 from faying.halfspace.solve import halved_map
 from faying.materials import CATALOGUE, RIGID, ContactPair, Material
 
-STEEL = CATALOGUE["45 steel"]
+STEEL = replace(CATALOGUE["45 steel"], brinell=None, vickers=None)  # one hardness for spots of every size
 PAIR = ContactPair(STEEL, RIGID)
 N = 96
 
@@ -29,7 +30,7 @@ def law(rough):
     return HalfSpace(scan_of(rough), PAIR, points=8, lowest=2e6, highest=400e6)
 
 
-def test_on_a_rung_the_law_is_the_contact_itself(law):
+def test_at_a_solved_pressure_the_law_is_the_contact_itself(law):
     for pressure in np.geomspace(2e6, 400e6, 8)[[0, 3, 7]]:
         said = law.at_pressure(pressure)
         contact = solve_half_space(
@@ -46,7 +47,7 @@ def test_on_a_rung_the_law_is_the_contact_itself(law):
         assert said.loss_t is None
 
 
-def test_between_rungs_the_law_is_near_the_contact(law):
+def test_between_solved_pressures_the_law_is_near_the_contact(law):
     pressure = 37e6
     contact = law.contact_at(pressure)
     said = law.at_pressure(pressure)
@@ -93,7 +94,7 @@ def test_shear_brings_loss_and_takes_stiffness(law):
         slipping.with_(pair=frictionless)
 
 
-def test_too_few_points_and_closed_surfaces_are_flagged(rough):
+def test_too_few_spots_and_closed_surfaces_are_flagged(rough):
     law = HalfSpace(scan_of(rough, 64), PAIR, points=5, lowest=1e4, highest=100e6)
     assert not law.at_pressure(2e4).valid
     assert law.at_pressure(100e6).valid
@@ -152,13 +153,14 @@ def test_a_map_on_its_mirror_image_has_two_quarters_not_four(rough, n):
     assert not is_twofold(h + rough(n, 1))
     assert not is_twofold(np.zeros((n, n)))
 
-    def solve(heights, spacing, pressure, *, start):
-        return SimpleNamespace(traction=heights, k_n=pressure * heights.std())
+    def solve(heights, spacing, pressure, *, start, harder=1.0):
+        spots = SimpleNamespace(count=heights.size, share_below=lambda points: 0.0)
+        return SimpleNamespace(spots=spots, closing=np.log(pressure), k_n=pressure * heights.std())
 
     def numbers(contact, detail):
         return {"k_n": contact.k_n, "area": 1.0, "energy_n": 1.0}
 
-    found = climb(laid, (1.0, 1.0), np.geomspace(1, 16, 5), solve, numbers)
+    found = solve_series(laid, (1.0, 1.0), np.geomspace(1, 16, 5), solve, numbers)
     whole = halved_map(laid, (1.0, 1.0))[0] if n > 256 else laid
     one, other = (np.log(part.std()) for part, _ in quarters(whole, (1.0, 1.0))[:2])
     # the standard error of a mean of two is half of what they differ by; of four with copies it would be 1/sqrt 12
@@ -184,7 +186,7 @@ def test_bad_parameters_are_named(change, text):
         HalfSpace(scan, PAIR, **change)
 
 
-def test_below_the_ladder_the_law_says_so(law):
+def test_below_its_least_pressure_the_law_says_so(law):
     with pytest.raises(InputError, match="below the least that half-space resolves"):
         law.at_pressure(1.0)
 

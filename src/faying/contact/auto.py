@@ -64,7 +64,7 @@ def _choose(surface: RoughSurface, pair: ContactPair) -> Choice:
     plastic = np.isfinite(pair.hardness)
     law = build("half-space", {}, surface, pair)
     assert isinstance(law, HalfSpace)
-    full = pair.hardness if plastic else law.greatest_pressure / 0.3
+    full = pair.bulk_hardness if plastic else law.greatest_pressure / 0.3
     pressure = np.clip(SHARES * full, law.least_pressure, law.greatest_pressure)
     exact = law.at_pressure(pressure)
     assert exact.k_n is not None
@@ -77,7 +77,7 @@ def _choose(surface: RoughSurface, pair: ContactPair) -> Choice:
     at = f"at {pressure[1] / 1e6:.3g} MPa"
     faults = [reason for reason, mask in exact.reasons.items() if mask[1]]
     if not faults:
-        moved = float(np.interp(log(pressure[1]), np.log(law.ladder.pressure), np.abs(law.ladder.change[0])))
+        moved = float(np.interp(log(pressure[1]), np.log(law.series.pressure), np.abs(law.series.change[0])))
         reason = (
             f"half-space, which resolves the contact {at} (k_n moves by {exp(moved) - 1:.0%} on half the points){said}"
         )

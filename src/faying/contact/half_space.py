@@ -1,4 +1,4 @@
-"""A contact law computed on a scan: a ladder of half-space contacts, read between its rungs."""
+"""A contact law computed on a scan: half-space contacts at rising pressures, read between them."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -11,17 +11,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.inputs import HeightMap
-from faying.contact.ladder import Ladder, cached, cached_numbers, climb
 from faying.contact.law import ContactLaw, Response
 from faying.contact.parameter import TABLE, TEXT, Parameter
+from faying.contact.pressure_series import PressureSeries, cached, cached_numbers, solve_series
 from faying.errors import InputError
 from faying.halfspace.arrays import Device
 from faying.halfspace.solution import HalfSpaceContact
-from faying.halfspace.solve import halved_map, solve_half_space
+from faying.halfspace.solve import halved_map, refined_map, solve_half_space
+from faying.halfspace.spots import solve_with_size
+from faying.hardness import VickersHardness
 from faying.materials import ContactPair
 from faying.typing import Array
 
-FEWEST_POINTS = 30
+FEWEST_SPOTS = 10
+COARSE = 0.5  # greatest share of the stiffness on spots of fewer than 4 points
+STEP = 1.05  # factor of pressure either way over which the slope of one contact's loading curve is taken
 RESOLVED = 0.25  # greatest change of ln k_n on half the points each way
 
 
@@ -30,25 +34,36 @@ RESOLVED = 0.25  # greatest change of ln k_n on half the points each way
 class HalfSpace(ContactLaw):
     """The numerical contact of a scan with a flat, both bodies as one elastic half-space; limited to hardness.
 
-    Closure variable: the pressure [Pa]. k_n_low and k_n_high: the range in which k_n of a scan with four times as many
-    points each way is looked for, from what k_n changed by on half and a quarter of the points, and from what it
-    differs by between the quarters of the window. Flagged where fewer than 30 points touch, and where k_n changes by
-    more than 25 % on half the points. The law ends where every point touches.
+    Closure variable: the pressure [Pa]. The contact is solved at rising pressures. Both branches follow from it:
+
+    - unloading, k_n = dp/d(approach) while the load changes by little: every touching point is elastic. It is what
+      vibration, ultrasound and conductance see.
+    - loading, k_load = dp/d(approach) on first loading: the slope of pressure over the approach of the solved contacts.
+      It is what a slow approach curve, the preload and embedding see.
+
+    Where the pair has a hardness over the size of an indentation, each spot has the hardness of its own size.
+
+    k_n_low and k_n_high: the range in which k_n of a scan with four times as many points each way is looked for, from
+    what k_n changed by on half and a quarter of the points, widened by what it differs by between the quarters of the
+    window, and by what it changes by with a hardness 1.35 times as high or as low. Flagged where fewer than 10 spots
+    touch, where more than half of the stiffness rests on spots of fewer than 4 points, and where k_n changes by more
+    than 25 % on half the points. The law ends where every point touches.
 
     Args:
         scan: of the rough face (levelled, without missing points; anything with heights [m] and spacing (dx, dy)
             [m]); where both faces are rough, the scan of their sum.
         pair: the materials that meet.
         elastic: leave out the hardness; a pair that does not yield has none.
-        stiffness: "unloading", k_n against a small fall of the load, which is what a vibration sees: elastic, energy_n
-            the strain energy; or "loading", k_n against its growth, loss_n the plastic work of first loading over 2 pi
-            times the strain energy, energy_n their sum.
+        stiffness: the branch that k_n is: "unloading", with energy_n the strain energy and k_load of its own; or
+            "loading", with loss_n the plastic work of first loading over 2 pi times the strain energy, and energy_n
+            their sum.
         area: "corrected" for the size of the points, or as "counted".
         shear_ratio: X = T/(mu F); above 0, k_t is that of the points that still stick and loss_t follows from their
             slip (needs the pair's friction); at 0 no loss is predicted.
         periodic: as in `solve_half_space`.
-        points: pressures at which the contact is solved, spaced evenly in ln(pressure); between them each quantity is a
-            monotone cubic in logarithms. Large maps are solved on fewer of them.
+        points: pressures of the series, spaced evenly in ln(pressure); between them each quantity is a monotone cubic.
+            The map on a quarter of the points each way is solved at all of them, a large map itself at a quarter of
+            them and where its loading curve needs more.
         lowest, highest: the first and the last of these pressures [Pa].
         tol: as in `solve_half_space`.
         device: "cpu", or "gpu" to solve with CuPy on a graphics card.
@@ -69,7 +84,7 @@ class HalfSpace(ContactLaw):
     area: Literal["corrected", "counted"] = "corrected"
     shear_ratio: float = 0.0
     periodic: bool = True
-    points: int = 13
+    points: int = 25
     lowest: float | None = None
     highest: float | None = None
     tol: float = 1e-5
@@ -93,8 +108,8 @@ class HalfSpace(ContactLaw):
         "progress": Parameter(TABLE, "told how many contacts are solved", surface="progress"),
     }
     validity: ClassVar[str] = (
-        "the scan resolves the roughness that touches: at least 30 points in contact, some open, and "
-        "k_n within 25 % on half the points each way"
+        "the scan resolves the roughness that touches: at least 10 spots, half of the stiffness on spots of 4 points "
+        "or more, some points open, and k_n within 25 % on half the points each way"
     )
 
     def __post_init__(self) -> None:
@@ -105,7 +120,7 @@ class HalfSpace(ContactLaw):
             raise InputError(f"half-space: pressures from {low:.4g} to {high:.4g} Pa; give 0 < lowest < highest")
         if self._hardness is not None and high >= self._hardness:
             raise InputError(
-                f"half-space: highest = {high:.4g} Pa is not below the hardness {self.pair.hardness:.4g} Pa; "
+                f"half-space: highest = {high:.4g} Pa is not below the hardness {self._hardness:.4g} Pa; "
                 "lower it, or set elastic=True"
             )
         if self.shear_ratio > 0:
@@ -113,12 +128,14 @@ class HalfSpace(ContactLaw):
 
     @property
     def closure_range(self) -> tuple[float, float]:
-        """Least and greatest pressure of the ladder [Pa]: as asked, or up to where every point touches."""
-        return float(self.ladder.pressure[0]), float(self.ladder.pressure[-1])
+        """Least and greatest pressure of the series [Pa]: as asked, or up to where every point touches."""
+        return float(self.series.pressure[0]), float(self.series.pressure[-1])
 
     @property
     def asked(self) -> tuple[float, float]:
         """Least and greatest pressure to solve [Pa]; by default 1e-5 and 0.9 of the hardness.
+
+        Where spots are the harder the smaller they are, 0.55 of that of the bulk.
 
         Elastic: 1e-5 and 0.3 of the pressure that closes the surface, half of E* times its rms slope.
         """
@@ -127,14 +144,24 @@ class HalfSpace(ContactLaw):
             slope = np.hypot(np.diff(heights, axis=1).std() / dx, np.diff(heights, axis=0).std() / dy)
             full, share = self.pair.E_star * float(slope) / 2, 0.3
         else:
-            full, share = self._hardness, 0.9
+            full, share = self._hardness, 0.9 if self._size is None else 0.55
         low = 1e-5 * full if self.lowest is None else self.lowest
         return low, share * full if self.highest is None else self.highest
 
     @property
     def _hardness(self) -> float | None:
-        """What a point can carry [Pa]; None without end."""
-        return None if self.elastic or not isfinite(self.pair.hardness) else self.pair.hardness
+        """What a point of a large spot can carry [Pa]; None without end."""
+        if self.elastic:
+            return None
+        if self._size is not None:
+            return self.pair.bulk_hardness
+        return self.pair.hardness if isfinite(self.pair.hardness) else None
+
+    @property
+    def _size(self) -> VickersHardness | None:
+        """Hardness over the size of a spot; None where all spots have one."""
+        law = None if self.elastic else self.pair.vickers
+        return law if law is not None and law.c2 != 0 else None
 
     @property
     def nu(self) -> float:
@@ -144,35 +171,50 @@ class HalfSpace(ContactLaw):
         return sum(m.nu / m.G for m in bodies) / sum(1 / m.G for m in bodies)
 
     def contact_at(self, pressure: float, *, start: HalfSpaceContact | None = None, **options: Any) -> HalfSpaceContact:
-        """Solve the contact itself at one pressure [Pa], with maps, certificate and tangent."""
+        """Solve the contact itself at one pressure [Pa], with maps, error bound and tangent."""
         return self._solve(np.asarray(self.scan.heights), self.scan.spacing, pressure, start=start, **options)
 
-    def _solve(self, heights: Array, spacing: tuple[float, float], pressure: float, **options: Any) -> HalfSpaceContact:
-        return solve_half_space(
-            heights,
-            spacing,
-            E_star=self.pair.E_star,
-            pressure=pressure,
-            nu=self.nu,
-            tol=self.tol,
-            device=self.device,
-            hardness=self._hardness,
-            periodic=self.periodic,
-            **options,
-        )
+    def _solve(
+        self,
+        heights: Array,
+        spacing: tuple[float, float],
+        pressure: float,
+        *,
+        start: HalfSpaceContact | None = None,
+        harder: float = 1.0,
+        **options: Any,
+    ) -> HalfSpaceContact:
+        def solve(hardness: float | Array | None, start: HalfSpaceContact | None) -> HalfSpaceContact:
+            return solve_half_space(
+                heights,
+                spacing,
+                E_star=self.pair.E_star,
+                pressure=pressure,
+                nu=self.nu,
+                tol=self.tol,
+                device=self.device,
+                hardness=hardness,
+                periodic=self.periodic,
+                start=start,
+                **options,
+            )
+
+        size = self._size
+        if size is None:
+            return solve(None if self._hardness is None else harder * self._hardness, start)
+        rows, columns = heights.shape
+        return solve_with_size(solve, (rows, columns), spacing, size.times(harder), start)
 
     def _numbers(self, contact: HalfSpaceContact, detail: bool = True) -> dict[str, float]:
         unloading = self.stiffness == "unloading"
         work = 0.0 if unloading else contact.plastic_work
         area = contact.area_corrected if self.area == "corrected" else contact.area
         out = {"area": area, "energy_n": contact.elastic_energy + work}
+        out["k_n"] = contact.normal_stiffness(loading=False)
         if not detail:
-            return out | {"k_n": contact.normal_stiffness(loading=not unloading)}
-        tangent = contact.tangent()
-        out |= {"k_n": tangent.k_n_unloading if unloading else tangent.k_n_loading, "k_t": tangent.k_t}
-        if unloading:
-            out["k_load"] = tangent.k_n_loading
-        else:
+            return out
+        out["k_t"] = contact.tangential_stiffness()
+        if not unloading:
             out["loss_n"] = work / (2 * pi * contact.elastic_energy)
         if self.shear_ratio > 0:
             slip = contact.slip(self.shear_ratio, self.pair.friction)
@@ -181,10 +223,17 @@ class HalfSpace(ContactLaw):
         return out
 
     def stiffness_of_contact(self, pressure: float) -> float:
-        """k_n [Pa/m] of the one contact at a pressure [Pa], solved or read from the cache, not from the ladder."""
+        """k_n [Pa/m] of the contact at one pressure [Pa], solved or read from the cache, not from the series.
+
+        On loading it is the slope of the approach between contacts at 1/1.05 and 1.05 times the pressure.
+        """
 
         def make() -> Mapping[str, Array]:
-            return {"k_n": np.asarray(self.contact_at(pressure).normal_stiffness(loading=self.stiffness == "loading"))}
+            contact = self.contact_at(pressure)
+            if self.stiffness == "unloading":
+                return {"k_n": np.asarray(contact.normal_stiffness(loading=False))}
+            low, high = (self.contact_at(p, start=contact) for p in (pressure / STEP, pressure * STEP))
+            return {"k_n": np.asarray((high.pressure - low.pressure) / (high.closing - low.closing))}
 
         names = ("elastic", "stiffness", "periodic", "tol")
         key = self._key(names) | {"pressure": float(pressure)}
@@ -193,48 +242,78 @@ class HalfSpace(ContactLaw):
         )
 
     def _key(self, names: tuple[str, ...]) -> dict[str, object]:
-        """What contacts of this scan depend on beside its heights: entries of these names, spacing, and pair."""
+        """What contacts of this scan depend on beyond its heights: entries of these names, spacing, and pair."""
         key: dict[str, object] = {name: getattr(self, name) for name in names}
         key |= {"spacing": tuple(map(float, self.scan.spacing)), "nu": self.nu}
+        size = self._size
+        key["size"] = None if size is None else (size.c1, size.c2, size.least)
         return key | {"E_star": self.pair.E_star, "hardness": self._hardness}
 
     @cached_property
-    def ladder(self) -> Ladder:
-        """The numbers of the contacts, solved on first use or read from the cache."""
+    def series(self) -> PressureSeries:
+        """The numbers of the contacts at rising pressures, solved on first use or read from the cache."""
         heights = np.asarray(self.scan.heights, dtype=float)
         names = ("elastic", "stiffness", "area", "shear_ratio", "periodic", "points", "tol")
         key = self._key(names) | {"pressure": self.asked}
         if self.shear_ratio > 0:
             key["friction"] = self.pair.friction
 
-        def make() -> Ladder:
-            pressure = np.geomspace(*self.asked, self.points)
-            return climb(heights, self.scan.spacing, pressure, self._solve, self._numbers, self.progress)
+        def make() -> PressureSeries:
+            return solve_series(
+                heights,
+                self.scan.spacing,
+                np.geomspace(*self.asked, self.points),
+                self._solve,
+                self._numbers,
+                self.progress,
+                sized=self._size is not None,
+            )
 
         return cached(make, self.cache, key, heights)
 
     @cached_property
     def _curves(self) -> Mapping[str, Callable[[Array], Array]]:
         """Every quantity as a function of ln(pressure)."""
-        ladder = self.ladder
-        rows = {"points": ladder.points, **ladder.values}
-        rows |= {"low": ladder.least_factor, "high": ladder.greatest_factor}
-        return {name: _monotone(np.log(ladder.pressure), row) for name, row in rows.items()}
+        from scipy.interpolate import PchipInterpolator
+
+        series, loading = self.series, self.stiffness == "loading"
+        rows = {"spots": series.spots, "coarse": series.coarse, **series.values}
+        rows |= {"low": series.least_factor(loading=loading), "high": series.greatest_factor(loading=loading)}
+        x = np.log(series.pressure)
+        closing = PchipInterpolator(x, series.closing)
+        return {name: _monotone(x, row) for name, row in rows.items()} | {
+            "closing": closing,
+            "closing_slope": closing.derivative(),
+        }
+
+    def closing(self, pressure: ArrayLike) -> Array:
+        """Return how far the faces have closed [m] at pressures [Pa], any shape, counted from the mean heights.
+
+        The loading curve: k_load is the slope of the pressure over it.
+        """
+        return np.asarray(self._curves["closing"](np.log(np.asarray(pressure, dtype=float))))
 
     def at_closure(self, closure: ArrayLike) -> Response:
         """Return the response at pressures [Pa] within `closure_range`, any shape."""
         p = np.asarray(closure, dtype=float)
         x = np.log(p)
         curve = self._curves
-        values = {name: curve[name](x) for name in self.ladder.values}
-        change = np.interp(x, np.log(self.ladder.pressure), np.abs(self.ladder.change[0]))
+        values = {name: curve[name](x) for name in self.series.values}
+        k_load = np.asarray(p / curve["closing_slope"](x))
+        if self.stiffness == "loading":
+            values["k_n"] = k_load
+        else:
+            values["k_load"] = k_load
+        change = np.interp(x, np.log(self.series.pressure), np.abs(self.series.change[0]))
         return Response(
             pressure=p,
             k_n_low=values["k_n"] * curve["low"](x),
             k_n_high=values["k_n"] * curve["high"](x),
             **values,
             reasons={
-                f"fewer than {FEWEST_POINTS} points of the scan touch": curve["points"](x) < FEWEST_POINTS,
+                f"fewer than {FEWEST_SPOTS} spots of the scan touch": curve["spots"](x) < FEWEST_SPOTS,
+                f"more than {COARSE:.0%} of the stiffness rests on spots of fewer than 4 points; a finer lens would "
+                "change it": curve["coarse"](x) > COARSE,
                 f"k_n changes by more than {RESOLVED:.0%} on half the points each way": change > RESOLVED,
             },
         )
@@ -249,6 +328,25 @@ class HalfSpace(ContactLaw):
         fine = self._numbers(self.contact_at(pressure))
         coarse = self._numbers(self._solve(heights, spacing, pressure))
         return {name: coarse[name] / fine[name] - 1 for name in ("area", "k_n", "k_t")}
+
+    def resolution(self, pressure: float) -> dict[str, float]:
+        """Split the change of k_n from half of the points to all into its two causes [-], at one pressure [Pa].
+
+        "numerical": the same waves on twice as many points each way; "band": the shorter waves that only the finer
+        map has. Both as a change of ln k_n on unloading; the error of the scan itself is of the same order.
+        """
+        heights, spacing = np.asarray(self.scan.heights, dtype=float), self.scan.spacing
+        coarse, coarse_spacing = halved_map(heights, spacing)
+        maps = {
+            "coarse": (coarse, coarse_spacing),
+            "refined": (refined_map(coarse, heights.shape), spacing),
+            "fine": (heights, spacing),
+        }
+        k_n = {name: self._solve(*on, pressure).normal_stiffness(loading=False) for name, on in maps.items()}
+        return {
+            "numerical": float(np.log(k_n["refined"] / k_n["coarse"])),
+            "band": float(np.log(k_n["fine"] / k_n["refined"])),
+        }
 
 
 def _monotone(x: Array, values: Array) -> Callable[[Array], Array]:

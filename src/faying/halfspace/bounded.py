@@ -167,7 +167,7 @@ def best_level(x: AnyArray, gradient: AnyArray, lower: Bound, upper: Bound) -> f
     if bool(xp.any(free)):
         return -float(xp.mean(gradient[free]))
     order = xp.argsort(gradient)
-    room = xp.cumulative_sum((upper - lower)[order])
+    room = xp.cumulative_sum(xp.asarray(upper - lower)[order])
     at = int(xp.searchsorted(room, xp.asarray(total(x - lower), dtype=room.dtype)))
     return -float(gradient[order[min(at, size - 1)]])
 

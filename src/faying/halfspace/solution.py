@@ -1,6 +1,7 @@
 """A solved half-space contact: maps, numbers, tangent stiffness."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import log, pi
 from typing import TYPE_CHECKING, final
 
@@ -12,6 +13,7 @@ from faying.typing import Array, Mask
 
 if TYPE_CHECKING:
     from faying.halfspace.slip import Slip
+    from faying.halfspace.spots import Spots
     from faying.halfspace.tangent import Tangent
 
 OPEN, ELASTIC, AT_HARDNESS = 0, 1, 2
@@ -79,6 +81,13 @@ class HalfSpaceContact:
             return np.zeros(self.traction.shape, dtype=bool)
         return self.traction >= self.hardness * (1 - max(1e-12, 4 * float(np.finfo(self.traction.dtype).eps)))
 
+    @cached_property
+    def spots(self) -> "Spots":
+        """The connected groups of points that touch."""
+        from faying.halfspace.spots import Spots
+
+        return Spots.of(self.traction > 0, self.spacing, periodic=self.periodic)
+
     @property
     def area(self) -> float:
         """Share of the map's points that carry pressure [-]."""
@@ -142,6 +151,15 @@ class HalfSpaceContact:
         return float(self.heights.max()) - self.plane
 
     @property
+    def closing(self) -> float:
+        """How far the plane lies below the mean height of the map [m]; grows with the load, and may be negative.
+
+        Unlike the approach it does not depend on the one highest point, so that maps of one surface at several
+        resolutions agree on it.
+        """
+        return float(self.heights.mean()) - self.plane
+
+    @property
     def elastic_energy(self) -> float:
         """Strain energy per nominal area [J/m2]: mean of traction times displacement, halved."""
         return float((self.traction * self.displacement).mean()) / 2
@@ -160,10 +178,16 @@ class HalfSpaceContact:
         return tangent_of(self)
 
     def normal_stiffness(self, *, loading: bool) -> float:
-        """k_n_loading or k_n_unloading of `Tangent` alone [Pa/m], at a fifth of the price of all of it."""
+        """k_n_loading or k_n_unloading of `Tangent` alone [Pa/m]."""
         from faying.halfspace.tangent import normal_stiffness_of
 
         return normal_stiffness_of(self, loading=loading)
+
+    def tangential_stiffness(self) -> float:
+        """k_t of `Tangent` alone [Pa/m]: shear without slip, mean of the two directions."""
+        from faying.halfspace.tangent import tangential_stiffness_of
+
+        return float(np.trace(tangential_stiffness_of(self))) / 2
 
     def slip(self, shear_ratio: float, friction: float, *, tol: float = 1e-6) -> "Slip":
         """Partial slip under a tangential load of shear_ratio times friction times the normal load (see `Slip`)."""

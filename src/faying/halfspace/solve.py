@@ -101,7 +101,7 @@ def _first(start: HalfSpaceContact, shape: tuple[int, int], spacing: tuple[float
             f"start: a contact of shape {coarse}, but the map has shape {shape}; "
             "start from a contact of the same map, of as many points or fewer"
         )
-    return _spread(start.traction, shape)
+    return spread_map(start.traction, shape)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,7 +118,7 @@ class _Options:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Map:
-    """Heights [m] at one coarseness, the width of its cells [m], their aspect dy/dx, the most they carry over E* [-]."""
+    """Heights [m] at one coarseness; width of cells [m], their aspect dy/dx, what they carry at most over E* [-]."""
 
     h: Array
     cell: float
@@ -168,7 +168,7 @@ class _Pressing:
 
     def _fine(self, found: Array, shape: tuple[int, ...]) -> AnyArray:
         place = self.options.place
-        return place.send(_spread(found, shape).ravel(), place.real)
+        return place.send(spread_map(found, shape).ravel(), place.real)
 
     def _minimise(self, on: _Map, mean: float, start: Start | None) -> Minimum:
         finest = on is self.map
@@ -326,8 +326,8 @@ def _at_displacement(problem: _Pressing, displacement: float, start: Array | Non
     while above < 0:
         if high >= ceiling:
             raise InputError(
-                f"displacement {displacement:.4g} m lies beyond what the hardness {most * problem.options.E_star:.4g} Pa "
-                "resists: the whole map is at hardness; give less"
+                f"displacement {displacement:.4g} m lies beyond what the hardness "
+                f"{most * problem.options.E_star:.4g} Pa resists: the whole map is at hardness; give less"
             )
         low, below = high, above
         high = min(high + 2, ceiling)
@@ -369,7 +369,7 @@ def _checked_hardness(hardness: float | ArrayLike | None, shape: tuple[int, ...]
     if given.shape not in ((), shape):
         raise InputError(f"hardness of shape {given.shape}; give one number, or one for each point of the map {shape}")
     if not np.all(np.isfinite(given) & (given > 0)):
-        raise InputError(f"hardness = {given.min():.4g} Pa; it must be positive, or None for an elastic contact")
+        raise InputError(f"hardness = {given.min()} Pa; it must be positive, or None for an elastic contact")
     return float(given) if given.ndim == 0 else _frozen(given.copy())
 
 
@@ -439,8 +439,21 @@ def _halved(h: Array) -> Array:
     return h
 
 
-def _spread(x: Array, shape: tuple[int, ...]) -> Array:
-    """Every fine cell takes the value of the coarse cell that holds its middle."""
+def refined_map(h: Array, shape: tuple[int, ...]) -> Array:
+    """The same waves on more points, a map that repeats: cells of both maps cover the same area."""
+    rows, columns = h.shape
+    spectrum = np.fft.fft2(h)
+    k = np.fft.fftfreq(rows, 1 / rows), np.fft.fftfreq(columns, 1 / columns)
+    # the middle of the first fine cell lies half a coarse and half a fine cell before that of the first coarse one
+    shift = [(1 / (2 * fine) - 1 / (2 * coarse)) for fine, coarse in zip(shape, h.shape, strict=True)]
+    spectrum = spectrum * np.exp(2j * np.pi * (k[0][:, None] * shift[0] + k[1][None, :] * shift[1]))
+    fine = np.zeros(shape, dtype=complex)
+    fine[np.ix_(k[0].astype(int), k[1].astype(int))] = spectrum
+    return np.asarray(np.fft.ifft2(fine).real) * (fine.size / h.size)
+
+
+def spread_map(x: Array, shape: tuple[int, ...]) -> Array:
+    """Return a map on other points: every fine cell takes the value of the coarse cell that holds its middle."""
     rows, columns = (((np.arange(n) + 0.5) * (m / n)).astype(int) for n, m in zip(shape, x.shape, strict=True))
     return x[np.ix_(rows, columns)]
 

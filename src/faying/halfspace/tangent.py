@@ -23,9 +23,11 @@ MARGIN = 3.0  # error over what the preconditioner says of it; seen: .5 to 1.33
 class Tangent:
     """Stiffness per nominal area [Pa/m] of a contact at its load; infinite where the surfaces touch everywhere.
 
-    k_n_loading: the load grows; points at hardness stay there and add nothing. k_n_unloading: the load falls by
-    little; every touching point is elastic. Without a hardness the two are one. k_t: shear without slip, mean of the
-    two directions; k_tensor, shape (2, 2), the directions x and y and their coupling. k_n is k_n_loading.
+    k_n_unloading: the load changes by little; every touching point is elastic. k_n_loading: the load grows on the
+    points that touch now; those at hardness stay there and add nothing. Without a hardness the two are one. With it
+    k_n_loading leaves out that the contact grows by points which soon are at hardness themselves: the slope of a
+    loading curve is the difference quotient of the `approach` of two contacts. k_t: shear without slip, mean of the two
+    directions; k_tensor, shape (2, 2), the directions x and y and their coupling. k_n is k_n_loading.
     """
 
     k_n_loading: float
@@ -98,14 +100,19 @@ def normal_stiffness_of(contact: HalfSpaceContact, *, loading: bool) -> float:
     return float(stiffness_on(kernel, cells)[0, 0]) * contact.E_star / contact.spacing[0]
 
 
-def tangent_of(contact: HalfSpaceContact) -> Tangent:
-    """Return the tangent stiffness of a contact; see `HalfSpaceContact.tangent`."""
+def tangential_stiffness_of(contact: HalfSpaceContact) -> Array:
+    """Return the stiffness against shear without slip [Pa/m], shape (2, 2); see `Tangent`."""
     shape, aspect = contact.heights.shape, contact.spacing[1] / contact.spacing[0]
     shear = shear_kernel(shape, aspect, contact.nu, periodic=contact.periodic, place=contact.place)
+    return stiffness_on(shear, contact.traction > 0) * contact.E_star / contact.spacing[0]
+
+
+def tangent_of(contact: HalfSpaceContact) -> Tangent:
+    """Return the tangent stiffness of a contact; see `HalfSpaceContact.tangent`."""
     k_unload = k_load = normal_stiffness_of(contact, loading=False)
     if contact.hardness is not None and contact.at_hardness.any():
         k_load = normal_stiffness_of(contact, loading=True)
-    tensor = stiffness_on(shear, contact.traction > 0) * contact.E_star / contact.spacing[0]
+    tensor = tangential_stiffness_of(contact)
     return Tangent(
         k_n_loading=k_load,
         k_n_unloading=k_unload,

@@ -19,6 +19,7 @@ def read_materials(top: Table) -> dict[str, Material]:
             "density": table.quantity("density", "kg/m^3"),
             "yield_strength": table.quantity("yield_strength", "Pa", None),
             "hardness": table.quantity("hardness", "Pa", None),
+            "brinell": table.quantity("brinell", "Pa", None),
             "friction": table.number("friction", None),
             "conductivity": table.quantity("conductivity", "W/(m*K)", None),
             "resistivity": table.quantity("resistivity", "ohm*m", None),

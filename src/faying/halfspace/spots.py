@@ -1,0 +1,139 @@
+"""The spots of a contact: connected groups of points that touch, and the hardness that each has by its size."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Protocol, final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from faying.errors import NotConverged
+from faying.typing import Array, Index, Mask
+
+if TYPE_CHECKING:
+    from faying.halfspace.solution import HalfSpaceContact
+
+MAX_PASSES = 12
+SETTLED = 1e-2  # change of ln H, weighted by the load, below which it is that of the spots
+
+
+class SizeLaw(Protocol):
+    """Hardness over the size of an indentation."""
+
+    def at(self, diagonal: ArrayLike) -> Array:
+        """Return the hardness [Pa] of indentations with these diagonals [m]."""
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Spots:
+    """The spots of one contact; points that share a side belong to one spot.
+
+    Args:
+        label: of each point (ny, nx), 0 where it is open, then 1 to n.
+        points: how many points each spot has (n,).
+        point_area: of one point [m2].
+    """
+
+    label: Index
+    points: Index
+    point_area: float
+
+    @classmethod
+    def of(cls, touching: Mask, spacing: tuple[float, float], *, periodic: bool) -> "Spots":
+        """Find the spots of a map of touching points (ny, nx), with the distances (dx, dy) [m] between points."""
+        from scipy.ndimage import label
+
+        found, count = label(touching)
+        if periodic and count:
+            found, count = _joined_across_borders(found, count)
+        points = np.bincount(found.ravel(), minlength=count + 1)[1:]
+        return cls(label=found, points=points, point_area=spacing[0] * spacing[1])
+
+    @property
+    def count(self) -> int:
+        """How many spots there are."""
+        return len(self.points)
+
+    @cached_property
+    def diagonals(self) -> Array:
+        """Diagonal of the Vickers indentation that has the area of each spot [m] (n,): sqrt(2 A)."""
+        return np.asarray(np.sqrt(2 * self.points * self.point_area))
+
+    def share_below(self, points: int) -> float:
+        """Share of the stiffness that rests on spots of fewer points than this [-].
+
+        The stiffness of a spot goes with its radius, the root of its area; 0 where nothing touches.
+        """
+        radius = np.sqrt(self.points)
+        return float(radius[self.points < points].sum() / radius.sum()) if self.count else 0.0
+
+    def hardness(self, law: SizeLaw) -> Array:
+        """Hardness at each point [Pa] (ny, nx): of its spot, and of a spot of one point where it is open.
+
+        An open point next to a spot takes the least hardness of its eight neighbours, so that the spot may grow.
+        """
+        from scipy.ndimage import minimum_filter
+
+        single = np.sqrt(2 * self.point_area)
+        by_label = law.at(np.concatenate([[single], self.diagonals]))
+        map_ = by_label[self.label]
+        return np.where(self.label > 0, map_, minimum_filter(map_, size=3, mode="wrap"))
+
+
+def _joined_across_borders(label: Index, count: int) -> tuple[Index, int]:
+    """Give spots that meet across the borders of a map that repeats one label."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    pairs = np.concatenate([np.stack([label[0], label[-1]]), np.stack([label[:, 0], label[:, -1]])], axis=1)
+    first, second = pairs[:, np.all(pairs > 0, axis=0)] - 1
+    graph = coo_array((np.ones(len(first)), (first, second)), shape=(count, count))
+    joined, component = connected_components(graph, directed=False)
+    return np.concatenate([[0], component + 1])[label], int(joined)
+
+
+def solve_with_size(
+    solve: Callable[[Array, "HalfSpaceContact | None"], "HalfSpaceContact"],
+    shape: tuple[int, int],
+    spacing: tuple[float, float],
+    law: SizeLaw,
+    start: "HalfSpaceContact | None",
+) -> "HalfSpaceContact":
+    """Solve a contact whose hardness is, at every spot, the one that its own size has.
+
+    Solve, measure the spots, set the hardness of each by its size, solve again, until it changes by less than 1 % on
+    average over the load.
+
+    Args:
+        solve: solves the map with a hardness at each point [Pa] (ny, nx), from an earlier contact.
+        shape: of the map.
+        spacing: (dx, dy) [m].
+        law: hardness over the diagonal of an indentation.
+        start: an earlier contact of the map, or of the map on fewer points; its spots give the first hardness.
+
+    Raises:
+        NotConverged: where the hardness of the spots keeps changing.
+    """
+    if start is None:
+        hardness = np.full(shape, float(law.at(4 * np.sqrt(2 * spacing[0] * spacing[1]))))
+    else:
+        from faying.halfspace.solve import spread_map
+
+        hardness = spread_map(start.spots.hardness(law), shape)
+    contact, change = start, np.inf
+    for _ in range(MAX_PASSES):
+        contact = solve(hardness, contact)
+        found = contact.spots.hardness(law)
+        # where the contact is elastic its hardness does not matter
+        plastic = contact.at_hardness | (contact.traction > found)
+        load = contact.traction.sum(dtype=float)
+        change = float((contact.traction * plastic * np.abs(np.log(found / hardness))).sum() / load) if load else 0.0
+        if change < SETTLED:
+            return contact
+        hardness = found
+    raise NotConverged(
+        f"half-space contact: the hardness of the spots still changes by {abs(change):.1%} after {MAX_PASSES} "
+        "solutions; give one hardness for all spots"
+    )
