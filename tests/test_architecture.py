@@ -12,6 +12,7 @@ SOURCE = Path(__file__).parent.parent / "src" / "faying"
 ORDER = [
     {"errors"},
     {"units", "files", "memory", "typing", "notes", "progress"},
+    {"hardness"},
     {"materials", "netcdf", "columns", "distribution", "cache"},
     {"surface", "fe", "halfspace"},
     {"contact", "asperity_fe"},
