@@ -143,7 +143,7 @@ def test_a_law_on_a_scan_shows_what_the_surface_says(tmp_path: Path) -> None:
     assert "do not belong together" in " ".join(said.split())
 
 
-ROUGH = ("--model", "cmy", "--set", "sigma=1.2 um", "--set", "slope=0.15", "--pressure", "1 MPa:10 MPa:2")
+ROUGH = ("--model", "cmy", "--set", "h_rms=1.2 um", "--set", "mean_slope=0.15", "--pressure", "1 MPa:10 MPa:2")
 
 
 def test_conductance_goes_with_the_stiffness(tmp_path: Path) -> None:
@@ -199,6 +199,6 @@ def test_conductance_of_several_laws_of_a_scan(tmp_path: Path) -> None:
         (("--material", "S355", "--against", "same", "--conductivity", "5 W"), "--conductivity"),
     ],
 )
-def test_conductance_without_conductors_is_told(words: tuple[str, ...], message: str) -> None:
+def test_conductance_without_conductors_is_an_error(words: tuple[str, ...], message: str) -> None:
     with pytest.raises(InputError, match=message):
         run(*ROUGH, *words, "--conductance")

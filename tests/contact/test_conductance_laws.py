@@ -16,8 +16,8 @@ from faying.hardness import VickersHardness
 STEEL = Material(name="steel", E=207e9, nu=0.3, hardness=2e9, conductivity=50.0)
 PAIR = ContactPair(STEEL, STEEL)
 SIGMA, SLOPE = 1.3e-6, 0.14
-LAW = CMY(sigma=SIGMA, slope=SLOPE, pair=PAIR)
-ELASTIC = Mikic(sigma=SIGMA, slope=SLOPE, pair=PAIR)
+LAW = CMY(h_rms=SIGMA, mean_slope=SLOPE, pair=PAIR)
+ELASTIC = Mikic(h_rms=SIGMA, mean_slope=SLOPE, pair=PAIR)
 RANGE = np.geomspace(1e-6, 2.3e-2, 25)
 
 
@@ -71,7 +71,7 @@ def test_spots_of_the_theory_add_up_to_the_stiffness() -> None:
 
 @pytest.mark.parametrize("size", [{}, {"c1": 6e9, "c2": -0.26}])
 def test_the_loading_curve_of_cmy_is_the_closing_of_the_mean_planes(size: dict[str, float]) -> None:
-    law = CMY(sigma=SIGMA, slope=SLOPE, pair=PAIR, **size)
+    law = CMY(h_rms=SIGMA, mean_slope=SLOPE, pair=PAIR, **size)
     low, high = 1e6, 30e6
     ends = [SIGMA * separation(float(law.at_pressure(p).area), 1 / 2) for p in (low, high)]
     closing = quad(lambda t: np.exp(t) / float(law.at_pressure(np.exp(t)).k_load), np.log(low), np.log(high))[0]
@@ -104,13 +104,13 @@ def test_the_hardness_is_that_given_else_that_of_the_pair() -> None:
     assert hard.facts()["c1 [Pa]"] == 4e9
     soft = Material(name="soft", E=70e9, nu=0.3)
     with pytest.raises(InputError, match=r"CMY: neither hardness nor .* or give hardness, or c1 and c2"):
-        CMY(sigma=SIGMA, slope=SLOPE, pair=ContactPair(soft, soft))
+        CMY(h_rms=SIGMA, mean_slope=SLOPE, pair=ContactPair(soft, soft))
     with pytest.raises(InputError, match="give hardness, or c1 and c2, not both"):
         LAW.with_(hardness=2e9, c1=5e9, c2=-0.2)
     with pytest.raises(InputError, match="c1 and c2 belong together"):
         LAW.with_(c1=5e9)
-    with pytest.raises(InputError, match=r"CMY: sigma = 0 m; it must be positive"):
-        LAW.with_(sigma=0.0)
+    with pytest.raises(InputError, match=r"CMY: h_rms = 0 m; it must be positive"):
+        LAW.with_(h_rms=0.0)
 
 
 def test_mikic_is_elastic_work_and_stiffness_agree() -> None:
@@ -127,8 +127,8 @@ def test_mikic_is_elastic_work_and_stiffness_agree() -> None:
 def test_just_one_of_the_two_laws_is_valid_on_a_surface() -> None:
     """Spots yield where the mean pressure of elastic ones, E* m/sqrt 2, passes the hardness."""
     for slope in (0.005, 0.02, 0.05, 0.2):
-        plastic = bool(CMY(sigma=SIGMA, slope=slope, pair=PAIR).at_pressure(1e6).valid)
-        elastic = bool(Mikic(sigma=SIGMA, slope=slope, pair=PAIR).at_pressure(1e6).valid)
+        plastic = bool(CMY(h_rms=SIGMA, mean_slope=slope, pair=PAIR).at_pressure(1e6).valid)
+        elastic = bool(Mikic(h_rms=SIGMA, mean_slope=slope, pair=PAIR).at_pressure(1e6).valid)
         assert plastic is not elastic
         assert plastic is (PAIR.E_star * slope / sqrt(2) > 2e9)
     assert not LAW.at_pressure(1e8).valid  # p/H 0.05
@@ -164,7 +164,7 @@ def test_two_faces_alike_have_the_slope_of_their_sum() -> None:
     assert isinstance(two, SurfaceInputs)
     assert two.mean_slope == pytest.approx(sqrt(2) * one.mean_slope)
     law = CMY.from_surface(two, PAIR)
-    assert (law.sigma, law.slope) == (two.h_rms, two.mean_slope)
+    assert (law.h_rms, law.mean_slope) == (two.h_rms, two.mean_slope)
     # the heights of the two laid on each other say the same
     heights = faces_of(scan, "same", fitted=False).rough.scan
     assert heights is not None
@@ -181,3 +181,20 @@ def test_heat_needs_two_conductors() -> None:
     bare = Material(name="bare", E=200e9, nu=0.3)
     with pytest.raises(InputError, match=r"'bare' has none: give conductivity, for example 50 W/\(m K\)"):
         heat_conductance(1e12, ContactPair(STEEL, bare))
+
+
+def test_a_pair_with_a_vickers_law_gives_it() -> None:
+    size = VickersHardness(c1=5e9, c2=-0.2)
+
+    class Sized(ContactPair):
+        @property
+        def vickers(self) -> VickersHardness:
+            return size
+
+    pair = Sized(STEEL, STEEL)
+    p = np.geomspace(1e5, 1e7, 5)
+    own = CMY(h_rms=SIGMA, mean_slope=SLOPE, pair=pair)
+    assert p / own.at_pressure(p).area == pytest.approx(size.contact(p, SIGMA, SLOPE), rel=1e-9)
+    assert own.assumptions == ()
+    # a number counts before it
+    assert 1e6 / float(own.with_(hardness=2e9).at_pressure(1e6).area) == pytest.approx(2e9)

@@ -106,10 +106,10 @@ def test_the_solved_contact_and_cmy_agree_at_the_same_hardness(script: ModuleTyp
     pair = next(one.pair for one in script.measured() if one.pair.first.name == "copper")
     p = np.array([3e6, 10e6])
     solved = pick("half-space", {}, rough, pair).law.at_pressure(p)
-    closed = CMY(sigma=2e-6, slope=0.2, pair=pair).at_pressure(p)
+    closed = CMY(h_rms=2e-6, mean_slope=0.2, pair=pair).at_pressure(p)
     assert closed.valid.all()
     assert np.all(np.abs(np.log(solved.k_n / closed.k_n)) < np.log(1.5))
     # the size of spots matters as much: with it, hardness and k_n of CMY differ by more than that
     sized = VickersHardness(c1=3e9, c2=-0.25)
-    harder = CMY(sigma=2e-6, slope=0.2, pair=pair, c1=sized.c1, c2=sized.c2).at_pressure(p)
+    harder = CMY(h_rms=2e-6, mean_slope=0.2, pair=pair, c1=sized.c1, c2=sized.c2).at_pressure(p)
     assert np.all(closed.k_n / harder.k_n > 1.3)

@@ -23,7 +23,7 @@ FITTED = (1e-6, 2.3e-2)  # p/H_c of the fit by a power
 class CMY(ContactLaw):
     """k_n = 1.25 E* (m/sigma) (p/H_c)^0.95, A = p/H_c. doi:10.1016/0017-9310(69)90011-8.
 
-    sigma, rms height of both faces together [m]; slope m, mean absolute slope of profiles of both faces together [-];
+    h_rms sigma [m] of both faces together; mean_slope m [-], mean absolute slope of profiles, both faces together;
     pair; hardness H_c of the spots [Pa], or c1 [Pa] and c2 [-] of a Vickers hardness c1 (d/1 um)^c2, from which H_c
     follows by the size of the spots (doi:10.1109/TCAPT.2005.848483). Where neither is given, the pair gives it.
 
@@ -36,8 +36,8 @@ class CMY(ContactLaw):
     c1 or c2 at once, and for one of c1, c2 without the other.
     """
 
-    sigma: float
-    slope: float
+    h_rms: float
+    mean_slope: float
     pair: ContactPair
     hardness: float | None = None
     c1: float | None = None
@@ -47,8 +47,8 @@ class CMY(ContactLaw):
     source: ClassVar[str] = "doi:10.1016/0017-9310(69)90011-8"
     validity: ClassVar[str] = "isotropic rough faces, flat, whose spots yield; p/H_c from 1e-6 to 0.023; first loading"
     parameters: ClassVar = {
-        "sigma": Parameter("m", "rms height of both faces together", 0, surface="h_rms"),
-        "slope": Parameter("", "mean absolute slope of profiles, both faces together", 0, surface="mean_slope"),
+        "h_rms": Parameter("m", "rms height sigma, both faces together", 0, surface="h_rms"),
+        "mean_slope": Parameter("", "mean absolute slope m of profiles, both faces together", 0, surface="mean_slope"),
         "hardness": Parameter("Pa", "hardness of the spots; that of the pair where not given", 0),
         "c1": Parameter("Pa", "Vickers hardness at a diagonal of 1 um", 0),
         "c2": Parameter("", "power of the diagonal in the Vickers hardness", -1, 1),
@@ -104,14 +104,16 @@ class CMY(ContactLaw):
             "the real area fraction lies above 0, up to 0.5",
         )
         grows = 1 + 0.071 * self._hardness.c2
-        p = self._hardness.at(1.62 * self.sigma / self.slope) * A**grows
+        p = self._hardness.at(1.62 * self.h_rms / self.mean_slope) * A**grows
         H = p / A
-        k_n = 1.25 * self.pair.E_star * self.slope / self.sigma * A**0.95
+        k_n = 1.25 * self.pair.E_star * self.mean_slope / self.h_rms * A**0.95
         Y = sqrt(2) * erfcinv(2 * A)
-        flattening = grows * H * np.exp(-(Y**2) / 2) / (sqrt(2 * pi) * self.sigma)
+        flattening = grows * H * np.exp(-(Y**2) / 2) / (sqrt(2 * pi) * self.h_rms)
         reasons = {
             "p/H_c outside of 1e-6 to 0.023": np.asarray((FITTED[0] > A) | (FITTED[1] < A)),
-            "contacts stay elastic: H_c above E* m/sqrt(2)": np.asarray(self.pair.E_star * self.slope / sqrt(2) < H),
+            "contacts stay elastic: H_c above E* m/sqrt(2)": np.asarray(
+                self.pair.E_star * self.mean_slope / sqrt(2) < H
+            ),
         }
         return Response(
             pressure=np.asarray(p),
