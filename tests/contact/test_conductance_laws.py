@@ -12,6 +12,7 @@ from faying import RIGID, ContactPair, InputError, Material
 from faying.contact import CMY, Mikic, SurfaceInputs
 from faying.contact.conductance import contact_conductance, heat_conductance
 from faying.hardness import VickersHardness
+from tests.helpers.published import Published
 
 STEEL = Material(name="steel", E=207e9, nu=0.3, hardness=2e9, conductivity=50.0)
 PAIR = ContactPair(STEEL, STEEL)
@@ -31,7 +32,7 @@ def conducted(k_n: np.ndarray, pair: ContactPair = PAIR) -> np.ndarray:
     return heat_conductance(k_n, pair) * SIGMA / (SLOPE * 50.0)
 
 
-def test_cmy_is_the_theory_of_spots_that_yield_within_its_fit() -> None:
+def test_cmy_is_the_theory_of_spots_that_yield_within_its_fit(published: Published) -> None:
     """h sigma/(m K_s) = exp(-l^2/2)/(2 sqrt(2 pi) (1 - sqrt(p/H))^1.5), p/H = erfc(l/sqrt 2)/2."""
     theory = []
     for ratio in RANGE:
@@ -42,9 +43,16 @@ def test_cmy_is_the_theory_of_spots_that_yield_within_its_fit() -> None:
     assert r.area == pytest.approx(RANGE, rel=1e-9)
     # the published curve itself
     assert conducted(r.k_n) == pytest.approx(1.25 * RANGE**0.95, rel=1e-9)
+    published(
+        "dimensionless conductance h sigma/(m K_s) of spots that yield at p/H 1e-3",
+        1.25e-3 * 10**0.15,
+        conducted(LAW.at_pressure(2e6).k_n),
+        source="doi:10.1016/0017-9310(69)90011-8",
+        rel=0.01,
+    )
 
 
-def test_mikic_is_the_theory_of_elastic_spots_within_its_fit() -> None:
+def test_mikic_is_the_theory_of_elastic_spots_within_its_fit(published: Published) -> None:
     """Half of the overlap touches: p/H_e = erfc(l/sqrt 2)/4 with H_e = E* m/sqrt 2, and the spots conduct as in CMY."""
     theory = []
     for ratio in RANGE:
@@ -56,6 +64,13 @@ def test_mikic_is_the_theory_of_elastic_spots_within_its_fit() -> None:
     middle = (RANGE > 8e-6) & (RANGE < 1e-2)
     assert conducted(r.k_n)[middle] == pytest.approx(np.array(theory)[middle], rel=0.018)
     assert conducted(r.k_n) == pytest.approx(1.54 * (sqrt(2) * p / (PAIR.E_star * SLOPE)) ** 0.94, rel=1e-9)
+    published(
+        "dimensionless conductance h sigma/(m K_s) of elastic spots at sqrt(2) p/(m E*) 1e-3",
+        1.54e-3 * 10**0.18,
+        conducted(ELASTIC.at_pressure(1e-3 * PAIR.E_star * SLOPE / sqrt(2)).k_n),
+        source="doi:10.1016/0017-9310(74)90082-9",
+        rel=0.01,
+    )
 
 
 def test_spots_of_the_theory_add_up_to_the_stiffness() -> None:
