@@ -141,3 +141,64 @@ def test_a_law_on_a_scan_shows_what_the_surface_says(tmp_path: Path) -> None:
     low, high = fit.D_interval
     assert f"{fit.D:.3f}  {low:.3f} .. {high:.3f}  {show(fit.G, 'm', digits=3)}  " in said
     assert "do not belong together" in " ".join(said.split())
+
+
+ROUGH = ("--model", "cmy", "--set", "h_rms=1.2 um", "--set", "mean_slope=0.15", "--pressure", "1 MPa:10 MPa:2")
+
+
+def test_conductance_goes_with_the_stiffness(tmp_path: Path) -> None:
+    """h = 2 k_n/(E* (1/K + 1/K)): of steel on itself, K k_n/E*."""
+    words = (*ROUGH, "--material", "S355", "--against", "same", "--conductance")
+    tree = json.loads(run(*words, "--json"))
+    K = CATALOGUE["S355"].conductivity or 0.0
+    expected = [K * k / tree["E_star"]["values"] for k in tree["k_n"]["values"]]
+    assert tree["h"]["values"] == pytest.approx(expected, rel=1e-12)
+    assert tree["h"]["unit"] == "W/(m^2*K)"
+    text = run(*words, "--csv", str(tmp_path / "h.csv"))
+    assert "h [W/(m2 K)]" in text
+    assert f"{expected[0]:.4g}" in text
+    head, first = (tmp_path / "h.csv").read_text().splitlines()[1:3]
+    assert float(first.split(",")[head.split(",").index("h [W/(m^2*K)]")]) == pytest.approx(expected[0])
+    # JK has a stiffness as well, and its own pair
+    rough = ("--D", "2.39", "--G", "1.53e-10 m", "--scan-area", "16 mm^2", "--pressure", "1 MPa:4 MPa:3")
+    jk = json.loads(run(*rough, *words[-5:], "--friction", "0.2", "--json"))
+    assert jk["h"]["values"] == pytest.approx([K * k / jk["E_star"]["values"] for k in jk["k_n"]["values"]])
+
+
+def test_conductance_of_several_laws_of_a_scan(tmp_path: Path) -> None:
+    from faying.study import template
+
+    template.surface(tmp_path / "s.x3p")
+    words = (
+        "--scan",
+        str(tmp_path / "s.x3p"),
+        "--models",
+        "cmy,mikic",
+        "--pressure",
+        "1 MPa:10 MPa:2",
+        "--conductance",
+    )
+    steel = ("--material", "45 steel", "--against", "same", "--conductivity", "50 W/(m K)")
+    tree = json.loads(run(*words, *steel, "--json"))
+    for law in tree["laws"].values():
+        ratio = [h / k for h, k in zip(law["h"]["values"], law["k_n"]["values"], strict=True)]
+        assert ratio == pytest.approx([50 * 2 * (1 - 0.3**2) / 200e9] * 2)
+    text = run(*words, *steel, "--csv", str(tmp_path / "h.csv"))
+    assert "h [W/(m2 K)], clean metal in vacuum" in text
+    assert ",h [W/(m^2*K)],valid" in (tmp_path / "h.csv").read_text()
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--material", "45 steel", "--against", "same"), "'45 steel' has none: give conductivity"),
+        (
+            ("--material", "S355"),
+            'the rigid plane does not: name the material of the other face, for example against "',
+        ),
+        (("--material", "S355", "--against", "same", "--conductivity", "5 W"), "--conductivity"),
+    ],
+)
+def test_conductance_without_conductors_is_an_error(words: tuple[str, ...], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        run(*ROUGH, *words, "--conductance")

@@ -91,6 +91,7 @@ def test_laws_do_not_depend_on_the_units() -> None:
         "loss_t": 1.0,
         "energy_n": S * L,
         "energy_t": S * L,
+        "k_load": S / L,
     }
     here = compare(laws_of_surface(SURFACE, PAIR)[0], P)
     there = compare(laws_of_surface(other, pair)[0], P * S)

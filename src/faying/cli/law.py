@@ -18,7 +18,9 @@ SHOWN = {
     "k_n_high": ("k_n high", 1e-12),
     "loss_n": ("loss n", 1.0),
     "loss_t": ("loss t", 1.0),
+    "h": ("h [W/(m2 K)]", 1.0),
 }
+HEAT = "W/(m^2*K)"
 WIDTH = 78
 
 
@@ -41,6 +43,7 @@ WIDTH = 78
 @click.option("--hardness", metavar="STRESS", help="Hardness.")
 @click.option("--yield-strength", metavar="STRESS", help="Yield strength; hardness is 2.8 times it where not given.")
 @click.option("--friction", type=float, help="Static friction coefficient.")
+@click.option("--conductivity", metavar="W/(m K)", help='Of heat, for --conductance, for example "50 W/(m K)".')
 @click.option(
     "--pressure",
     default="0.1 MPa:50 MPa",
@@ -66,6 +69,9 @@ WIDTH = 78
     "--contact-map",
     type=click.Path(dir_okay=False),
     help="Picture of where the scan touches at the last pressure; with halfspace among --models.",
+)
+@click.option(
+    "--conductance", is_flag=True, help="Also the conductance of heat h that goes with k_n, clean metal in vacuum."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 @click.option("--csv", "csv_file", type=click.Path(dir_okay=False), help="Write all columns to a CSV file.")
@@ -110,7 +116,14 @@ def command(
     if models or all_models:
         if surface is None or settings:
             raise InputError("--models and --all-models take every input from a scan: give --scan FILE and no --set")
-        law_table.show(surface.rough, pair, several, pressures, as_json, csv_file, plot, contact_map)
+        output = law_table.Output(
+            as_json=as_json,
+            csv_file=csv_file,
+            plot=plot,
+            contact_map=contact_map,
+            conductance=options["conductance"],
+        )
+        law_table.show(surface.rough, pair, several, pressures, output)
         return
     if contact_map:
         raise InputError("--contact-map goes with --scan and halfspace among --models")
@@ -118,8 +131,9 @@ def command(
         choice = pick(kind, given_of(kind, options, settings), rough, pair)
         law = choice.law
         response = law.at_pressure(pressures)
+    h = conducted(law, response, pair) if options["conductance"] else None
     if csv_file:
-        write_text(Path(csv_file), csv_text(law, response))
+        write_text(Path(csv_file), csv_text(law, response, h))
     if plot:
         from faying.output.figures.law import curves
         from faying.output.figures.save import save
@@ -127,9 +141,20 @@ def command(
         save(curves({law.name: response}), plot)
     if as_json:
         told = {"reason": choice.reason} | ({} if surface is None else {"surface": surface.facts()})
+        told |= {} if h is None else {"h": quantity(h.tolist(), HEAT)}
         click.echo(json.dumps(document(law, response) | told, indent=2, allow_nan=False))
         return
-    click.echo("\n".join([*heading(choice, surface), table(law, response)]))
+    click.echo("\n".join([*heading(choice, surface), table(law, response, h)]))
+
+
+def conducted(law: Any, response: Any, pair: Any) -> Any:
+    """Conductance of heat [W/(m2 K)] that goes with k_n; InputError without k_n or without the conductivities."""
+    from faying.contact.conductance import heat_conductance
+    from faying.errors import InputError
+
+    if response.k_n is None:
+        raise InputError(f"--conductance follows from k_n, and {law.name} gives none; name another --model")
+    return heat_conductance(response.k_n, pair)
 
 
 def heading(choice: Any, surface: Any) -> list[str]:
@@ -190,6 +215,8 @@ def pair_of(options: dict[str, Any]) -> Any:
         n: parse(options[n], "Pa", name=f"--{n.replace('_', '-')}") for n in stresses if options[n] is not None
     }
     given |= {n: options[n] for n in ("nu", "friction") if options[n] is not None}
+    if options["conductivity"] is not None:
+        given["conductivity"] = parse(options["conductivity"], "W/(m*K)", name="--conductivity")
     if options["material"] is None:
         if not {"E", "nu"} <= set(given):
             raise InputError('no material: give --material, for example "45 steel", or --E and --nu')
@@ -279,11 +306,11 @@ def document(law: Any, response: Any) -> dict[str, Any]:
     }
 
 
-def table(law: Any, response: Any) -> str:
+def table(law: Any, response: Any, h: Any = None) -> str:
     """Format the response for the terminal; * marks rows outside the validity range, with the reasons below."""
     from faying.units import show
 
-    quantities = response.quantities()
+    quantities = response.quantities() | ({} if h is None else {"h": h})
     names = [name for name in SHOWN if name in quantities]
     given = []
     for n, v in parameter_values(law).items():
@@ -309,17 +336,20 @@ def table(law: Any, response: Any) -> str:
                 low, high = response.pressure[mask].min(), response.pressure[mask].max()
                 lines.append(f"    {reason}, at {show(float(low), 'Pa')} to {show(float(high), 'Pa')}")
     lines += [f"note: {text}" for text in law.assumptions]
+    if h is not None:
+        lines.append("h: clean metal in vacuum; films hinder the flow, gas and grease help it")
     if response.loss_n is None and response.loss_t is None:
         lines.append("loss: not predicted")
     return "\n".join(lines)
 
 
-def csv_text(law: Any, response: Any) -> str:
+def csv_text(law: Any, response: Any, h: Any = None) -> str:
     """Return every column with its unit, and whether the law is within its validity range."""
     from faying.contact.response import UNITS
 
-    quantities = response.quantities()
-    head = [f"{name} [{UNITS[name] or '-'}]" for name in quantities]
+    quantities = response.quantities() | ({} if h is None else {"h": h})
+    units = UNITS | {"h": HEAT}
+    head = [f"{name} [{units[name] or '-'}]" for name in quantities]
     rows = zip(*(value.tolist() for value in quantities.values()), response.valid.tolist(), strict=True)
     body = "\n".join(",".join(repr(v) if isinstance(v, float) else str(v).lower() for v in row) for row in rows)
     return f"# {law.name}, {law.source}\n" + ",".join([*head, "valid"]) + "\n" + body + "\n"

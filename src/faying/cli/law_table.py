@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,16 +15,18 @@ from faying.cli.progress import Shown
 SURFACE_UNITS = {"G": "m", "scan_area": "m^2", "m0": "m^2", "m4": "1/m^2", "h_rms": "m", "shortest": "m"}
 
 
-def show(
-    surface: Any,
-    pair: Any,
-    names: list[str] | None,
-    pressures: Any,
-    as_json: bool,
-    csv_file: str | None,
-    plot: str | None,
-    contact_map: str | None = None,
-) -> None:
+@dataclass(frozen=True, kw_only=True)
+class Output:
+    """What to print, write and draw: JSON in place of tables, files, the conductance of heat."""
+
+    as_json: bool = False
+    csv_file: str | None = None
+    plot: str | None = None
+    contact_map: str | None = None
+    conductance: bool = False
+
+
+def show(surface: Any, pair: Any, names: list[str] | None, pressures: Any, output: Output) -> None:
     """Compare the laws and print, write and draw the outcome."""
     from faying.contact.compare import compare, laws_of_surface
     from faying.files import write_text
@@ -32,19 +34,28 @@ def show(
     inputs = surface.inputs
     with watched(surface) as rough:
         made, left_out = laws_of_surface(rough, pair, names=names)
-        if contact_map:
-            draw_contact(made, float(pressures[-1]), contact_map)
+        if output.contact_map:
+            draw_contact(made, float(pressures[-1]), output.contact_map)
         comparison = compare(made, pressures, left_out)
-    if csv_file:
-        write_text(Path(csv_file), csv(comparison))
-    if plot:
+    heat = conducted(comparison, pair) if output.conductance else {}
+    if output.csv_file:
+        write_text(Path(output.csv_file), csv(comparison, heat))
+    if output.plot:
         from faying.output.figures.law import curves
         from faying.output.figures.save import save
 
-        save(curves(comparison.responses), plot)
-    click.echo(
-        json.dumps(document(inputs, comparison), indent=2, allow_nan=False) if as_json else table(inputs, comparison)
-    )
+        save(curves(comparison.responses), output.plot)
+    if output.as_json:
+        click.echo(json.dumps(document(inputs, comparison, heat), indent=2, allow_nan=False))
+    else:
+        click.echo(table(inputs, comparison, heat))
+
+
+def conducted(comparison: Any, pair: Any) -> dict[str, Any]:
+    """Conductance of heat [W/(m2 K)] of every law with a stiffness, by name; InputError without conductivities."""
+    from faying.contact.conductance import heat_conductance
+
+    return {n: heat_conductance(r.k_n, pair) for n, r in comparison.responses.items() if r.k_n is not None}
 
 
 def draw_contact(laws: dict[str, Any], pressure: float, path: str) -> None:
@@ -115,7 +126,7 @@ def stability(surface: Any, pair: Any, names: list[str], given: Any, pressure: f
     return "\n".join([*lines, *without])
 
 
-def document(inputs: Any, comparison: Any) -> dict[str, Any]:
+def document(inputs: Any, comparison: Any, heat: dict[str, Any]) -> dict[str, Any]:
     """Everything that the command knows, as a tree for JSON; SI."""
     from faying.contact.response import UNITS
     from faying.result.fields import listed
@@ -126,6 +137,7 @@ def document(inputs: Any, comparison: Any) -> dict[str, Any]:
         "pressure": quantity(comparison.pressure.tolist(), "Pa"),
         "laws": {
             name: {n: quantity(listed(v), UNITS[n]) for n, v in r.quantities().items()}
+            | ({"h": quantity(listed(heat[name]), "W/(m^2*K)")} if name in heat else {})
             | {"valid": r.valid.tolist(), "reasons": {k: m.tolist() for k, m in r.reasons.items() if m.any()}}
             for name, r in comparison.responses.items()
         },
@@ -137,8 +149,8 @@ def document(inputs: Any, comparison: Any) -> dict[str, Any]:
     }
 
 
-def table(inputs: Any, comparison: Any) -> str:
-    """Format area and k_n of every law at a few pressures, and the factor between the laws."""
+def table(inputs: Any, comparison: Any, heat: dict[str, Any]) -> str:
+    """Format area, k_n and h of every law at a few pressures, and the factor between the laws."""
     import numpy as np
 
     from faying.units import show as unit
@@ -168,6 +180,10 @@ def table(inputs: Any, comparison: Any) -> str:
                 lines.append(f"  {name:<12}" + "".join(cells))
         spread = comparison.spread(what)
         lines.append(f"  {'max / min':<12}" + "".join(f"{spread[i]:>11.4g}" for i in shown))
+    if heat:
+        lines += ["", "h [W/(m2 K)], clean metal in vacuum"]
+        for name, h in heat.items():
+            lines.append(f"  {name:<12}" + "".join(f"{'-' if np.isnan(h[i]) else f'{h[i]:.4g}':>11}" for i in shown))
     lines += ["", "* outside the validity range of the model (`faying models`); - outside what it covers"]
     for name, response in comparison.responses.items():
         lines += [f"  {name}: {reason}" for reason in reasons(response)]
@@ -190,14 +206,16 @@ def reasons(response: Any) -> list[str]:
     return lines
 
 
-def csv(comparison: Any) -> str:
+def csv(comparison: Any, heat: dict[str, Any]) -> str:
     """Return one row per law and pressure, SI, with units in the head."""
-    names = ("area", "k_n", "k_t", "loss_n", "loss_t")
     from faying.contact.response import UNITS
 
-    rows = ["law,pressure [Pa]," + ",".join(f"{n} [{UNITS[n] or '-'}]" for n in names) + ",valid"]
+    names = ("area", "k_n", "k_t", "loss_n", "loss_t", *(("h",) if heat else ()))
+    units = UNITS | {"h": "W/(m^2*K)"}
+    rows = ["law,pressure [Pa]," + ",".join(f"{n} [{units[n] or '-'}]" for n in names) + ",valid"]
     for law, r in comparison.responses.items():
+        columns = r.quantities() | ({"h": heat[law]} if law in heat else {})
         for i, p in enumerate(comparison.pressure.tolist()):
-            cells = [repr(float(r.quantities()[n][i])) if n in r.quantities() else "" for n in names]
+            cells = [repr(float(columns[n][i])) if n in columns else "" for n in names]
             rows.append(",".join([law, repr(p), *cells, str(bool(r.valid[i])).lower()]))
     return "\n".join(rows) + "\n"

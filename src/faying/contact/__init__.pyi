@@ -1,6 +1,7 @@
 # The public names of faying.contact; __init__.py imports each when it is first used.
 from . import asperity
 from .build import build, find_law, laws
+from .cmy import CMY
 from .compare import Comparison, compare, laws_of_surface
 from .greenwood_williamson import GreenwoodWilliamson
 from .half_space import HalfSpace
@@ -10,6 +11,7 @@ from .jk import JK
 from .law import ContactLaw, Response
 from .majumdar_bhushan import MajumdarBhushan
 from .measured_heights import MeasuredHeights
+from .mikic import Mikic
 from .morag_etsion import MoragEtsion
 from .parameter import Parameter
 from .persson import Persson
@@ -19,6 +21,7 @@ from .wang_komvopoulos import WangKomvopoulos
 from .yan_komvopoulos import YanKomvopoulos
 
 __all__ = [
+    "CMY",
     "JK",
     "Comparison",
     "ContactLaw",
@@ -28,6 +31,7 @@ __all__ = [
     "JacksonStreator",
     "MajumdarBhushan",
     "MeasuredHeights",
+    "Mikic",
     "MoragEtsion",
     "Parameter",
     "Persson",

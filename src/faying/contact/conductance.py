@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.errors import InputError
+from faying.materials import ContactPair
 from faying.typing import Array
 
 
@@ -36,3 +37,34 @@ def contact_conductance(k_n: ArrayLike, *, E_star: float, resistivities: tuple[f
             f"{resistivities[0]:g}, {resistivities[1]:g}"
         )
     return np.asarray(2 * np.asarray(k_n, dtype=float) / (E_star * total))
+
+
+def heat_conductance(k_n: ArrayLike, pair: ContactPair) -> Array:
+    """Return the conductance of heat of a contact per nominal area from its normal stiffness, for a pair of materials.
+
+    Args:
+        k_n: normal stiffness per area [Pa/m] against a small change of load, not the slope of first loading; any shape.
+        pair: the materials, both with their conductivity [W/(m K)].
+
+    Returns:
+        h [W/(m2 K)], of the shape of k_n; see `contact_conductance` for what it holds for.
+
+    Raises:
+        InputError: a material has no conductivity, or one is the rigid plane.
+
+    Source:
+        Barber 2003, doi:10.1098/rspa.2002.1038.
+    """
+    if pair.first.is_rigid or pair.second.is_rigid:
+        raise InputError(
+            "conductance of heat needs two bodies that conduct; the rigid plane does not: name the material of the "
+            'other face, for example against "same"'
+        )
+    without = sorted({m.name for m in (pair.first, pair.second) if m.conductivity is None})
+    if without:
+        raise InputError(
+            f"conductance of heat needs the conductivity of both materials; {' and '.join(map(repr, without))} "
+            f"{'has' if len(without) == 1 else 'have'} none: give conductivity, for example 50 W/(m K)"
+        )
+    first, second = (1 / (m.conductivity or 1.0) for m in (pair.first, pair.second))
+    return contact_conductance(k_n, E_star=pair.E_star, resistivities=(first, second))

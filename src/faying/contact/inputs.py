@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from math import inf, isnan, log, pi, sqrt
+from math import inf, isnan, log, nan, pi, sqrt
 from pathlib import Path
 from typing import ClassVar, Protocol, Self, final
 
@@ -62,10 +62,12 @@ class SurfaceInputs(FractalSurface):
     """Numbers of one scan that the models need; SI.
 
     D, G, scan_area, gamma as in `FractalSurface`; m0 [m2], m2 [-], m4 [1/m2] the moments of a profile, mean over both
-    directions; slope, the rms gradient of the surface [-]; h_rms [m]; shortest wavelength that the scan resolves [m].
-    Raises InputError unless all are positive.
+    directions; slope, the rms gradient of the surface [-]; h_rms [m]; shortest wavelength that the scan resolves [m];
+    mean_slope, the mean absolute slope of a profile [-], mean over both directions, of two faces the root of the sum of
+    the squares; not given it is that of Gaussian heights, sqrt(2 m2/pi). Raises InputError unless all are positive.
 
-    m2, m4 and slope grow without end as the spacing of the scan falls, if the surface is fractal: they belong to it.
+    m2, m4, slope and mean_slope grow without end as the spacing of the scan falls, if the surface is fractal: they
+    belong to it.
     """
 
     m0: float
@@ -74,8 +76,11 @@ class SurfaceInputs(FractalSurface):
     slope: float
     h_rms: float
     shortest: float
+    mean_slope: float = nan
 
     def __post_init__(self) -> None:
+        if isnan(self.mean_slope) and self.m2 > 0:
+            object.__setattr__(self, "mean_slope", sqrt(2 * self.m2 / pi))
         super().__post_init__()
         if self.alpha <= 0.8968:
             raise InputError(
@@ -94,11 +99,12 @@ class SurfaceInputs(FractalSurface):
         if z.ndim != 2 or min(z.shape) < 5:
             raise InputError(f"heights of shape {z.shape}; give a grid of at least 5 x 5 points")
         z = z - np.nanmean(z)
-        m2, m4 = [], []
+        m2, m4, absolute = [], [], []
         for axis, step in ((1, spacing[0]), (0, spacing[1])):
             first = np.diff(z, axis=axis) / step
             second = np.diff(z, 2, axis=axis) / step**2
             m2.append(float(np.nanmean(first**2)))
+            absolute.append(float(np.nanmean(np.abs(first))))
             m4.append(float(np.nanmean(second**2)))
         m0 = float(np.nanmean(z**2))
         return cls(
@@ -111,6 +117,7 @@ class SurfaceInputs(FractalSurface):
             slope=sqrt(sum(m2)),
             h_rms=sqrt(m0),
             shortest=2 * max(spacing),
+            mean_slope=sum(absolute) / 2,
         )
 
     @classmethod

@@ -133,6 +133,7 @@ def _added(one: SurfaceInputs, other: SurfaceInputs) -> SurfaceInputs:
         slope=sqrt(one.slope**2 + other.slope**2),
         h_rms=sqrt(one.h_rms**2 + other.h_rms**2),
         shortest=max(one.shortest, other.shortest),
+        mean_slope=sqrt(one.mean_slope**2 + other.mean_slope**2),
     )
 
 
