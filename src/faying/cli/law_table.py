@@ -3,7 +3,6 @@
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +15,7 @@ SURFACE_UNITS = {"G": "m", "scan_area": "m^2", "m0": "m^2", "m4": "1/m^2", "h_rm
 
 
 def show(
-    surface: Any,
-    pair: Any,
+    mates: Any,
     names: list[str] | None,
     pressures: Any,
     as_json: bool,
@@ -26,12 +24,12 @@ def show(
     contact_map: str | None = None,
 ) -> None:
     """Compare the laws and print, write and draw the outcome."""
-    from faying.contact.compare import compare, laws_of_surface
+    from faying.contact.compare import compare
     from faying.files import write_text
 
-    inputs = surface.inputs
-    with watched(surface) as rough:
-        made, left_out = laws_of_surface(rough, pair, names=names)
+    inputs = mates.faces.rough.inputs
+    with watched(mates) as seen:
+        made, left_out = seen.laws(names)
         if contact_map:
             draw_contact(made, float(pressures[-1]), contact_map)
         comparison = compare(made, pressures, left_out)
@@ -42,9 +40,11 @@ def show(
         from faying.output.figures.save import save
 
         save(curves(comparison.responses), plot)
-    click.echo(
-        json.dumps(document(inputs, comparison), indent=2, allow_nan=False) if as_json else table(inputs, comparison)
-    )
+    if as_json:
+        tree = {"mates": mates.line} | document(inputs, comparison)
+        click.echo(json.dumps(tree, indent=2, allow_nan=False))
+        return
+    click.echo(f"mates: {mates.line}\n{table(inputs, comparison)}")
 
 
 def draw_contact(laws: dict[str, Any], pressure: float, path: str) -> None:
@@ -61,38 +61,25 @@ def draw_contact(laws: dict[str, Any], pressure: float, path: str) -> None:
 
 
 @contextmanager
-def watched(surface: Any) -> Iterator[Any]:
-    """The surface, with a bar on the terminal that follows the contacts that are solved on its scan, if there are."""
-    if surface is None:
-        yield surface
+def watched(mates: Any) -> Iterator[Any]:
+    """The mates, with a bar on the terminal that follows the contacts that are solved on their scan."""
+    if mates is None:
+        yield None
         return
     with Shown("law") as report:
-        yield replace(surface, progress=lambda done, total: report("contact of the scan", done, total))
+        yield mates.watched(lambda done, total: report("contact of the scan", done, total))
 
 
-def labels(surface: Any, pair: Any, names: list[str] | None) -> list[str]:
-    """The laws that --models or --all-models name and that answer on this scan, and have a stiffness."""
-    from faying.contact.compare import laws_of_surface
-
-    made, _ = laws_of_surface(surface, pair, names=names)
-    return list(made)
-
-
-def stability(surface: Any, pair: Any, names: list[str], given: Any, pressure: float, as_json: bool) -> str:
+def stability(mates: Any, names: list[str], given: Any, pressure: float, as_json: bool) -> str:
     """One row per law: k_n on the whole scan, and the factors by which parts and fewer points move it."""
     from faying.contact.stability import CASES, UNSTABLE
     from faying.contact.stability import stability as stability_of
     from faying.errors import FayingError
 
-    scan, counter = surface.scans
     found, without = [], []
     for name in names:
         try:
-            found.append(
-                stability_of(
-                    scan, pair, model=name, given=given, counter=counter, method=surface.method, pressure=pressure
-                )
-            )
+            found.append(stability_of(mates, model=name, given=given, pressure=pressure))
         except FayingError as fault:
             without.append(f"left out: {name}: {fault}")
     if as_json:
@@ -101,8 +88,10 @@ def stability(surface: Any, pair: Any, names: list[str], given: Any, pressure: f
             | {"stable": one.stable}
             for one in found
         }
-        return json.dumps({"pressure": quantity(pressure, "Pa"), "laws": rows, "left out": without}, indent=2)
-    lines = [f"k_n at {pressure * 1e-6:.4g} MPa, and what multiplies it on parts of the scan", ""]
+        tree = {"mates": mates.line, "pressure": quantity(pressure, "Pa"), "laws": rows, "left out": without}
+        return json.dumps(tree, indent=2)
+    lines = [f"mates: {mates.line}", ""]
+    lines += [f"k_n at {pressure * 1e-6:.4g} MPa, and what multiplies it on parts of the scan", ""]
     lines.append(f"{'law':<12}{'k_n [MPa/um]':>13}" + "".join(f"{name:>17}" for name in CASES[1:]))
     for one in found:
         cells = "".join(f"{'-' if f != f else f'{f:.3g}':>17}" for f in (one.factors[name] for name in CASES[1:]))
