@@ -106,6 +106,7 @@ def test_what_a_law_does_not_ask_for_is_not_computed(monkeypatch):
 
 
 def test_the_contact_is_solved_once_for_the_default_and_the_comparison(monkeypatch):
+    monkeypatch.setenv("FAYING_CACHE", "off")
     solved = []
     inner = HalfSpace._solve
     monkeypatch.setattr(HalfSpace, "_solve", lambda self, *a, **k: solved.append(1) or inner(self, *a, **k))
@@ -170,7 +171,7 @@ def test_the_table_holds_what_the_laws_say():
 def test_laws_that_numbers_cannot_feed_are_named_in_the_table():
     table = faying.Mates.of_fractal(D=2.39, G=1e-10, scan_area=16e-6, materials=PAIR).compare([1e6])
     assert "half-space" not in table.law.values
-    assert any(line.startswith("Persson: ") for line in table.attrs["left_out"])
+    assert any(line.startswith("Persson: ") for line in table.attrs["left_out"].splitlines())
 
 
 def test_curves_are_drawn_with_their_names():

@@ -161,8 +161,7 @@ def facts_of(mates: Any) -> dict[str, Any]:
     """Numbers of both faces, as a result has them."""
     from faying.study.keys.surface import Surface
 
-    facts = Surface(faces=mates.faces, origin=mates.faces.origin).facts()
-    return facts
+    return Surface(faces=mates.faces, origin=mates.faces.origin).facts()
 
 
 def mates_of(options: dict[str, Any], kind: Any, pair: Any) -> Any:

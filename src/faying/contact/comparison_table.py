@@ -10,8 +10,8 @@ from faying.contact.response import UNITS
 from faying.errors import InputError
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from xarray import Dataset
+    import matplotlib.axes
+    import xarray
 
 MEANINGS = {
     "area": "real area / nominal area",
@@ -26,7 +26,7 @@ MEANINGS = {
 STIFFNESS = 1e-12  # MPa/um
 
 
-def dataset(comparison: Comparison, *, mates: str) -> "Dataset":
+def dataset(comparison: Comparison, *, mates: str) -> "xarray.Dataset":
     """Return the responses over (law, pressure) as an xarray.Dataset in SI units; mates: a line on both faces."""
     import xarray as xr
 
@@ -51,7 +51,7 @@ def dataset(comparison: Comparison, *, mates: str) -> "Dataset":
     return xr.Dataset(
         variables,
         coords={"law": list(comparison.responses), "pressure": pressure},
-        attrs={"mates": mates, "left_out": [f"{name}: {why}" for name, why in comparison.left_out.items()]},
+        attrs={"mates": mates, "left_out": "\n".join(f"{name}: {why}" for name, why in comparison.left_out.items())},
     )
 
 
@@ -63,7 +63,9 @@ def label_and_scale(quantity: str) -> tuple[str, float]:
     return MEANINGS[quantity] + (" [MPa/um]" if stiff else ""), STIFFNESS if stiff else 1.0
 
 
-def axes_of(comparison: Comparison, quantity: str, *, title: str, ax: "Axes | None") -> "Axes":
+def axes_of(
+    comparison: Comparison, quantity: str, *, title: str, ax: "matplotlib.axes.Axes | None"
+) -> "matplotlib.axes.Axes":
     """Draw one quantity of the laws that have it; thick within the validity range, thin and dotted outside it."""
     from matplotlib import colormaps
 

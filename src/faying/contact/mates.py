@@ -25,8 +25,8 @@ from faying.typing import Array
 from faying.units import show, si
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from xarray import Dataset
+    import matplotlib.axes
+    import xarray
 
 Materials = str | Material | ContactPair | Sequence[str | Material]
 OF_FACES = ("D", "G", "G_majumdar_bhushan")  # numbers of a surface that take a fit
@@ -208,21 +208,19 @@ class Mates:
         """
         kind = find(name) if not isinstance(name, LawKind) else name
         values = read_entries(kind, given or {})
-        key = kind.label, repr(sorted(values.items()))
-        if key not in self._made:
-            exact = self._made.get(_SOLVED) if kind.label == AUTO else None
-            law = None if exact is None else exact.law
-            choice = pick(
-                kind,
-                values,
-                self.rough_for(kind, values),
-                self.pair,
-                exact=law if isinstance(law, HalfSpace) else None,
-            )
-            self._made[key] = replace(choice, mates=self.line)
-            if isinstance(choice.law, HalfSpace) and not values:
-                self._made.setdefault(_SOLVED, Choice(law=choice.law))
-        return self._made[key]
+        key = kind.label, tuple(sorted(values.items(), key=lambda item: item[0]))
+        plain = all(isinstance(value, str | int | float | Path) for value in values.values())
+        if plain and key in self._made:
+            return self._made[key]
+        exact: ContactLaw | None = None
+        if kind.label == AUTO and isinstance(self.faces.face, Scan):
+            exact = self.choose(HalfSpace.name).law
+        surface = self.rough_for(kind, values)
+        choice = pick(kind, values, surface, self.pair, exact=exact if isinstance(exact, HalfSpace) else None)
+        choice = replace(choice, mates=self.line)
+        if plain:
+            self._made[key] = choice
+        return choice
 
     def law(self, name: str = AUTO, /, **given: object) -> ContactLaw:
         """Return a contact law of these faces.
@@ -265,7 +263,7 @@ class Mates:
         made, left_out = self.laws(laws)
         return compare(made, _pressures(pressure), left_out)
 
-    def compare(self, pressure: ArrayLike | None = None, *, laws: Sequence[str] | None = None) -> "Dataset":
+    def compare(self, pressure: ArrayLike | None = None, *, laws: Sequence[str] | None = None) -> "xarray.Dataset":
         """Return every law that these faces feed, with the contact that is solved on the scan among them.
 
         Args:
@@ -291,8 +289,8 @@ class Mates:
         *,
         laws: Sequence[str] | None = None,
         quantity: str = "k_n",
-        ax: "Axes | None" = None,
-    ) -> "Axes":
+        ax: "matplotlib.axes.Axes | None" = None,
+    ) -> "matplotlib.axes.Axes":
         """Draw a quantity of every law against pressure; dotted where a law leaves its validity range.
 
         Args:
@@ -310,9 +308,6 @@ class Mates:
 
         label_and_scale(quantity)  # an unknown one is told before contacts are solved
         return axes_of(self.comparison(pressure, laws), quantity, title=self.line, ax=ax)
-
-
-_SOLVED = "the half-space contact of these faces"
 
 
 def law_for(
