@@ -1,5 +1,6 @@
 """Every command and every Python block of the README and the docs runs."""
 
+import json
 import re
 import shlex
 import shutil
@@ -95,6 +96,22 @@ def test_the_readme_has_commands():
     found = list(commands(ROOT / "README.md"))
     assert f"run {T_SPECIMEN}" in found
     assert len(found) >= 5
+
+
+def test_the_readme_gives_one_stiffness_within_the_range_of_its_law(checkout):
+    """Its command, its Python block and its sentence: the same number, and valid."""
+    readme = ROOT / "README.md"
+    (line,) = [line for line in commands(readme) if line.startswith("law --D")]
+    words = [sys.executable, "-m", "faying", *shlex.split(line), "--json"]
+    tree = json.loads(subprocess.run(words, capture_output=True, text=True, check=True).stdout)
+    assert all(tree["valid"])
+    assert tree["pressure"]["values"][-1] == pytest.approx(2e6, rel=1e-12)
+    by_command = f"{tree['k_n']['values'][-1] / 1e12:.1f} MPa/um"
+    (block,) = [block for block in blocks(readme, "python") if "of_fractal" in block]
+    said = subprocess.run([sys.executable, "-c", block], capture_output=True, text=True, check=True).stdout
+    assert said.startswith(f"k_n {by_command}, ")
+    assert said.strip().endswith("valid: True")
+    assert f"{by_command} at 2 MPa" in readme.read_text()
 
 
 @pytest.mark.parametrize("page", [*PAGES, ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"], ids=lambda p: p.name)

@@ -1,47 +1,64 @@
 # The public names. Each is imported when it is first used (lazy_loader reads this file).
-from . import contact
-from .asperity_fe import solve_asperity
-from .contact.auto import law_for
-from .contact.half_space import HalfSpace
-from .contact.jk import JK
-from .decks.matrices import read_matrices
-from .decks.meshfile import read_mesh
-from .distribution import Distribution
-from .errors import FayingError, InputError, NotConverged, ReadError
-from .fe.mesh import Mesh
-from .halfspace import solve_half_space
-from .identify.identification import Identification
-from .identify.of_study import identify
-from .identify.predict import predict
-from .identify.prediction import Prediction
-from .joint.bolt import Bolt, Washer
-from .joint.flatness import minimum_zone
-from .joint.form import Form
-from .joint.form_fit import fit_form
-from .joint.gap_map import FaceMap, GapMap
-from .joint.solid_bolt import SolidBolt
-from .joint.structure import Joint, Structure
-from .materials import CATALOGUE, RIGID, ContactPair, Material
-from .measured.compare import compare_modes
-from .measured.frf import FRF
-from .measured.identify import identify_modes
-from .measured.model import ModelModes
-from .measured.records import frf_from_records
-from .measured.ring_down import MeasuredBackbone, ring_down, ring_down_of_frf
-from .measured.uff import read_uff
-from .measured.uff_write import write_uff
-from .result import Result, read_model_modes
-from .result.backbone import Backbone
-from .study import Study, run
-from .study.attach import attach
-from .study.axes import axis_of
-from .study.backbone import backbone
-from .study.sweep import sweep
-from .surface import synthesize
-from .surface.combine import Combined, combine
-from .surface.fractal import FractalFit, fit_fractal
-from .surface.read import read_scan
-from .surface.scan import Profile, Scan
-from .surface.write import write_scan
+from . import contact as contact
+from .asperity_fe import solve_asperity as solve_asperity
+from .contact.half_space import HalfSpace as HalfSpace
+from .contact.jk import JK as JK
+from .contact.mates import Mates as Mates
+from .contact.mates import law_for as law_for
+from .decks.matrices import read_matrices as read_matrices
+from .decks.meshfile import read_mesh as read_mesh
+from .distribution import Distribution as Distribution
+from .errors import FayingError as FayingError
+from .errors import InputError as InputError
+from .errors import NotConverged as NotConverged
+from .errors import ReadError as ReadError
+from .fe.mesh import Mesh as Mesh
+from .halfspace import solve_half_space as solve_half_space
+from .identify.identification import Identification as Identification
+from .identify.of_study import identify as identify
+from .identify.predict import predict as predict
+from .identify.prediction import Prediction as Prediction
+from .joint.bolt import Bolt as Bolt
+from .joint.bolt import Washer as Washer
+from .joint.flatness import minimum_zone as minimum_zone
+from .joint.form import Form as Form
+from .joint.form_fit import fit_form as fit_form
+from .joint.gap_map import FaceMap as FaceMap
+from .joint.gap_map import GapMap as GapMap
+from .joint.solid_bolt import SolidBolt as SolidBolt
+from .joint.structure import Joint as Joint
+from .joint.structure import Structure as Structure
+from .materials import CATALOGUE as CATALOGUE
+from .materials import RIGID as RIGID
+from .materials import ContactPair as ContactPair
+from .materials import Material as Material
+from .measured.compare import compare_modes as compare_modes
+from .measured.frf import FRF as FRF
+from .measured.identify import identify_modes as identify_modes
+from .measured.model import ModelModes as ModelModes
+from .measured.records import frf_from_records as frf_from_records
+from .measured.ring_down import MeasuredBackbone as MeasuredBackbone
+from .measured.ring_down import ring_down as ring_down
+from .measured.ring_down import ring_down_of_frf as ring_down_of_frf
+from .measured.uff import read_uff as read_uff
+from .measured.uff_write import write_uff as write_uff
+from .result import Result as Result
+from .result import read_model_modes as read_model_modes
+from .result.backbone import Backbone as Backbone
+from .study import Study as Study
+from .study import run as run
+from .study.attach import attach as attach
+from .study.axes import axis_of as axis_of
+from .study.backbone import backbone as backbone
+from .study.sweep import sweep as sweep
+from .surface import synthesize as synthesize
+from .surface.combine import Combined as Combined
+from .surface.combine import combine as combine
+from .surface.fractal import FractalFit as FractalFit
+from .surface.fractal import fit_fractal as fit_fractal
+from .surface.read import read_scan as read_scan
+from .surface.scan import Profile as Profile
+from .surface.scan import Scan as Scan
+from .surface.write import write_scan as write_scan
 
 __version__: str

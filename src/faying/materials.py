@@ -1,6 +1,7 @@
 """Materials and the pair of them that meets in a joint."""
 
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import cached_property
 from math import inf, isfinite, isnan
 
@@ -89,21 +90,23 @@ class Material:
 RIGID = Material(name="rigid", E=inf, nu=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class ContactPair:
     """The two materials that meet; hardness is that of the softer one.
 
     Args:
-        first, second: the materials; either may be RIGID, not both.
+        first, second: the materials, or their names: those of the catalogue, or "rigid"; not both rigid.
 
     Raises:
-        InputError: for two rigid bodies.
+        InputError: for two rigid bodies, names that the catalogue lacks, and what is no material.
     """
 
     first: Material
     second: Material
 
-    def __post_init__(self) -> None:
+    def __init__(self, first: Material | str, second: Material | str) -> None:
+        object.__setattr__(self, "first", material_of(first))
+        object.__setattr__(self, "second", material_of(second))
         if self.first.is_rigid and self.second.is_rigid:
             raise InputError("both materials of the pair are rigid; at least one must be deformable")
 
@@ -202,3 +205,22 @@ CATALOGUE = {
     )
 }
 """A few materials with their sources. Friction depends on the pair and its finish: give your own."""
+
+
+def material_of(given: object) -> Material:
+    """Return a material, or the one that the catalogue holds under a name; "rigid" is the rigid plane.
+
+    Raises InputError that lists the names, the nearest first.
+    """
+    if isinstance(given, Material):
+        return given
+    if not isinstance(given, str):
+        raise InputError(f'material = {given!r}; give the name of one in the catalogue, "45 steel" say, or a Material')
+    known = CATALOGUE | {RIGID.name: RIGID}
+    if given not in known:
+        near = get_close_matches(given, known, n=1, cutoff=0.5)
+        hint = f'; did you mean "{near[0]}"?' if near else ""
+        raise InputError(
+            f"no material {given!r} in the catalogue{hint}; it has {', '.join(CATALOGUE)}; make your own with Material"
+        )
+    return known[given]

@@ -119,6 +119,31 @@ def parse(text: object, unit: str, *, name: str = "value") -> float:
     return number * factor
 
 
+def si(value: object, unit: str, *, name: str = "value") -> float:
+    """Return a quantity that is given as text with its unit, or as a number in the SI unit `unit`.
+
+    Args:
+        value: for example "5 MPa", or 5e6.
+        unit: the SI unit that is wanted.
+        name: what the error calls the quantity.
+
+    Raises:
+        InputError: as `parse`, and for anything that is neither text nor a finite number.
+    """
+    if isinstance(value, str):
+        return parse(value, unit, name=name)
+    try:
+        number = float("nan") if isinstance(value, bool) else float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        number = float("nan")
+    if not isfinite(number):
+        example = EXAMPLES.get(unit, f"1 {unit}")
+        raise InputError(
+            f'{name} = {_short(value)}; give text with a unit, for example "{example}", or a number in {unit}'
+        )
+    return number
+
+
 def _short(text: object) -> str:
     """What was given, cut where it is long."""
     given = f'"{text}"' if isinstance(text, str) else repr(text)

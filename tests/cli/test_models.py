@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from faying import CATALOGUE, RIGID, ContactPair, InputError, fit_fractal, read_scan
+from faying import ContactPair, InputError, fit_fractal, read_scan
 from faying.cli.law import command as law
 from faying.cli.models import command as models
 from faying.contact import JK, SurfaceInputs, laws
@@ -98,7 +98,7 @@ def test_each_law_gets_its_inputs_from_the_same_scan() -> None:
     assert tree["surface"]["D"]["values"] == pytest.approx(fit.D)
     # twice the spectral density, that of two like faces, is a G greater by 2^(1/(2D - 4))
     assert tree["surface"]["G"]["values"] == pytest.approx(fit.G * 2 ** (1 / (2 * fit.D - 4)), rel=1e-9)
-    pair = ContactPair(CATALOGUE["45 steel"], RIGID)
+    pair = ContactPair("45 steel", "45 steel")
     jk = JK.from_surface(SurfaceInputs(**{name: q["values"] for name, q in tree["surface"].items()}), pair)
     assert tree["laws"]["JK"]["k_n"]["values"] == pytest.approx(jk.at_pressure([1e6, 2e6]).k_n.tolist(), rel=1e-9)
     values = np.array([tree["laws"][n]["k_n"]["values"] for n in ("JK", "GW", "Persson")])

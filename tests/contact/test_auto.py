@@ -155,12 +155,12 @@ def test_the_stiffness_of_one_contact_is_kept_and_read_again(tmp_path, monkeypat
 def test_stability_asks_each_part_as_a_scan_of_its_own():
     z = gaussian(0.8, 0.06e-3, 8e-6, 1e-6, 7, points=128, side=0.5e-3)
     scan = Scan(heights=z, spacing=(0.5e-3 / 128,) * 2)
-    found = stability(scan, PAIR, model="jk", pressure=1e6)
+    found = stability(faying.Mates(scan, materials=PAIR), model="jk", pressure=1e6)
     for share, name in ((1.0, WHOLE), (0.5, "half window")):
         law = faying.law_for(scan=scan.cropped(share), pair=PAIR, model="jk")
         assert found.k_n[name] == pytest.approx(float(law.at_pressure(1e6).k_n), rel=1e-9)
     assert not found.stable
-    exact = stability(scan, PAIR, model="half-space", counter="smooth", pressure=MIDDLE)
+    exact = stability(faying.Mates(scan, materials=PAIR, other="smooth"), model="half-space", pressure=MIDDLE)
     coarse = Scan(heights=averaged(faces_of(scan, "smooth").rough.scan.heights, 2), spacing=(scan.spacing[0] * 2,) * 2)
     law = HalfSpace(faces_of(coarse, "smooth").rough.scan, PAIR)
     assert exact.k_n[COARSE] == pytest.approx(law.contact_at(MIDDLE).normal_stiffness(loading=False), rel=1e-6)

@@ -73,7 +73,7 @@ def test_given_numbers_are_those_of_both_faces():
 )
 def test_other_faces_that_are_none(counter, words):
     with pytest.raises(InputError, match=words):
-        faces_of(rough(1), counter)
+        _ = faces_of(rough(1), counter).unfitted
 
 
 def test_a_rougher_pair_is_softer():

@@ -61,7 +61,7 @@ def test_the_default_says_what_it_took_and_what_it_does_not_know(default):
     assert "half-space" in choice
     assert "times its k_n" in choice
     assert default.laws[0]["name"] == "half-space"
-    assert "statistically alike" in texts(default, "counter")[0]
+    assert texts(default, "mates")[0].startswith("both faces as surface.x3p, unrelated; ")
     assert "predicts no loss" in texts(default, "no-loss")[0]
     assert np.isnan(default.loss_factors).all()
     assert "loss" not in default.csv_text().splitlines()[1]
@@ -131,7 +131,7 @@ def test_a_form_beside_is_that_of_a_run_with_it(default, tmp_path):
 
 def test_a_law_far_from_the_contact_of_its_scan_is_told(closed):
     (far,) = texts(closed, "far-from-exact")
-    assert not 0.5 <= float(far.partition("GW is ")[2].split()[0]) <= 2
+    assert not 0.5 <= float(far.partition("GW-KE is ")[2].split()[0]) <= 2
     assert closed.low is None
     assert "law-choice" not in codes(closed)
 
@@ -143,7 +143,7 @@ def test_a_stiffness_that_hangs_on_the_window_is_told_where_it_does(default, clo
     for result, model in ((default, "half-space"), (closed, "gw-ke")):
         touching = result.pressure[0] > 0
         mean = np.average(result.pressure[0][touching], weights=result.weights[touching])
-        found = stability(scan, faying.ContactPair(steel, steel), model=model, pressure=float(mean))
+        found = stability(faying.Mates(scan, materials=steel), model=model, pressure=float(mean))
         told = [text for text in texts(result, "window") if "beside" not in text]
         assert len(told) == (not found.stable)
         for text in told:

@@ -25,7 +25,7 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
         *("read_scan", "write_scan", "Scan", "Profile", "synthesize", "fit_fractal", "FractalFit", "combine"),
         "Combined",
     ),
-    "Contact": ("law_for", "JK", "HalfSpace", "solve_half_space", "solve_asperity", "contact"),
+    "Contact": ("Mates", "law_for", "JK", "HalfSpace", "solve_half_space", "solve_asperity", "contact"),
     "Materials": ("Material", "ContactPair", "CATALOGUE", "RIGID"),
     "Structures": (
         *("Structure", "Joint", "Bolt", "Washer", "SolidBolt", "Mesh", "read_mesh", "read_matrices"),

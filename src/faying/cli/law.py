@@ -22,13 +22,15 @@ SHOWN = {
 }
 HEAT = "W/(m^2*K)"
 WIDTH = 78
+PRESSURES = "0.1 MPa:50 MPa"
+OF_NUMBERS = ("D", "G", "G_majumdar_bhushan", "scan_area", "side")  # what laws take from --D, --G and --scan-area
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.option("--model", help="The law; `faying models` lists them. Default: auto on a scan, JK on D and G.")
-@click.option("--D", "D", help="Fractal dimension of the surface, 2 to 3.")
-@click.option("--G", "G", metavar="LENGTH", help='Fractal roughness, for example "1.53e-10 m".')
-@click.option("--scan-area", metavar="AREA", help='Area that the scan covers, for example "16 mm^2".')
+@click.option("--D", "D", help="Fractal dimension of both faces together, 2 to 3.")
+@click.option("--G", "G", metavar="LENGTH", help='Fractal roughness of both faces together, for example "1.53e-10 m".')
+@click.option("--scan-area", metavar="AREA", help='Area that D and G belong to, for example "16 mm^2".')
 @click.option(
     "--set",
     "settings",
@@ -36,8 +38,13 @@ WIDTH = 78
     metavar="NAME=VALUE",
     help='Any parameter of the model, for example --set cutoff=0.01 or --set "sigma=0.8 um".',
 )
-@click.option("--material", default=None, help='Of the rough body, from the catalogue, for example "45 steel".')
-@click.option("--against", default="rigid", show_default=True, help='"rigid", "same", or a name of the catalogue.')
+@click.option("--material", default=None, help='Of the face with the scan, from the catalogue, for example "45 steel".')
+@click.option(
+    "--against",
+    default="same",
+    show_default=True,
+    help='Material of the other face: "same", a name of the catalogue, or "rigid".',
+)
 @click.option("--E", "E", metavar="STRESS", help="Young's modulus, in place of or over --material.")
 @click.option("--nu", type=float, help="Poisson's ratio.")
 @click.option("--hardness", metavar="STRESS", help="Hardness.")
@@ -46,10 +53,8 @@ WIDTH = 78
 @click.option("--conductivity", metavar="W/(m K)", help='Of heat, for --conductance, for example "50 W/(m K)".')
 @click.option(
     "--pressure",
-    default="0.1 MPa:50 MPa",
-    show_default=True,
     metavar="FROM:TO[:POINTS]",
-    help="Nominal pressures, spaced logarithmically; or one pressure.",
+    help="Nominal pressures, spaced logarithmically; or one pressure. Default: 0.1 to 50 MPa, as far as the law goes.",
 )
 @click.option("--scan", type=click.Path(path_type=Path), help="A scan: D, G, moments and area come from it.")
 @click.option("--xy-unit", help='Unit of x and y where the scan states none, for example "mm".')
@@ -79,7 +84,7 @@ WIDTH = 78
 def command(
     model: str | None,
     settings: tuple[str, ...],
-    pressure: str,
+    pressure: str | None,
     as_json: bool,
     csv_file: str | None,
     plot: str | None,
@@ -104,17 +109,16 @@ def command(
         raise InputError("--stability and --counter go with --scan FILE")
     kind = find(model or ("auto" if on_scan else "JK"))
     pair = pair_of(options)
-    surface = surface_of(options) if on_scan else None
-    pressures = pressures_of(pressure)
+    mates = mates_of(options, kind, pair)
+    pressures = pressures_of(pressure or PRESSURES)
     several = None if all_models else [name for name in (models or "").split(",") if name.strip()]
     if stability:
-        assert surface is not None
-        labels = [kind.label] if several == [] else law_table.labels(surface.rough, pair, several)
-        given = given_of(kind, options, settings)
-        click.echo(law_table.stability(surface, pair, labels, given, float(pressures[len(pressures) // 2]), as_json))
+        labels = [kind.label] if several == [] else list(mates.laws(several)[0])
+        given = given_of(kind, options, settings, mates)
+        click.echo(law_table.stability(mates, labels, given, float(pressures[len(pressures) // 2]), as_json))
         return
     if models or all_models:
-        if surface is None or settings:
+        if not on_scan or settings:
             raise InputError("--models and --all-models take every input from a scan: give --scan FILE and no --set")
         output = law_table.Output(
             as_json=as_json,
@@ -123,14 +127,15 @@ def command(
             contact_map=contact_map,
             conductance=options["conductance"],
         )
-        law_table.show(surface.rough, pair, several, pressures, output)
+        law_table.show(mates, several, pressures, output)
         return
     if contact_map:
         raise InputError("--contact-map goes with --scan and halfspace among --models")
-    with law_table.watched(None if surface is None else surface.rough) as rough:
-        choice = pick(kind, given_of(kind, options, settings), rough, pair)
+    given = given_of(kind, options, settings, mates)
+    with law_table.watched(mates) as seen:
+        choice = pick(kind, given, None, pair) if seen is None else seen.choose(kind, given)
         law = choice.law
-        response = law.at_pressure(pressures)
+        response = law.at_pressure(pressures if pressure is not None else reached(law, pressures))
     h = conducted(law, response, pair) if options["conductance"] else None
     if csv_file:
         write_text(Path(csv_file), csv_text(law, response, h))
@@ -140,11 +145,11 @@ def command(
 
         save(curves({law.name: response}), plot)
     if as_json:
-        told = {"reason": choice.reason} | ({} if surface is None else {"surface": surface.facts()})
-        told |= {} if h is None else {"h": quantity(h.tolist(), HEAT)}
-        click.echo(json.dumps(document(law, response) | told, indent=2, allow_nan=False))
+        about = {"reason": choice.reason, "mates": choice.mates} | ({"surface": facts_of(mates)} if on_scan else {})
+        about |= {} if h is None else {"h": quantity(h.tolist(), HEAT)}
+        click.echo(json.dumps(document(law, response) | about, indent=2, allow_nan=False))
         return
-    click.echo("\n".join([*heading(choice, surface), table(law, response, h)]))
+    click.echo("\n".join([*heading(choice, mates), table(law, response, h)]))
 
 
 def conducted(law: Any, response: Any, pair: Any) -> Any:
@@ -157,28 +162,53 @@ def conducted(law: Any, response: Any, pair: Any) -> Any:
     return heat_conductance(response.k_n, pair)
 
 
-def heading(choice: Any, surface: Any) -> list[str]:
-    """What the scan says of D and G, what the other face is, and why the law was taken."""
+def heading(choice: Any, mates: Any) -> list[str]:
+    """Both faces, what the scan says of D and G, and why the law was taken."""
     from dataclasses import asdict
     from textwrap import wrap
 
     from faying.output import table
 
     lines = []
-    if surface is not None:
-        fit = surface.fit
-        lines.append(f"{surface.origin}: {surface.counter}")
+    if mates is not None:
+        lines += wrap(f"mates: {mates.line}", WIDTH)
+        fit = mates.faces.fit
         if fit is not None:
             rows = [["method", *table.FRACTAL], [fit.method, *table.fractal(asdict(fit))]]
             lines += [f"  {line}" for line in table.text(rows).splitlines()]
-        lines += [line for text in surface.warnings for line in wrap(f"note: {text}", WIDTH)]
+        lines += [line for text in mates.faces.warnings for line in wrap(f"note: {text}", WIDTH)]
     if choice.reason:
         lines += wrap(f"law: {choice.reason}", WIDTH)
     return [*lines, ""] if lines else []
 
 
-def surface_of(options: dict[str, Any]) -> Any:
-    """Read, level and fit the scan of --scan, as a study does."""
+def facts_of(mates: Any) -> dict[str, Any]:
+    """Numbers of both faces, as a result has them."""
+    from faying.study.keys.surface import Surface
+
+    return Surface(faces=mates.faces, origin=mates.faces.origin).facts()
+
+
+def mates_of(options: dict[str, Any], kind: Any, pair: Any) -> Any:
+    """Both faces with their materials: of --scan, read as a study does, or of --D, --G and --scan-area together.
+
+    None where a law has no surface, or takes none of these numbers from one.
+    """
+    from faying.contact.mates import Mates
+    from faying.contact.parameter import FRACTAL
+
+    numbers: dict[str, Any] = {
+        name: FRACTAL[name].read(str(options[name]), name) for name in FRACTAL if options[name] is not None
+    }
+    if options["scan"] is not None:
+        return Mates(faces_of(options, numbers), materials=pair)
+    if len(numbers) < len(FRACTAL) or not (kind.label == "auto" or kind.takes(OF_NUMBERS, ())):
+        return None
+    return Mates.of_fractal(**numbers, materials=pair)
+
+
+def faces_of(options: dict[str, Any], numbers: dict[str, Any]) -> Any:
+    """Read, level and fit the scan of --scan, as a study does; numbers: D, G and area in place of its own."""
     from faying.contact.two_faces import COUNTERS
     from faying.errors import InputError
     from faying.study.keys.surface import SurfaceChoice
@@ -191,10 +221,11 @@ def surface_of(options: dict[str, Any]) -> Any:
     counter = options["counter"] or "same"
     if counter not in COUNTERS and not Path(counter).is_file():
         raise InputError(f'--counter {counter}: no such file; give the scan of the other face, "same" or "smooth"')
-    surface = SurfaceChoice(**{name: options[name] for name in names}, counter=counter, **sizes).read()
-    if surface.rough is None or surface.rough.scan is None:
+    choice = SurfaceChoice(**{name: options[name] for name in names}, counter=counter, **sizes, **numbers)
+    faces = choice.read().faces
+    if faces is None or faces.unfitted.scan is None:
         raise InputError(f"{options['scan']} holds a profile; contact laws need an areal scan")
-    return surface
+    return faces
 
 
 def pair_of(options: dict[str, Any]) -> Any:
@@ -202,13 +233,8 @@ def pair_of(options: dict[str, Any]) -> Any:
     from dataclasses import replace
 
     from faying.errors import InputError
-    from faying.materials import CATALOGUE, RIGID, ContactPair, Material
+    from faying.materials import ContactPair, Material, material_of
     from faying.units import parse
-
-    def known(name: str) -> Material:
-        if name not in CATALOGUE:
-            raise InputError(f"no material {name!r} in the catalogue; it has {', '.join(CATALOGUE)}; or give --E, --nu")
-        return CATALOGUE[name]
 
     stresses = ("E", "hardness", "yield_strength")
     given: dict[str, Any] = {
@@ -222,20 +248,24 @@ def pair_of(options: dict[str, Any]) -> Any:
             raise InputError('no material: give --material, for example "45 steel", or --E and --nu')
         rough = Material(name="given", **given)
     else:
-        rough = known(options["material"])
+        rough = material_of(options["material"])
         if "yield_strength" in given and "hardness" not in given:
             given["hardness"] = None
         rough = replace(rough, **given)
     against = options["against"]
-    return ContactPair(rough, RIGID if against == "rigid" else rough if against == "same" else known(against))
+    return ContactPair(rough, rough if against == "same" else against)
 
 
-def given_of(kind: Any, options: dict[str, Any], settings: tuple[str, ...]) -> dict[str, Any]:
-    """Read the parameters of a law from --D, --G, --scan-area and --set; every fault in one message."""
+def given_of(kind: Any, options: dict[str, Any], settings: tuple[str, ...], mates: Any = None) -> dict[str, Any]:
+    """Read the parameters of a law from --set, and from --D, --G and --scan-area where they are not those of mates.
+
+    Every fault is in one message.
+    """
     from faying.contact.build import check_entries
     from faying.errors import InputError
 
-    texts = {name: str(options[name]) for name in ("D", "G", "scan_area") if options[name] is not None}
+    own = ("D", "G", "scan_area") if mates is None else ()
+    texts = {name: str(options[name]) for name in own if options[name] is not None}
     faults = []
     for setting in settings:
         name, mark, text = setting.partition("=")
@@ -277,6 +307,14 @@ def pressures_of(text: str, points: int = 19) -> Any:
             )
         points = int(parts[2])
     return np.geomspace(values[0], values[1], points)
+
+
+def reached(law: Any, pressures: Any) -> Any:
+    """As many pressures [Pa] over the part of their range that a law covers; all of them where it covers none."""
+    import numpy as np
+
+    first, last = max(pressures[0], law.least_pressure), min(pressures[-1], law.greatest_pressure)
+    return np.geomspace(first, last, pressures.size) if first < last else pressures
 
 
 MOST_POINTS = 1_000_000

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -26,18 +26,18 @@ class Output:
     conductance: bool = False
 
 
-def show(surface: Any, pair: Any, names: list[str] | None, pressures: Any, output: Output) -> None:
+def show(mates: Any, names: list[str] | None, pressures: Any, output: Output) -> None:
     """Compare the laws and print, write and draw the outcome."""
-    from faying.contact.compare import compare, laws_of_surface
+    from faying.contact.compare import compare
     from faying.files import write_text
 
-    inputs = surface.inputs
-    with watched(surface) as rough:
-        made, left_out = laws_of_surface(rough, pair, names=names)
+    inputs = mates.faces.rough.inputs
+    with watched(mates) as seen:
+        made, left_out = seen.laws(names)
         if output.contact_map:
             draw_contact(made, float(pressures[-1]), output.contact_map)
         comparison = compare(made, pressures, left_out)
-    heat = conducted(comparison, pair) if output.conductance else {}
+    heat = conducted(comparison, mates.pair) if output.conductance else {}
     if output.csv_file:
         write_text(Path(output.csv_file), csv(comparison, heat))
     if output.plot:
@@ -46,9 +46,10 @@ def show(surface: Any, pair: Any, names: list[str] | None, pressures: Any, outpu
 
         save(curves(comparison.responses), output.plot)
     if output.as_json:
-        click.echo(json.dumps(document(inputs, comparison, heat), indent=2, allow_nan=False))
-    else:
-        click.echo(table(inputs, comparison, heat))
+        tree = {"mates": mates.line} | document(inputs, comparison, heat)
+        click.echo(json.dumps(tree, indent=2, allow_nan=False))
+        return
+    click.echo(f"mates: {mates.line}\n{table(inputs, comparison, heat)}")
 
 
 def conducted(comparison: Any, pair: Any) -> dict[str, Any]:
@@ -72,38 +73,25 @@ def draw_contact(laws: dict[str, Any], pressure: float, path: str) -> None:
 
 
 @contextmanager
-def watched(surface: Any) -> Iterator[Any]:
-    """The surface, with a bar on the terminal that follows the contacts that are solved on its scan, if there are."""
-    if surface is None:
-        yield surface
+def watched(mates: Any) -> Iterator[Any]:
+    """The mates, with a bar on the terminal that follows the contacts that are solved on their scan."""
+    if mates is None:
+        yield None
         return
     with Shown("law") as report:
-        yield replace(surface, progress=lambda done, total: report("contact of the scan", done, total))
+        yield mates.watched(lambda done, total: report("contact of the scan", done, total))
 
 
-def labels(surface: Any, pair: Any, names: list[str] | None) -> list[str]:
-    """The laws that --models or --all-models name and that answer on this scan, and have a stiffness."""
-    from faying.contact.compare import laws_of_surface
-
-    made, _ = laws_of_surface(surface, pair, names=names)
-    return list(made)
-
-
-def stability(surface: Any, pair: Any, names: list[str], given: Any, pressure: float, as_json: bool) -> str:
+def stability(mates: Any, names: list[str], given: Any, pressure: float, as_json: bool) -> str:
     """One row per law: k_n on the whole scan, and the factors by which parts and fewer points move it."""
     from faying.contact.stability import CASES, UNSTABLE
     from faying.contact.stability import stability as stability_of
     from faying.errors import FayingError
 
-    scan, counter = surface.scans
     found, without = [], []
     for name in names:
         try:
-            found.append(
-                stability_of(
-                    scan, pair, model=name, given=given, counter=counter, method=surface.method, pressure=pressure
-                )
-            )
+            found.append(stability_of(mates, model=name, given=given, pressure=pressure))
         except FayingError as fault:
             without.append(f"left out: {name}: {fault}")
     if as_json:
@@ -112,8 +100,10 @@ def stability(surface: Any, pair: Any, names: list[str], given: Any, pressure: f
             | {"stable": one.stable}
             for one in found
         }
-        return json.dumps({"pressure": quantity(pressure, "Pa"), "laws": rows, "left out": without}, indent=2)
-    lines = [f"k_n at {pressure * 1e-6:.4g} MPa, and what multiplies it on parts of the scan", ""]
+        tree = {"mates": mates.line, "pressure": quantity(pressure, "Pa"), "laws": rows, "left out": without}
+        return json.dumps(tree, indent=2)
+    lines = [f"mates: {mates.line}", ""]
+    lines += [f"k_n at {pressure * 1e-6:.4g} MPa, and what multiplies it on parts of the scan", ""]
     lines.append(f"{'law':<12}{'k_n [MPa/um]':>13}" + "".join(f"{name:>17}" for name in CASES[1:]))
     for one in found:
         cells = "".join(f"{'-' if f != f else f'{f:.3g}':>17}" for f in (one.factors[name] for name in CASES[1:]))

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import exp, log
-from pathlib import Path
 from typing import final
 
 import numpy as np
@@ -12,10 +11,8 @@ from faying.contact.build import AUTO, LawKind, build, find, kinds
 from faying.contact.half_space import HalfSpace
 from faying.contact.inputs import RoughSurface
 from faying.contact.law import ContactLaw
-from faying.contact.two_faces import Counter, faces_of
 from faying.errors import FayingError, InputError
 from faying.materials import ContactPair
-from faying.surface.scan import Profile, Scan
 from faying.typing import Array
 
 CLOSE = 1.3  # a closed law stands for the numerical contact where their k_n differ by no more than this factor
@@ -31,20 +28,30 @@ class Choice:
         law: the law.
         reason: one line; empty where the user named the law.
         ratios: k_n of each closed law over that of the numerical contact, at the middle pressure.
+        mates: both faces and their materials in one line; empty where the law takes nothing from a surface.
     """
 
     law: ContactLaw
     reason: str = ""
     ratios: Mapping[str, float] = field(default_factory=dict)
+    mates: str = ""
 
 
-def pick(kind: LawKind | str, given: Mapping[str, object], surface: RoughSurface | None, pair: ContactPair) -> Choice:
+def pick(
+    kind: LawKind | str,
+    given: Mapping[str, object],
+    surface: RoughSurface | None,
+    pair: ContactPair,
+    *,
+    exact: HalfSpace | None = None,
+) -> Choice:
     """Return the law that a user names, or the choice among those of the surface for "auto".
 
     "auto" takes the half-space contact of the scan where it resolves the contact at a hundredth of the hardness (at
     least 30 points touch, and k_n moves by at most 25 % on half the points each way); else the closed law whose k_n
     comes closest to it, where that lies within 30 %; else the half-space contact all the same, with its flags. With D
-    and G alone there is no contact to solve: JK is taken.
+    and G alone there is no contact to solve: JK is taken. exact: the half-space contact of this surface and pair, where
+    there is one already, so that it is not solved again.
 
     Raises:
         InputError: as `build`, and for "auto" without a surface.
@@ -57,25 +64,25 @@ def pick(kind: LawKind | str, given: Mapping[str, object], surface: RoughSurface
     if surface.scan is None:
         law = build("JK", given, surface, pair)
         return Choice(law=law, reason="JK, for there is no areal scan to solve; a scan would give a better answer")
-    return _choose(surface, pair)
+    return _choose(surface, pair, exact)
 
 
-def _choose(surface: RoughSurface, pair: ContactPair) -> Choice:
+def _choose(surface: RoughSurface, pair: ContactPair, exact: HalfSpace | None) -> Choice:
     plastic = np.isfinite(pair.hardness)
-    law = build("half-space", {}, surface, pair)
+    law = build("half-space", {}, surface, pair) if exact is None else exact
     assert isinstance(law, HalfSpace)
     full = pair.bulk_hardness if plastic else law.greatest_pressure / 0.3
     pressure = np.clip(SHARES * full, law.least_pressure, law.greatest_pressure)
-    exact = law.at_pressure(pressure)
-    assert exact.k_n is not None
-    ratios = closed_ratios(surface, pair, pressure, exact.k_n) if plastic else {}
+    solved = law.at_pressure(pressure)
+    assert solved.k_n is not None
+    ratios = closed_ratios(surface, pair, pressure, solved.k_n) if plastic else {}
     middle = {name: float(row[1]) for name, row in ratios.items()}
     nearest = min(ratios, key=lambda name: float(np.abs(np.log(ratios[name])).max()), default=None)
     said = (
         "" if nearest is None else f"; the closed law nearest to it, {nearest}, has {middle[nearest]:.2f} times its k_n"
     )
     at = f"at {pressure[1] / 1e6:.3g} MPa"
-    faults = [reason for reason, mask in exact.reasons.items() if mask[1]]
+    faults = [reason for reason, mask in solved.reasons.items() if mask[1]]
     if not faults:
         moved = float(np.interp(log(pressure[1]), np.log(law.series.pressure), np.abs(law.series.change[0])))
         reason = (
@@ -107,31 +114,3 @@ def closed_ratios(surface: RoughSurface, pair: ContactPair, pressure: Array, k_n
         if found is not None and np.all(found > 0):
             out[kind.label] = found / k_n
     return out
-
-
-def law_for(
-    *,
-    scan: Scan | Profile,
-    pair: ContactPair,
-    counter: Counter = "same",
-    model: str = "auto",
-    cache: str | Path | None = None,
-) -> ContactLaw:
-    """Return the contact law of a joint from the scan of a face.
-
-    Args:
-        scan: of one face, as `read_scan` gives it.
-        pair: the materials that meet.
-        counter: the other face: its scan; "same", statistically alike but unrelated; or "smooth".
-        model: a law by name, or "auto": the half-space contact of the scan where it resolves the contact, else the
-            closed law nearest to it.
-        cache: folder that keeps solved contacts; None keeps nothing.
-
-    Returns:
-        The law. `faying.contact.auto.pick` gives the reason as well.
-
-    Raises:
-        InputError: for unknown names, and for scans from which the law cannot be made.
-    """
-    surface = faces_of(scan, counter, cache=None if cache is None else Path(cache)).rough
-    return pick(model, {}, surface, pair).law

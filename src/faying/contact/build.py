@@ -103,6 +103,8 @@ def find(name: str) -> LawKind:
 
     Raises InputError that lists the known labels, the nearest first.
     """
+    if not isinstance(name, str):
+        raise InputError(f'contact law = {name!r}; give its name as text, for example "jk"')
     known = {_plain(label): kind for label, kind in kinds().items()}
     known |= {_plain(key): kinds()[law.name] for key, law in laws().items() if _plain(key) not in known}
     kind = known.get(_plain(name))
@@ -114,10 +116,7 @@ def find(name: str) -> LawKind:
 
 
 def label_of(law: ContactLaw) -> LawKind:
-    """The kind that a law is of, its variant by what that fixes."""
-    for label, fixed in law.variants.items():
-        if all(getattr(law, name) == value for name, value in fixed.items()):
-            return find(label)
+    """The kind that a law is of, as its name says."""
     return find(law.name)
 
 

@@ -16,6 +16,7 @@ from faying.contact.table import PressureTable
 from faying.errors import InputError, NotConverged
 from faying.materials import ContactPair
 from faying.typing import Array
+from faying.units import si
 
 __all__ = ["ContactLaw", "Parameter", "Response", "checked", "require"]
 
@@ -31,8 +32,9 @@ def require(law: str, good: bool, text: str) -> None:
 
 
 def checked(values: ArrayLike, *, name: str, unit: str, zero: bool) -> Array:
-    """Return values as floats; InputError where one is NaN, infinite, negative, or zero unless `zero` allows it."""
-    array = np.asarray(values, dtype=float)
+    """Return values as floats, texts with units among them read; InputError where one is NaN, infinite, negative, or
+    zero unless `zero` allows it."""
+    array = _floats(values, name, unit)
     if not np.all(np.isfinite(array)):
         raise InputError(
             f"{name}: {np.count_nonzero(~np.isfinite(array))} of {array.size} values are NaN or infinite; "
@@ -45,6 +47,19 @@ def checked(values: ArrayLike, *, name: str, unit: str, zero: bool) -> Array:
     return array
 
 
+def _floats(values: ArrayLike, name: str, unit: str) -> Array:
+    """Values as they are where they are numbers, as `units.si` reads them where one of them is text."""
+    try:
+        given = np.asarray(values)
+        if given.dtype.kind in "fiu":
+            return np.asarray(given, dtype=float)
+        given = np.asarray(values, dtype=object)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} = {values!r}: the rows differ in length; give numbers in {unit}") from None
+    read = [si(value, unit, name=name) for value in given.ravel()]
+    return np.asarray(read, dtype=float).reshape(given.shape)
+
+
 class ContactLaw(ABC):
     """A law of rough contact. A model states its equations along its own closure variable; this class inverts them.
 
@@ -52,7 +67,7 @@ class ContactLaw(ABC):
     between which pressure grows strictly) and says by `geometric` whether that variable wants a logarithmic scale.
     It declares its `source`, its `validity` range in words and its `parameters` (all but the pair of materials). Study
     keys, command-line settings, sweep axes, checks and `faying models` follow from `parameters`. `variants` are further
-    names of the model, each with parameters that it fixes.
+    names of the model, each with parameters that it fixes. The `name` of a law that is one of them is that name.
     """
 
     name: ClassVar[str]
@@ -80,6 +95,14 @@ class ContactLaw(ABC):
         return replace(self, **changes)  # type: ignore[type-var]
 
     def __post_init__(self) -> None:
+        for label, fixed in self.variants.items():
+            if all(getattr(self, key) == value for key, value in fixed.items()):
+                object.__setattr__(self, "name", label)
+        pair = getattr(self, "pair", None)
+        if pair is not None and not isinstance(pair, ContactPair):
+            raise InputError(
+                f'{self.name}: pair = {pair!r}; give the two materials that meet, ContactPair("45 steel", "45 steel")'
+            )
         check_all(self.name, self.parameters, vars(self))
 
     @classmethod
@@ -180,7 +203,7 @@ class ContactLaw(ABC):
         return float(np.exp(self._grid[1][0]))
 
     def at_pressure(self, pressure: ArrayLike, *, exact: bool | None = None) -> Response:
-        """Return the response at nominal pressures [Pa], any shape.
+        """Return the response at nominal pressures, any shape: numbers in Pa, or text such as "5 MPa".
 
         exact=True inverts every pressure to 1e-12; exact=False reads a table that is made once and checked to 1e-6 of
         every quantity; None inverts up to 20,000 pressures and reads the table beyond. At zero pressure nothing

@@ -3,26 +3,24 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import log
-from pathlib import Path
 from typing import final
 
 import numpy as np
 
-from faying.contact.auto import pick
-from faying.contact.build import LawKind, find, label_of
+from faying.contact.build import LawKind
 from faying.contact.half_space import HalfSpace
+from faying.contact.inputs import FractalSurface
 from faying.contact.law import ContactLaw
-from faying.contact.two_faces import Counter, faces_of
+from faying.contact.mates import Mates
+from faying.contact.two_faces import Counter, Faces
 from faying.errors import FayingError, InputError
 from faying.halfspace.solve import halved_map
-from faying.materials import ContactPair
 from faying.surface.form import prepared
-from faying.surface.scan import Scan
+from faying.surface.scan import Profile, Scan
 
 UNSTABLE = 0.25  # a greater relative change of k_n is told
 CUTS = {"half window": 0.5, "quarter window": 0.25}
 WHOLE, COARSE = "full scan", "half the points"
-FITTED = ("D", "G", "G_majumdar_bhushan")  # numbers of a surface that take a fit
 CASES = (WHOLE, *CUTS, COARSE)
 
 
@@ -60,53 +58,49 @@ class Stability:
 
 
 def stability(
-    scan: Scan,
-    pair: ContactPair,
+    mates: Mates,
     *,
     model: LawKind | str = "auto",
     given: Mapping[str, object] | None = None,
-    counter: Counter = "same",
-    method: str = "psd",
     pressure: float,
-    cache: Path | None = None,
 ) -> Stability:
     """Ask a law for k_n on the whole of a scan, on parts of it, and on fewer of its points.
 
     Args:
-        scan: of one face, as it was measured.
-        pair: the materials that meet.
+        mates: both faces, one of them an areal scan as it was measured; a scan of the other one is cut alike.
         model: the law; "auto" stays with the law that it takes on the full scan.
         given: entries of the law in SI units.
-        counter: the other face, as `faces_of` takes it; its scan is cut alike.
-        method: estimator of D and G.
         pressure: nominal [Pa], above 0.
-        cache: folder that keeps solved contacts; None keeps nothing.
 
     Returns:
-        The stiffnesses. Every part is levelled, filled and fitted anew, as a scan of that size would be.
+        The stiffnesses. Every part is levelled, filled and fitted anew, as a scan of that size would be; D and G that
+        were given stay, and an area that was given goes with the window.
 
     Raises:
         InputError: for unknown laws, and where the law has no answer on the full scan.
     """
-    kind = find(model) if isinstance(model, str) else model
-    given = dict(given or {})
-    parts = {name: (cropped(scan, share), cropped(counter, share)) for name, share in CUTS.items()}
-    parts |= {WHOLE: (scan, counter), COARSE: (_halved(scan), _halved(counter))}
-    fitted = kind.takes(FITTED, given)
-    law = pick(kind, given, faces_of(scan, counter, method=method, fitted=fitted, cache=cache).rough, pair).law
-    kind = label_of(law)
-    fitted = kind.takes(FITTED, given)
+    law = mates.choose(model, given).law
     values = {WHOLE: stiffness_at(law, pressure)}
     for name in CASES[1:]:
-        one, other = parts[name]
         try:
-            if not isinstance(one, Scan) or other is None:
-                raise InputError("too few points")
-            surface = faces_of(one, other, method=method, fitted=fitted, cache=cache).rough
-            values[name] = stiffness_at(pick(kind, given, surface, pair).law, pressure)
+            values[name] = stiffness_at(_part(mates, name).choose(law.name, given).law, pressure)
         except FayingError:
             values[name] = np.nan
-    return Stability(label=kind.label, pressure=pressure, k_n=values)
+    return Stability(label=law.name, pressure=pressure, k_n=values)
+
+
+def _part(mates: Mates, name: str) -> Mates:
+    """The mates on one of the parts of their scans; InputError where too few points are left."""
+    faces, share = mates.faces, CUTS.get(name, 1.0)
+    one, other = (_halved(one) if name == COARSE else cropped(one, share) for one in (faces.face, faces.counter))
+    if not isinstance(one, Scan) or other is None:
+        raise InputError("too few points")
+    numbers = faces if faces.made is None else faces.made.inputs
+    area = None if numbers.scan_area is None else share**2 * numbers.scan_area
+    part = Faces(
+        face=one, counter=other, method=faces.method, D=numbers.D, G=numbers.G, scan_area=area, cache=faces.cache
+    )
+    return Mates(part, materials=mates.pair)
 
 
 def stiffness_at(law: ContactLaw, pressure: float) -> float:
@@ -119,20 +113,23 @@ def stiffness_at(law: ContactLaw, pressure: float) -> float:
     return float(k_n)
 
 
-def cropped(scan: Counter, share: float) -> Counter | None:
+Part = Counter | Profile | FractalSurface
+
+
+def cropped(scan: Part, share: float) -> Counter | None:
     """The middle part of a scan, a word as it is; None where too few points are left."""
     if not isinstance(scan, Scan):
-        return scan
+        return scan if isinstance(scan, str) else None
     try:
         return scan.cropped(share)
     except InputError:
         return None
 
 
-def _halved(scan: Counter) -> Counter | None:
+def _halved(scan: Part) -> Counter | None:
     """A scan on half as many points each way, by means over four, a word as it is; None where too few are left."""
     if not isinstance(scan, Scan):
-        return scan
+        return scan if isinstance(scan, str) else None
     if min(scan.shape) < 32:
         return None
     ready = prepared(scan).scan

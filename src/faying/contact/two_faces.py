@@ -1,9 +1,10 @@
 """What the two faces of a joint make together: the rough surface whose gap to a plane is the gap between the two."""
 
-from dataclasses import dataclass, replace
-from math import nan, sqrt
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from math import inf, nan, sqrt
 from pathlib import Path
-from typing import final
+from typing import Any, final
 
 import numpy as np
 
@@ -15,105 +16,173 @@ from faying.surface.form import Prepared, levelled, prepared
 from faying.surface.fractal import FractalFit, fit_fractal
 from faying.surface.scan import Profile, Scan, usable
 from faying.typing import Array
+from faying.units import show
 
 LEAST_G = 1e-300  # m
 Counter = Scan | str  # the other face: its scan, "same" or "smooth"
 COUNTERS = ("same", "smooth")
-MEANING = {
-    "same": "the other face is taken as statistically alike, unrelated to this one",
-    "smooth": "the other face is taken as smooth",
-}
+GIVEN = "as given"
 
 
 @final
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Faces:
-    """Two faces as one rough surface, with the fit of D and G.
+    """Two faces as one rough surface. What nobody asks for is not computed; what was asked for is not computed again.
 
     Args:
-        rough: what laws are made from.
-        fit: D and G of the scan, or of the summed spectra where both faces were measured; None where there is no fit.
-        counter: what the other face is, in words.
-    """
-
-    rough: RoughSurface
-    fit: FractalFit | None
-    counter: str
-
-
-def faces_of(
-    scan: Scan | Profile,
-    counter: Counter = "same",
-    *,
-    method: str = "psd",
-    D: float | None = None,
-    G: float | None = None,
-    scan_area: float | None = None,
-    cache: Path | None = None,
-    fitted: bool = True,
-) -> Faces:
-    """Return the rough surface of two faces.
-
-    Args:
-        scan: of one face.
+        face: the scan of one face; or the numbers of both faces together, and then only `stated` is given besides.
         counter: the scan of the other face; "same", alike in its statistics but unrelated point by point; or "smooth".
         method: estimator of D and G; with two scans the spectrum is taken.
         D, G: of both faces together [-], [m], in place of those that are fitted.
         scan_area: [m2], in place of that of the scan; needed for a line scan.
         cache: folder that keeps solved contacts of the surface.
-        fitted: whether D and G are fitted; they are NaN where neither fitted nor given.
-
-    Returns:
-        Faces. The heights are those of the sum: of the two scans, laid face to face, or of the scan and its mirror
-        image, shifted by half a side.
+        stated: where numbers come from that were given in place of a scan, in words.
+        made: the rough surface itself, in place of what would be made from all others.
 
     Raises:
-        InputError: for another counter, a line scan without scan_area or a fit, and scans without usable heights.
+        InputError: for what is no scan, another counter, a line scan without scan_area, or numbers out of range.
     """
-    if isinstance(counter, str) and counter not in COUNTERS:
-        raise InputError(f'counter = "{counter}"; give the file of a scan, "same" or "smooth"')
-    if not isinstance(scan, Scan) and scan_area is None:
-        raise InputError(f"{scan.source} is a line scan, which covers no area; give surface.scan_area as well")
-    if isinstance(counter, Scan) and not isinstance(scan, Scan):
-        raise InputError(f"{scan.source} is a line scan; two faces need two areal scans")
-    words = f"the other face is {Path(counter.source).name}" if isinstance(counter, Scan) else MEANING[counter]
-    fit, unfitted = _fit(scan, counter, method) if fitted else (None, "")
-    factor = 2.0 if counter == "same" else 1.0
-    area = scan_area or (scan.size[0] * scan.size[1] if isinstance(scan, Scan) else 0.0)
-    dimension, roughness = D or (fit.D if fit else nan), G or nan
-    if not G and fit:  # twice the spectral density: G^(2 D - 4) doubles; near D = 2 the fitted G underflows
-        roughness = max(fit.G * factor ** (1 / (2 * dimension - 4)), LEAST_G)
-    fractal = {"D": dimension, "G": roughness, "scan_area": area}
-    rough = RoughSurface(inputs=FractalSurface(**fractal))
-    if isinstance(scan, Scan):
-        ready = prepared(scan)
-        inputs = _numbers(ready, fractal)
-        if isinstance(counter, Scan):
-            other = prepared(counter)
-            inputs = _added(inputs, _numbers(other, fractal))
-            heights = face_to_face(ready.scan, other.scan)
-        elif counter == "same":
-            inputs = _added(inputs, inputs)
-            heights = _on_its_like(ready.scan)
-        else:
-            heights = ready.scan
-        rough = RoughSurface(inputs=inputs, scan=heights, cache=cache, unfitted=unfitted)
-    return Faces(rough=rough, fit=fit, counter=words)
+
+    face: Scan | Profile | FractalSurface
+    counter: Counter = "same"
+    method: str = "psd"
+    D: float | None = None
+    G: float | None = None
+    scan_area: float | None = None
+    cache: Path | None = None
+    stated: str = GIVEN
+    made: RoughSurface | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        if isinstance(self.face, FractalSurface):
+            return
+        if not isinstance(self.face, Scan | Profile):
+            raise InputError(
+                f"a face is given as {type(self.face).__name__}; give a scan as faying.read_scan returns it, or D, G "
+                "and scan_area with Mates.of_fractal"
+            )
+        if not isinstance(self.counter, Scan) and self.counter not in COUNTERS:
+            given = f'"{self.counter}"' if isinstance(self.counter, str) else type(self.counter).__name__
+            raise InputError(f'counter = {given}; give the scan of the other face, "same" or "smooth"')
+        if self.method not in METHODS:
+            raise InputError(f"method = {self.method!r}; allowed: {', '.join(METHODS)}")
+        if isinstance(self.face, Profile) and self.scan_area is None:
+            raise InputError(f"{self.face.source} is a line scan, which covers no area; give surface.scan_area as well")
+        if isinstance(self.face, Profile) and isinstance(self.counter, Scan):
+            raise InputError(f"{self.face.source} is a line scan; two faces need two areal scans")
+        if self.D is not None and not 2 < self.D < 3:
+            raise InputError(f"D = {self.D}: the dimension of a surface lies between 2 and 3, for example 2.4")
+        for name, value in (("G", self.G), ("scan_area", self.scan_area)):
+            if value is not None and not 0 < value < inf:
+                raise InputError(f"{name} = {value}; it must be positive and finite")
+
+    @property
+    def origin(self) -> str:
+        """Name of the file of the scan; where numbers come from that were given in place of one."""
+        return self.stated if isinstance(self.face, FractalSurface) else Path(self.face.source).name
+
+    @property
+    def words(self) -> str:
+        """Both faces in one line."""
+        if isinstance(self.face, FractalSurface):
+            of = self.face
+            numbers = f"D {of.D:.4g}, G {show(of.G, 'm')}, scan area {of.scan_area * 1e6:.4g} mm^2"
+            return f"both faces together: {numbers}, {self.stated}"
+        if isinstance(self.counter, Scan):
+            return f"{self.origin} on {Path(self.counter.source).name}"
+        if self.counter == "smooth":
+            return f"{self.origin} on a smooth face"
+        return f"both faces as {self.origin}, unrelated"
+
+    @property
+    def fit(self) -> FractalFit | None:
+        """D and G of the scan, or of the summed spectra where both faces were measured; None where there are none."""
+        return self._fitted[0]
+
+    @cached_property
+    def _fitted(self) -> tuple[FractalFit | None, str]:
+        """The fit, or why an areal scan has none: laws that do not ask for D and G can go on."""
+        if isinstance(self.face, FractalSurface):
+            return None, ""
+        try:
+            if isinstance(self.counter, Scan) and isinstance(self.face, Scan):
+                return combine(self.face, self.counter).fit, ""
+            return fit_fractal(self.face, method=self.method), ""
+        except FayingError as fault:
+            if not isinstance(self.face, Scan):
+                raise
+            usable(self.face)
+            return None, f"no D and G: {fault}"
+
+    @cached_property
+    def unfitted(self) -> RoughSurface:
+        """What laws are made from that take neither D nor G: both are NaN where they are not given.
+
+        The heights are those of the sum: of the two scans, laid face to face, or of the scan and its mirror image,
+        shifted by half a side.
+        """
+        if self.made is not None:
+            return self.made
+        if isinstance(self.face, FractalSurface):
+            return RoughSurface(inputs=self.face)
+        area = self.scan_area or (self.face.size[0] * self.face.size[1] if isinstance(self.face, Scan) else 0.0)
+        fractal = {"D": self.D or nan, "G": self.G or nan, "scan_area": area}
+        if not isinstance(self.face, Scan):
+            return RoughSurface(inputs=FractalSurface(**fractal))
+        ready = prepared(self.face)
+        inputs, heights = _numbers(ready, fractal), ready.scan
+        if isinstance(self.counter, Scan):
+            other = prepared(self.counter)
+            inputs, heights = _added(inputs, _numbers(other, fractal)), face_to_face(ready.scan, other.scan)
+        elif self.counter == "same":
+            inputs, heights = _added(inputs, inputs), _on_its_like(ready.scan)
+        return RoughSurface(inputs=inputs, scan=heights, cache=self.cache)
+
+    @cached_property
+    def rough(self) -> RoughSurface:
+        """What any law is made from, with D and G of both faces together; NaN where they cannot be fitted."""
+        if self.made is not None or isinstance(self.face, FractalSurface):
+            return self.unfitted
+        fit, why = self._fitted
+        dimension, roughness = self.D or (fit.D if fit else nan), self.G or nan
+        if not self.G and fit:
+            factor = 2.0 if self.counter == "same" else 1.0
+            roughness = together(fit.G, dimension, factor)
+        inputs = replace(self.unfitted.inputs, D=dimension, G=roughness)
+        return replace(self.unfitted, inputs=inputs, unfitted=why)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the fit of the scan warns of, and what its file says."""
+        if self.fit is not None:
+            return tuple(self.fit.warnings)
+        return (self.rough.unfitted,) if self.rough.unfitted else ()
+
+    def with_numbers(self, **changes: float) -> "Faces":
+        """The same faces with some of D, G [m] and scan_area [m2] of both together changed; nothing is fitted anew."""
+        out = replace(self, made=replace(self.rough, inputs=replace(self.rough.inputs, **changes)))
+        out.__dict__["_fitted"] = self._fitted
+        return out
 
 
-def _fit(scan: Scan | Profile, counter: Counter, method: str) -> tuple[FractalFit | None, str]:
-    """D and G, or why an areal scan has none: laws that do not ask for them can go on."""
-    if method not in METHODS:
-        raise InputError(f"method = {method!r}; allowed: {', '.join(METHODS)}")
-    try:
-        if isinstance(counter, Scan) and isinstance(scan, Scan):
-            return combine(scan, counter).fit, ""
-        return fit_fractal(scan, method=method), ""
-    except FayingError as fault:
-        if not isinstance(scan, Scan):
-            raise
-        usable(scan)
-        return None, f"no D and G: {fault}"
+def together(G: float, D: float, factor: float = 2.0) -> float:
+    """G [m] of two unrelated faces, from that of one of them.
+
+    Args:
+        G: of one face [m].
+        D: of both [-]; above 2.
+        factor: spectral density of both over that of the one; 2 where they are alike, 1 where the other is smooth.
+
+    Returns:
+        G of both: spectral densities add, and G^(2 D - 4) goes with them. Near D = 2 a fitted G underflows; it is at
+        least 1e-300.
+    """
+    return float(max(G * factor ** (1 / (2 * D - 4)), LEAST_G))
+
+
+def faces_of(scan: Scan | Profile, counter: Counter = "same", **options: Any) -> Faces:
+    """Return both faces of a joint from the scan of one and what the other is; options: those of `Faces`."""
+    return Faces(face=scan, counter=counter, **options)
 
 
 def _numbers(ready: Prepared, fractal: dict[str, float]) -> SurfaceInputs:

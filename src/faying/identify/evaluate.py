@@ -222,6 +222,10 @@ class Reduced:
         if bases is not None:
             self.trainer.resume(bases)
 
+    def laws(self, ensemble: Ensemble) -> list[JointLaw]:
+        """The law of each joint at the medians."""
+        return replace(self.trainer.recipe, design=ensemble).laws(ensemble.middle)[0]
+
     def errors(self, ensemble: Ensemble, rows: Rows) -> Array:
         """Relative errors of the frequencies [-] (2, n) at some samples, each at the load of its greatest estimate.
 

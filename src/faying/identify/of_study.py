@@ -19,6 +19,7 @@ from faying.identify.predict import check, cut_notes, of_bases
 from faying.identify.store import Store
 from faying.joint.loads import preload_index
 from faying.progress import Report, silent
+from faying.study.case import mates_notes
 from faying.study.keys.test import TestChoice
 from faying.study.keys.uncertain import UncertainChoice
 from faying.study.keys.varied import MODEL
@@ -190,7 +191,8 @@ def _identified(
             report=report,
         )
         bases = [] if model.last is None else of_bases(reduced.errors(*model.last))
-        found.append(replace(one, notes=(*cut, *one.notes, *bases)))
+        mates = mates_notes(reduced.laws(ensemble))
+        found.append(replace(one, notes=(*mates, *cut, *one.notes, *bases)))
     if not choice.models:
         return found[0]
     return mixed(dict(zip([name for name, _ in choice.models], found, strict=True)), dict(choice.models), seed=seed)

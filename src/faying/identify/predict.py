@@ -15,6 +15,7 @@ from faying.identify.prediction import Prediction
 from faying.identify.store import Store
 from faying.notes import Note
 from faying.progress import Report
+from faying.study.case import mates_notes
 from faying.study.parallel import Rows
 from faying.study.part_folder import fingerprint
 from faying.study.provenance import provenance
@@ -124,7 +125,8 @@ def predicted(study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, se
         provenance=provenance(study),
         **tested,
     )
-    return found.with_notes([*_notes(study, found), *of_bases(reduced.errors(ensemble, rows))])
+    mates = mates_notes(reduced.laws(ensemble))
+    return found.with_notes([*mates, *_notes(study, found), *of_bases(reduced.errors(ensemble, rows))])
 
 
 def _notes(study: Study, found: Prediction) -> list[Note]:

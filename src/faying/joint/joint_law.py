@@ -35,6 +35,7 @@ class JointLaw:
         scale: of both stiffnesses [-], 1 unless a study of sensitivity asks otherwise.
         end: "low" or "high" takes that end of the range of k_n that the law states, and moves k_t with it.
         reason: why this law was taken, where the user named none.
+        mates: both faces and their materials in one line, for people.
         few: pressures up to which a law is inverted exactly; more are read from the table between its points.
 
     Raises:
@@ -48,6 +49,7 @@ class JointLaw:
     points: int = 2000
     end: Literal["low", "high"] | None = None
     reason: str = ""
+    mates: str = ""
     few: int = FEW
     _unscaled: "JointLaw | None" = field(default=None, repr=False, compare=False)  # the same law, with tables to share
 

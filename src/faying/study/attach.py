@@ -163,6 +163,7 @@ def _facts(law: JointLaw, pairs: NodePairs, interface: Interface, system: System
     return (
         system.describe(),
         f"law: {law.model.name}, {law.model.source}",
+        *([f"mates: {law.mates}"] if law.mates else []),
         pressure,
         f"area {interface.area * system.metre**2:.8g} {unit}2; {sums}",
         shares,

@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from faying.contact.build import AUTO, build, kinds
+from faying.contact.build import AUTO, kinds
 from faying.contact.half_space import HalfSpace
+from faying.contact.mates import Mates
 from faying.errors import FayingError
 from faying.fe.damped import DampedModes, damped_modes
 from faying.fe.interface import Interface
@@ -117,15 +118,16 @@ def _notes(
 def _others(case: Case, number: int, pressure: float) -> str:
     """Which laws on the same surface reach the pressure [Pa] of a joint, and how far."""
     choice, surface = case.study.joints[number], case.surfaces[number]
-    if surface.rough is None:
+    if surface.faces is None:
         return "Give a law that reaches further, such as a table"
     pair = case.study.law_of(choice).pair(*materials_at(case.study, case.structure.mesh, choice))
+    mates = Mates(surface.faces, materials=pair)
     found = []
     for label, kind in kinds().items():
         if label == AUTO or kind.law is HalfSpace or kind.missing({}, surface.rough):
             continue  # the half-space takes minutes to say how far it reaches
         try:
-            reach = build(kind, {}, surface.rough, pair).greatest_pressure
+            reach = mates.choose(kind).law.greatest_pressure
         except FayingError:
             continue
         if reach >= pressure:

@@ -139,8 +139,7 @@ def law_reasons(structure: Structure, surfaces: tuple[Surface, ...]) -> list[Not
         law = joint.law
         if law.reason:
             out.append(Note(code="law-choice", text=f"contact law: {law.reason}"))
-        if surface.counter and surface.scans is not None and surface.scans[1] == "same":
-            out.append(Note(code="counter", text=f"{surface.origin}: {surface.counter}; surface.counter names another"))
+        out += mates_notes([law], alike=surface.scans is not None and surface.scans[1] == "same")
         if law.assumes_mindlin and law.tangential is None:
             ratio = 2 * (1 - law.nu) / (2 - law.nu)
             text = f"{law.model.name} defines no tangential stiffness: k_t/k_n = {ratio:.3f} is Mindlin's, assumed"
@@ -150,6 +149,13 @@ def law_reasons(structure: Structure, surfaces: tuple[Surface, ...]) -> list[Not
             text = f"{joint.name}: {law.model.name} predicts no loss; give measured damping, or a law that has one"
             out.append(Note(code="no-loss", joint=joint.name, text=text))
     return list(dict.fromkeys(out))
+
+
+def mates_notes(laws: Sequence[JointLaw], *, alike: bool = False) -> list[Note]:
+    """Both faces of each joint and their materials, each once; alike: whether the other face was assumed so."""
+    said = dict.fromkeys(law.mates for law in laws if law.mates)
+    hint = "; the other face is assumed alike, surface.counter names another" if alike else ""
+    return [Note(code="mates", text=line + hint) for line in said]
 
 
 def read_for(study: Study, surfaces: Sequence[Surface]) -> Read:
@@ -178,7 +184,9 @@ def surfaces_of(study: Study, read: Read | None = None) -> tuple[Surface, ...]:
 def joint_law(joint: JointChoice, law: LawChoice, surface: Surface, rough: Material, other: Material) -> JointLaw:
     """Lay the law on a joint between the rough face's material and the other one, for run, sweep and attach alike."""
     choice = law.make(surface, rough, other)
-    return JointLaw(model=choice.law, tangential=joint.tangential, nu=rough.nu, reason=choice.reason)
+    return JointLaw(
+        model=choice.law, tangential=joint.tangential, nu=rough.nu, reason=choice.reason, mates=choice.mates
+    )
 
 
 def part_of(study: Study, face: str) -> str | None:

@@ -5,14 +5,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from faying.contact.build import build, label_of
 from faying.contact.half_space import HalfSpace
+from faying.contact.mates import Mates
 from faying.contact.stability import stability, stiffness_at
 from faying.errors import FayingError
 from faying.notes import Note
 from faying.study.case import Case, materials_at
 from faying.study.solve import State
-from faying.surface.scan import Scan
 
 FALL = 1e-6  # relative: a smaller fall is none
 FAR = 2.0  # factor between a law and the exact contact that is told
@@ -59,33 +58,22 @@ def against_exact_contact(case: Case, state: State) -> list[Note]:
         if key in seen:
             continue
         seen.add(key)
-        scan, counter = surface.scans
-        assert isinstance(scan, Scan)
+        assert surface.faces is not None
         weights = joint.interface.weights
         mean = float(weights[touching] @ pressure[touching] / weights[touching].sum())
         mean = min(max(float(f"{mean:.3g}"), law.least_pressure), law.greatest_pressure)  # as it is shown
         chosen = case.study.law_of(choice)
-        pair = chosen.pair(*materials_at(case.study, case.structure.mesh, choice))
+        mates = Mates(surface.faces, materials=chosen.pair(*materials_at(case.study, case.structure.mesh, choice)))
         at = f"{joint.name}, {mean / 1e6:.3g} MPa"
         try:
             if not isinstance(law, HalfSpace):
-                exact = build("half-space", {}, surface.rough, pair)
+                exact = mates.law("half-space")
                 ratio = stiffness_at(law, mean) / stiffness_at(exact, mean)
                 if not 1 / FAR <= ratio <= FAR:
                     text = f"{at}: k_n of {law.name} is {ratio:.2g} times that of the half-space contact of its scan"
                     out.append(Note(code="far-from-exact", joint=joint.name, text=text))
-            label = label_of(law)
-            given = chosen.given if chosen.kind.label == label.label else {}
-            found = stability(
-                scan,
-                pair,
-                model=label,
-                given=given,
-                counter=counter,
-                method=surface.method,
-                pressure=mean,
-                cache=surface.rough.cache,
-            )
+            given = chosen.given if chosen.kind.label == law.name else {}
+            found = stability(mates, model=law.name, given=given, pressure=mean)
         except FayingError:
             continue
         if not found.stable:

@@ -9,6 +9,7 @@ import numpy as np
 from faying.contact.build import AUTO
 from faying.contact.half_space import HalfSpace
 from faying.contact.law import ContactLaw
+from faying.contact.mates import line_of
 from faying.errors import FayingError
 from faying.joint.bolt import BoltPlace
 from faying.joint.clamping import BESIDE, seat_ring
@@ -47,6 +48,9 @@ def law_findings(sketch: Sketch) -> Iterator[Line]:
         except FayingError as fault:
             yield "fault", "law", f"joint {joint.name!r}: {fault}", at
             continue
+        if surface.faces is not None:
+            pair = study.law_of(joint).pair(rough, other)
+            yield "ok", "mates", f"joint {joint.name!r}: {line_of(surface.faces, pair)}", at
         yield from _beside(sketch, k, joint, reach, name, law)
 
 

@@ -108,7 +108,4 @@ def _with_form(joint: JointChoice, key: list[str], value: float) -> JointChoice:
 
 def _with(surface: Surface, name: str, value: float) -> Surface:
     """The surface with one of D, G and scan_area changed."""
-    if surface.rough is None:
-        return surface
-    inputs = replace(surface.rough.inputs, **{name: value})
-    return replace(surface, rough=replace(surface.rough, inputs=inputs))
+    return surface.with_number(name, value)

@@ -8,6 +8,7 @@ from typing import Literal
 from faying.contact.auto import Choice, pick
 from faying.contact.build import AUTO, LawKind, build, check_entries, find, laws
 from faying.contact.inputs import RoughSurface
+from faying.contact.mates import Mates
 from faying.errors import InputError
 from faying.materials import CATALOGUE, RIGID, ContactPair, Material
 from faying.study.keys.reader import Table
@@ -99,7 +100,10 @@ class LawChoice:
 
     def make(self, surface: Surface, rough: Material, other: Material) -> Choice:
         """Return the law between the rough material and the other one, and why it. Raises InputError as `pick`."""
-        return pick(self.kind, self.given, surface.rough, self.pair(rough, other))
+        pair = self.pair(rough, other)
+        if surface.faces is None:
+            return pick(self.kind, self.given, None, pair)
+        return Mates(surface.faces, materials=pair).choose(self.kind, self.given)
 
     def pair(self, rough: Material, other: Material) -> ContactPair:
         """Return the materials that meet in the law: a rigid counterbody in place of the other one where asked for."""

@@ -1,13 +1,13 @@
 """[surface]: the scan of a rough face, or its D, G and area; read and fitted in one place."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isnan
 from pathlib import Path
 from typing import Any
 
 from faying import cache, units
 from faying.contact.inputs import FractalSurface, RoughSurface
-from faying.contact.two_faces import COUNTERS, Counter, faces_of
+from faying.contact.two_faces import COUNTERS, Counter, Faces
 from faying.errors import InputError
 from faying.study.keys.reader import Table
 from faying.surface.fractal import FractalFit
@@ -64,7 +64,7 @@ class SurfaceChoice:
         """Read and fit the scan, or take D, G and the area as given. Raises ReadError and InputError."""
         if self.scan is None:
             inputs = FractalSurface(D=self.D or 0.0, G=self.G or 0.0, scan_area=self.scan_area or 0.0)
-            return Surface(rough=RoughSurface(inputs=inputs), origin="given in the study")
+            return Surface(faces=Faces(face=inputs, stated="given in the study"), origin="given in the study")
         scan = read_scan(self.scan, xy_unit=self.xy_unit, z_unit=self.z_unit, size=self.size, spacing=self.spacing)
         other: Counter = self.counter
         if self.counter not in COUNTERS:
@@ -72,25 +72,18 @@ class SurfaceChoice:
             if not isinstance(found, Scan):
                 raise InputError(f"{Path(self.counter).name} is a line scan; two faces need two areal scans")
             other = found
-        faces = faces_of(
-            scan,
-            other,
+        faces = Faces(
+            face=scan,
+            counter=other,
             method=self.method,
             D=self.D,
             G=self.G,
             scan_area=self.scan_area,
             cache=self.scan.parent / cache.FOLDER,
         )
-        source = f"scan {self.scan.name}: {' x '.join(map(str, scan.heights.shape))} points; {faces.counter}"
-        return Surface(
-            rough=faces.rough,
-            origin=self.scan.name,
-            fit=faces.fit,
-            source=source,
-            counter=faces.counter,
-            scans=(scan, other),
-            method=self.method,
-        )
+        _ = faces.rough  # names its own faults
+        source = f"scan {self.scan.name}: {' x '.join(map(str, scan.heights.shape))} points"
+        return Surface(faces=faces, origin=self.scan.name, source=source)
 
 
 def _counter(table: Table) -> str:
@@ -116,21 +109,39 @@ class Surface:
     """What a law is made from, and whence it comes.
 
     Args:
-        rough: both faces of a joint as one surface.
+        faces: both faces of a joint; None where the law brings its own heights.
         origin, source: the file, and a line on it.
-        fit: of D and G where a scan gave them.
-        counter: what the other face is, in words.
-        scans: of one face as it was read, and the other face.
-        method: estimator of D and G.
     """
 
-    rough: RoughSurface | None
+    faces: Faces | None
     origin: str
-    fit: FractalFit | None = None
     source: str = ""
-    counter: str = ""
-    scans: tuple[Scan | Profile, Counter] | None = None
-    method: str = "psd"
+
+    @property
+    def rough(self) -> RoughSurface | None:
+        """Both faces of a joint as one surface."""
+        return None if self.faces is None else self.faces.rough
+
+    @property
+    def fit(self) -> FractalFit | None:
+        """D and G where a scan gave them."""
+        return None if self.faces is None else self.faces.fit
+
+    @property
+    def counter(self) -> str:
+        """Both faces in words, where a scan gave one of them."""
+        return "" if self.faces is None or self.scans is None else self.faces.words
+
+    @property
+    def scans(self) -> tuple[Scan | Profile, Counter] | None:
+        """Scan of one face as it was read, and the other face."""
+        if self.faces is None or isinstance(self.faces.face, FractalSurface):
+            return None
+        return self.faces.face, self.faces.counter
+
+    def with_number(self, name: str, value: float) -> "Surface":
+        """The surface with one of D, G [m] and scan_area [m2] changed."""
+        return self if self.faces is None else replace(self, faces=self.faces.with_numbers(**{name: value}))
 
     @property
     def scan_area(self) -> float | None:
@@ -140,9 +151,7 @@ class Surface:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the fit of the scan warns of, and what its file says."""
-        if self.fit is not None:
-            return tuple(self.fit.warnings)
-        return (self.rough.unfitted,) if self.rough is not None and self.rough.unfitted else ()
+        return () if self.faces is None else self.faces.warnings
 
     def facts(self) -> dict[str, Any]:
         """Numbers of the surface by name with unit, for the result."""
@@ -167,4 +176,4 @@ class Surface:
         return given | fitted | {"origin": self.origin, "counter": self.counter}
 
 
-NO_SURFACE = Surface(rough=None, origin="none: the contact law brings its own heights")
+NO_SURFACE = Surface(faces=None, origin="none: the contact law brings its own heights")
