@@ -66,7 +66,7 @@ class CMY(ContactLaw):
         """The hardness over the size of an indentation; one without a size is a power 0."""
         if self.c1 is not None and self.c2 is not None:
             return VickersHardness(c1=self.c1, c2=self.c2)
-        of_pair: VickersHardness | None = getattr(self.pair, "vickers", None)
+        of_pair = self.pair.vickers
         if self.hardness is None and of_pair is not None:
             return of_pair
         try:
