@@ -90,6 +90,11 @@ class VickersHardness:
             raise InputError("Vickers hardness: the diagonal of an indentation must be positive and finite, in m")
         return np.asarray(np.maximum(self.c1 * (d / MICROMETRE) ** self.c2, self.least))
 
+    def at_share(self, share: float, sigma: float, slope: float) -> float:
+        """Return H_c [Pa] of `contact` at the pressure share H_c; share [-], between 0 and 1."""
+        mean = self.c1 * (1.62 * sigma / slope / MICROMETRE) ** self.c2
+        return float(max(mean * share ** (0.071 * self.c2), self.least))
+
     def contact(self, pressure: ArrayLike, sigma: float, slope: float) -> Array:
         """Return the hardness H_c that the spots of a rough contact have on average at nominal pressures.
 

@@ -509,3 +509,13 @@ def test_extreme_surfaces_raise_no_numerical_warning() -> None:
             response = LAW.with_(D=D).at_closure(np.geomspace(1e-30, 1e-6, 9))
             assert np.all(np.isfinite(response.k_n))
             assert np.all(np.isfinite(response.loss_n))
+
+
+def test_tangential_energy_of_a_sphere_is_the_work_of_mindlins_force():
+    """Work of T over u = 3 mu F/(16 G* r) (1 - (1-X)^(2/3)), by quadrature over the displacement."""
+    from scipy.integrate import quad
+
+    for X in (0.1, 0.5, 0.95):
+        last = 1 - (1 - X) ** (2 / 3)
+        work = quad(lambda u: 1 - (1 - u) ** 1.5, 0, last, epsabs=0, epsrel=1e-12)[0]  # in 3 (mu F)^2/(16 G* r)
+        assert slip_share(X) == pytest.approx(work, rel=1e-9)

@@ -154,7 +154,7 @@ def summed(case: Case) -> dict[str, float]:
         + total(lambda a: 1.38 * f_ep(a) / sink(a), a1, a2, 0),
         "k_t": total(stiffness(a_e), eps, a1, 0) + total(stiffness(a_ep), a1, a2, 0),
         "energy_n": sum(W["n"]),
-        "energy_t": sum(W["t"]),
+        "energy_t": sum(W["t"]) / (2 * pi),  # printed 2 pi times the work
     }
     out = {name: value / A0 for name, value in out.items()}
     for d, (e, ep, p) in W.items():
@@ -310,7 +310,7 @@ def printed(case: Case) -> dict[str, float]:
             "loss_n": (alpha * Wnep + Wnp) / (Wne + (1 - alpha) * Wnep) / (2 * pi_),
             "loss_t": (alpha * Wtep + Wtp) / (Wte + (1 - alpha) * Wtep) / (2 * pi_),
             "energy_n": (Wne + Wnep + Wnp) / A0,
-            "energy_t": (Wte + Wtep + Wtp) / A0,
+            "energy_t": (Wte + Wtep + Wtp) / (2 * pi_ * A0),
         }
         return {name: float(value) for name, value in values.items()}
 

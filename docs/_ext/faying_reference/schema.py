@@ -51,6 +51,7 @@ OWN: dict[str, dict[str, Any]] = {
     "backbone.amplitude": listed({"$ref": "#/$defs/quantity"}, 2, 2),
     "backbone.friction": {"anyOf": [NUMBER, listed(NUMBER, 1)]},
     "backbone.law": {"anyOf": [TEXT, listed(TEXT, 1)]},
+    "joint.tangential": {"anyOf": [*NUMBER["anyOf"], {"enum": ["law", "mindlin"]}]},
     "backbone.rest_damping": {"anyOf": [{"type": "number"}, {"const": "law"}]},
     "test.frequencies": listed(listed({"$ref": "#/$defs/quantity"}, 1), 1),
     "test.loss_factors": listed(listed({"type": ["number", "string"]}, 1), 1),

@@ -149,6 +149,8 @@ def build(
         text = kind.describe_missing(missing, with_scan=surface is not None and surface.scan is not None)
         raise InputError(f"{text}; {surface.unfitted}" if surface is not None and surface.unfitted else text)
     supplied = surface.supplies(kind.law.parameters) if surface is not None else {}
+    if kind.law.plastic_summits and surface is not None:
+        pair = surface.indented(pair)
     return kind.law.from_entries({**supplied, **kind.fixed, **given}, pair)
 
 

@@ -44,6 +44,7 @@ class GreenwoodWilliamson(ContactLaw):
     source: ClassVar[str] = "doi:10.1098/rspa.1966.0242"
     validity: ClassVar[str] = "real area up to 0.3, separation above that of the summits' mean plane; no interaction"
     geometric: ClassVar[bool] = False
+    plastic_summits: ClassVar[bool] = True
     # the asperities that published models put into the sum
     variants: ClassVar = {
         "GW-CEB": {"asperity": "ChangEtsionBogy"},

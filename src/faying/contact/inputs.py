@@ -1,7 +1,7 @@
 """What contact models take from a measured surface: plain numbers, and the levelled heights."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf, isnan, log, nan, pi, sqrt
 from pathlib import Path
 from typing import ClassVar, Protocol, Self, final
@@ -11,8 +11,10 @@ from numpy.typing import ArrayLike
 
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
+from faying.materials import ContactPair
 from faying.typing import Array
 
+AT_SHARE = 0.01  # of the hardness: the pressure at which the size of spots is taken
 OF_SCAN = ("scan", "cache", "progress")  # what a law takes from a scan beside numbers
 
 
@@ -205,6 +207,22 @@ class RoughSurface:
         if "scan" in wanted:
             return "scan"
         return "moments" if wanted - set(cls.FRACTAL) else "fractal" if wanted else "nothing"
+
+    def indented(self, pair: ContactPair) -> ContactPair:
+        """The pair with the hardness that the spots of this surface have at a hundredth of it.
+
+        As it is where the pair has no hardness over the size of an indentation, or the surface no moments. The
+        hardness hardly depends on the pressure: for steel it is 4 % higher at a tenth of it.
+        """
+        law = pair.vickers
+        if law is None or law.c2 == 0 or not isinstance(self.inputs, SurfaceInputs):
+            return pair
+        hardness = law.at_share(AT_SHARE, self.inputs.h_rms, self.inputs.mean_slope)
+        first, second = (
+            m if m.is_rigid else replace(m, hardness=hardness, brinell=None, vickers=None)
+            for m in (pair.first, pair.second)
+        )
+        return ContactPair(first, second)
 
     def supplies(self, parameters: Mapping[str, Parameter]) -> dict[str, object]:
         """Values of those parameters that this surface gives."""

@@ -107,7 +107,10 @@ def asperity_regimes(K: float, *, printed: bool) -> tuple[float, tuple[AsperityR
 
 
 def slip_share(X: ArrayLike) -> Array:
-    """Return B(X), the tangential energy of a sphere under T = X mu F over 3 pi mu^2 F^2/(8 G* r), eq. (A21) [-].
+    """Return B(X), the tangential work on a sphere under T = X mu F over 3 mu^2 F^2/(16 G* r) [-].
+
+    Eq. (A21) prints 3 pi mu^2 F^2/(8 G* r) B, which is 2 pi times the work, the integral of T over Mindlin's
+    displacement 3 mu F/(16 G* r) (1 - (1-X)^(2/3)). Loss factors are ratios and do not change.
 
     B = 3/5 - (1-X)^(2/3) + (2/5) (1-X)^(5/3) = (2/3) integral of s (1-s)^(-1/3) from 0 to X, an incomplete beta
     function, which keeps its digits at small X.
@@ -399,7 +402,7 @@ class JK(ContactLaw):
             loss_n=damping_n / (2 * pi),
             loss_t=damping_t / (2 * pi),
             energy_n=np.asarray(sum(parts["energy_n"]) / A0),
-            energy_t=np.asarray(sum(tangential) / A0) if loaded else np.zeros_like(a),
+            energy_t=np.asarray(sum(tangential) / (2 * pi * A0)) if loaded else np.zeros_like(a),
             reasons={
                 "real area above 0.3 of the nominal area": area > 0.3,
                 "k_n above the stiffness of the bulk, 1.129 E*/sqrt(A0)": k_n > 2 / sqrt(pi * A0) * self.pair.E_star,

@@ -76,6 +76,7 @@ class ContactLaw(ABC):
     validity: ClassVar[str]
     variants: ClassVar[Mapping[str, Mapping[str, object]]] = {}
     geometric: ClassVar[bool] = True
+    plastic_summits: ClassVar[bool] = False  # whether a surface gives it the hardness that its small spots have
 
     @abstractmethod
     def at_closure(self, closure: ArrayLike) -> Response:
@@ -150,7 +151,7 @@ class ContactLaw(ABC):
             raise InputError(
                 f"{cls.name} takes no {', '.join(missing)} from this surface; give {' and '.join(missing)}"
             )
-        return cls.from_entries(found, pair)
+        return cls.from_entries(found, surface.indented(pair) if cls.plastic_summits else pair)
 
     def facts(self) -> dict[str, Any]:
         """Parameters of the law and what it derives from them, by name with unit, for a result."""

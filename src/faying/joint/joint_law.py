@@ -29,8 +29,8 @@ class JointLaw:
 
     Args:
         model: the contact law.
-        tangential: "law" takes its k_t; "mindlin" takes k_t = k_n 2(1-nu)/(2-nu); None takes that of the law where it
-            defines one, else Mindlin's.
+        tangential: "law" takes its k_t; "mindlin" takes k_t = k_n 2(1-nu)/(2-nu); a number is k_t/k_n itself [-],
+            above 0 and at most 2; None takes k_t of the law where it defines one, else Mindlin's.
         nu: Poisson's ratio for Mindlin's ratio [-].
         scale: of both stiffnesses [-], 1 unless a study of sensitivity asks otherwise.
         end: "low" or "high" takes that end of the range of k_n that the law states, and moves k_t with it.
@@ -43,7 +43,7 @@ class JointLaw:
     """
 
     model: ContactLaw
-    tangential: Literal["law", "mindlin"] | None = None
+    tangential: Literal["law", "mindlin"] | float | None = None
     nu: float = 0.3
     scale: float = 1.0
     points: int = 2000
@@ -159,11 +159,14 @@ class JointLaw:
                 raise InputError(f"{self.model.name} states no range of its stiffness")
             factor = self.scale * limit / np.where(answer.k_n > 0, answer.k_n, 1.0)
         k_n = factor * answer.k_n
+        if isinstance(self.tangential, int | float):
+            return k_n, k_n * self.tangential
         if self.tangential == "mindlin" or (self.tangential is None and answer.k_t is None):
             return k_n, k_n * 2 * (1 - self.nu) / (2 - self.nu)
         if answer.k_t is None:
             raise InputError(
-                f'{self.model.name} defines no tangential stiffness; leave out tangential = "law", or set "mindlin"'
+                f'{self.model.name} defines no tangential stiffness; leave out tangential = "law", or set "mindlin" or '
+                "a number, k_t/k_n"
             )
         return k_n, factor * answer.k_t
 

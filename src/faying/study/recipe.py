@@ -132,7 +132,7 @@ class Recipe:
         laws = []
         for number, (joint, surface) in enumerate(zip(point.study.joints, point.surfaces, strict=True)):
             choice = point.study.law_of(joint)
-            key = (number, repr(choice), repr(surface.rough and surface.rough.inputs))
+            key = (number, joint.tangential, repr(choice), repr(surface.rough and surface.rough.inputs))
             if key not in self._lately:
                 if len(self._lately) >= LATELY:
                     self._lately.pop(next(iter(self._lately)))

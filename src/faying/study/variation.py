@@ -87,7 +87,7 @@ class Point:
         which = [joint.name for joint, one in zip(study.joints, here, strict=True) if one]
         if name == "stiffness":
             return replace(self, stiffness={**self.stiffness, **dict.fromkeys(which, value)})
-        joints = tuple(replace(j, friction=value) if j.name in which else j for j in study.joints)
+        joints = tuple(replace(j, **{name: value}) if j.name in which else j for j in study.joints)
         return replace(self, study=replace(study, joints=joints))
 
     def with_scales(self, parts: Iterable[str], *, stiffness: float = 1.0, mass: float = 1.0) -> "Point":

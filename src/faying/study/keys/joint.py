@@ -1,14 +1,28 @@
 """[[joint]]: two faces that meet, with the form, surface and law of this joint alone."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
+from faying.contact.parameter import Parameter
+from faying.errors import InputError
 from faying.joint.form import Form
 from faying.study.keys.face import face_names
 from faying.study.keys.form import read_form
 from faying.study.keys.law import LawChoice
 from faying.study.keys.reader import Table
 from faying.study.keys.surface import SurfaceChoice
+
+TANGENTIAL = Parameter("", "tangential over normal stiffness, k_t/k_n", 0, 2, "(]")
+
+
+def _tangential(value: Any, name: str) -> Any:
+    """ "law", "mindlin", or k_t/k_n as a number."""
+    if value in ("law", "mindlin"):
+        return value
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f'{name} = {value!r} should be "law", "mindlin", or the ratio k_t/k_n, for example 0.4')
+    TANGENTIAL.check(float(value), name)
+    return float(value)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,7 +36,7 @@ class JointChoice:
     name: str
     faces: tuple[str, str]
     springs: Literal["per-area", "per-node"] = "per-area"
-    tangential: Literal["law", "mindlin"] | None = None
+    tangential: Literal["law", "mindlin"] | float | None = None
     friction: float | None = None
     search_distance: float | None = None
     surface: SurfaceChoice | None = None
@@ -41,7 +55,7 @@ class JointChoice:
             name=name,
             faces=face_names(table, "faces", name),
             springs=table.text("springs", "per-area", ("per-area", "per-node")),
-            tangential=table.text("tangential", None, ("law", "mindlin")),
+            tangential=table.take("tangential", _tangential, None),
             friction=table.number("friction", None),
             search_distance=table.quantity("search_distance", "m", None),
             surface=None if surface is None else SurfaceChoice.of(surface),

@@ -114,7 +114,9 @@ def lifted(data: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
         out = []
         for index, joint in enumerate(joints):
             name = joint.get("name", f"joint {index + 1}") if isinstance(joint, Mapping) else ""
-            joint = lift(joint, f"joint.{name}", {"friction": _parameter("joint.friction")})
+            joint = lift(
+                joint, f"joint.{name}", {key: _parameter(f"joint.{key}") for key in ("friction", "tangential")}
+            )
             if isinstance(joint, dict) and "form" in joint:
                 shapes = {key: parameter for key, parameter in SHAPES.items() if not parameter.whole}
                 joint["form"] = lift(joint["form"], f"joint.{name}.form", shapes)
@@ -223,7 +225,7 @@ class _Reader:
                 f"{where} is nothing that can scatter; known are {', '.join((*SHORT, *OF_MATERIAL, *OWN))}, "
                 "material.NAME.E, material.NAME.density, part.NAME.stiffness, part.NAME.mass, bolt.preload, "
                 "bolt.NAME.preload, bolt.NAME.factor, joint.NAME.friction, joint.NAME.stiffness, "
-                "joint.NAME.form.SHAPE, surface.D, surface.G, law.NAME"
+                "joint.NAME.tangential, joint.NAME.form.SHAPE, surface.D, surface.G, law.NAME"
             )
         self._check(key, where)
         if not isinstance(value, str | Mapping):

@@ -3,6 +3,7 @@
 from faying.contact.build import kinds
 from faying.contact.parameter import FILE, TABLE, Parameter
 from faying.joint.form import PARAMETERS
+from faying.study.keys.joint import TANGENTIAL
 from faying.study.keys.law import OF_SURFACE
 
 # what may vary beside the entries of laws; parts by factors on their matrices, all else acts on the joints alone
@@ -13,6 +14,7 @@ OWN = {
     "bolt.preload": Parameter("N", "preload of the bolts", 0),
     "bolt.factor": Parameter("", "factor on the preload of the bolts", 0),
     "joint.friction": Parameter("", "coefficient of friction", 0, 10, "[)"),
+    "joint.tangential": TANGENTIAL,
     "joint.stiffness": Parameter("", "factor on both stiffnesses of the joints", 0),
     "law.counterbody": Parameter("text", "what the rough face presses on", choices=("part", "rigid")),
 }
@@ -23,7 +25,7 @@ OF_PART = {
 MODEL = "law.model"
 OF_ONE = {
     "bolt": ("preload", "factor"),
-    "joint": ("friction", "stiffness"),
+    "joint": ("friction", "stiffness", "tangential"),
 }  # keys that one bolt or joint may have, by its name
 
 
