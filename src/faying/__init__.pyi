@@ -21,6 +21,7 @@ from .joint.form_fit import fit_form
 from .joint.gap_map import FaceMap, GapMap
 from .joint.solid_bolt import SolidBolt
 from .joint.structure import Joint, Structure
+from .joint.waviness import Waviness
 from .materials import CATALOGUE, RIGID, ContactPair, Material
 from .measured.compare import compare_modes
 from .measured.frf import FRF
