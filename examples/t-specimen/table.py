@@ -1,4 +1,4 @@
-"""Print the comparison with the test for four joints: the default law and JK, each with the hollow and with flat faces.
+"""Print the comparison with the test: the default law with flat faces and with waves, JK, and what their skill is.
 
 Run: uv run --extra pardiso python examples/t-specimen/table.py (some minutes).
 """
@@ -6,9 +6,12 @@ Run: uv run --extra pardiso python examples/t-specimen/table.py (some minutes).
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 import faying
 from faying.joint.form import Form
 from faying.output import table
+from faying.result.result import preload_slope
 from faying.study import Study
 from faying.study.keys.beside import BesideChoice
 
@@ -16,6 +19,42 @@ STUDY = Study.read(Path(__file__).parent / "study.toml")
 FLAT = BesideChoice(name="default, flat", form=Form())
 (JK,) = STUDY.beside
 
+
+def draws(result: faying.Result) -> np.ndarray:
+    """Frequencies [Hz] (draws, 3, 5) of the modes that the first draw pairs with the test's."""
+    modes = result.comparison.modes
+    return np.stack([result.wave_frequencies[:, load, modes[load]] for load in range(len(modes))], axis=1)
+
+
+def skill(name: str, test: np.ndarray, found: np.ndarray) -> list[str]:
+    """Rms error at the last load [%], alone and as a ratio to the test at the load before, and their skill."""
+
+    def error(row: np.ndarray) -> float:
+        return float(100 * np.sqrt(np.mean((row / test[-1] - 1) ** 2)))
+
+    same, own, carried = error(test[-2]), error(found[-1]), error(test[-2] * found[-1] / found[-2])
+    return [name, f"{own:.2f}", f"{carried:.2f}", f"{own / same:.2f}", f"{carried / same:.2f}"]
+
+
+def main() -> None:
+    """Print the tables of docs/t-specimen.md."""
+    result = faying.run(replace(STUDY, beside=(FLAT, replace(JK, name="JK, flat"))))
+    c = result.comparison
+    print(table.text(table.comparison(result)))
+    wavy = draws(result)
+    slopes = 1e3 * np.stack([preload_slope(one, result.loads) for one in wavy])
+    rows = [["d f/d preload [Hz/kN]", *(f"mode {j + 1}" for j in range(slopes.shape[1]))]]
+    for what, share in (("least draw", 0.0), ("median draw", 0.5), ("greatest draw", 1.0)):
+        rows.append([what, *(f"{value:.3f}" for value in np.quantile(slopes, share, axis=0))])
+    print("\n" + table.text(rows))
+    rows = [["rms error at the last load", "own [%]", "test before times own ratio [%]", "skill", "skill of the ratio"]]
+    rows.append(skill("same as at the load before", c.frequencies, np.ones_like(c.frequencies) * c.frequencies[-2]))
+    for name, found in zip(result.beside, c.beside, strict=True):
+        rows.append(skill(name, c.frequencies, found))
+    for seed, found in zip(result.wave_seeds, wavy, strict=True):
+        rows.append(skill(f"default, waves, draw {seed}", c.frequencies, found))
+    print("\n" + table.text(rows))
+
+
 if __name__ == "__main__":
-    besides = (FLAT, replace(JK, name="JK, flat"), replace(JK, name="JK, hollow", form=None))
-    print(table.text(table.comparison(faying.run(replace(STUDY, beside=besides)))))
+    main()

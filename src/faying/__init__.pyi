@@ -28,6 +28,7 @@ from .joint.gap_map import GapMap as GapMap
 from .joint.solid_bolt import SolidBolt as SolidBolt
 from .joint.structure import Joint as Joint
 from .joint.structure import Structure as Structure
+from .joint.waviness import Waviness as Waviness
 from .materials import CATALOGUE as CATALOGUE
 from .materials import RIGID as RIGID
 from .materials import ContactPair as ContactPair

@@ -39,8 +39,8 @@ def test_modes_lie_between_free_and_bonded(outcome):
     assert max(data["rigid"]["values"]) < 1e-2
 
 
-def test_the_rows_used_for_identification_fit_and_the_third_is_near(outcome, published):
-    """Dimensions and form were found on 4 and 8 kN, 12 kN is a prediction. Bound: the worst of the paper, 4.3 %."""
+def test_all_rows_are_near(outcome, published):
+    """Dimensions fit the means, waves are as milled. Bound: 5 %, a little more than the worst of the paper, 4.3 %."""
     c = outcome[0]["comparison"]
     rows = zip(c["frequencies"]["values"][2], c["predicted"]["values"][2], strict=True)
     for number, (measured, ours) in enumerate(rows, start=1):
@@ -49,18 +49,17 @@ def test_the_rows_used_for_identification_fit_and_the_third_is_near(outcome, pub
             measured,
             ours,
             unit="Hz",
-            rel=0.043 if number == 3 else 0.01,
+            rel=0.05 if number == 3 else 0.01,
             source="doi:10.3390/fractalfract8100611, Table 3, hammer test",
-            why="dimensions and form were identified at 4 and 8 kN; mode 3 hangs on dimensions that nobody gives",
+            why="dimensions were identified, waves were not; mode 3 hangs on dimensions that nobody gives",
         )
     error = np.array(c["predicted"]["values"]) / np.array(c["frequencies"]["values"]) - 1
-    assert np.abs(error).max() < 0.043
+    assert np.abs(error).max() < 0.05
     assert np.abs(error[2, [0, 1, 3, 4]]).max() < 0.01  # mode 3 hangs on the dimensions
 
 
 def test_the_change_with_preload_follows_the_test_more_than_the_paper_does(outcome):
-    """Modes 1, 3 and 4 within a factor of 1.6 of the test, mode 5 of 2: it rises by 25 Hz, then by 75, and the form was
-    fitted to the first step alone. The paper's modes 1, 3 and 5 are beyond 8."""
+    """Modes 1, 3, 4, 5 within a factor of 2 of the test, waves not fitted; the paper's beyond 8."""
     c, loads = outcome[0]["comparison"], np.array(outcome[0]["loads"]["values"])
     slope = {
         name: np.polyfit(loads, np.array(values), 1)[0]
@@ -72,21 +71,21 @@ def test_the_change_with_preload_follows_the_test_more_than_the_paper_does(outco
         )
     }
     share = {name: slope[name] / slope["test"] for name in slope}
-    assert np.all(np.abs(np.log(share["default"][[0, 2, 3]])) < np.log(1.6))
-    assert abs(np.log(share["default"][4])) < np.log(2)
+    assert np.all(np.abs(np.log(share["default"][[0, 2, 3, 4]])) < np.log(2))
     opening = [0, 2, 4]  # they open and close the joint
     assert np.all(share["paper"][opening] < 1 / 8)
     assert np.all(share["default"][opening] > 3 * share["JK"][opening])
 
 
-def test_the_form_was_fitted_to_the_change_from_4_to_8_kn(outcome):
-    """Mean relative rise of modes 1, 3 and 5 between the loads of the fit: the test's to a tenth."""
-    c = outcome[0]["comparison"]
-    rise = {
-        name: np.log(np.array(c[name]["values"])[1] / np.array(c[name]["values"])[0])[[0, 2, 4]].mean()
-        for name in ("frequencies", "predicted")
-    }
-    assert rise["predicted"] == pytest.approx(rise["frequencies"], rel=0.1)
+def test_draws_of_waves_hold_the_change_of_mode_1(outcome):
+    """Four draws, nothing fitted: the test's slope of mode 1 lies between the least and the greatest."""
+    data = outcome[0]
+    slopes = np.array(data["wave_slopes"]["values"])[:, 0]
+    c, loads = data["comparison"], np.array(data["loads"]["values"])
+    test = np.polyfit(loads, np.array(c["frequencies"]["values"]), 1)[0][0]
+    assert slopes.shape == (4,)
+    assert slopes.min() < test < slopes.max()
+    assert data["wave_rms"]["values"] == pytest.approx([1.156e-6], rel=1e-3)
 
 
 def test_only_the_law_that_has_a_loss_damps(outcome):

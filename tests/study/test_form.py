@@ -7,8 +7,10 @@ import pytest
 
 import faying
 from faying.joint.form import Form
+from faying.joint.machining import ASSUMED, GAUSSIAN, PROCESSES
 from faying.study import Study, build, run
 from faying.study.keys.solution import ModesChoice
+from faying.study.wave_band import TOLERANCE
 from tests.helpers.studies import write
 
 
@@ -61,21 +63,108 @@ def test_the_old_table_says_its_new_name(path):
         Study.read(path.with_name("old.toml"))
 
 
-@pytest.mark.slow
-def test_the_band_of_small_crowns_is_that_of_full_runs(path):
-    """d f/d preload with faces crowned by 3 um from the small basis, beside the same as a form given."""
+@pytest.mark.parametrize(
+    ("text", "Wq"),
+    [
+        ('Wq = "1.5 um"', 1.5e-6),
+        ('Wa = "1.5 um"', 1.5e-6 * np.sqrt(np.pi / 2)),
+        ('flatness = "18 um"', 1e-6),
+        ('process = "ground"', np.sqrt(0.15e-6 * 0.6e-6) * np.sqrt(np.pi / 2)),
+    ],
+)
+def test_the_size_of_waves_is_said_in_one_way(path, text, Wq):
+    study = with_form(path, f'waviness = {{ {text}, hurst = 0.6, shortest = "3 mm", longest = "20 mm", seed = 9 }}')
+    waves = study.joints[0].form.waviness
+    assert pytest.approx(Wq) == waves.Wq
+    assert (waves.hurst, waves.shortest, waves.longest, waves.seed) == pytest.approx((0.6, 3e-3, 20e-3, 9))
+    assert PROCESSES["milled"].Wa * GAUSSIAN > Wq or "ground" not in text
+
+
+def test_faults_of_waves(path):
+    with pytest.raises(faying.InputError, match=r'waviness has no size; give one of Wq = "1 um", Wa = "0.8 um", flat'):
+        with_form(path, "waviness = { seed = 1 }")
+    with pytest.raises(faying.InputError, match=r"waviness has sizes by Wq and process; give one of"):
+        with_form(path, 'waviness = { Wq = "1 um", process = "milled" }')
+    with pytest.raises(faying.InputError, match=r'waviness.process = "cast" should be one of milled, turned, ground'):
+        with_form(path, 'waviness = { process = "cast" }')
+    with pytest.raises(faying.InputError, match=r"Wt is not a key that a study has"):
+        with_form(path, 'waviness = { Wt = "3 um" }')
+    with pytest.raises(faying.InputError, match=r"form: flat = true says that the faces have no form; leave out twist"):
+        with_form(path, 'flat = true\ntwist = "1 um"')
+    with pytest.raises(faying.InputError, match=r'from = "scan" needs a scan whose D and G can be fitted'):
+        build(with_form(path, 'waviness = { from = "scan" }'))  # the surface is given as D and G
+
+
+def test_waves_lie_on_the_joint_and_a_note_says_which(path):
+    plain = build(replace(Study.read(path)))
+    structure = build(with_form(path, 'waviness = { Wq = "1 um" }'))
+    one, other = (s.joints[0].interface for s in (plain, structure))
+    codes = {note.code: note.text for note in structure.mesh.notes}
+    assert "rms 1 um on each face (Wq 1 um), draw 0" in codes["waves"]
+    assert "the mesh carries waves longer than" in codes["waves-mesh"]
+    gap = other.gap - one.gap
+    assert gap.min() == pytest.approx(0, abs=1e-15)
+    area = one.weights / one.area
+    rms = np.sqrt(area @ (gap - area @ gap) ** 2)
+    assert 0.5e-6 < rms < 1.42e-6 * 1.6  # of one draw, without what the mesh does not carry
+    flat = build(with_form(path, "flat = true"))
+    assert np.array_equal(flat.joints[0].interface.gap, one.gap)
+
+
+def test_waves_of_another_file_of_the_same_study_are_the_same(path):
+    texts = ['waviness = { Wq = "1 um", seed = 3 }', 'waviness = { Wq = "2 um", seed = 3 }']
+    one, two = (build(with_form(path, text)).joints[0].interface for text in texts)
+    flat = build(Study.read(path)).joints[0].interface.gap
+    assert two.gap - flat == pytest.approx(2 * (one.gap - flat), abs=1e-15)
+
+
+@pytest.fixture(scope="module")
+def coarse(path):
     study = Study.read(path)
     sizes = {name: 1.6 * size for name, size in study.geometry.face_size.items()}
     geometry = replace(study.geometry, size=1.6 * study.geometry.size, face_size=sizes)
-    study = replace(study, geometry=geometry, modes=ModesChoice(count=4))
-    result = run(study)
-    assert result.form_crowns == pytest.approx([-3e-6, 0, 3e-6])
-    flat = np.diff(result.frequencies, axis=0)[0] / np.diff(result.loads)
-    assert result.form_slopes[1] == pytest.approx(flat)
-    crowned = replace(study.joints[0], form=Form(crown_along=3e-6))
-    full = run(replace(study, joints=(crowned,)))
-    assert full.form_slopes is None  # a form is given: nothing is assumed
-    # an error of 1e-5 in a frequency near 30 kHz over 4 kN
-    found = np.diff(full.frequencies, axis=0)[0] / np.diff(full.loads)
-    assert result.form_slopes[2] == pytest.approx(found, abs=1e-5 * 3e4 / 4e3)
-    assert run(replace(study, bolts=(replace(study.bolts[0], preload=(2e3,)),))).form_slopes is None
+    # the blocks are 30 mm wide: waves from 8 to 15 mm in place of those above the side of the scan
+    return replace(study, geometry=geometry, modes=ModesChoice(count=4))
+
+
+@pytest.fixture(scope="module")
+def assumed(coarse):
+    return run(coarse)
+
+
+def test_waves_are_assumed_where_nothing_is_said(coarse, assumed):
+    draws, loads, modes = assumed.wave_frequencies.shape
+    assert (draws, loads, modes) == (4, 2, 4)
+    assert assumed.wave_rms == pytest.approx([ASSUMED.Wq])
+    assert assumed.wave_slopes == pytest.approx(
+        np.diff(assumed.wave_frequencies, axis=1)[:, 0] / np.diff(assumed.loads), abs=1e-9
+    )
+    assert len(np.unique(np.round(assumed.wave_frequencies[:, 0, 0], 3))) == 4
+    (note,) = [note for note in assumed.notes if note.code == "waves-assumed"]
+    assert "the study gives no form of the faces" in note.text
+    assert "flat faces" not in " ".join(assumed.warnings)
+
+
+def test_a_draw_of_the_band_is_that_of_a_full_run(coarse, assumed):
+    """The frequencies with waves from the small basis, against the same waves given as a form."""
+    form = Form(waviness=replace(ASSUMED, seed=1))
+    full = run(replace(coarse, joints=(replace(coarse.joints[0], form=form),)))
+    assert assumed.wave_frequencies[1] == pytest.approx(full.frequencies, rel=TOLERANCE)
+    # the study's own draw is one of the band's, the others are as before
+    assert full.wave_seeds.tolist() == [1, 0, 2, 3]
+    assert full.wave_frequencies[0] == pytest.approx(full.frequencies, rel=1e-12)
+    assert full.wave_frequencies[1] == pytest.approx(assumed.wave_frequencies[0], rel=2 * TOLERANCE)
+
+
+@pytest.mark.parametrize("form", [Form(), Form(crown_along=3e-6)], ids=["flat", "crowned"])
+def test_a_form_that_is_given_has_no_waves(coarse, form):
+    result = run(replace(coarse, joints=(replace(coarse.joints[0], form=form),)))
+    assert result.wave_frequencies is None
+    assert not [note for note in result.notes if note.code.startswith("waves")]
+
+
+def test_one_load_has_a_band_without_slopes(coarse):
+    result = run(replace(coarse, bolts=(replace(coarse.bolts[0], preload=(2e3,)),)))
+    assert result.wave_slopes is None
+    assert result.wave_frequencies.shape == (4, 1, 4)
+    assert np.all(np.ptp(result.wave_frequencies[:, 0], axis=0) > 0)

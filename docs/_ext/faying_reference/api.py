@@ -29,7 +29,7 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
     "Materials": ("Material", "ContactPair", "CATALOGUE", "RIGID"),
     "Structures": (
         *("Structure", "Joint", "Bolt", "Washer", "SolidBolt", "Mesh", "read_mesh", "read_matrices"),
-        *("Form", "GapMap", "FaceMap", "fit_form", "minimum_zone"),
+        *("Form", "Waviness", "GapMap", "FaceMap", "fit_form", "minimum_zone"),
     ),
     "Tests": (*("FRF", "frf_from_records", "identify_modes", "read_uff", "write_uff", "ModelModes", "compare_modes"),),
     "Errors": ("FayingError", "InputError", "ReadError", "NotConverged"),

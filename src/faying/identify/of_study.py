@@ -132,6 +132,7 @@ def identify(
             "an identification needs a test: give [test] frequencies, one list for each preload, and the points where "
             "they were measured"
         )
+    _check_draws(study)
     left = left_out(study, leave_out)
     file = None if out is None else Path(out)
     mark = fingerprint(study, left, seed, count, LIMIT)
@@ -196,6 +197,19 @@ def _identified(
     if not choice.models:
         return found[0]
     return mixed(dict(zip([name for name, _ in choice.models], found, strict=True)), dict(choice.models), seed=seed)
+
+
+def _check_draws(study: Study) -> None:
+    """Raise InputError where waves are drawn anew in each sample: no number leads from one draw to the next."""
+    drawn = (
+        [] if study.uncertain is None else [i.key for i in study.uncertain.inputs if i.key.endswith(".waviness_seed")]
+    )
+    if drawn:
+        joint = drawn[0].split(".")[1]
+        raise InputError(
+            f"uncertain: the waves of joint {joint!r} are drawn anew in each sample, and no identification can follow "
+            'that. Let their size scatter with one draw: joint.form.waviness = {Wq = "0.5 um to 2 um", seed = 0}'
+        )
 
 
 def _losses(test: TestChoice, choice: UncertainChoice) -> Losses | None:

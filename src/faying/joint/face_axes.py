@@ -21,7 +21,8 @@ class FaceAxes:
 
     origin (3,) [m], the middle of the rectangle; x_axis, y_axis, normal (3,), unit vectors, y = normal x x;
     lengths: of the rectangle along x and y [m]; certain: whether x is known, as the longer side or because it was
-    given; flat: whether the face is flat enough for shapes over the rectangle.
+    given; flat: whether the face is flat enough for shapes over the rectangle; spacing [m] between neighbouring nodes
+    of the coarser face, which three quarters of its nodes within the rectangle do not exceed.
     """
 
     origin: Array
@@ -31,6 +32,7 @@ class FaceAxes:
     lengths: tuple[float, float]
     certain: bool
     flat: bool
+    spacing: float
 
     @classmethod
     def of(
@@ -63,7 +65,17 @@ class FaceAxes:
             x, y, middle, sides = _box(mesh, faces, normal, y)
         depth = float(interface.weights @ (interface.positions @ normal) / interface.area)
         origin = middle[0] * x + middle[1] * y + depth * normal
-        return cls(origin=origin, x_axis=x, y_axis=y, normal=normal, lengths=sides, certain=certain, flat=flat)
+        spacing = max(_spacing(mesh, face, np.stack([x, y]), middle, sides) for face in faces)
+        return cls(
+            origin=origin,
+            x_axis=x,
+            y_axis=y,
+            normal=normal,
+            lengths=sides,
+            certain=certain,
+            flat=flat,
+            spacing=spacing,
+        )
 
     def check(self, what: str) -> None:
         """Raise InputError where the face has no longer side, or no plane, which `what` needs."""
@@ -80,6 +92,18 @@ class FaceAxes:
         """Places (q, 2) [m] in the rectangle's own axes, from its middle."""
         return np.asarray((positions - self.origin) @ np.stack([self.x_axis, self.y_axis]).T)
 
+    def steady(self, positions: Array) -> Array:
+        """Places (q, 2) [m] from its middle, along axes that do not turn with the mesh where the face is round.
+
+        The rectangle's own where its longer side is known; else x is an axis of the model, laid into the face.
+        """
+        if self.certain:
+            return self.local(positions)
+        helper = np.eye(3)[np.argmin(np.round(np.abs(self.normal), 6))]
+        x = helper - self.normal * (self.normal @ helper)
+        x /= np.linalg.norm(x)
+        return np.asarray((positions - self.origin) @ np.stack([x, np.cross(self.normal, x)]).T)
+
 
 def _box(mesh: Mesh, faces: tuple[str, str], normal: Array, x: Array) -> tuple[Array, Array, Array, Sides]:
     """Axes, middle and sides of the box that both faces share along x; x points where its largest component is > 0."""
@@ -89,6 +113,16 @@ def _box(mesh: Mesh, faces: tuple[str, str], normal: Array, x: Array) -> tuple[A
     low = np.max([end.min(axis=0) for end in ends], axis=0)
     high = np.min([end.max(axis=0) for end in ends], axis=0)
     return x, y, (low + high) / 2, (float(high[0] - low[0]), float(high[1] - low[1]))
+
+
+def _spacing(mesh: Mesh, face: str, axes: Array, middle: Array, sides: Sides) -> float:
+    """Distance [m] to the next node that three quarters of a face's nodes within the rectangle do not exceed."""
+    from scipy.spatial import cKDTree
+
+    nodes = mesh.points[mesh.face_nodes(face)]
+    inside = np.all(np.abs(nodes @ axes.T - middle) <= np.array(sides) * (0.5 + 1e-6), axis=1)
+    nodes = nodes[inside] if np.count_nonzero(inside) > 3 else nodes
+    return float(np.quantile(cKDTree(nodes).query(nodes, k=2)[0][:, 1], 0.75))
 
 
 def _least_rectangle(points: Array) -> tuple[float, Array]:

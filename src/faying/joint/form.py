@@ -1,4 +1,4 @@
-"""The form of two faces that meet: measured maps, named shapes, or a random form within a flatness tolerance.
+"""The form of two faces that meet: measured maps, named shapes, waves, or a random form within a flatness tolerance.
 
 A form is a gap between the faces before any load. Its constant part and its tilt only move the parts as wholes; every
 shape here is zero where it is nearest and positive elsewhere.
@@ -16,6 +16,8 @@ from faying.fe.mesh import Mesh
 from faying.joint.face_axes import FaceAxes
 from faying.joint.flatness import minimum_zone
 from faying.joint.gap_map import FaceMap, GapMap
+from faying.joint.waviness import PARAMETERS as OF_WAVINESS
+from faying.joint.waviness import LaidWaves, ScanWaves, Waviness
 from faying.typing import Array
 
 # what is one number: read from the study, varied by sweeps
@@ -28,6 +30,7 @@ PARAMETERS = {
     "flatness": Parameter("m", "flatness tolerance of each face, of which a random form is drawn", 0, ends="[)"),
     "seed": Parameter("", "which random form is drawn", 0, 1e15, "[]", whole=True),
 }
+VARIED = PARAMETERS | OF_WAVINESS  # what sweeps and predictions know of a form
 TOLERANCE_SHARE = 2 / 3, 1 / 6  # mean and sd of the flatness drawn over the tolerance, a normal cut off at 2 sd
 DEGREES = 2, 3, 4  # total degrees of the polynomials of a random form: crowns and twist, and two orders above
 GRID = 33  # points along each side of the rectangle at which the flatness of a random form is taken
@@ -50,6 +53,7 @@ class Form:
         along: Direction (3,) of x in place of the longer side, for faces as long as wide.
         gap: Measured gap between the faces.
         first, second: Measured heights of the first and of the second face.
+        waviness: Random waves between the side of a scan and that of the face.
 
     Raises:
         InputError: A wave without a length, or a value that is not allowed.
@@ -66,6 +70,7 @@ class Form:
     gap: GapMap | None = None
     first: FaceMap | None = None
     second: FaceMap | None = None
+    waviness: Waviness | None = None
 
     def __post_init__(self) -> None:
         for name, parameter in PARAMETERS.items():
@@ -75,12 +80,30 @@ class Form:
             raise InputError('wave needs its length; add wave_length, for example "40 mm"')
 
     def with_value(self, name: str, value: float) -> Self:
-        """Return the same form with one of `PARAMETERS` changed."""
-        changed: dict[str, Any] = {name: int(value) if PARAMETERS[name].whole else value}
+        """Return the same form with one of `VARIED` changed."""
+        new = int(value) if VARIED[name].whole else value
+        if name == "waviness_seed" and self.waviness is None:
+            raise InputError("waviness_seed draws waves of a form that has none; give joint.form.waviness")
+        if name in OF_WAVINESS:
+            waves: dict[str, Any] = {"Wq" if name == "waviness" else "seed": new}
+            return replace(self, waviness=replace(self.waviness or Waviness(), **waves))
+        changed: dict[str, Any] = {name: new}
         return replace(self, **changed)
 
-    def at(self, positions: Array, axes: FaceAxes) -> Array:
-        """Gap [m] (q,) at positions (q, 3) [m] of a joint with these axes. Raises InputError where one does not fit."""
+    def with_scan(self, scan: ScanWaves | None) -> Self:
+        """Return the same form with what the scan of the joint says of waves that it does not hold."""
+        return self if self.waviness is None else replace(self, waviness=replace(self.waviness, scan=scan))
+
+    def laid(self, axes: FaceAxes) -> LaidWaves | None:
+        """Return the waves on a face with these axes, if there are any. Raises InputError where they do not fit."""
+        return None if self.waviness is None else LaidWaves.of(self.waviness, axes)
+
+    def at(self, positions: Array, axes: FaceAxes, weights: Array | None = None) -> Array:
+        """Gap [m] (q,) at positions (q, 3) [m] of a joint with these axes.
+
+        weights: area of each position (q,), which the mean plane of waves is fitted with; alike where None. Raises
+        InputError where the form does not fit.
+        """
         gap = np.zeros(len(positions))
         for name in ("crown_along", "crown_across", "twist", "wave", "flatness"):
             if getattr(self, name):
@@ -96,6 +119,9 @@ class Form:
         if self.flatness:
             for side in (0, 1):
                 gap += random_depth(place, self.flatness, self.seed, side)
+        waves = self.laid(axes)
+        if waves is not None:
+            gap += waves.gap(positions, axes, weights)
         if self.gap is not None:
             gap += self.gap.at(positions)
         for face, outward in ((self.first, axes.normal), (self.second, -axes.normal)):
@@ -106,7 +132,7 @@ class Form:
     def on(self, interface: Interface, mesh: Mesh, faces: tuple[str, str]) -> Interface:
         """Return a joint of two named faces with this form added to the gap of its geometry."""
         axes = FaceAxes.of(mesh, faces, interface, self.along)
-        return replace(interface, gap=interface.gap + self.at(interface.positions, axes))
+        return replace(interface, gap=interface.gap + self.at(interface.positions, axes, interface.weights))
 
 
 def random_depth(places: Array, tolerance: float, seed: int, side: int) -> Array:

@@ -38,7 +38,7 @@ STATIC_SHARE = 15.0
 LEFT_OUT = 0.1  # of the tolerance of an eigenvalue: energy of a direction of the basis for vibration that is not taken
 
 
-def _pressed(traces: Sequence[Any], laws: Sequence[JointLaw], found: PreloadState) -> float:
+def pressed(traces: Sequence[Any], laws: Sequence[JointLaw], found: PreloadState) -> float:
     """Root of the energy [sqrt(J)], twice, of the joints' normal springs under their pressures.
 
     What the parts and a bolt's shank store beside it says nothing of how exact the pressures are.
@@ -50,7 +50,7 @@ def _pressed(traces: Sequence[Any], laws: Sequence[JointLaw], found: PreloadStat
     return float(np.sqrt(total))
 
 
-def _parts(values: Any) -> list[Array]:
+def real_parts(values: Any) -> list[Array]:
     """Real and imaginary part; the real one alone where the other is zero."""
     return [values.real, values.imag] if np.any(values.imag) else [np.asarray(values.real)]
 
@@ -240,7 +240,7 @@ class Reduction:
         made._reference = stacked(springs), modes.shift
         return made
 
-    def _refresh(self, coarse: int | None = None) -> None:
+    def refresh(self, coarse: int | None = None) -> None:
         """Make `model` anew, under the gaps and scales that it has."""
         old = self.model
         self._project(old.count, old.coarse if coarse is None else coarse)
@@ -254,9 +254,10 @@ class Reduction:
                 out = out + (scales[kind] - 1) * (share @ x)
         return out
 
-    def _static_residual(
+    def static_residual(
         self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], found: PreloadState
     ) -> Array:
+        """What an equilibrium leaves of the forces [N] (n,)."""
         u = self.static.vectors @ found.displacement
         shares = () if self.shares is None else self.shares.standing
         residual = self.loads @ forces - self._scaled(self.stiffness_static, shares, 0, u)
@@ -276,9 +277,9 @@ class Reduction:
         self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], found: PreloadState
     ) -> tuple[float, Array]:
         """Error of an equilibrium in energy over that of the joints' springs [-], and what would mend it (n,)."""
-        residual = self._static_residual(laws, forces, friction, found)
+        residual = self.static_residual(laws, forces, friction, found)
         answer = self.factor.solve(residual)
-        return float(np.sqrt(np.maximum(residual @ answer, 0.0)) / _pressed(self.traces, laws, found)), answer
+        return float(np.sqrt(np.maximum(residual @ answer, 0.0)) / pressed(self.traces, laws, found)), answer
 
     def train_static(
         self,
@@ -297,7 +298,7 @@ class Reduction:
                 return found
             start = found.displacement
             self.static.add(mend[:, None])
-            self._refresh()
+            self.refresh()
         raise NotConverged(
             f"reduction: {FEW_STEPS} enrichments leave the preload wrong by {error:.1e}; raise the tolerance"
         )
@@ -316,18 +317,19 @@ class Reduction:
         values, vectors = values[which], vectors[:, which]
         momentum = self.model.matrices[2] @ vectors
         size = np.abs(values) * np.abs(np.einsum("ij,ij->j", vectors.conj(), momentum))
-        parts = _parts(self._modal_residual(springs, values, vectors))
+        parts = real_parts(self.modal_residual(springs, values, vectors))
         solved = [self.factor.solve(np.asfortranarray(part)) for part in parts]
         energy = sum(np.einsum("ij,ij->j", part, answer) for part, answer in zip(parts, solved, strict=True))
         error = np.asarray(energy / size)
         poor = error > tolerance
         return error, np.concatenate([answer[:, poor] / np.sqrt(size[poor]) for answer in solved], axis=1)
 
-    def _modal_residual(self, springs: Sequence[Springs[ReducedMotion]], values: Any, vectors: Any) -> Any:
+    def modal_residual(self, springs: Sequence[Springs[ReducedMotion]], values: Any, vectors: Any) -> Any:
+        """What complex eigenvalues (m,) and vectors (d, m) of a variant leave of the equations of motion (n, m)."""
         lossy = any(np.any(d.loss_n) or np.any(d.loss_t) for d in springs)
         if not lossy:
             values, vectors = values.real, vectors.real
-        parts = np.concatenate(_parts(vectors), axis=1) if lossy else vectors
+        parts = np.concatenate(real_parts(vectors), axis=1) if lossy else vectors
         x = self.dynamic.vectors @ parts  # real, so that the products with the matrices are
         stiffness, mass = ((), ()) if self.shares is None else (self.shares.stiffness, self.shares.mass)
         force = self._scaled(self.stiffness, stiffness, 0, x)
@@ -369,7 +371,7 @@ class Reduction:
             if not len(poor):
                 return
             new = self.dynamic.add(mend, least=LEFT_OUT * tolerance)
-            self._refresh()
+            self.refresh()
             if not new:
                 raise NotConverged(f"reduction: the modes stay wrong by {error.max():.1e} and nothing improves them")
         raise NotConverged(
@@ -402,8 +404,8 @@ class Reduction:
 
     def _note(self, laws: Sequence[JointLaw], found: PreloadState, vectors: Any) -> None:
         """Keep in mind what a variant needs of the bases as they are."""
-        self._states.append(found.displacement[:, None] / _pressed(self.traces, laws, found))
-        self._needed += _parts(vectors / np.linalg.norm(vectors, axis=0))
+        self._states.append(found.displacement[:, None] / pressed(self.traces, laws, found))
+        self._needed += real_parts(vectors / np.linalg.norm(vectors, axis=0))
 
     def learn(self, laws: Sequence[JointLaw], found: Variant) -> None:
         """Keep in mind what a variant needs that was evaluated in the bases as they are: they are compressed by it."""
@@ -425,7 +427,7 @@ class Reduction:
         rotation, coarse = for_modes(columns, tolerance, learnt=self.learnt > 0)
         self.dynamic.turn(rotation)
         self._needed = [rotation.T @ columns]
-        self._refresh(max(coarse, self.model.count))
+        self.refresh(max(coarse, self.model.count))
 
     def evaluate(
         self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None = None

@@ -60,11 +60,11 @@ def _modes(result: Result) -> tuple[Section, ...]:
             title="Range of the frequencies, from that of the stiffness",
         ),
         Section(
-            name="form",
-            rows=table.form(result),
-            title="Change with preload, if the faces are hollow or crowned",
-            line="d f/d preload, if the faces are hollow or crowned by 3 um (flat faces are an assumption)",
-            below="Flat faces are an assumption.",
+            name="waves",
+            rows=table.waves(result),
+            title="Frequencies over the waves that machined faces have",
+            line=f"frequencies with {table.waves_head(result)}: least .. median .. greatest",
+            below=f"Least, median and greatest with {table.waves_head(result)}.",
         ),
         Section(
             name="beyond",

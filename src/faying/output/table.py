@@ -105,15 +105,40 @@ def laws(result: Result) -> Rows:
     return rows
 
 
-def form(result: Result) -> Rows:
-    """One row per mode: d f/d preload with hollow, flat and crowned faces; empty where a form is given, or one load."""
-    if result.form_slopes is None or result.form_crowns is None:
+def waves(result: Result) -> Rows:
+    """One row per mode: least, median and greatest over the draws of waves, at each load and of d f/d preload."""
+    if result.wave_frequencies is None:
         return []
-    heads = [f"{'flat' if c == 0 else f'{1e6 * c:+.3g} um'} [Hz/kN]" for c in result.form_crowns]
-    rows: Rows = [["mode", *heads]]
-    for j, slopes in enumerate(result.form_slopes.T):
-        rows.append([str(j + 1), *(f"{1e3 * slope:+.3f}" for slope in slopes)])
+    heads = [f"{load / 1e3:g} kN [Hz]" for load in result.loads]
+    rows: Rows = [["mode", *heads, *(["d f/d preload [Hz/kN]"] if result.wave_slopes is not None else [])]]
+    for j in range(result.wave_frequencies.shape[2]):
+        cells = [_over_draws(values, ".2f") for values in result.wave_frequencies[:, :, j].T]
+        cells += [] if result.wave_slopes is None else [_over_draws(1e3 * result.wave_slopes[:, j], "+.3f")]
+        rows.append([str(j + 1), *cells])
     return rows
+
+
+def _over_draws(values: Array, form: str) -> str:
+    """Least, median and greatest of some draws."""
+    return " .. ".join(format(np.quantile(values, share), form) for share in (0.0, 0.5, 1.0))
+
+
+def waves_head(result: Result) -> str:
+    """Which waves the draws have, as far as the joints have the same; empty where none are drawn."""
+    if result.wave_rms is None or result.wave_lengths is None or result.wave_seeds is None:
+        return ""
+    drawn = np.isfinite(result.wave_rms)
+    rms, low, high = (
+        _one_or_ends(1e6 * result.wave_rms[drawn], "um"),
+        _one_or_ends(1e3 * result.wave_lengths[drawn, 0], "mm"),
+        _one_or_ends(1e3 * result.wave_lengths[drawn, 1], "mm"),
+    )
+    return f"waves from {low} to {high}, rms {rms} on each face, {len(result.wave_seeds)} draws"
+
+
+def _one_or_ends(values: Array, unit: str) -> str:
+    least, greatest = f"{values.min():.3g}", f"{values.max():.3g}"
+    return f"{least} {unit}" if least == greatest else f"{least} .. {greatest} {unit}"
 
 
 def _or_dash(value: float, form: str) -> str:

@@ -208,11 +208,25 @@ class Result(Recorded):
         gaps=True,
         default=None,
     )
-    form_crowns: Array | None = variable(
-        "crown", unit="m", long_name="crown of the faces for form_slopes, negative is hollow", default=None
+    wave_seeds: Index | None = variable(
+        "draw", unit="1", long_name="draws of waves on the faces, by their seed", dtype="i8", default=None
     )
-    form_slopes: Array | None = variable(
-        "crown", "mode", unit="Hz/N", long_name="change of frequency with preload under a crown", default=None
+    wave_frequencies: Array | None = variable(
+        "draw", "load", "mode", unit="Hz", long_name="frequency with waves on the faces", default=None
+    )
+    wave_slopes: Array | None = variable(
+        "draw", "mode", unit="Hz/N", long_name="change of frequency with preload with waves", default=None
+    )
+    wave_rms: Array | None = variable(
+        "joint", unit="m", long_name="rms of the waves of each face, NaN where none are drawn", gaps=True, default=None
+    )
+    wave_lengths: Array | None = variable(
+        "joint",
+        "end",
+        unit="m",
+        long_name="shortest and longest wave that is drawn, NaN where none are",
+        gaps=True,
+        default=None,
     )
     beside_frequencies: Array | None = variable(
         "beside", "load", "mode", unit="Hz", long_name="frequency under another law", gaps=True, default=None

@@ -9,7 +9,7 @@ from faying import units
 from faying.contact.build import find
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
-from faying.joint.form import PARAMETERS
+from faying.joint.form import VARIED
 from faying.study.keys.surface import Surface
 from faying.study.keys.varied import MODEL, OWN, formed, swept
 from faying.study.study import Study
@@ -55,7 +55,7 @@ def axis_of(text: str) -> Axis:
         return Axis(key=key, unit="", values=tuple(find(word).label for word in given.split(",")))
     parameter = swept(key)
     if parameter is None:
-        forms = f"joint.form.{{{', '.join(PARAMETERS)}}}", "joint.NAME.form.SHAPE"
+        forms = f"joint.form.{{{', '.join(VARIED)}}}", "joint.NAME.form.SHAPE"
         known = ", ".join(
             (*OWN, "bolt.NAME.preload", "joint.NAME.stiffness", *forms, MODEL, "law.NAME (a parameter of the law)")
         )

@@ -89,7 +89,7 @@ def changed(case: Case, choice: BesideChoice) -> Case:
     placed = []
     for joint, old, surface in zip(study.joints, case.structure.joints, surfaces, strict=True):
         law = joint_law(joint, study.law_of(joint), surface, *materials_at(study, mesh, joint))
-        interface = old.interface if choice.form is None else interface_of(study, mesh, joint)[0]
+        interface = old.interface if choice.form is None else interface_of(study, mesh, joint, surface)[0]
         placed.append(replace(old, law=law, scan_area=surface.scan_area, interface=interface))
     structure = replace(case.structure, joints=tuple(placed))
     return replace(case, study=study, structure=structure, surfaces=surfaces, hammer=None, test_points=None, notes=())

@@ -9,8 +9,10 @@ from faying.errors import InputError
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.files import end_of
+from faying.joint.face_axes import FaceAxes
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Joint, Structure
+from faying.joint.waviness import LaidWaves, Waviness
 from faying.materials import Material
 from faying.measured.mapping import PointMap
 from faying.notes import Note
@@ -277,7 +279,7 @@ def structure_of(
         law = (laws or {}).get((joint.name, *parts)) or joint_law(
             joint, study.law_of(joint), surface, *materials_at(study, mesh, joint)
         )
-        interface, closed = interface_of(study, mesh, joint)
+        interface, closed = interface_of(study, mesh, joint, surface)
         notes += closed
         joints.append(
             Joint(
@@ -300,10 +302,23 @@ def structure_of(
     )
 
 
-def interface_of(study: Study, mesh: Mesh, joint: JointChoice) -> tuple[Interface, list[Note]]:
-    """How the faces of a joint meet, with their form; and a note where a gap of the CAD model was closed."""
+def interface_of(study: Study, mesh: Mesh, joint: JointChoice, surface: Surface) -> tuple[Interface, list[Note]]:
+    """How the faces of a joint meet, with their form; and notes on a gap that was closed and on waves."""
     met, notes = snapped(join(mesh, *joint.faces, search_distance=joint.search_distance), study, joint.name)
-    return met if joint.form is None else joint.form.on(met, mesh, joint.faces), notes
+    if joint.form is None:
+        return met, notes
+    form = joint.form.with_scan(surface.waves)
+    if form.waviness is not None:
+        notes += wave_notes(joint.name, form.waviness, FaceAxes.of(mesh, joint.faces, met, form.along))
+    return form.on(met, mesh, joint.faces), notes
+
+
+def wave_notes(name: str, waviness: Waviness, axes: FaceAxes) -> list[Note]:
+    """Which waves are drawn, and which of them the mesh does not carry. Raises InputError where they do not fit."""
+    laid = LaidWaves.of(waviness, axes)
+    text = f"{name}: {laid.words()} ({waviness.origin}), draw {waviness.seed}; another draw is another joint"
+    notes = [Note(code="waves", joint=name, text=text)]
+    return notes if laid.lost <= 0 else [*notes, Note(code="waves-mesh", joint=name, text=f"{name}: {laid.cut()}")]
 
 
 def snapped(interface: Interface, study: Study, name: str) -> tuple[Interface, list[Note]]:

@@ -11,6 +11,7 @@ from faying.joint.form import Form
 from faying.joint.joint_law import JointLaw
 from faying.joint.part_shares import Scales
 from faying.joint.structure import Structure
+from faying.joint.waviness import ScanWaves
 from faying.materials import Material
 from faying.study.case import Case, joint_law, materials_of
 from faying.study.keys.surface import Surface
@@ -70,11 +71,14 @@ class Design(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Place:
-    """Where a joint lies: its points (q, 3) [m], the gap of its geometry there (q,) [m], and the face's own axes."""
+    """Where a joint lies: its points (q, 3) [m] and their areas (q,) [m2], the gap of its geometry there (q,) [m], the
+    face's own axes, and what its scan says of waves."""
 
     positions: Array
+    weights: Array
     geometry: Array
     axes: FaceAxes
+    scan: ScanWaves | None
 
     @classmethod
     def all(cls, structure: Structure, design: Design) -> "tuple[Place, ...]":
@@ -82,16 +86,24 @@ class Place:
         if not design.varies_form:
             return ()
         out = []
-        for joint, choice in zip(structure.joints, design.study.joints, strict=True):
+        for joint, choice, surface in zip(structure.joints, design.study.joints, design.surfaces, strict=True):
             interface, form = joint.interface, choice.form
             axes = FaceAxes.of(structure.mesh, joint.faces, interface, None if form is None else form.along)
-            laid = 0.0 if form is None else form.at(interface.positions, axes)
-            out.append(cls(positions=interface.positions, geometry=interface.gap - laid, axes=axes))
+            place = cls(
+                positions=interface.positions,
+                weights=interface.weights,
+                geometry=np.zeros(len(interface.weights)),
+                axes=axes,
+                scan=surface.waves,
+            )
+            out.append(replace(place, geometry=interface.gap - place.gap(form)))
         return tuple(out)
 
     def gap(self, form: Form | None) -> Array:
         """Gap [m] (q,) before any load with a form on the geometry."""
-        return self.geometry if form is None else self.geometry + form.at(self.positions, self.axes)
+        if form is None:
+            return self.geometry
+        return self.geometry + form.with_scan(self.scan).at(self.positions, self.axes, self.weights)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -26,12 +26,12 @@ from faying.study.beyond import stiff_as_bonded
 from faying.study.bolt_numbers import bolt_numbers, conductances
 from faying.study.case import Case, Progress
 from faying.study.findings import against_exact_contact, falling
-from faying.study.form_band import form_band
 from faying.study.modes import Preloads, SharedModes, modes_with
 from faying.study.provenance import provenance
 from faying.study.solve import State, solve
 from faying.study.study import Study
 from faying.study.tracks import compared, encounters, macs, shapes_of
+from faying.study.wave_band import wave_band
 from faying.typing import Array
 
 NOT_ZERO = 1e-2  # Hz: a rigid motion above it is noted
@@ -63,10 +63,10 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
     besides = [solve_beside(case, choice, shared, progress) for choice in study.beside]
     progress.begin("modes free and bonded")
     free, bonded, notes = bounds(case)
-    band, more = form_band(case, states)
+    band, more = wave_band(case, states)
     result = collect(case, states, (free, bonded), [*notes, *findings(case, states), *more], besides)
     if band is not None:
-        result = replace(result, form_crowns=band.crowns, form_slopes=band.slopes)
+        result = replace(result, **band.fields(case.loads))
     if study.backbone is None:
         return result
     progress.begin(f"mode {study.backbone.mode} over amplitude")

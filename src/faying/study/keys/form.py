@@ -1,4 +1,4 @@
-"""[joint.form]: the form of the two faces of a joint, named shapes, a random form, measured maps."""
+"""[joint.form]: the form of the two faces of a joint, named shapes, waves, a random form, measured maps."""
 
 from typing import Any
 
@@ -6,12 +6,14 @@ from faying import units
 from faying.joint.form import PARAMETERS, Form
 from faying.joint.gap_map import FaceMap, GapMap, read_gap_map, read_heights
 from faying.study.keys.reader import Table, direction, point
+from faying.study.keys.waviness import read_waviness
 
 
 def read_form(table: Table | None) -> Form | None:
     """Read [joint.form]; None where there is none."""
     if table is None:
         return None
+    _note_flat(table)
     given = {name: table.parameter(name, parameter) for name, parameter in PARAMETERS.items()}
     along = table.take("along", direction, None)
     gap, first, second = table.table("gap"), table.table("first"), table.table("second")
@@ -19,10 +21,18 @@ def read_form(table: Table | None) -> Form | None:
         "gap": None if gap is None else _gap(gap),
         "first": None if first is None else _face(first),
         "second": None if second is None else _face(second),
+        "waviness": read_waviness(table.table("waviness")),
     }
     table.close()
     values = {name: value for name, value in given.items() if value is not None}
     return table.made(lambda: Form(**values, along=along, **maps))
+
+
+def _note_flat(table: Table) -> None:
+    """Take `flat`, and note where it stands beside a form."""
+    others = [key for key in table.data if key != "flat"]
+    if table.truth("flat", False) and others:
+        table.faults.add(f"{table.where}: flat = true says that the faces have no form; leave out {', '.join(others)}")
 
 
 def _gap(table: Table) -> GapMap | None:

@@ -1,7 +1,7 @@
 """[surface]: the scan of a rough face, or its D, G and area; read and fitted in one place."""
 
 from dataclasses import dataclass, replace
-from math import isnan
+from math import isnan, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +9,7 @@ from faying import cache, units
 from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.two_faces import COUNTERS, Counter, Faces
 from faying.errors import InputError
+from faying.joint.waviness import ScanWaves
 from faying.study.keys.reader import Table
 from faying.surface.fractal import FractalFit
 from faying.surface.read import read_scan
@@ -147,6 +148,19 @@ class Surface:
     def scan_area(self) -> float | None:
         """Area of the scan [m2]; None without a surface."""
         return None if self.rough is None else self.rough.inputs.scan_area
+
+    @property
+    def waves(self) -> ScanWaves | None:
+        """What the surface says of waves longer than its scan; None without a surface."""
+        if self.rough is None or isnan(self.rough.inputs.scan_area):
+            return None
+        root = sqrt(self.rough.inputs.scan_area)
+        scan = None if self.scans is None else self.scans[0]
+        side = root if scan is None else scan.length if isinstance(scan, Profile) else max(scan.size)
+        fit = self.fit
+        if fit is None or isnan(fit.implied_Rq):
+            return ScanWaves(side=side)
+        return ScanWaves(side=side, Rq=fit.implied_Rq, length=root, hurst=3 - fit.D)
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from faying.contact.parameter import Parameter
 from faying.distribution import Distribution, uncertain_text
 from faying.errors import InputError
 from faying.joint.form import PARAMETERS as SHAPES
+from faying.joint.form import VARIED
 from faying.joint.tightening import tightening
 from faying.materials import Material
 from faying.study.keys.joint import JointChoice
@@ -19,7 +20,12 @@ from faying.study.keys.reader import Faults, quantity
 from faying.study.keys.varied import swept
 
 # short keys, and what they stand for
-SHORT = {"friction": "joint.friction", "stiffness": "joint.stiffness", "flatness": "joint.form.flatness"}
+SHORT = {
+    "friction": "joint.friction",
+    "stiffness": "joint.stiffness",
+    "flatness": "joint.form.flatness",
+    "waviness": "joint.form.waviness",
+}
 OF_MATERIAL = {
     "E": Parameter("Pa", "Young's modulus of the parts of a material", 0),
     "density": Parameter("kg/m^3", "density of the parts of a material", 0),
@@ -28,6 +34,7 @@ OF_TEST = ("test", "discrepancy", "test_loss", "discrepancy_loss")
 OWN = ("preload", *OF_TEST, "surface.fit", "surface.scans", "law.model")  # that are no plain distribution
 # standard deviations of the shapes of a joint over the flatness tolerance of its faces: the second-degree part of the
 # random form of `faying.joint.form`, whose mean flatness over one face is two thirds of the tolerance
+DRAWS = 1_000_000  # of waves, of which each sample has one
 SHAPE_SD = {"crown_along": 0.41, "crown_across": 0.41, "twist": 0.36}
 
 
@@ -120,6 +127,12 @@ def lifted(data: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
             if isinstance(joint, dict) and "form" in joint:
                 shapes = {key: parameter for key, parameter in SHAPES.items() if not parameter.whole}
                 joint["form"] = lift(joint["form"], f"joint.{name}.form", shapes)
+                if isinstance(joint["form"], dict) and isinstance(joint["form"].get("waviness"), Mapping):
+                    waves, size = dict(joint["form"]["waviness"]), f"joint.{name}.form.waviness"
+                    waves = lift(waves, size, {"Wq": VARIED["waviness"]})
+                    if f"{size}.Wq" in found:
+                        found[size] = found.pop(f"{size}.Wq")
+                    joint["form"]["waviness"] = waves
             out.append(joint)
         data["joint"] = out
     for room in ("law", "surface"):
@@ -214,6 +227,8 @@ class _Reader:
             self._of_material(key, value, where)
         elif parts[-2:] == ["form", "flatness"]:
             self._flatness(parts, value, where)
+        elif parts[-2:] == ["form", "waviness"]:
+            self._waviness(parts, value, where)
         else:
             self.add(key, value, where)
 
@@ -292,6 +307,23 @@ class _Reader:
                 centre = 0.0 if joint.form is None else float(getattr(joint.form, shape))
                 found = Distribution(kind="normal", centre=centre, spread=sd * tolerance)
                 self._add(f"joint.{joint.name}.form.{shape}", found, SHAPES[shape], where)
+
+    def _waviness(self, parts: list[str], value: Any, where: str) -> None:
+        """The waves of each joint, or of one: which are drawn, and how large unless that is given (value: true)."""
+        self._check(".".join(parts), where)
+        for joint in self.known.joints:
+            if len(parts) == 4 and joint.name != parts[1]:
+                continue
+            key = f"joint.{joint.name}.form.waviness"
+            if value is not True:
+                self.add(key, value, where)
+            elif joint.form is None or joint.form.waviness is None:
+                raise InputError(
+                    f"{where} = true draws waves whose size the joint gives, and {joint.name!r} gives none; write for "
+                    'example "0.5 um to 2 um", the rms of the waves of each face'
+                )
+            draws = Distribution(kind="uniform", centre=DRAWS / 2, spread=DRAWS / 2)
+            self._add(f"{key}_seed", draws, VARIED["waviness_seed"], where)
 
     def _files(self, value: Any, where: str) -> tuple[Path, ...]:
         if not isinstance(value, list) or not value or not all(isinstance(one, str) for one in value):

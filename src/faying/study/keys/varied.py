@@ -2,7 +2,7 @@
 
 from faying.contact.build import kinds
 from faying.contact.parameter import FILE, TABLE, Parameter
-from faying.joint.form import PARAMETERS
+from faying.joint.form import VARIED
 from faying.study.keys.joint import TANGENTIAL
 from faying.study.keys.law import OF_SURFACE
 
@@ -35,7 +35,7 @@ def swept(key: str) -> Parameter | None:
     if len(parts) == 3 and parts[-1] in OF_ONE.get(parts[0], ()):
         return OWN[f"{parts[0]}.{parts[-1]}"]
     if formed(parts):
-        return PARAMETERS.get(parts[-1])
+        return VARIED.get(parts[-1])
     if parts[0] == "part":
         return OF_PART.get(parts[-1]) if len(parts) == 3 else None
     if key in OWN:

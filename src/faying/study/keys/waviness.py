@@ -1,0 +1,53 @@
+"""[joint.form] waviness: random waves between the side of a scan and that of the face, their size said in one way."""
+
+from typing import Any
+
+from faying.contact.parameter import Parameter
+from faying.joint.machining import GAUSSIAN, PROCESSES, RMS_OF_FLATNESS
+from faying.joint.waviness import OF_WAVES, PARAMETERS, Waviness
+from faying.study.keys.reader import Table
+from faying.units import show
+
+SIZES = {
+    "Wq": PARAMETERS["waviness"],
+    "Wa": Parameter("m", "mean absolute height of the waves of each face", 0),
+    "flatness": Parameter("m", "flatness tolerance of each face, of which waves take a third", 0),
+}
+WAYS = (*SIZES, "process", "from")  # in which the size can be said
+
+
+def read_waviness(table: Table | None) -> Waviness | None:
+    """Read waviness = {...}; None where there is none, or no size that can be used."""
+    if table is None:
+        return None
+    sizes: dict[str, Any] = {name: table.parameter(name, parameter) for name, parameter in SIZES.items()}
+    sizes["process"] = table.text("process", None, tuple(PROCESSES))
+    sizes["from"] = table.text("from", None, ("scan",))
+    of_waves = {name: table.parameter(name, parameter) for name, parameter in OF_WAVES.items()}
+    said = [way for way in WAYS if way in table.data]
+    table.close()
+    if len(said) != 1:
+        table.faults.add(
+            f"{table.where} has {'no size' if not said else 'sizes by ' + ' and '.join(said)}; give one of "
+            'Wq = "1 um", Wa = "0.8 um", flatness = "20 um", '
+            f'process = "{next(iter(PROCESSES))}" (or {", ".join([*PROCESSES][1:])}), from = "scan"'
+        )
+        return None
+    (way,) = said
+    if sizes[way] is None:
+        return None
+    values = {name: value for name, value in of_waves.items() if value is not None}
+    return table.made(lambda: Waviness(**_size(way, sizes[way]), **values))
+
+
+def _size(way: str, value: Any) -> dict[str, Any]:
+    """The rms of each face [m] and where it comes from, for a size said in one way."""
+    if way == "from":
+        return {"Wq": None, "origin": "spectrum of the scan, continued to longer waves"}
+    if way == "process":
+        process = PROCESSES[value]
+        ends = f"{show(process.least, 'm', digits=2)} to {show(process.greatest, 'm', digits=2)}"
+        return {"Wq": GAUSSIAN * process.Wa, "origin": f"{value}, the middle of Wa {ends}"}
+    if way == "flatness":
+        return {"Wq": RMS_OF_FLATNESS * value, "origin": f"a third of a flatness tolerance of {show(value, 'm')}"}
+    return {"Wq": value if way == "Wq" else GAUSSIAN * value, "origin": f"{way} {show(value, 'm')}"}

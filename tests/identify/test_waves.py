@@ -1,0 +1,104 @@
+"""Waves that scatter: another draw in each sample, the same again with the same seed, and not for identification."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import faying
+from faying.identify.ensemble import Ensemble
+from faying.identify.evaluate import LIMIT
+from faying.study import Study
+from faying.study.keys import test as keys
+from faying.study.run import run
+from tests.helpers.studies import write
+
+MEASURED = keys.TestChoice(
+    source="none: the fault comes before it is used",
+    frequencies=((9e3, 1e4), (9.1e3, 1.01e4)),
+    published=None,
+    published_name="",
+    kind="test",
+    points=((0.0, 0.0, 0.0),),
+    direction=(1.0, 0.0, 0.0),
+)
+
+
+def study_of(folder, uncertain, form=""):
+    """The blocks of `faying init` on a coarse mesh, with a form and [uncertain]."""
+    path = folder / "study.toml"
+    write(path, force=True)
+    text = path.read_text()
+    if form:
+        text = text.replace("\n[[bolt]]", f"\n[joint.form]\n{form}\n\n[[bolt]]", 1)
+    path.write_text(f"{text}\n[uncertain]\n{uncertain}\n")
+    study = Study.read(path)
+    sizes = {name: 2 * size for name, size in study.geometry.face_size.items()}
+    geometry = replace(study.geometry, size=2 * study.geometry.size, face_size=sizes)
+    return replace(study, geometry=geometry, modes=replace(study.modes, count=2))
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    return study_of(tmp_path_factory.mktemp("waves"), 'waviness = "0.3 um to 1 um"')
+
+
+@pytest.fixture(scope="module")
+def found(study):
+    return faying.predict(study, samples=8, seed=4)
+
+
+def test_size_and_draw_are_inputs_of_every_joint(study):
+    (size, draw) = study.uncertain.inputs
+    assert (size.key, draw.key) == ("joint.joint.form.waviness", "joint.joint.form.waviness_seed")
+    assert size.unit == "m"
+    ensemble = Ensemble.of(study, 32, 0)
+    forms = [
+        ensemble.point(2 * k).study.joints[0].form.waviness for k in range(ensemble.training, len(ensemble.values))
+    ]
+    sizes = np.array([w.Wq for w in forms])
+    assert 0.3e-6 <= sizes.min() < 0.35e-6 < 0.95e-6 < sizes.max() <= 1e-6
+    assert len({w.seed for w in forms}) == 32
+    both = [ensemble.point(k).study.joints[0].form for k in (0, 1)]
+    assert both[0] == both[1]  # a sample has the same waves at all of its loads
+
+
+def test_samples_differ_and_come_again_with_the_seed(study, found):
+    assert np.isfinite(found.frequencies).all()
+    assert len(np.unique(np.round(found.frequencies[:, 0, 0], 3))) == 8
+    again, other = (Ensemble.of(study, 8, seed) for seed in (4, 5))
+    assert np.array_equal(again.values[again.training :], found.values)
+    assert not np.isin(other.values[other.training :, 1], found.values[:, 1]).any()
+
+
+def test_a_sample_is_the_study_with_its_waves(study, found):
+    """A sample from the small bases, against a full run with its size and its draw as a form: to what bases promise."""
+    joint, bare = study.joints[0], replace(study, uncertain=None)
+    names = [name.rpartition(".")[2] for name in found.names]
+    for number in (3, 6):
+        values = dict(zip(names, found.values[number], strict=True))
+        waves = faying.Waviness(Wq=values["waviness"], seed=int(values["waviness_seed"]))
+        full = run(replace(bare, joints=(replace(joint, form=faying.Form(waviness=waves)),)))
+        assert found.frequencies[number] == pytest.approx(full.frequencies, rel=LIMIT)
+
+
+def test_true_draws_waves_of_the_size_that_the_form_gives(tmp_path):
+    study = study_of(tmp_path, "waviness = true", 'waviness = { Wq = "0.5 um" }')
+    assert [one.key for one in study.uncertain.inputs] == ["joint.joint.form.waviness_seed"]
+    forms = [Ensemble.of(study, 8, 0).point(k).study.joints[0].form for k in (0, 4)]
+    assert [form.waviness.Wq for form in forms] == pytest.approx([0.5e-6] * 2)
+    with pytest.raises(faying.InputError, match="whose size the joint gives, and 'joint' gives none"):
+        study_of(tmp_path, "waviness = true")
+
+
+def test_a_size_in_its_place_scatters_with_one_draw(tmp_path):
+    study = study_of(tmp_path, "", 'waviness = { Wq = "0.3 um to 1 um", seed = 5 }')
+    assert [one.key for one in study.uncertain.inputs] == ["joint.joint.form.waviness"]
+    assert study.joints[0].form.waviness.Wq == pytest.approx(0.65e-6)
+    assert Ensemble.of(study, 8, 0).point(20).study.joints[0].form.waviness.seed == 5
+
+
+def test_an_identification_cannot_follow_draws(study):
+    tested = replace(study, test=MEASURED)
+    with pytest.raises(faying.InputError, match="drawn anew in each sample, and no identification can follow"):
+        faying.identify(tested)
