@@ -299,7 +299,9 @@ class HalfSpace(ContactLaw):
         x = np.log(p)
         curve = self._curves
         values = {name: curve[name](x) for name in self.series.values}
-        k_load = np.asarray(p / curve["closing_slope"](x))
+        # the faces close by no less than they spring back: where spots have just merged k_load is k_n
+        unloading = curve["k_n"](x)
+        k_load = p / np.maximum(curve["closing_slope"](x), p / unloading)
         if self.stiffness == "loading":
             values["k_n"] = k_load
         else:

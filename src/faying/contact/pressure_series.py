@@ -309,7 +309,7 @@ class _Levels:
                 values[name] = np.exp(_between(at, np.log(own / base), x)) * values[over]
         closings = self._on_all("closing")
         if np.any(np.diff(closings[0]) <= 0):  # the differences of the maps outweigh the closing: the map alone
-            closings[0] = _between(*self._curve(0, "closing"), x)
+            closings[0] = np.maximum.accumulate(_between(*self._curve(0, "closing"), x))
         slopes = [np.log(np.maximum(np.gradient(c, x), 1e-300)) for c in closings]
         at, count = self._curve(0, "spots")
         spots = np.exp(_between(at, np.log(count), x))
