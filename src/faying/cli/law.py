@@ -12,13 +12,14 @@ from faying.cli.options import quantity
 SHOWN = {
     "pressure": ("p [MPa]", 1e-6),
     "area": ("Ar/A0", 1.0),
-    "k_n": ("k_n [MPa/um]", 1e-12),
-    "k_t": ("k_t [MPa/um]", 1e-12),
+    "k_n": ("k_n", 1e-12),
+    "k_load": ("k_load", 1e-12),
+    "k_t": ("k_t", 1e-12),
     "k_n_low": ("k_n low", 1e-12),
     "k_n_high": ("k_n high", 1e-12),
     "loss_n": ("loss n", 1.0),
     "loss_t": ("loss t", 1.0),
-    "h": ("h [W/(m2 K)]", 1.0),
+    "h": ("h W/(m2 K)", 1.0),
 }
 HEAT = "W/(m^2*K)"
 WIDTH = 78
@@ -363,9 +364,12 @@ def table(law: Any, response: Any, h: Any = None) -> str:
     if getattr(law, "pair", None) is not None:
         lines.append(f"  {law.pair.first.name} against {law.pair.second.name}, E* {show(law.pair.E_star, 'Pa')}")
     lines.append("")
-    lines.append("".join(f"{SHOWN[name][0]:>13}" for name in names))
+    if "k_n" in names:
+        lines += [f"  {line}" for line in branches(law, quantities)] + [""]
+    width = min(13, WIDTH // len(names))
+    lines.append("".join(f"{SHOWN[name][0]:>{width}}" for name in names))
     for i, good in enumerate(response.valid):
-        row = "".join(f"{quantities[name][i] * SHOWN[name][1]:>13.4g}" for name in names)
+        row = "".join(f"{quantities[name][i] * SHOWN[name][1]:>{width}.4g}" for name in names)
         lines.append(row + ("" if good else " *"))
     if not response.valid.all():
         lines += ["", "  * outside the validity range of the model:"]
@@ -379,6 +383,17 @@ def table(law: Any, response: Any, h: Any = None) -> str:
     if response.loss_n is None and response.loss_t is None:
         lines.append("loss: not predicted")
     return "\n".join(lines)
+
+
+def branches(law: Any, quantities: Any) -> list[str]:
+    """Which stiffness is which, in MPa/um."""
+    if "k_load" in quantities:
+        return [
+            "stiffness in MPa/um; k_n on unloading: vibration, ultrasound, conductance;",
+            "k_load on loading: slow approach curves, preload, embedding",
+        ]
+    branch = getattr(law, "stiffness", "")
+    return [f"stiffness in MPa/um{f', on {branch}' if branch else ''}"]
 
 
 def csv_text(law: Any, response: Any, h: Any = None) -> str:

@@ -25,6 +25,7 @@ from faying.typing import Array
 
 FEWEST_SPOTS = 10
 COARSE = 0.5  # greatest share of the stiffness on spots of fewer than 4 points
+LAY = 0.02  # relative difference of k_t along and across the lay that is said
 STEP = 1.05  # factor of pressure either way over which the slope of one contact's loading curve is taken
 RESOLVED = 0.25  # greatest change of ln k_n on half the points each way
 
@@ -213,7 +214,9 @@ class HalfSpace(ContactLaw):
         out["k_n"] = contact.normal_stiffness(loading=False)
         if not detail:
             return out
-        out["k_t"] = contact.tangential_stiffness()
+        tensor = contact.tangential_stiffness()
+        along = np.linalg.eigvalsh(tensor)
+        out |= {"k_t": float(np.trace(tensor)) / 2, "lay": float(along[1] / along[0])}
         if not unloading:
             out["loss_n"] = work / (2 * pi * contact.elastic_energy)
         if self.shear_ratio > 0:
@@ -298,7 +301,7 @@ class HalfSpace(ContactLaw):
         p = np.asarray(closure, dtype=float)
         x = np.log(p)
         curve = self._curves
-        values = {name: curve[name](x) for name in self.series.values}
+        values = {name: curve[name](x) for name in self.series.values if name != "lay"}
         # the faces close by no less than they spring back: where spots have just merged k_load is k_n
         unloading = curve["k_n"](x)
         k_load = p / np.maximum(curve["closing_slope"](x), p / unloading)
@@ -319,6 +322,14 @@ class HalfSpace(ContactLaw):
                 f"k_n changes by more than {RESOLVED:.0%} on half the points each way": change > RESOLVED,
             },
         )
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """That k_t is one number, where the lay makes two of it."""
+        ratio = float(np.median(self.series.values["lay"]))
+        if ratio < 1 + LAY:
+            return ()
+        return (f"its k_t is the mean of two directions, which the lay of the scan sets {ratio - 1:.0%} apart",)
 
     def resolution_error(self, pressure: float) -> dict[str, float]:
         """Relative change of area, k_n and k_t when the scan is halved in points each way [-].

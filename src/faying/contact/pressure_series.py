@@ -33,7 +33,7 @@ MOST = log(1e3)  # a range wider than this says no more: next to full contact th
 ALIKE = 0.75  # correlation; an odd number of rows leaves half of what the next row differs by
 FEWEST_CELLS = 16  # on the side of a quarter of the window
 HARDNESS_DOUBT = 1.35  # factor either way: scatter of Brinell hardness of one steel, and of small indentations
-STORED = 4  # version of what the cache holds
+STORED = 5  # version of what the cache holds
 
 
 class Solve(Protocol):

@@ -183,11 +183,11 @@ class HalfSpaceContact:
 
         return normal_stiffness_of(self, loading=loading)
 
-    def tangential_stiffness(self) -> float:
-        """k_t of `Tangent` alone [Pa/m]: shear without slip, mean of the two directions."""
+    def tangential_stiffness(self) -> Array:
+        """k_tensor of `Tangent` alone [Pa/m], shape (2, 2): shear without slip along x and y, and their coupling."""
         from faying.halfspace.tangent import tangential_stiffness_of
 
-        return float(np.trace(tangential_stiffness_of(self))) / 2
+        return tangential_stiffness_of(self)
 
     def slip(self, shear_ratio: float, friction: float, *, tol: float = 1e-6) -> "Slip":
         """Partial slip under a tangential load of shear_ratio times friction times the normal load (see `Slip`)."""
