@@ -89,7 +89,7 @@ def test_material_without_catalogue() -> None:
 
 def test_rows_outside_the_validity_range_carry_a_star_and_the_reason() -> None:
     out = run(*SPECIMEN, "--pressure", "1 MPa:40 MPa:4")
-    assert [line.endswith("*") for line in out.split("\n\n")[2].splitlines()[1:]] == [False, False, True, True]
+    assert [line.endswith("*") for line in out.split("\n\n")[3].splitlines()[1:]] == [False, False, True, True]
     assert "stiffness of the bulk" in out
 
 
@@ -156,7 +156,7 @@ def test_conductance_goes_with_the_stiffness(tmp_path: Path) -> None:
     assert tree["h"]["values"] == pytest.approx(expected, rel=1e-12)
     assert tree["h"]["unit"] == "W/(m^2*K)"
     text = run(*words, "--csv", str(tmp_path / "h.csv"))
-    assert "h [W/(m2 K)]" in text
+    assert "h in W/(m2 K): clean metal in vacuum" in text
     assert f"{expected[0]:.4g}" in text
     head, first = (tmp_path / "h.csv").read_text().splitlines()[1:3]
     assert float(first.split(",")[head.split(",").index("h [W/(m^2*K)]")]) == pytest.approx(expected[0])
@@ -194,7 +194,7 @@ def test_conductance_of_several_laws_of_a_scan(tmp_path: Path) -> None:
     [
         (("--material", "45 steel", "--against", "same"), "'45 steel' has none: give conductivity"),
         (
-            ("--material", "S355"),
+            ("--material", "S355", "--against", "rigid"),
             'the rigid plane does not: name the material of the other face, for example against "',
         ),
         (("--material", "S355", "--against", "same", "--conductivity", "5 W"), "--conductivity"),

@@ -19,7 +19,7 @@ SHOWN = {
     "k_n_high": ("k_n high", 1e-12),
     "loss_n": ("loss n", 1.0),
     "loss_t": ("loss t", 1.0),
-    "h": ("h W/(m2 K)", 1.0),
+    "h": ("h", 1.0),
 }
 HEAT = "W/(m^2*K)"
 WIDTH = 78
@@ -367,9 +367,10 @@ def table(law: Any, response: Any, h: Any = None) -> str:
     if "k_n" in names:
         lines += [f"  {line}" for line in branches(law, quantities)] + [""]
     width = min(13, WIDTH // len(names))
+    digits = 4 if width > 10 else 3
     lines.append("".join(f"{SHOWN[name][0]:>{width}}" for name in names))
     for i, good in enumerate(response.valid):
-        row = "".join(f"{quantities[name][i] * SHOWN[name][1]:>{width}.4g}" for name in names)
+        row = "".join(f"{quantities[name][i] * SHOWN[name][1]:>{width}.{digits}g}" for name in names)
         lines.append(row + ("" if good else " *"))
     if not response.valid.all():
         lines += ["", "  * outside the validity range of the model:"]
@@ -379,7 +380,7 @@ def table(law: Any, response: Any, h: Any = None) -> str:
                 lines.append(f"    {reason}, at {show(float(low), 'Pa')} to {show(float(high), 'Pa')}")
     lines += [f"note: {text}" for text in law.assumptions]
     if h is not None:
-        lines.append("h: clean metal in vacuum; films hinder the flow, gas and grease help it")
+        lines.append("h in W/(m2 K): clean metal in vacuum; films hinder the flow, gas and grease help it")
     if response.loss_n is None and response.loss_t is None:
         lines.append("loss: not predicted")
     return "\n".join(lines)
