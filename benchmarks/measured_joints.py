@@ -1,7 +1,8 @@
 """Every law and the measured stiffness of ground S45C joints, on surfaces made from what the source states.
 
 Ito, Modular Design for Machine Tools, Table 6-5: ground faces, Rmax 1.0 um, dry, approach C p^m: slow approach curves,
-so that k_load is the quantity to compare; k_n of unloading is printed as well. The source states neither the
+so that k_load is the quantity to compare; k_n of unloading is printed as well. A law without a loading curve has one
+branch. The source states neither the
 wavelengths nor the spectrum: they are varied, and the range of each law over them is printed with its median.
 """
 
@@ -95,7 +96,8 @@ def main() -> None:
     print("| measured, eight specimens | loading |" + "".join(cell(m, float(np.median(m))) for m in at))
     for law, rows in found.items():
         values = np.array(rows)  # surface, pressure, branch
-        for i, branch in enumerate(("loading, k_load", "unloading, k_n")):
+        one_branch = np.array_equal(values[..., 0], values[..., 1], equal_nan=True)
+        for i, branch in enumerate(("both",) if one_branch else ("loading, k_load", "unloading, k_n")):
             cells = "".join(cell(values[:, j, i], float(np.median(m))) for j, m in enumerate(at))
             print(f"| {law} | {branch} |{cells}")
 
