@@ -21,7 +21,6 @@ import faying
 from faying.contact.auto import pick
 from faying.contact.inputs import RoughSurface
 from faying.contact.two_faces import faces_of
-from faying.hardness import VickersHardness
 from faying.surface.scan import Scan
 from faying.surface.synthesize import spectral
 
@@ -35,7 +34,6 @@ class Measured:
     """One measurement: the pair, its finish, branch and source, pressure [Pa], k_n [Pa/m], roughness of a face [m]."""
 
     pair: faying.ContactPair
-    brinell: float | None
     finish: str
     branch: str
     source: str
@@ -56,8 +54,8 @@ def table(name: str) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def materials() -> dict[str, tuple[faying.Material, float | None]]:
-    """The materials by name, with Brinell hardness [Pa] where that stands for the hardness."""
+def materials() -> dict[str, faying.Material]:
+    """The materials by name; those with a Brinell hardness have a hardness over the size of spots."""
     out = {}
     for row in table("measured-materials.csv"):
         brinell = float(row["HB [GPa]"]) * 1e9 if row["HB [GPa]"] else None
@@ -67,10 +65,11 @@ def materials() -> dict[str, tuple[faying.Material, float | None]]:
             E=float(row["E [GPa]"]) * 1e9,
             nu=float(row["nu"]),
             hardness=hardness,
+            brinell=brinell,
             conductivity=float(row["K [W/(m K)]"]),
             source=row["source"],
         )
-        out[material.name] = material, brinell
+        out[material.name] = material
     return out
 
 
@@ -79,14 +78,13 @@ def measured() -> list[Measured]:
     known = materials()
     out = []
     for row in table("measured-stiffness.csv"):
-        pair = faying.ContactPair(known[row["first"]][0], known[row["second"]][0])
+        pair = faying.ContactPair(known[row["first"]], known[row["second"]])
         value = float(row["value"])
         conducts = row["unit"] == "W/(m2 K)"
         resistance = sum(1 / (m.conductivity or np.nan) for m in (pair.first, pair.second))
         out.append(
             Measured(
                 pair=pair,
-                brinell=known[pair.softer.name][1],
                 finish=row["finish"],
                 branch=row["branch"],
                 source=row["source"],
@@ -127,12 +125,8 @@ def surface(sigma: float, slope: float) -> RoughSurface:
 def predicted(law: str, one: Measured) -> float:
     """k_n, or the slope of first loading where that was measured [Pa/m]; NaN where the law has no answer."""
     sigma, slope = np.sqrt(2) * one.roughness, np.sqrt(2) * one.slope
-    given: dict[str, object] = {}
-    if law == "cmy" and one.brinell:
-        size = VickersHardness.from_brinell(one.brinell)
-        given = {"c1": size.c1, "c2": size.c2}
     try:
-        made = made_once(law, float(sigma), float(slope), one.pair, tuple(sorted(given.items())))
+        made = made_once(law, float(sigma), float(slope), one.pair)
         r = made.at_pressure(one.pressure)
     except faying.FayingError:
         return float("nan")
@@ -141,11 +135,9 @@ def predicted(law: str, one: Measured) -> float:
 
 
 @cache
-def made_once(
-    law: str, sigma: float, slope: float, pair: faying.ContactPair, given: tuple[tuple[str, object], ...]
-) -> faying.contact.ContactLaw:
+def made_once(law: str, sigma: float, slope: float, pair: faying.ContactPair) -> faying.contact.ContactLaw:
     """The law of a surface, made once for all pressures."""
-    return pick(law, dict(given), surface(sigma, slope), pair).law
+    return pick(law, {}, surface(sigma, slope), pair).law
 
 
 def cell(ratios: list[float]) -> str:

@@ -47,11 +47,11 @@ def pick(
 ) -> Choice:
     """Return the law that a user names, or the choice among those of the surface for "auto".
 
-    "auto" takes the half-space contact of the scan where it resolves the contact at a hundredth of the hardness (at
-    least 30 points touch, and k_n moves by at most 25 % on half the points each way); else the closed law whose k_n
-    comes closest to it, where that lies within 30 %; else the half-space contact all the same, with its flags. With D
-    and G alone there is no contact to solve: JK is taken. exact: the half-space contact of this surface and pair, where
-    there is one already, so that it is not solved again.
+    "auto" takes the half-space contact of the scan where it is valid at a hundredth of the bulk hardness (10 spots
+    touch, half of the stiffness is on spots of 4 points or more, and k_n moves by at most 25 % on half the points each
+    way); else the closed law whose k_n comes closest to it, where that lies within 30 %; else the half-space contact
+    all the same, with its flags. With D and G alone there is no contact to solve: JK is taken. exact: the half-space
+    contact of this surface and pair, where there is one already, so that it is not solved again.
 
     Raises:
         InputError: as `build`, and for "auto" without a surface.
