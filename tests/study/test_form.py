@@ -150,10 +150,7 @@ def test_a_draw_of_the_band_is_that_of_a_full_run(coarse, assumed):
     form = Form(waviness=replace(ASSUMED, seed=1))
     full = run(replace(coarse, joints=(replace(coarse.joints[0], form=form),)))
     assert assumed.wave_frequencies[1] == pytest.approx(full.frequencies, rel=TOLERANCE)
-    # the study's own draw is one of the band's, the others are as before
-    assert full.wave_seeds.tolist() == [1, 0, 2, 3]
-    assert full.wave_frequencies[0] == pytest.approx(full.frequencies, rel=1e-12)
-    assert full.wave_frequencies[1] == pytest.approx(assumed.wave_frequencies[0], rel=2 * TOLERANCE)
+    assert full.wave_frequencies is None  # the study has said which draw
 
 
 @pytest.mark.parametrize("form", [Form(), Form(crown_along=3e-6)], ids=["flat", "crowned"])

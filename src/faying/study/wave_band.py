@@ -16,8 +16,7 @@ from faying.joint.together import Gapped, evaluate, train_together
 from faying.joint.waviness import LaidWaves
 from faying.notes import Note
 from faying.result.result import preload_slope
-from faying.study.case import Case, interface_of
-from faying.study.keys.joint import JointChoice
+from faying.study.case import Case
 from faying.study.solve import State
 from faying.typing import Array
 from faying.units import show
@@ -71,18 +70,17 @@ class _Wavy:
 def wave_band(case: Case, states: Sequence[State]) -> tuple[WaveBand | None, list[Note]]:
     """Take the frequencies with a few draws of waves on the faces, at no full solution.
 
-    Where a joint says nothing of its form, the waves are those that are assumed of machined faces; where it gives
-    waviness, they are other draws of that. Faces with another form, the seats of solid bolts, and faces that are curved
-    or have no room for waves stay as they are. Nothing where no joint has waves, or where a sweep has no answer either:
-    bolts tightened in order, viscous dampers, springs per node.
+    Where a joint says nothing of its form, the waves are those that are assumed of machined faces. A form that is given
+    stays as it is, its waves with the draw that its seed names; so do the seats of solid bolts, and faces that are
+    curved or have no room for waves. Nothing where no joint has waves, or where a sweep has no answer either: bolts
+    tightened in order, viscous dampers, springs per node.
     """
     study, structure = case.study, case.structure
     apart = study.order is not None or study.modes.damping == "viscous" or any(j.per_node for j in structure.joints)
     wavy = [] if apart else _wavy(case)
     if not any(wavy):
         return None, []
-    own = {j.form.waviness.seed for j in study.joints if j.form is not None and j.form.waviness is not None}
-    seeds = [seed for seed in range(DRAWS + len(own)) if seed not in own][: DRAWS - bool(own)]
+    seeds = range(DRAWS)
     last = states[-1]
     reduction = Reduction.about(
         structure,
@@ -96,9 +94,6 @@ def wave_band(case: Case, states: Sequence[State]) -> tuple[WaveBand | None, lis
         rows = _frequencies(case, reduction, wavy, seeds)
     except FayingError as fault:
         return None, [Note(code="wave-band", text=f"no answer with waves on the faces: {fault}")]
-    if own:  # the draw that the study has is one of them
-        seeds = [min(own), *seeds]
-        rows = [np.stack([state.damped.frequencies for state in states]), *rows]
     notes = _notes(case, wavy)
     ends = [
         (np.nan, np.nan) if w is None else (max(w.laid.waves.shortest, w.laid.carried), w.laid.waves.longest)
@@ -110,13 +105,7 @@ def wave_band(case: Case, states: Sequence[State]) -> tuple[WaveBand | None, lis
 
 def _notes(case: Case, wavy: list["_Wavy | None"]) -> list[Note]:
     """What is assumed of the faces that the study says nothing of."""
-    silent = [
-        joint.name
-        for joint, waves in zip(case.study.joints, wavy, strict=True)
-        if joint.form is None and waves is not None
-    ]
-    if not silent:
-        return []
+    silent = [joint.name for joint, waves in zip(case.study.joints, wavy, strict=True) if waves is not None]
     text = (
         f"{', '.join(silent)}: the study gives no form of the faces. The table of modes has them as meshed; machined "
         f"faces have waves, and {DRAWS} draws of waves with a gap of {show(ASSUMED_GAP, 'm')} rms say how far that "
@@ -131,31 +120,21 @@ def _wavy(case: Case) -> list[_Wavy | None]:
     bolts = {bolt.part for bolt in structure.bolts if isinstance(bolt, SolidBolt)}
     out: list[_Wavy | None] = []
     for joint, choice, surface in zip(structure.joints, case.study.joints, case.surfaces, strict=True):
-        form = Form(waviness=ASSUMED) if choice.form is None else choice.form
-        waviness = form.with_scan(surface.waves).waviness
-        seat = any(mesh.face_part[face] in bolts for face in joint.faces)
-        if waviness is None or seat:
-            out.append(None)
-            continue
         interface = joint.interface
-        axes = FaceAxes.of(mesh, joint.faces, interface, form.along)
-        if not waviness.fits(axes):
+        seat = any(mesh.face_part[face] in bolts for face in joint.faces)
+        axes = None if choice.form is not None or seat else FaceAxes.of(mesh, joint.faces, interface, Form().along)
+        waviness = replace(ASSUMED, scan=surface.waves)
+        if axes is None or not waviness.fits(axes):
             out.append(None)
             continue
         laid = LaidWaves.of(waviness, axes)
         if laid.waves.longest < laid.carried:
             out.append(None)
             continue
-        base = interface.gap if choice.form is None else _without_waves(case, choice, len(out))
-        out.append(_Wavy(positions=interface.positions, weights=interface.weights, base=base, axes=axes, laid=laid))
+        out.append(
+            _Wavy(positions=interface.positions, weights=interface.weights, base=interface.gap, axes=axes, laid=laid)
+        )
     return out
-
-
-def _without_waves(case: Case, choice: JointChoice, number: int) -> Array:
-    """Gap [m] (q,) of a joint with all of its form but the waves."""
-    assert choice.form is not None
-    bare = replace(choice, form=replace(choice.form, waviness=None))
-    return interface_of(case.study, case.structure.mesh, bare, case.surfaces[number])[0].gap
 
 
 def _frequencies(case: Case, reduction: Reduction, wavy: list[_Wavy | None], seeds: Sequence[int]) -> list[Array]:
