@@ -75,7 +75,7 @@ def test_curves_are_those_of_their_sources(script: ModuleType) -> None:
             found = re.search(r"roughness ([\d.]+) um of both", row["note"])
             assert found is not None
             R = float(found.group(1)) * 1e-6
-            first, second = (script.materials()[row[name]][0] for name in ("first", "second"))
+            first, second = (script.materials()[row[name]] for name in ("first", "second"))
             k = 2 / (1 / first.conductivity + 1 / second.conductivity)
             a0 = 0.5 * sqrt(0.01)  # 1/2 cm^(1/2)
             assert value == pytest.approx(k * p * 1e6 / (a0 * sqrt(R) * second.hardness), rel=1e-3)
