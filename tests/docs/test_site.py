@@ -147,7 +147,7 @@ def test_every_study_key_stands_in_the_reference_with_its_default(site):
     assert [name for name in tables if name not in text] == []
     for row in (
         "search_distance quantity [m], positive",
-        'tangential text, "law" or "mindlin"',
+        'tangential "law", "mindlin", or k_t/k_n, above 0 and at most 2',
         "harmonics whole number, 1 to 9 3",
         "cutoff number, between 0 and 1 0.01",
     ):

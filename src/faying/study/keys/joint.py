@@ -19,9 +19,11 @@ def _tangential(value: Any, name: str) -> Any:
     """ "law", "mindlin", or k_t/k_n as a number."""
     if value in ("law", "mindlin"):
         return value
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InputError(f'{name} = {value!r} should be "law", "mindlin", or the ratio k_t/k_n, for example 0.4')
-    TANGENTIAL.check(float(value), name)
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not number or not 0 < value <= TANGENTIAL.greatest:
+        raise InputError(
+            f'{name} = {value!r} should be "law", "mindlin", or k_t/k_n, above 0 and at most 2; for example 0.4'
+        )
     return float(value)
 
 
