@@ -67,8 +67,8 @@ def test_energy_lost_in_a_cycle_is_two_pi_times_the_loss_factor_times_what_is_st
 def test_slip_of_the_half_space_loses_what_its_loop_encloses():
     """Masing: the loop of a full swing is the first loading curve twice as large; its area over 2 pi T delta/2."""
     law = half_space(shear_ratio=0.6)
-    rung = float(law.ladder.pressure[2])
-    contact = law.contact_at(rung)
+    solved = float(law.series.pressure[2])
+    contact = law.contact_at(solved)
     ratios = np.linspace(0, 0.6, 31)
     slips = [contact.slip(float(r), PAIR.friction) for r in ratios[1:]]
     force = np.array([0.0, *(s.tangential_pressure for s in slips)])
@@ -77,7 +77,7 @@ def test_slip_of_the_half_space_loses_what_its_loop_encloses():
     # loop between +T and -T: 8 times the area between the loading curve and its chord
     loop = 8 * (under - force[-1] * moved[-1] / 2)
     stored = force[-1] * moved[-1] / 2
-    assert float(law.at_pressure(rung).loss_t) == pytest.approx(loop / (2 * np.pi * stored), rel=0.02)
+    assert float(law.at_pressure(solved).loss_t) == pytest.approx(loop / (2 * np.pi * stored), rel=0.02)
 
 
 def test_the_paper_s_ratio_is_two_pi_times_the_loss_factor():
