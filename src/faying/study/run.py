@@ -173,7 +173,7 @@ def collect(
         bonded=bounds[1],
         rigid=rigid,
         mac=with_first,
-        **_at_loads(states, lossless),
+        **_at_loads(states, lossless, bounds),
         **_bonded_beyond(states, lossless),
         **_at_points(states),
         **_on_faces(structure, states),
@@ -225,14 +225,19 @@ def _predicted(beside: Beside, comparison: Comparison) -> Array:
     return np.full(comparison.frequencies.shape, np.nan)
 
 
-def _at_loads(states: Sequence[State], lossless: bool) -> dict[str, Any]:
-    """Fields of the result that have a value or a row for each load."""
+def _at_loads(states: Sequence[State], lossless: bool, bounds: tuple[Array, Array]) -> dict[str, Any]:
+    """Fields of the result that have a value or a row for each load.
+
+    The ends of the range of a law lie between the frequencies of free and of bonded faces, as stiffness raises each of
+    them: where the basis of the ends misses that, the bound is the end.
+    """
+    low, high = _stacked([s.low for s in states]), _stacked([s.high for s in states])
     return {
         "frequencies": np.stack([s.damped.frequencies for s in states]),
         "loss_factors": np.stack([np.where(lossless, np.nan, s.damped.loss_factors) for s in states]),
         "loss_error": np.stack([s.damped.error for s in states]),
-        "low": _stacked([s.low for s in states]),
-        "high": _stacked([s.high for s in states]),
+        "low": None if low is None else np.maximum(low, bounds[0]),
+        "high": None if high is None else np.minimum(high, bounds[1]),
         "outside_share": np.array([s.outside_share for s in states]),
         "beyond_share": np.array([s.beyond_share for s in states]),
         "bolt_forces": np.array([s.preload.bolt_forces for s in states]),
