@@ -174,14 +174,14 @@ def test_two_faces_alike_have_the_slope_of_their_sum() -> None:
     from faying.surface.synthesize import spectral
 
     scan = spectral((96, 96), spacing=2e-6, D=2.3, Rq=0.4e-6, longest=60e-6, seed=3)
-    one, two = (faces_of(scan, counter, fitted=False).rough.inputs for counter in ("smooth", "same"))
+    one, two = (faces_of(scan, counter).unfitted.inputs for counter in ("smooth", "same"))
     assert isinstance(one, SurfaceInputs)
     assert isinstance(two, SurfaceInputs)
     assert two.mean_slope == pytest.approx(sqrt(2) * one.mean_slope)
     law = CMY.from_surface(two, PAIR)
     assert (law.h_rms, law.mean_slope) == (two.h_rms, two.mean_slope)
     # the heights of the two laid on each other say the same
-    heights = faces_of(scan, "same", fitted=False).rough.scan
+    heights = faces_of(scan, "same").unfitted.scan
     assert heights is not None
     laid = SurfaceInputs.from_heights(heights.heights, heights.spacing, D=2.3, G=1e-10)
     assert laid.mean_slope == pytest.approx(two.mean_slope, rel=0.05)
