@@ -8,25 +8,21 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError, NotConverged
-from faying.fe.by_parts import PartByPart
-from faying.fe.constraint import constrain
-from faying.fe.modes import Modes
 from faying.fe.over_mpi import OverMpi
 from faying.fe.solve import chosen, is_mpi
 from faying.joint.bolt import FittedBolt
-from faying.joint.structure import Structure, bond, merged
-from faying.joint.support_check import RIGID_BELOW
+from faying.joint.structure import Structure
 from faying.notes import Note
 from faying.progress import Report
 from faying.result import BoltNumbers, Comparison, Receptance, Result
 from faying.study.backbone import backbones_of
 from faying.study.backbone_choice import friction_of
 from faying.study.beside import Beside, beside_fields, solve_beside
-from faying.study.beyond import stiff_as_bonded
 from faying.study.bolt_numbers import bolt_numbers, conductances
+from faying.study.bounds import bounds
 from faying.study.case import Case, Progress
 from faying.study.findings import against_exact_contact, falling
-from faying.study.modes import Preloads, SharedModes, modes_with
+from faying.study.modes import Preloads, SharedModes
 from faying.study.provenance import provenance
 from faying.study.solve import State, solve
 from faying.study.study import Study
@@ -93,46 +89,6 @@ def stages(study: Study) -> list[str]:
     out += [stage for _ in study.beside for load in loads for stage in (f"preload {load}", f"modes at {load}")]
     out.append("modes free and bonded")
     return out if study.backbone is None else [*out, f"mode {study.backbone.mode} over amplitude"]
-
-
-def bounds(case: Case) -> tuple[Array, Array, list[Note]]:
-    """Frequencies [Hz] of the elastic modes with the faces of every joint apart, and with them bonded; notes."""
-    free = modes_with(case, *case.structure.vibrating, rigid=case.structure.loose())
-    bonded, notes = _bonded(case)
-    elastic = slice(case.rigid_count, case.rigid_count + case.study.modes.count)
-    still = np.where(free.frequencies < RIGID_BELOW * case.shift_frequency, 0.0, free.frequencies)
-    return still[elastic], bonded.frequencies[elastic], notes
-
-
-def _bonded(case: Case) -> tuple[Modes, list[Note]]:
-    structure = case.structure
-    K, M = structure.vibrating
-    way = structure.solver(case.study.modes.solver)
-    by_parts = isinstance(way, PartByPart)
-    merge = None if by_parts else structure.bonded()
-    if merge is not None and not len(structure.fixed):
-        K, M = (merged(matrix, merge) for matrix in (K, M))
-        share = np.asarray(merge.sum(axis=0)).ravel()
-        rigid = (merge.T @ structure.rigid) / share[:, None]
-        if isinstance(way, OverMpi):
-            points = (merge.T @ structure.mesh.points.ravel() / share).reshape(-1, 3)
-            return modes_with(case, K, M, rigid=rigid, solver=OverMpi(points, way.processes)), []
-        return modes_with(case, K, M, rigid=rigid), []
-    apart = (
-        [] if by_parts else [joint.name for joint in structure.joints if bond(structure.mesh, [joint.faces]) is None]
-    )
-    if by_parts:
-        why = "the parts are factorised one by one"
-    elif apart:
-        why = f"the faces of {', '.join(apart)} do not match node for node"
-    else:
-        why = "supports hold some of the nodes"
-    text = f"{why}: the bonded modes use springs a thousand times as stiff as the parts in place of bonded faces"
-    stiff = stiff_as_bonded(structure)
-    for joint in structure.joints:
-        springs = joint.interface.springs(*2 * (np.full(len(joint.interface.weights), stiff),))
-        K = K + constrain(springs, structure.fixed, 0.0)
-    return modes_with(case, K, M, rigid=structure.rigid), [Note(code="bonded-by-springs", text=text)]
 
 
 def collect(
