@@ -21,6 +21,7 @@ from faying.fe.face_facts import facts_of, shared_volumes
 from faying.fe.memory import guessed
 from faying.fe.mesh import Mesh, split_at_joints
 from faying.fe.selectors import Selector, chosen, from_plain, points_of
+from faying.fe.straighten import straightened
 from faying.memory import available
 from faying.notes import Note
 from faying.typing import Array, Index
@@ -29,7 +30,8 @@ from faying.typing import Array, Index
 # joints
 ELEMENTS, UNKNOWNS = 5.0, 4.5
 GRADING = 0.4  # growth of elements away from where they are fine
-STORED = 1  # version of what the cache holds; it rises with any change of what this module makes of a file
+TRIES = ((1.0, GRADING), (0.8, 0.3), (0.6, 0.2))  # size over that asked for, and grading, until the mesher has a mesh
+STORED = 2  # version of what the cache holds; it rises with any change of what this module makes of a file
 # netgen numbers the middle nodes by these edges; VTK, and so we, by those of its element
 _NETGEN_EDGES = {"tet10": ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)), "tri6": ((1, 2), (0, 2), (0, 1))}
 
@@ -111,7 +113,7 @@ def _mesh_here(request: _Request) -> Answer:
     path, size = Path(request.path), request.size
     local_size = request.local_size
     occ = kernel()
-    Glue, OCCGeometry = occ.Glue, occ.OCCGeometry
+    Glue = occ.Glue
     held = read_parts(path)
     shape, solids, names, notes = held.shape, held.solids, held.names, held.notes
     for solid, name in zip(solids, names, strict=True):
@@ -145,15 +147,25 @@ def _mesh_here(request: _Request) -> Answer:
             if any(label == have for have, _ in pairs):
                 face.maxh = size_here * 1e3
 
-    try:
-        mesh = OCCGeometry(glued).GenerateMesh(maxh=size * 1e3, grading=GRADING, quad_dominated=False)
-        mesh.SecondOrder()
-    except Exception as fault:  # NgException, which netgen's Python does not name
-        raise InputError(
-            f"{path.name} cannot be meshed with size {size * 1e3:g} mm ({fault}); choose another size, or repair the "
-            f"geometry"
-        ) from None
-    return _collect(mesh, [solid.name for solid in parts], labels, notes)
+    return _collect(_meshed(glued, size, path.name), [solid.name for solid in parts], labels, notes)
+
+
+def _meshed(glued: Any, size: float, name: str) -> Any:
+    """The mesh of netgen, with a second try at smaller elements where the first one gets none."""
+    from netgen.occ import OCCGeometry
+
+    fault: Exception | None = None
+    for times, grading in TRIES:
+        try:
+            mesh = OCCGeometry(glued).GenerateMesh(maxh=times * size * 1e3, grading=grading, quad_dominated=False)
+            mesh.SecondOrder()
+        except Exception as new:  # NgException, which netgen's Python does not name
+            fault = fault or new
+            continue
+        return mesh
+    raise InputError(
+        f"{name} cannot be meshed with size {size * 1e3:g} mm ({fault}); choose another size, or repair the geometry"
+    )
 
 
 def _selected(held: CadParts, request: _Request, taken: Container[str]) -> list["Mark"]:
@@ -278,6 +290,17 @@ def _collect(mesh: Any, parts: list[str], labels: Labels, notes: Sequence[Note])
             face_part[label] = part
             owner[label] = parts.index(part)
             triangles[label] = np.concatenate([triangles[label], tri]) if label in triangles else tri
+    points, straight, flat = straightened(points, cells)
+    if np.any(flat):
+        middles = 1e3 * points[cells[flat][:3, :4]].mean(axis=1)
+        places = ", ".join(f"({', '.join(f'{x:.4g}' for x in middle)})" for middle in middles)
+        raise InputError(
+            f"{np.count_nonzero(flat)} elements have no volume, at {places} mm; give the faces there a smaller size "
+            "(geometry.face_size), or remove slivers there in the CAD program"
+        )
+    if straight:
+        text = f"{straight} elements that round faces folded over have straight edges"
+        notes = [*notes, Note(code="straightened", text=text)]
     new_points, new_cells, faces = split_at_joints(points, cells, domain, triangles, owner)
     blocks = {name: new_cells[domain == i] for i, name in enumerate(parts)}
     for label, tri in faces.items():
