@@ -66,13 +66,13 @@ def study_in(folder, loads=LOADS):
 def ours(folder):
     """Preloads and modes at three loads, as `faying run` solves them."""
     from faying.study.case import Case, Progress
-    from faying.study.modes import SharedModes
+    from faying.study.engine import Reanalysis
     from faying.study.solve import solve
 
     begin = time.process_time()
     case = Case.of(study_in(folder))
-    problem, shared = case.structure.assembly(solver=case.study.modes.solver), SharedModes()
-    states = [solve(case, k, problem, shared, Progress(0), ranges=False) for k in range(len(LOADS))]
+    engine = Reanalysis(case)
+    states = [solve(case, k, engine, Progress(0), ranges=False) for k in range(len(LOADS))]
     return {
         "cpu": time.process_time() - begin,
         "peak_gb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e9,

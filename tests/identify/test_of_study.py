@@ -46,14 +46,14 @@ def twin(plan, truth=TRUTH, seed=3, model=None):
         test=None,
     )
     from faying.study.case import Case, Progress
-    from faying.study.modes import Preloads, SharedModes
+    from faying.study.engine import Reanalysis
     from faying.study.solve import solve
 
     case = Case.of(other)
     joints = tuple(replace(j, law=replace(j.law, scale=truth["stiffness"])) for j in case.structure.joints)
     case = replace(case, structure=replace(case.structure, joints=joints))
-    preloads, shared = Preloads(case), SharedModes()
-    states = [solve(case, k, preloads, shared, Progress(0)) for k in range(len(plan.loads))]
+    engine = Reanalysis(case)
+    states = [solve(case, k, engine, Progress(0)) for k in range(len(plan.loads))]
     truth = np.stack([s.damped.frequencies for s in states])
     noise = np.random.default_rng(seed).normal(0, 1e-3, truth.shape)
     measured = truth * np.exp(noise)

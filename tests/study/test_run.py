@@ -175,7 +175,7 @@ def test_the_modes_take_the_factorisation_of_the_preload_where_it_is_of_what_vib
     from faying.fe.modes import lowest_modes
     from faying.joint import preload
     from faying.study.case import Case, Progress
-    from faying.study.modes import Preloads, SharedModes
+    from faying.study.engine import Reanalysis
     from faying.study.solve import solve
 
     made = []
@@ -185,7 +185,7 @@ def test_the_modes_take_the_factorisation_of_the_preload_where_it_is_of_what_vib
     case = Case.of(study)
     case = replace(case, structure=replace(case.structure, **changes))
     structure = case.structure
-    state = solve(case, 0, Preloads(case), SharedModes(), Progress(0), ranges=False)
+    state = solve(case, 0, Reanalysis(case), Progress(0), ranges=False)
     assert sum(matrix.shape[0] == structure.mesh.unknowns for matrix in made) == count
     K, _ = structure.joined(state.springs)
     exact = lowest_modes(K, structure.vibrating[1], case.mode_count, shift_frequency=case.shift_frequency)
@@ -218,13 +218,13 @@ def test_any_continuation_beyond_the_law_lies_in_the_bracket(study, factor):
     from faying.fe.modes import lowest_modes
     from faying.study.beyond import bonded_beyond
     from faying.study.case import Case, Progress
-    from faying.study.modes import Preloads, SharedModes
+    from faying.study.engine import Reanalysis
     from faying.study.solve import solve
 
     small = replace(study, bolts=(replace(study.bolts[0], preload=(5e5,)),), modes=ModesChoice(count=4))
     case = Case.of(small)
     structure = case.structure
-    state = solve(case, 0, Preloads(case), SharedModes(), Progress(0))
+    state = solve(case, 0, Reanalysis(case), Progress(0))
     springs = state.springs[0]
     past = springs.pressure > structure.joints[0].law.model.greatest_pressure
     assert 0 < past.mean() < 1

@@ -25,9 +25,22 @@ from faying.cli.progress import Form, Shown, progress_options
     metavar="PROCESSES",
     help="Solve by multigrid over so many processes, which mpiexec starts, in place of a factorisation.",
 )
+@click.option(
+    "--engine",
+    type=click.Choice(("reanalysis", "direct")),
+    default="reanalysis",
+    help="reanalysis: one factorisation for many states; direct: one for every step, to check the other by.",
+)
 @progress_options
 def command(
-    study: Path, out: Path | None, as_json: bool, no_files: bool, uff: bool, mpi: int | None, progress: Form | None
+    study: Path,
+    out: Path | None,
+    as_json: bool,
+    no_files: bool,
+    uff: bool,
+    mpi: int | None,
+    engine: str,
+    progress: Form | None,
 ) -> None:
     """Run STUDY: surface, contact law, preload, modes; write NetCDF, CSV, figures and a report."""
     from faying.errors import InputError
@@ -48,7 +61,7 @@ def command(
     every = [*stages(plan), *([] if no_files else ["report"])]
     bar = Shown("study", progress, every)
     with nullcontext() if no_files else together(folder, "give another with --out") as hidden, bar:
-        result = run(plan, report=lambda stage, done, _: bar(stage, done, len(every)))
+        result = run(plan, report=lambda stage, done, _: bar(stage, done, len(every)), engine=engine)
         files = []
         if hidden is not None:
             bar("report", len(every) - 1, len(every))

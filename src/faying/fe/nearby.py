@@ -48,7 +48,7 @@ class NearbyModes:
         self.span = Span(mass, stiffness, modes.shapes)
         self.modes = replace(modes, shapes=modes.shapes[:, :0].copy())  # they are in the basis
         self.rigid, self._most = rigid, most
-        self._looked = False
+        self._looked, self._random = False, np.random.default_rng(SEED)
         self._changed: tuple[Any, Any, Index] | None = None  # of the last stiffness
         self._at = NOWHERE
         self.diagonal = stiffness.diagonal() + modes.shift * mass.diagonal()
@@ -99,7 +99,7 @@ class NearbyModes:
         first = None
         touched = self._change(stiffness)[1]
         if len(touched) and not self._looked:  # else these are modes that have been looked for everywhere already
-            self._look_everywhere()
+            self.look_everywhere()
         targets = np.full(count + WATCHED, PLACED)
         targets[:count] = tolerance
         errors, settled = np.ones(len(targets)), np.zeros(len(targets))
@@ -190,14 +190,14 @@ class NearbyModes:
                 self._changed = stiffness, change[touched][:, touched], touched
         return self._changed[1:]
 
-    def _look_everywhere(self) -> None:
-        """Take directions of all kinds into the basis.
+    def look_everywhere(self) -> None:
+        """Take new directions of all kinds into the basis.
 
         The residuals of modes of one symmetry have none of another: a mode that comes down from beyond the basis would
-        be missed by all of them, and nothing would tell.
+        be missed by all of them, and nothing would tell. Whoever goes to a stiffness far from those before asks again.
         """
         mass, factor = self.span.mass, self.modes.factorisation
-        found = np.random.default_rng(SEED).standard_normal((mass.shape[0], EVERYWHERE))
+        found = self._random.standard_normal((mass.shape[0], EVERYWHERE))
         for _ in range(2):  # towards the low modes
             found = factor.solve(product(mass, found))
             found /= np.sqrt(np.einsum("ij,ij->j", found, product(mass, found)))

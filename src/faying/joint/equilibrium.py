@@ -341,6 +341,19 @@ class Equilibrium(ABC):
         return at((low + high) / 2, known=False)
 
 
+def check_balance(load: Array, rigid: Array) -> None:
+    """Raise InputError where forces [N] (n,) move a structure along rigid motions (n, r) that nothing resists.
+
+    rigid: orthonormal columns.
+    """
+    scale, net = float(np.linalg.norm(load)), float(np.linalg.norm(rigid.T @ load)) if rigid.size else 0.0
+    if net > 1e-9 * scale:
+        raise InputError(
+            f"the bolt forces do not balance ({net / scale:.1e} of the load is left over); each bolt must "
+            "pull between two faces of different parts that face each other"
+        )
+
+
 @dataclass
 class Newton:
     """Newton's iteration for one load: how far it has come, and what it has cost."""

@@ -18,7 +18,7 @@ from faying.fe.interface import Motion
 from faying.fe.shifted import Shifted
 from faying.fe.single import factorise_roughly
 from faying.fe.solve import Factorisation, Factoriser
-from faying.joint.equilibrium import MOST_STEPS, Equilibrium, Newton, PreloadState, Steps, StickSlip
+from faying.joint.equilibrium import MOST_STEPS, Equilibrium, Newton, PreloadState, Steps, StickSlip, check_balance
 from faying.joint.joint_law import JointLaw
 from faying.typing import Array, Index
 
@@ -86,13 +86,8 @@ class PreloadProblem(Equilibrium):
             self.factor, self.sprung, self._rate = factor, None, 0.0
 
     def _check_load(self, load: Array) -> None:
-        scale = self._scale = float(np.linalg.norm(load))
-        net = float(np.linalg.norm(self._rigid.T @ load)) if self._rigid.size else 0.0
-        if net > 1e-9 * scale:
-            raise InputError(
-                f"the bolt forces do not balance ({net / scale:.1e} of the load is left over); each bolt must "
-                "pull between two faces of different parts that face each other"
-            )
+        self._scale = float(np.linalg.norm(load))
+        check_balance(load, self._rigid)
 
     @property
     def can_go_together(self) -> bool:

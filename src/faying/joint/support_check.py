@@ -8,8 +8,7 @@ import numpy as np
 from faying.errors import InputError, NotConverged
 from faying.fe.elasticity import rigid_motions
 from faying.fe.modes import Modes
-from faying.joint.equilibrium import PreloadState
-from faying.joint.preload import PreloadProblem
+from faying.joint.equilibrium import Equilibrium, PreloadState
 from faying.joint.structure import Structure
 from faying.joint.tighten import tighten
 from faying.typing import Array
@@ -20,7 +19,7 @@ NOTHING = 1e-6  # of the greatest pressure
 
 
 def checked_preload(
-    structure: Structure, assembly: PreloadProblem, forces: Sequence[float], order: Sequence[int] | None = None
+    structure: Structure, assembly: Equilibrium, forces: Sequence[float], order: Sequence[int] | None = None
 ) -> PreloadState:
     """`tighten`, and check that no part is left free to move.
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from faying.errors import InputError
-from faying.joint.equilibrium import PreloadState
+from faying.joint.equilibrium import Equilibrium, PreloadState
 from faying.joint.preload import PreloadProblem
 from faying.joint.structure import Structure
 from faying.typing import Array
@@ -29,7 +29,7 @@ def tighten_together(
 
 def tighten(
     structure: Structure,
-    assembly: PreloadProblem,
+    assembly: Equilibrium,
     forces: Sequence[float],
     *,
     order: Sequence[int] | None = None,

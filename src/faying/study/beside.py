@@ -10,8 +10,8 @@ from faying.errors import FayingError
 from faying.fe.solve import Released
 from faying.notes import Note
 from faying.study.case import Case, Progress, interface_of, joint_law, law_reasons, materials_at, surfaces_of
+from faying.study.engine import Engine
 from faying.study.keys.beside import BesideChoice
-from faying.study.modes import Preloads, SharedModes
 from faying.study.solve import State, solve
 from faying.study.study import Study
 
@@ -35,19 +35,16 @@ class Beside:
     notes: tuple[Note, ...]
 
 
-def solve_beside(case: Case, choice: BesideChoice, shared: SharedModes, progress: Progress) -> Beside:
+def solve_beside(case: Case, choice: BesideChoice, engine: Engine, progress: Progress) -> Beside:
     """Solve a case under another law on all joints, at all loads, without meshing anew.
 
-    shared: the modes of the case under its own law, whose factorisation serves here, too.
+    engine: that of the case under its own law.
     """
     done = progress.done
     try:
         other = changed(case, choice)
-        problem = other.structure.assembly(solver=case.study.modes.solver)
-        if shared.near is not None:
-            problem.take(shared.near.modes.factorisation, case.shift_frequency)
-        loads, preloads = range(len(case.study.loads)), Preloads(other, problem)
-        states = tuple(_slim(solve(other, k, preloads, shared, progress, ranges=False)) for k in loads)
+        solver, loads = engine.of(other), range(len(case.study.loads))
+        states = tuple(_slim(solve(other, k, solver, progress, ranges=False)) for k in loads)
     except FayingError as fault:
         progress.done = done + 2 * len(case.study.loads)
         text = f"{choice.name} beside: no answer: {fault}"

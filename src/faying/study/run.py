@@ -21,8 +21,8 @@ from faying.study.beside import Beside, beside_fields, solve_beside
 from faying.study.bolt_numbers import bolt_numbers, conductances
 from faying.study.bounds import bounds
 from faying.study.case import Case, Progress
+from faying.study.engine import engine_of
 from faying.study.findings import against_exact_contact, falling
-from faying.study.modes import Preloads, SharedModes
 from faying.study.provenance import provenance
 from faying.study.solve import State, solve
 from faying.study.study import Study
@@ -33,12 +33,14 @@ from faying.typing import Array
 NOT_ZERO = 1e-2  # Hz: a rigid motion above it is noted
 
 
-def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
+def run(study: Study | str | Path, *, report: Report | None = None, engine: str = "reanalysis") -> Result:
     """Run a study from the surface to the modes.
 
     Args:
         study: a Study or the path of its TOML file.
         report: called with (stage, stages done, stages in all) as each stage begins.
+        engine: "reanalysis", one factorisation for many states; or "direct", one for each Newton step and each set of
+            modes, to check the other by.
 
     Returns:
         The result; nothing is written.
@@ -54,9 +56,9 @@ def run(study: Study | str | Path, *, report: Report | None = None) -> Result:
         friction_of(study, study.backbone)  # raises, before the work, where nothing can slip
     progress = Progress(len(stages(study)), report)
     case = Case.of(study, progress)
-    preloads, shared = Preloads(case), SharedModes()
-    states = [solve(case, number, preloads, shared, progress) for number in range(len(study.loads))]
-    besides = [solve_beside(case, choice, shared, progress) for choice in study.beside]
+    solver = engine_of(engine, case)
+    states = [solve(case, number, solver, progress) for number in range(len(study.loads))]
+    besides = [solve_beside(case, choice, solver, progress) for choice in study.beside]
     progress.begin("modes free and bonded")
     free, bonded, notes = bounds(case)
     band, more = wave_band(case, states)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from faying.fe.damped import DampedModes, damped_near
+from faying.fe.damped import DampedModes
 from faying.fe.interface import Interface
 from faying.fe.modes import Modes
 from faying.joint.equilibrium import PreloadState
@@ -15,7 +15,7 @@ from faying.measured.model import FullResponse
 from faying.notes import Note
 from faying.study.beyond import Beyond, bonded_beyond, past_end
 from faying.study.case import Case, Progress
-from faying.study.modes import EXACT, Preloads, SharedModes
+from faying.study.engine import Engine
 from faying.study.response import LoadedStructure, ResponseAtLoad
 from faying.study.strength import pressure_notes
 from faying.typing import Array, Mask
@@ -58,19 +58,8 @@ class State:
         return self.damped.frequencies if self.beyond is None else self.beyond.frequencies
 
 
-RANGE_ERROR = 1e-4  # of the squared frequencies at the ends of a range, which no digit of a law's range asks for
-
-
-def solve(
-    case: Case,
-    number: int,
-    preloads: Preloads,
-    shared: SharedModes,
-    progress: Progress,
-    *,
-    ranges: bool = True,
-) -> State:
-    """Solve a case at one of its loads, counted from 0; modes start from those of the load before.
+def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges: bool = True) -> State:
+    """Solve a case at one of its loads, counted from 0.
 
     ranges: whether to find the frequencies at the ends of the laws' ranges. Raises InputError where a part is held by
     nothing, NotConverged where the preload stops short.
@@ -78,19 +67,14 @@ def solve(
     study, structure = case.study, case.structure
     load = study.loads[number]
     progress.begin(f"preload {load / 1e3:g} kN")
-    preload = preloads.at(number)
+    preload = engine.preload(number)
     springs = structure.springs(preload.pressures)
     progress.begin(f"modes at {load / 1e3:g} kN")
-    mass = structure.vibrating[1]
-    shared.begin(case, preloads.problem)
-    modes, stiffness = shared.of(case, springs)
-    loss = structure.lost(springs, viscous=study.modes.damping == "viscous")
+    modes, stiffness = engine.modes(springs)
     check_motions(structure, modes)
-    preloads.problem.take(modes.factorisation, case.shift_frequency)
-    assert shared.near is not None
-    damped = damped_near(
-        shared.near, modes, stiffness, loss, count=study.modes.count, kind=study.modes.damping, tolerance=EXACT
-    )
+    loss = structure.lost(springs, viscous=study.modes.damping == "viscous")
+    damped = engine.damped(modes, stiffness, loss)
+    mass = structure.vibrating[1]
     loaded = LoadedStructure(
         study=study, structure=structure, modes=modes, damped=damped, stiffness=stiffness, mass=mass, loss=loss
     )
@@ -102,8 +86,8 @@ def solve(
         springs=springs,
         modes=modes,
         damped=damped,
-        low=_at_end("low", case, preload, shared) if ranges else None,
-        high=_at_end("high", case, preload, shared) if ranges else None,
+        low=_at_end("low", case, preload, engine) if ranges else None,
+        high=_at_end("high", case, preload, engine) if ranges else None,
         response=response,
         test_response=test_response,
         beyond=beyond,
@@ -144,15 +128,13 @@ def _share(springs: Sequence[Springs[Interface]], masks: Sequence[Mask]) -> floa
     return held / sum(s.interface.area for s in springs)
 
 
-def _at_end(end: Literal["low", "high"], case: Case, preload: PreloadState, shared: SharedModes) -> Array | None:
+def _at_end(end: Literal["low", "high"], case: Case, preload: PreloadState, engine: Engine) -> Array | None:
     """Frequencies [Hz] with every law that states a range at one end of it, under the same pressures."""
     structure = case.structure
     if not any(joint.law.has_range for joint in structure.joints):
         return None
     joints = [replace(j, law=replace(j.law, end=end)) if j.law.has_range else j for j in structure.joints]
-    changed = replace(structure, joints=tuple(joints))
-    modes, _ = shared.of(case, changed.springs(preload.pressures), tolerance=RANGE_ERROR, shapes=False)
-    return modes.frequencies[case.rigid_count : case.rigid_count + case.study.modes.count]
+    return engine.frequencies(replace(structure, joints=tuple(joints)).springs(preload.pressures))
 
 
 def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[Note]:

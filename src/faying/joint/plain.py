@@ -1,0 +1,96 @@
+"""Equilibrium under the bolts by Newton's method as it is written: each step factorises the tangent stiffness."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from faying.fe.constraint import constrain
+from faying.fe.interface import Motion
+from faying.fe.solve import factorise
+from faying.joint.equilibrium import Equilibrium, Steps, StickSlip, check_balance
+from faying.joint.joint_law import JointLaw
+from faying.typing import Array, Index
+
+
+class PlainPreload(Equilibrium):
+    """The preload problem of `PreloadProblem` without any of its savings, to check it by.
+
+    Each step solves (K + B' k B) du = f, with K of the parts, B the relative motion of the faces and k the tangents of
+    the joints. Where nothing holds the structure, as many unknowns as it has rigid motions are held; the forces are in
+    balance, so that this adds a rigid motion and nothing else.
+
+    Args:
+        stiffness: of the parts [N/m], sparse (n, n).
+        rigid: rigid motions (n, r) that nothing resists.
+        joints: the interface and the law of each joint.
+        friction: coefficient of friction of each joint; None where it sticks.
+        fixed: unknowns that supports hold.
+        solver: name of the factorisation; the fastest at hand where None.
+    """
+
+    def __init__(
+        self,
+        stiffness: Any,
+        rigid: Array,
+        joints: Sequence[tuple[Motion, JointLaw]],
+        *,
+        friction: Sequence[float | None],
+        fixed: Index,
+        solver: str | None = None,
+    ) -> None:
+        super().__init__(stiffness, joints, friction=friction)
+        self.solver, self._fixed = solver, fixed
+        self._rigid = np.linalg.qr(rigid)[0] if rigid.size else rigid
+        self._held = np.union1d(fixed, _holding(rigid))
+
+    def _check_load(self, load: Array) -> None:
+        check_balance(load, self._rigid)
+
+    def _start(self, load: Array) -> Array:
+        """Under springs that are tangent to p(approach) where each joint has the mean pressure of the load."""
+        total, stiffness, push = float(np.abs(load).sum()) / 4, self.stiffness, load
+        for joint, law in self.joints:
+            mean = np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure)
+            pressure = np.full(len(joint.weights), mean)
+            k_n, k_t = law.stiffness(pressure)
+            offset = pressure - k_n * (law.approach(float(mean)) + joint.gap)
+            stiffness = stiffness + joint.springs(k_n, k_t)
+            push = push + joint.forces(offset, np.zeros((len(offset), 2)))
+        return self._solved(stiffness, push)
+
+    def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> Steps[tuple[Array, int]]:
+        from scipy.sparse import block_diag
+
+        stiffness = self.stiffness
+        for interface, k_n, k_t in self._tangents(u, grips):
+            local = np.zeros((len(k_n), 3, 3))
+            local[:, 0, 0], local[:, 1:, 1:] = k_n, k_t
+            stiffness = stiffness + interface.relative.T @ block_diag(local, format="csr") @ interface.relative
+        yield from ()
+        return self._solved(stiffness, force), 1
+
+    def _near(self, forces: Array) -> Array:
+        raise AssertionError("no step of this iteration asks for a solution near its own")
+
+    def _admissible(self, force: Array) -> Array:
+        if self._rigid.size:
+            force = force - self._rigid @ (self._rigid.T @ force)
+        force = force.copy()
+        force[self._fixed] = 0.0
+        return force
+
+    def _solved(self, stiffness: Any, force: Array) -> Array:
+        right = self._admissible(force)
+        right[self._held] = 0.0
+        return factorise(constrain(stiffness, self._held).tocsr(), self.solver).solve(right)
+
+
+def _holding(rigid: Array) -> Index:
+    """Unknowns (r,) that hold a structure against its rigid motions (n, r)."""
+    from scipy.linalg import qr
+
+    if not rigid.size:
+        return np.zeros(0, dtype=np.int64)
+    _, _, order = qr(rigid.T, mode="economic", pivoting=True)
+    return np.asarray(order[: rigid.shape[1]], dtype=np.int64)
