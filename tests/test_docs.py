@@ -44,7 +44,7 @@ def checkout(tmp_path, monkeypatch):
 
 
 # a minute and more: tests/identify, tests/measured and tests/halfspace have the same in small
-LONG = {"intervals.md", "hammer-test.md", "speed.md"}
+LONG = {"intervals.md", "with-intervals.md", "hammer-test.md", "speed.md"}
 COMMANDED = [pytest.param(p, marks=[pytest.mark.slow] * (p.name in LONG), id=str(p.relative_to(ROOT))) for p in PAGES]
 
 

@@ -18,10 +18,10 @@ PAIR = faying.ContactPair(STEEL, STEEL)
 MIDDLE = 1e-2 * PAIR.bulk_hardness  # where `pick` compares
 
 
-def count_inside(seed, pressures, thin):
+def count_inside(seed, pressures, thin, step=1):
     """Surfaces whose k_n at four times the resolution lies in the range stated on the scan; the worst ratios."""
     inside, taken = 0, []
-    for name, fine, scan in twenty(seed):
+    for name, fine, scan in list(twenty(seed))[::step]:
         if thin > 1:
             fine, scan = (
                 Scan(heights=averaged(s.heights, thin), spacing=(thin * s.spacing[0],) * 2, source=name)
@@ -40,10 +40,11 @@ def count_inside(seed, pressures, thin):
     return inside, taken
 
 
-def test_the_range_holds_the_stiffness_at_four_times_the_resolution():
-    """Twenty surfaces, other seeds than those on which the range was made."""
-    inside, taken = count_inside(300, [MIDDLE], 2)
-    assert inside >= 18
+@pytest.mark.parametrize(("step", "count"), [(3, 7), pytest.param(1, 20, marks=pytest.mark.slow)])
+def test_the_range_holds_the_stiffness_at_four_times_the_resolution(step, count):
+    """Surfaces of other seeds than those on which the range was made."""
+    inside, taken = count_inside(300, [MIDDLE], 2, step)
+    assert inside >= int(0.9 * count)
     assert all(1 / CLOSE <= ratio <= CLOSE for ratio in taken)
 
 

@@ -25,8 +25,14 @@ counterbody = "part"
 )
 
 
-def write(study: Path, *, force: bool = False) -> list[Path]:
-    """Write that study, with the geometry that `faying init` gives it."""
+def write(study: Path, *, force: bool = False, flat: bool = True) -> list[Path]:
+    """Write that study, with the geometry that `faying init` gives it.
+
+    flat: its faces are flat; else nothing is said of them, and a run has the band of waves, which doubles its time.
+    """
     made = template.write(study, force=force)
-    study.write_text(TEXT.format(name=study.name, step="two-blocks.step"), encoding="utf-8")
+    text = TEXT.format(name=study.name, step="two-blocks.step")
+    if flat:
+        text = text.replace("\n[[bolt]]", "\n[joint.form]\nflat = true\n\n[[bolt]]", 1)
+    study.write_text(text, encoding="utf-8")
     return made

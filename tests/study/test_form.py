@@ -17,7 +17,7 @@ from tests.helpers.studies import write
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
     path = tmp_path_factory.mktemp("form") / "study.toml"
-    write(path)
+    write(path, flat=False)
     return path
 
 

@@ -159,7 +159,9 @@ def test_files_at_the_points_of_the_test_speak_its_numbers_and_frame(plan, resul
 
 
 def test_the_command_writes_report_figures_and_files(result, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("faying.study.run", lambda plan, report: report("modes free and bonded", 1, 2) or result)
+    monkeypatch.setattr(
+        "faying.study.run", lambda plan, report, engine: report("modes free and bonded", 1, 2) or result
+    )
     with pytest.raises(SystemExit) as stop:
         main(["run", str(EXAMPLE), "--uff", "--out", str(tmp_path)])
     out = capsys.readouterr().out

@@ -122,9 +122,15 @@ def test_parts_that_do_not_touch_are_refused_with_their_distance(tmp_path):
         new.find(alone)
 
 
-def test_a_tapped_or_odd_hole_is_left_out_with_a_word(tmp_path):
-    """A core hole of M8 (6.8 mm) below a clearance hole of M8 holds no bolt with a nut."""
+def test_a_core_hole_below_a_clearance_hole_takes_a_screw(tmp_path):
+    """That of M8 (6.8 mm, ISO 2306) below 9 mm (ISO 273)."""
     found = new.find(lapped(tmp_path / "tap.step", lower_diameter=6.8))
+    assert [bolt.size for bolt in found.bolts] == [8, 8, 8]
+    assert all("screwed into the hole of 6.8 mm" in bolt.remark for bolt in found.bolts)
+
+
+def test_an_odd_hole_is_left_out_with_a_word(tmp_path):
+    found = new.find(lapped(tmp_path / "tap.step", lower_diameter=5.5))
     assert not found.bolts
     assert sum("clearance holes of no common bolt" in line for line in found.remarks) == 3
     assert any("fill in [[bolt]]" in line for line in found.remarks)

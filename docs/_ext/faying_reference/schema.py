@@ -21,6 +21,7 @@ SCATTERS = r".*(?: to |\+-|\+/-|±).*"  # a number that scatters: "0.1 to 0.6", 
 QUANTITY = {"type": "string", "pattern": rf"^\s*{NUMERAL}\s*[^0-9\s.]"}
 NUMBER = {"anyOf": [{"type": "number"}, {"type": "string", "pattern": rf"^\s*{NUMERAL}{SCATTERS}$"}]}
 TEXT = {"type": "string"}
+WHOLE = {"type": "integer", "minimum": 1, "maximum": 1_000_000}
 
 
 def listed(item: Any, least: int, most: int | None = None) -> dict[str, Any]:
@@ -37,6 +38,7 @@ OWN: dict[str, dict[str, Any]] = {
     "geometry.face.NAME.normal": {
         "anyOf": [{"enum": ["+x", "-x", "+y", "-y", "+z", "-z"]}, DIRECTION],
     },
+    "geometry.face.NAME.number": {"anyOf": [WHOLE, listed(WHOLE, 1)]},
     "joint.faces": listed(FACE, 2, 2),
     "bolt.faces": listed(FACE, 2, 2),
     "support.face": FACE,

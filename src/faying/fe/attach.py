@@ -28,12 +28,27 @@ class Ring:
         return np.asarray((radius >= self.inner) & (radius <= self.outer), dtype=float)
 
 
-def mean_motion(points: Array, blocks: Blocks, at: Array, ring: Ring | None = None) -> Any:
+@dataclass(frozen=True, kw_only=True)
+class Band:
+    """The part of a face between two depths [m] along an axis: point (3,) [m] on it and unit direction (3,)."""
+
+    point: Array
+    axis: Array
+    low: float
+    high: float
+
+    def covers(self, place: Array) -> Array:
+        """1 for places (..., 3) [m] between the depths, 0 outside."""
+        depth = (place - self.point) @ self.axis
+        return np.asarray((depth >= self.low) & (depth <= self.high), dtype=float)
+
+
+def mean_motion(points: Array, blocks: Blocks, at: Array, region: Ring | Band | None = None) -> Any:
     """Sparse operator (6, 3n) from displacements to the mean translation [m] and rotation [rad] of a face about `at`.
 
-    The rigid motion nearest to the face's own in the mean square over its area (or that of a ring on it). Its transpose
-    spreads a force and a moment at `at` over the face as tractions linear in position. Raises InputError where the ring
-    meets no point of the face, or all points lie on one line.
+    The rigid motion nearest to the face's own in the mean square over its area (or that of a region of it). Its
+    transpose spreads a force and a moment at `at` over the face as tractions linear in position. Raises InputError
+    where the region meets no point of the face, or all points lie on one line.
     """
     from scipy.sparse import csr_array
 
@@ -41,7 +56,7 @@ def mean_motion(points: Array, blocks: Blocks, at: Array, ring: Ring | None = No
     gram = np.zeros((6, 6))
     columns, entries = [], []
     for faces, values, place, _, share in sampled(points, blocks):
-        weight = share if ring is None else share * ring.covers(place)
+        weight = share if region is None else share * region.covers(place)
         arm = place - at
         rigid = np.zeros((*weight.shape, 3, 6))  # motion of a place under the six unit motions
         rigid[..., :3] = np.eye(3)
@@ -54,9 +69,10 @@ def mean_motion(points: Array, blocks: Blocks, at: Array, ring: Ring | None = No
         entries.append(spread.reshape(6, -1))
     area = gram[0, 0]
     if area <= 0:
-        assert ring is not None
+        if not isinstance(region, Ring):
+            raise InputError("the length of thread meets nothing of its hole; check it, or refine the mesh there")
         raise InputError(
-            f"a ring of {ring.outer * 2e3:.4g} mm outer diameter meets nothing of its face; check the point on "
+            f"a ring of {region.outer * 2e3:.4g} mm outer diameter meets nothing of its face; check the point on "
             "the axis, the diameters and the unit, or refine the mesh there"
         )
     size = np.sqrt(max(np.trace(gram[3:, 3:]) / area, 1e-300))

@@ -95,7 +95,8 @@ def stacks(found: Sequence[Bore], *, reach: float) -> list[Stack]:
 
     Args:
         found: the bores of all parts.
-        reach: distance between the end of one and the beginning of the next up to which they belong together [m].
+        reach: distance between the end of one and the beginning of the next up to which they belong together [m]; two
+            diameters of the hole, if that is more, as across the gap between raised faces.
     """
     out = []
     left = list(found)
@@ -111,7 +112,8 @@ def stacks(found: Sequence[Bore], *, reach: float) -> list[Stack]:
         for bore in sorted(narrow.values(), key=lambda bore: bore.low):
             before = [one for one in line if row and one.part == row[-1].part]
             here = [one for one in line if one.part == bore.part]
-            if row and min(one.low for one in here) - max(one.high for one in before) > reach:
+            far = max(reach, 4 * bore.radius)
+            if row and min(one.low for one in here) - max(one.high for one in before) > far:
                 out += [Stack(bores=tuple(row))] if len(row) > 1 else []
                 row = []
             row.append(bore)

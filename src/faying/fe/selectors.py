@@ -34,7 +34,7 @@ class Selector:
         touching: another part, which the face touches.
         nearest: a point [m]; of the faces for which the rest holds, the nearest is meant.
         within: the farthest that this point may lie from the face [m].
-        number: number of the face among those of its part, from 1.
+        number: number of the face among those of its part, from 1; or those of several faces that are meant together.
         all: whether several faces are meant together.
     """
 
@@ -43,13 +43,13 @@ class Selector:
     touching: str | None = None
     nearest: Point | None = None
     within: float = WITHIN
-    number: int | None = None
+    number: int | tuple[int, ...] | None = None
     all: bool = False
 
     def __str__(self) -> str:
         words = [f"part = {self.part!r}"]
         if self.number is not None:
-            words.append(f"number = {self.number}")
+            words.append(f"number = {list(self.numbers) if len(self.numbers) > 1 else self.numbers[0]}")
         if self.normal is not None:
             named = next((word for word, axis in AXES.items() if np.allclose(axis, self.normal)), None)
             words.append(f"normal = {named or '[' + ', '.join(f'{x:.4g}' for x in self.normal) + ']'}")
@@ -58,6 +58,13 @@ class Selector:
         if self.nearest is not None:
             words.append(f"nearest = ({', '.join(f'{1e3 * x:g}' for x in self.nearest)}) mm")
         return ", ".join(words)
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        """The numbers that are given, none or more."""
+        if self.number is None:
+            return ()
+        return (self.number,) if isinstance(self.number, int) else self.number
 
 
 def points_of(selectors: Mapping[str, Selector]) -> dict[str, tuple[str, Sequence[float]]]:
@@ -84,7 +91,13 @@ def chosen(label: str, selector: Selector, facts: GeometryFacts, *, snap: float 
     every = facts.by_part[selector.part]
     left = list(every)
     if selector.number is not None:
-        left = [face for face in left if face.number == selector.number]
+        left = [face for face in left if face.number in selector.numbers]
+        missing = sorted(set(selector.numbers) - {face.number for face in left})
+        if left and missing:
+            raise InputError(
+                f"face {label!r}: {selector.part!r} has no face {', '.join(map(str, missing))}; it has {len(every)}: "
+                f"{listed(every)}"
+            )
     if selector.normal is not None:
         along = np.array(selector.normal)
         left = [face for face in left if face.normal is not None and np.array(face.normal) @ along >= FACING]
@@ -96,7 +109,7 @@ def chosen(label: str, selector: Selector, facts: GeometryFacts, *, snap: float 
         raise InputError(
             f"face {label!r}: no face of {selector.part!r} fits {selector}; it has {len(every)}: {listed(every)}"
         )
-    if len(left) > 1 and not selector.all:
+    if len(left) > 1 and not selector.all and len(selector.numbers) < 2:
         raise InputError(
             f"face {label!r}: {len(left)} faces fit {selector}: {listed(left)}; add number, nearest or normal, or "
             "all = true for all of them together"

@@ -9,11 +9,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.attach import Ring, mean_motion
+from faying.fe.attach import Band, Ring, mean_motion
 from faying.fe.elasticity import Solid
 from faying.fe.faces import NamedFaces, face_centre
 from faying.fe.holes import Hole, holes
 from faying.fe.mesh import Mesh
+from faying.joint.tapped import INSIDE, RoundHole, engaged_length, round_hole
 from faying.joint.threads import Fastener
 from faying.notes import Note
 from faying.typing import Array
@@ -94,7 +95,8 @@ class Bolt:
 
     Args:
         name: What messages and results call the bolt.
-        faces: Faces that head and nut press on.
+        faces: Faces that head and nut press on; or the face under the head and the wall of the tapped hole that the
+            bolt is screwed into.
         at: A point (3,) [m] on the axis; the middle between the faces where None.
         diameter: Diameter [m] of the shank, greater than 0; None for a bolt that is a force and nothing else.
         material: Material of the shank, given together with the diameter.
@@ -105,13 +107,14 @@ class Bolt:
         nut_mass: Mass of the nut [kg]; that of a hexagon nut where None.
         preload: Forces [N] that it is tightened to, one load after another.
         fastener: Thread and property class, from which its proof load follows; None where they are not known.
+        engaged: Length [m] of the thread in a tapped hole; 1.5 diameters, or its depth if that is less, where None.
 
     Raises:
         InputError: Diameter without material or the other way round, a diameter of 0 or less, a ring without width;
             when it is fitted, an axis beside its hole, or `at` without a hole, a diameter or a ring.
 
     Source:
-        Head and nut: ISO 4014, ISO 4032.
+        Head and nut: ISO 4014, ISO 4032. Stretch inside a tapped hole: half a diameter, VDI 2230 (l_G).
     """
 
     name: str
@@ -125,6 +128,7 @@ class Bolt:
     nut_mass: float | None = None
     preload: tuple[float, ...] = ()
     fastener: Fastener | None = None
+    engaged: float | None = None
     part: ClassVar[None] = None  # it is no part of the mesh
 
     def __post_init__(self) -> None:
@@ -136,6 +140,8 @@ class Bolt:
             raise InputError(f"bolt {self.name!r}: diameter {self.diameter:g} m must be positive")
         if self.seat is not None and not 0 <= self.seat[0] < self.seat[1]:
             raise InputError(f"bolt {self.name!r}: the seat's inner diameter must be less than its outer")
+        if self.engaged is not None and self.engaged <= 0:
+            raise InputError(f"bolt {self.name!r}: engaged {self.engaged:g} m must be positive")
 
     def fitted(self, mesh: Mesh) -> "FittedBolt":
         """Return the bolt in its place on a mesh. Raises InputError as `placed`, and where no element lies in its ring.
@@ -148,8 +154,8 @@ class Bolt:
         seat = place.ring
         ring = None if seat is None else Ring(point=point, axis=across, inner=seat[0] / 2, outer=seat[1] / 2)
         ends = tuple(
-            mean_motion(mesh.points, mesh.face(name), centre, ring)
-            for name, centre in zip(self.faces, (point, end), strict=True)
+            mean_motion(mesh.points, mesh.face(name), centre, region)
+            for name, centre, region in zip(self.faces, (point, end), (ring, place.thread or ring), strict=True)
         )
         return FittedBolt(
             bolt=self,
@@ -159,6 +165,7 @@ class Bolt:
             ends=ends,
             ring=seat,
             extent=seat or _extent(mesh.points[mesh.face_nodes(self.faces[0])], point, place.axis),
+            thread=place.thread,
         )
 
     def placed(self, mesh: NamedFaces) -> "BoltPlace":
@@ -167,6 +174,19 @@ class Bolt:
         Raises InputError where its faces do not look away from each other, no axis joins them, or it misses its hole.
         """
         first, second = self.faces
+        walls = [round_hole(mesh.points, mesh.face(face)) for face in self.faces]
+        if walls[0] is not None:
+            raise InputError(
+                f"bolt {self.name!r}: {first!r} is the wall of a hole; give the face under the head first, and "
+                "the wall of a tapped hole second"
+            )
+        if walls[1] is not None:
+            return self._screwed(mesh, walls[1])
+        if self.engaged is not None:
+            raise InputError(
+                f"bolt {self.name!r}: engaged goes with a tapped hole, and {second!r} is not the wall of one; leave it "
+                "out, or name that wall as the second face"
+            )
         if mesh.face_part[first] == mesh.face_part[second] and self.diameter is None:
             raise InputError(
                 f"the bolt's faces {first!r} and {second!r} are both on part {mesh.face_part[first]!r}; a bolt "
@@ -194,38 +214,80 @@ class Bolt:
                 f"the bolt's faces {first!r} and {second!r} do not look away from each other; name the two seats "
                 "that head and nut press on"
             )
-        hole = self._hole(mesh, centre_a, axis / length)
-        return BoltPlace(bolt=self, point=centre_a, axis=axis / length, length=length, ring=self._seat(hole))
+        hole = self._hole(mesh, self.faces, centre_a, axis / length)
+        ring = self._seat(hole, alone=self.at is None)
+        return BoltPlace(bolt=self, point=centre_a, axis=axis / length, length=length, ring=ring)
 
-    def _hole(self, mesh: NamedFaces, point: Array, axis: Array) -> Hole | None:
-        """The hole that the axis runs through, None where there is none.
+    def _screwed(self, mesh: NamedFaces, wall: RoundHole) -> "BoltPlace":
+        """Where a bolt lies that is screwed into a tapped hole: on the axis of the hole."""
+        first, second = self.faces
+        centre, normal, _ = face_centre(mesh.points, mesh.face(first))
+        hole = wall.seen_from(centre)
+        if normal @ hole.axis > -0.9:
+            raise InputError(
+                f"bolt {self.name!r}: the face {first!r} does not look away from the tapped hole {second!r} along its "
+                "axis; name the face under the head first"
+            )
+        free = float((hole.point - centre) @ hole.axis)
+        if free <= 0:
+            raise InputError(
+                f"bolt {self.name!r}: the face {first!r} under its head lies {show(-free, 'm')} below the mouth of the "
+                f"tapped hole {second!r}; check which faces they are"
+            )
+        diameter = self.diameter or 2 * hole.radius
+        engaged = engaged_length(self.engaged, hole, diameter, self.name)
+        found = self._hole(mesh, (first,), hole.point, hole.axis)
+        return BoltPlace(
+            bolt=self,
+            point=hole.point - free * hole.axis,
+            axis=hole.axis,
+            length=free + min(INSIDE * diameter, engaged),
+            ring=self._seat(found, alone=False),
+            thread=Band(point=hole.point, axis=hole.axis, low=0.0, high=engaged),
+        )
 
-        Raises InputError where the axis lies beside it.
+    def _hole(self, mesh: NamedFaces, faces: Sequence[str], point: Array, axis: Array) -> Hole | None:
+        """The hole of these faces that the axis runs through, None where there is none.
+
+        Raises InputError where the axis lies beside it. Other holes of the face, such as that of a pipe that stands on
+        it, are wider than what a head covers, and count only where the axis runs inside them.
         """
-        found = None
-        for face in self.faces:
+        near: list[tuple[float, Hole, str]] = []
+        for face in faces:
             for hole in holes(mesh.points, mesh.face(face)):
                 arm = hole.centre - point
                 beside = float(np.linalg.norm(arm - (arm @ axis) * axis))
-                if beside > 2 * hole.radius:
-                    continue
-                if beside > BESIDE * hole.radius:
-                    raise InputError(
-                        f"bolt {self.name!r}: its axis lies {show(beside, 'm')} beside the centre of the hole of "
-                        f"{show(2 * hole.radius, 'm')} in {face!r}, at "
-                        f"({', '.join(f'{1e3 * x:.4g}' for x in hole.centre)}) mm; "
-                        "give that point as `at`"
-                    )
-                found = found or hole
-        return found
+                if beside <= BESIDE * hole.radius:
+                    return hole
+                if beside <= (2 if 2 * hole.radius <= self._covered else 1) * hole.radius:
+                    near.append((beside, hole, face))
+        if near:
+            beside, hole, face = min(near, key=lambda one: one[0])
+            raise InputError(
+                f"bolt {self.name!r}: its axis lies {show(beside, 'm')} beside the centre of the hole of "
+                f"{show(2 * hole.radius, 'm')} in {face!r}, at "
+                f"({', '.join(f'{1e3 * x:.4g}' for x in hole.centre)}) mm; "
+                "give that point as `at`"
+            )
+        return None
 
-    def _seat(self, hole: Hole | None) -> tuple[float, float] | None:
-        """Inner and outer diameter [m] of the ring, None for the whole faces."""
+    @property
+    def _covered(self) -> float:
+        """The widest hole [m] that head and nut can lie on; infinite where neither seat nor diameter says it."""
+        if self.seat is not None:
+            return self.seat[1]
+        return ACROSS_FLATS * self.diameter if self.diameter else np.inf
+
+    def _seat(self, hole: Hole | None, *, alone: bool) -> tuple[float, float] | None:
+        """Inner and outer diameter [m] of the ring, None for the whole faces.
+
+        alone: whether nothing but the faces says where the bolt is.
+        """
         if self.seat is not None:
             return self.seat
         if self.washers:
             return self.washers[0].inner, self.washers[0].outer
-        if self.at is None:
+        if alone:
             return None
         inner = 0.0 if hole is None else 2 * hole.radius
         size = self.diameter or inner / CLEARANCE
@@ -253,7 +315,7 @@ class BoltPlace:
     """Where a bolt lies.
 
     point [m] and axis (3,): from head to nut; length [m]: clamped; ring: inner and outer diameter [m] of the seats,
-    None for whole faces.
+    None for whole faces; thread: what the bolt engages of a tapped hole, None where it has a nut.
     """
 
     bolt: Bolt
@@ -261,11 +323,12 @@ class BoltPlace:
     axis: Array
     length: float
     ring: tuple[float, float] | None
+    thread: Band | None = None
 
     @property
     def notes(self) -> tuple[Note, ...]:
-        """What was chosen for want of a seat."""
-        return _seat_notes(self.bolt, self.ring)
+        """What was chosen for want of a seat, and of the length of its thread."""
+        return _chosen(self.bolt, self.ring, self.thread)
 
 
 def _meet(one: "BoltPlace | FittedBolt", other: "BoltPlace | FittedBolt") -> bool:
@@ -288,12 +351,17 @@ def each_in_its_place(bolts: "Sequence[BoltPlace | FittedBolt]") -> None:
                 )
 
 
-def _seat_notes(bolt: Bolt, ring: tuple[float, float] | None) -> tuple[Note, ...]:
-    if ring is None or bolt.seat is not None or bolt.washers:
-        return ()
-    inner, outer = (show(d, "m") for d in ring)
-    text = f"bolt {bolt.name!r} has no seat: it presses a ring of {inner} to {outer}, from its hole and its size"
-    return (Note(code="bolt-seat", text=text),)
+def _chosen(bolt: Bolt, ring: tuple[float, float] | None, thread: Band | None) -> tuple[Note, ...]:
+    notes = []
+    if ring is not None and bolt.seat is None and not bolt.washers:
+        inner, outer = (show(d, "m") for d in ring)
+        text = f"bolt {bolt.name!r} has no seat: it presses a ring of {inner} to {outer}, from its hole and its size"
+        notes.append(Note(code="bolt-seat", text=text))
+    if thread is not None and bolt.engaged is None:
+        length = show(thread.high, "m", digits=3)
+        text = f"bolt {bolt.name!r}: its thread engages {length} of its tapped hole; engaged gives another length"
+        notes.append(Note(code="bolt-thread", text=text))
+    return tuple(notes)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -302,7 +370,7 @@ class FittedBolt:
 
     point [m] and axis (3,): from head to nut; length [m]: clamped; ends: mean motions (6, unknowns) of both seats;
     ring: inner and outer diameter [m] of the seats, None for whole faces; extent: the same, or the least and greatest
-    diameter of the whole first face about the axis.
+    diameter of the whole first face about the axis; thread: what it engages of a tapped hole, None where it has a nut.
     """
 
     bolt: Bolt
@@ -312,11 +380,12 @@ class FittedBolt:
     ends: tuple[Any, ...]
     ring: tuple[float, float] | None
     extent: tuple[float, float]
+    thread: Band | None = None
 
     @property
     def notes(self) -> tuple[Note, ...]:
-        """What was chosen for want of a seat."""
-        return _seat_notes(self.bolt, self.ring)
+        """What was chosen for want of a seat, and of the length of its thread."""
+        return _chosen(self.bolt, self.ring, self.thread)
 
     @cached_property
     def motion(self) -> Any:
@@ -360,7 +429,7 @@ class FittedBolt:
         hexagon = density * HEXAGON * (ACROSS_FLATS * d) ** 2
         head = hexagon * HEAD_HEIGHT * d if bolt.head_mass is None else bolt.head_mass
         # the part of the bolt in the nut fills its thread, so the nut counts as solid
-        nut = hexagon * NUT_HEIGHT * d if bolt.nut_mass is None else bolt.nut_mass
+        nut = hexagon * NUT_HEIGHT * d if bolt.nut_mass is None and self.thread is None else bolt.nut_mass or 0.0
         washers = sum(w.mass for w in bolt.washers) / 2
         ends = np.array([shank / 2 + head + washers, shank / 2 + nut + washers])
         from scipy.sparse import diags_array

@@ -131,6 +131,14 @@ def size_for_hole(diameter: float) -> int | None:
     return min(fitting, key=lambda size: (round(abs(CLEARANCE_HOLES[size][1] - hole), 6), -size), default=None)
 
 
+def is_tapped(diameter: float, size: int) -> bool:
+    """Whether a hole [m] may be that of the coarse thread of a size [mm].
+
+    CAD models show a thread by its tap drill, by its core, or by its nominal diameter.
+    """
+    return bool(size - 1.3 * COARSE[size] <= 1e3 * diameter <= size + 0.05)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Fastener:
     """Thread and property class of a steel bolt, such as M8 of class 8.8.

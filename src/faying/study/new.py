@@ -148,7 +148,8 @@ def selector_text(selector: Selector) -> str:
         word = next((w for w, axis in AXES.items() if axis == selector.normal), None)
         words.append(f"normal = {_quoted(word) if word else list(selector.normal)}")
     if selector.number is not None:
-        words.append(f"number = {selector.number}")
+        numbers = list(selector.numbers)
+        words.append(f"number = {numbers if len(numbers) > 1 else numbers[0]}")
     return "{ " + ", ".join(words) + " }"
 
 
@@ -205,12 +206,11 @@ def _bolt(bolt: BoltProposal, answers: Answers, assumed: list[str]) -> str:
         lines.append(f"part = {_quoted(bolt.part)}")
         lines += [f'thread = "M{bolt.size}"', f'grade = "{GRADE}"  # ASSUMED'] if bolt.size else []
     else:
-        assert bolt.at is not None
         assert bolt.ring is not None
-        at = ", ".join(_quoted(_mm(x)) for x in bolt.at)
         inner, outer = (show(d, "m") for d in bolt.ring)
+        if bolt.at is not None:
+            lines.append(f"at = [{', '.join(_quoted(_mm(x)) for x in bolt.at)}]")
         lines += [
-            f"at = [{at}]",
             f'seat = ["{inner}", "{outer}"]',
             f'diameter = "{bolt.size} mm"',
             f"material = {_quoted(STEEL)}",

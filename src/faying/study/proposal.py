@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.bores import Stack, bores, room_around, seat, stacks
+from faying.fe.bores import Bore, Stack, bores, room_around, seat, stacks
 from faying.fe.face_facts import Contact, FaceFacts, GeometryFacts, PartFacts, part_distance
 from faying.fe.memory import guessed
 from faying.fe.selectors import AXES, TOUCHING, Selector, chosen
-from faying.joint.threads import HEADS, WASHERS, Fastener, Thread, size_for_hole
+from faying.joint.threads import CLEARANCE_HOLES, HEADS, WASHERS, Fastener, Thread, is_tapped, size_for_hole
 from faying.memory import available
 from faying.study.expected import unknowns_of
 from faying.units import show
@@ -21,6 +21,7 @@ GRADE, SHARE = "8.8", 0.7  # of the bolts, and the share of the proof load that 
 ACROSS = 2  # elements across the thinnest part
 MOST = 300_000  # unknowns beyond which the mesh is proposed coarser
 CHORDS = 1.02  # by so much a round edge is wider than its chords
+WIDEST = 1.1e-3 * CLEARANCE_HOLES[max(CLEARANCE_HOLES)][2]  # m: wider holes are for no bolt that is known here
 LEAST = 1e-3  # share of a face's area from which a contact counts
 
 
@@ -42,7 +43,7 @@ class BoltProposal:
         name: what tables call it.
         faces: names of the seats; of a meshed bolt, of its faces under head and nut.
         size: nominal diameter [mm]; None where it is not known.
-        at: point on the axis [m].
+        at: point on the axis [m]; None where a tapped hole says it.
         ring: inner and outer diameter of the seat [m].
         part: the part that it is, if it is one.
         remark: where size and ring come from.
@@ -112,6 +113,14 @@ class _Names:
                 self.given[key] = name = self._free(f"{face.part}.{word}")
                 self.selectors[name] = self._selector(face, touching)
         return self.given[key]
+
+    def of_several(self, faces: Sequence[FaceFacts], word: str) -> str:
+        """The name of faces that are meant together, such as the halves of a cylinder."""
+        if len(faces) == 1:
+            return self.of(faces[0], word)
+        name = self._free(f"{faces[0].part}.{word}")
+        self.selectors[name] = Selector(part=faces[0].part, number=tuple(sorted(face.number for face in faces)))
+        return name
 
     def _free(self, name: str) -> str:
         taken = {one.name for one in self.facts.faces} | set(self.selectors)
@@ -270,16 +279,57 @@ def _beams(facts: GeometryFacts, names: _Names, solid: set[str | None], remarks:
         if any((bore.part, number) in shanks for bore in stack.bores for number in bore.faces):
             continue
         where = f"the holes about ({', '.join(f'{1e3 * x:.4g}' for x in stack.middle)}) mm"
-        sizes = [size_for_hole(2 * bore.radius) for bore in stack.bores]
-        if None in sizes or len(set(sizes)) > 1:
+        found = _size(stack)
+        if found is None and 2 * min(bore.radius for bore in stack.bores) > WIDEST:
+            continue  # a pipe, a bearing
+        if found is None:
             widths = ", ".join(f"{2e3 * bore.radius:.4g} mm in {bore.part!r}" for bore in stack.bores)
             remarks.append(f"{where} ({widths}) are clearance holes of no common bolt (M3 to M24, ISO 273): left out")
             continue
-        ends = seat(facts, stack.bores[0], top=False), seat(facts, stack.bores[-1], top=True)
-        if ends[0] is None or ends[1] is None:
-            remarks.append(f"{where} have no flat face for head or nut at an end (a blind or tapped hole?): left out")
+        size, tapped = found
+        low, high = stack.bores[0], stack.bores[-1]
+        if tapped is not None:
+            end, top = (high, True) if tapped is low else (low, False)
+            under = seat(facts, end, top=top)
+            if under is None:
+                remarks.append(f"{where} have no flat face for a head: left out")
+                continue
+            yield _screw(facts, names, (end, under), tapped, size)
             continue
-        yield _beam(facts, names, stack, (ends[0], ends[1]), int(sizes[0] or 0))
+        ends = seat(facts, low, top=False), seat(facts, high, top=True)
+        if ends[0] is None or ends[1] is None:
+            remarks.append(f"{where} have no flat face for head or nut at an end (a blind hole?): left out")
+            continue
+        yield _beam(facts, names, stack, (ends[0], ends[1]), size)
+
+
+def _size(stack: Stack) -> tuple[int, Bore | None] | None:
+    """Nominal diameter [mm] of the bolt of a row of holes, and the hole that is its thread; None where none fits."""
+    sizes = [size_for_hole(2 * bore.radius) for bore in stack.bores]
+    ends = [(stack.bores[-1], sizes[:-1]), (stack.bores[0], sizes[1:])]
+    if sizes[0] is not None and len(set(sizes)) == 1:
+        return sizes[0], None
+    for end, others in ends:
+        if others[0] is not None and len(set(others)) == 1 and is_tapped(2 * end.radius, others[0]):
+            return others[0], end
+    return None
+
+
+def _screw(facts: GeometryFacts, names: _Names, head: tuple[Bore, FaceFacts], tapped: Bore, size: int) -> BoltProposal:
+    """A screw into a tapped hole; head: the hole under its head, and the face that it presses."""
+    bore, under = head
+    outer, why = HEADS[size] / 1e3, "of its head, ISO 4762"
+    walls = [facts.face(tapped.part, number) for number in tapped.faces]
+    return BoltProposal(
+        name="",
+        faces=(names.of(under, "seat"), names.of_several(walls, "thread")),
+        size=size,
+        ring=(round(2 * bore.radius, 9), outer),
+        remark=(
+            f"M{size} for a hole of {show(2 * bore.radius, 'm')} (ISO 273), screwed into the hole of "
+            f"{show(2 * tapped.radius, 'm')} in {tapped.part!r}; seat: from the hole to the diameter {why}"
+        ),
+    )
 
 
 def _beam(

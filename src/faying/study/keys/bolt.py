@@ -13,7 +13,7 @@ from faying.materials import Material
 from faying.study.keys.face import face_names
 from faying.study.keys.reader import Table, point, quantity
 
-OF_THE_MESH = ("material", "seat", "washer", "head_mass", "nut_mass")  # what a meshed bolt has already
+OF_THE_MESH = ("material", "seat", "washer", "head_mass", "nut_mass", "engaged")  # what a meshed bolt has already
 
 
 def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bolt | SolidBolt | None:
@@ -36,6 +36,7 @@ def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bo
             "seat": table.take("seat", _ring, None),
             "head_mass": table.quantity("head_mass", "kg", None),
             "nut_mass": table.quantity("nut_mass", "kg", None),
+            "engaged": table.quantity("engaged", "m", None),
         }
         if diameter is None and "material" in table.data:
             table.faults.add(

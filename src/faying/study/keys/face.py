@@ -8,7 +8,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.face_facts import Point
 from faying.fe.selectors import AXES, WITHIN, Selector
-from faying.study.keys.reader import Table, direction, point
+from faying.study.keys.reader import Table, direction, point, whole_number
 
 FORM = '"upper.joint", or {part = "upper", normal = "+z"}'
 
@@ -24,7 +24,7 @@ def read_selector(table: Table) -> Selector | None:
         "touching": table.text("touching", None),
         "nearest": table.take("nearest", point, None),
         "within": table.quantity("within", "m", None),
-        "number": table.count("number", None),
+        "number": table.take("number", _numbers, None),
         "all": table.truth("all", False),
     }
     rules = [key for key in ("normal", "touching", "nearest", "number") if key in table.data]
@@ -91,3 +91,12 @@ def _normal(value: Any, name: str) -> Point:
     along = np.array(direction(value, name))
     x, y, z = along / np.linalg.norm(along)
     return float(x), float(y), float(z)
+
+
+def _numbers(value: Any, name: str) -> int | tuple[int, ...]:
+    """The number of a face, or those of several."""
+    if not isinstance(value, list):
+        return whole_number(value, name)
+    if not value:
+        raise InputError(f"{name} is empty; give the number of a face, such as 3, or of several, such as [3, 5]")
+    return tuple(whole_number(one, name) for one in value)

@@ -90,7 +90,7 @@ class Table:
 
     def count(self, key: str, default: Any = MISSING, *, most: int = MOST) -> Any:
         """Take a whole number from 1 to `most`."""
-        return self.take(key, lambda value, name: _count(value, name, most), default)
+        return self.take(key, lambda value, name: whole_number(value, name, most), default)
 
     def texts(self, key: str, size: int, default: Any = MISSING) -> Any:
         """Take a list of `size` texts."""
@@ -211,7 +211,8 @@ def number(value: Any, name: str) -> float:
     return float(value)
 
 
-def _count(value: Any, name: str, most: int) -> int:
+def whole_number(value: Any, name: str, most: int = MOST) -> int:
+    """A whole number from 1 to `most`. Raises InputError for any other value."""
     if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
         raise InputError(f"{name} = {value!r} should be a whole number from 1 to {most:,}")
     return value
