@@ -164,14 +164,14 @@ def test_an_interruption_waits_for_the_files_and_then_counts():
 STOPPED = """
 import os, signal, sys, time
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it
-from faying.output.figures import save
+from faying import style
 
 def wait(*given):
     print("drawing", flush=True)
     time.sleep(60)
 
-save.drawn.__code__ = wait.__code__
-save.time = time
+style.drawn.__code__ = wait.__code__
+style.time = time
 from faying.cli import main
 main(sys.argv[1:])
 """

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from faying.output.figures.save import new_figure, save
-from faying.output.figures.structure import pressure_map
 from faying.result import Result
+from faying.result.figure import pressure_map
+from faying.style import new_figure, save
 
 ROOT = Path(__file__).parents[2]
 MODE = 0  # of the test, from 0

@@ -16,8 +16,7 @@ from faying.contact.jk import JK
 from faying.contact.law import Response
 from faying.contact.power_law import PowerLaw
 from faying.materials import CATALOGUE, RIGID, ContactPair
-from faying.output.figures.law import figure
-from faying.output.figures.save import save
+from faying.style import new_panels, save
 from faying.typing import Array
 
 STEEL = CATALOGUE["45 steel"]
@@ -89,7 +88,7 @@ def figure_8(D: float = 2.4, G: float = 1e-11) -> Any:
     al1, al2, al3 = one.limits
     al = np.geomspace(al1 * 1e-3, al3, 400)
     a1, a2 = critical_areas(one, al)
-    fig = figure(1, width=6.0, height=4.6)
+    fig = new_panels(1, width=6.0, height=4.6)
     (ax,) = fig.axes
     floor = np.full_like(al, a1.min() * 1e-3)
     lower, upper = np.minimum(a1, al), np.minimum(a2, al)
@@ -117,7 +116,7 @@ def figure_8(D: float = 2.4, G: float = 1e-11) -> Any:
 def figure_9() -> Any:
     """Draw the stage limits al1', al2', al3' against D, for several G."""
     D = np.linspace(2.25, 2.65, 81)
-    fig = figure(1, width=6.0, height=4.6)
+    fig = new_panels(1, width=6.0, height=4.6)
     (ax,) = fig.axes
     for i, G in enumerate(ROUGHNESSES):
         limits = np.array([law(float(d), G).limits for d in D])
@@ -131,7 +130,7 @@ def figure_9() -> Any:
 
 
 def _curves(quantity: str, label: str, *, logarithmic: bool = True) -> Any:
-    fig = figure(2)
+    fig = new_panels(2)
     for ax, part in zip(fig.axes, families(), strict=True):
         for i, one in enumerate(part.values()):
             d = dimensionless(one)
@@ -197,7 +196,7 @@ def measured_joints(pressure: Array | None = None) -> tuple[Comparison, Mapping[
 def figure_s45c() -> Any:
     """Draw the measured stiffness of ground steel joints beside the models on the paper's surface."""
     comparison, steel = measured_joints()
-    fig = figure(1, width=7.4, height=5.0)
+    fig = new_panels(1, width=7.4, height=5.0)
     (ax,) = fig.axes
     p = comparison.pressure
     for name, one in steel.items():

@@ -17,8 +17,7 @@ from faying.contact.asperity.lin_lin import LinLin
 from faying.contact.asperity.zx import ZX
 from faying.contact.substrate import asperity_share
 from faying.materials import RIGID, ContactPair, Material
-from faying.output.figures.law import figure
-from faying.output.figures.save import save
+from faying.style import new_panels, save
 from faying.typing import Array
 
 R, HEIGHT, DIMENSION = 15e-6, 0.1e-6, 2.9961
@@ -40,7 +39,7 @@ def deformation(delta: Array, ratio: float, xi: float) -> tuple[Array, Array]:
 def figure_3() -> Any:
     """Draw delta_a against delta, exact and approximate, for several Er at xi = 1e4 m^-0.5, and for several xi."""
     delta = np.linspace(0, 15e-9, 200)
-    fig = figure(2)
+    fig = new_panels(2)
     cases = ([(r, 1e4, f"Er {r:g}") for r in (0.5, 1.0, 2.0)], [(1.0, x, f"xi {x:g} m^-0.5") for x in (5e2, 3e3, 1e4)])
     for ax, part in zip(fig.axes, cases, strict=True):
         for i, (ratio, xi, name) in enumerate(part):
@@ -78,7 +77,7 @@ def dimensionless(model: AsperityModel, x: Array) -> dict[str, Array]:
 def figure_6() -> Any:
     """Draw dimensionless load, area and mean pressure against interference for JK, KE, LL-2005 and ZX."""
     x = np.geomspace(0.1, 300, 1200)
-    fig = figure(3)
+    fig = new_panels(3)
     labels = {"f": "f/(pi R delta H)", "a": "a/(pi R delta)", "p": "mean pressure / H"}
     styles = {"JK": "-", "KE": "-", "LL-2005": "--", "ZX (reconstructed)": "-."}
     for ax, (key, label) in zip(fig.axes, labels.items(), strict=True):
@@ -199,7 +198,7 @@ def table_1() -> list[TableRow]:
 
 def figure_7() -> Any:
     """Draw force against interference for the models, and the rows of Table 1: ours and finite elements over print."""
-    fig = figure(2)
+    fig = new_panels(2)
     delta = np.linspace(0, 30e-9, 300)
     for name, model in single_models().items():
         fig.axes[0].plot(delta[1:] * 1e9, model.at(delta[1:]).force * 1e3, label=name)

@@ -14,8 +14,8 @@ import numpy as np
 
 import faying
 from faying.measured.ring_down import MeasuredBackbone
-from faying.output.figures.backbone import panel
-from faying.output.figures.save import new_figure, save
+from faying.result.backbone_figure import panel
+from faying.style import new_figure, save
 
 HERE = Path(__file__).parent
 DATA = Path(os.environ.get("FAYING_DATA", HERE.parents[2] / "shared" / "data")) / "brake-reuss-backbones"

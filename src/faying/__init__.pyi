@@ -15,6 +15,7 @@ from .errors import ReadError as ReadError
 from .fe.mesh import Mesh as Mesh
 from .halfspace import solve_half_space as solve_half_space
 from .identify.identification import Identification as Identification
+from .identify.load import load as load
 from .identify.of_study import identify as identify
 from .identify.predict import predict as predict
 from .identify.prediction import Prediction as Prediction
@@ -25,8 +26,10 @@ from .joint.form import Form as Form
 from .joint.form_fit import fit_form as fit_form
 from .joint.gap_map import FaceMap as FaceMap
 from .joint.gap_map import GapMap as GapMap
+from .joint.joint import Joint as Joint
 from .joint.solid_bolt import SolidBolt as SolidBolt
-from .joint.structure import Joint as Joint
+from .joint.state import State as State
+from .joint.state import VibrationModes as VibrationModes
 from .joint.structure import Structure as Structure
 from .joint.waviness import Waviness as Waviness
 from .materials import CATALOGUE as CATALOGUE

@@ -8,6 +8,8 @@ from math import inf, isfinite, isnan
 from faying.errors import InputError
 from faying.hardness import BRINELL_RANGE, VickersHardness
 
+STIFFEST = 0.495  # Poisson's ratio from which displacements alone cannot describe a solid
+
 
 @dataclass(frozen=True, kw_only=True)
 class Material:

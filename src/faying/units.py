@@ -144,6 +144,14 @@ def si(value: object, unit: str, *, name: str = "value") -> float:
     return number
 
 
+def positive(value: object, unit: str, name: str) -> float:
+    """A quantity that `si` reads and that is above 0. Raises InputError otherwise."""
+    number = si(value, unit, name=name)
+    if number <= 0:
+        raise InputError(f"{name} = {_short(value)}; it must be positive")
+    return number
+
+
 def _short(text: object) -> str:
     """What was given, cut where it is long."""
     given = f'"{text}"' if isinstance(text, str) else repr(text)

@@ -60,7 +60,7 @@ def test_run_law_and_surface_print_the_same(tmp_path, capsys):
 
 def test_a_result_that_is_read_prints_them_too(tmp_path):
     result = faying.run(study(tmp_path))
-    again = Result.load(result.to_netcdf(tmp_path / "r.nc") or tmp_path / "r.nc")
+    again = Result.load(result.save(tmp_path / "r.nc") or tmp_path / "r.nc")
     assert HEAD in text(result)
     assert text(again) == text(result)
 

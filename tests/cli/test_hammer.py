@@ -43,7 +43,7 @@ def result(tmp_path):
         outline=m.points,
         triangles=np.array([[0, 1, 2], [2, 3, 4]]),
         shapes=np.stack([m.shapes, m.shapes]),
-    ).to_netcdf(tmp_path / "result.nc")
+    ).save(tmp_path / "result.nc")
 
 
 @pytest.fixture

@@ -39,7 +39,7 @@ def test_a_study_shows_its_mesh_with_joints_bolts_and_nothing_solved(tmp_path):
 
 
 def test_a_result_shows_its_modes_and_lies_beside_it_by_default(tmp_path):
-    two_boxes().to_netcdf(tmp_path / "result.nc")
+    two_boxes().save(tmp_path / "result.nc")
     view(tmp_path / "result.nc", "--no-open")
     found = scene(tmp_path / "result-view.html")
     assert len(found["modes"]["frequencies"][0]) == 3
@@ -57,7 +57,7 @@ def test_a_step_file_and_a_mesh_show_parts_and_faces(tmp_path):
 def test_the_page_is_opened_unless_that_is_refused(tmp_path, monkeypatch):
     opened = []
     monkeypatch.setattr(webbrowser, "open", lambda address: opened.append(address) or False)
-    two_boxes().to_netcdf(tmp_path / "result.nc")
+    two_boxes().save(tmp_path / "result.nc")
     said = view(tmp_path / "result.nc")
     assert opened == [(tmp_path / "result-view.html").as_uri()]
     assert "no browser was found" in said.stderr
@@ -70,6 +70,6 @@ def test_what_cannot_be_looked_at_is_said(tmp_path):
         view(tmp_path / "none.step")
     with pytest.raises(InputError, match="does not say its unit"):
         view(EXAMPLES / "two-blocks" / "model.inp", "--no-open")
-    two_boxes().to_netcdf(tmp_path / "result.nc")
+    two_boxes().save(tmp_path / "result.nc")
     with pytest.raises(InputError, match="has its units inside"):
         view(tmp_path / "result.nc", "--unit", "mm")

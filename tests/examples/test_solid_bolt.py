@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from faying.fe.faces import face_centre
+from faying.joint.modal import ModesChoice
 from faying.joint.tighten import tighten
 from faying.study import Study, build
 from faying.study.case import checked_mesh
-from faying.study.keys.solution import ModesChoice
 
 STUDY = Path(__file__).parents[2] / "examples/solid-bolt/study.toml"
 

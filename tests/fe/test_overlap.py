@@ -12,8 +12,9 @@ from faying.fe.mesh import Mesh
 from faying.fe.modes import lowest_modes
 from faying.fe.overlap import overlap
 from faying.fe.sides import sides_on
+from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
-from faying.joint.structure import Joint, Structure
+from faying.joint.structure import Structure
 from tests.helpers.boxes import SOLID_KINDS, block, row
 from tests.helpers.loads import bolt_load
 
@@ -52,7 +53,7 @@ def test_patch_uniform_pressure_passes(kinds):
     """Bars of nu = 0 pressed by uniform end loads: p = F/A at every point, whatever meets at the joint."""
     mesh = row([0.05, 0.05], [2, 2], kinds=kinds, sections=((3, 2), (4, 5)), width=0.02, height=0.02)
     interface = join(mesh, "p0.right", "p1.left")
-    joint = Joint(name="j", faces=("p0.right", "p1.left"), interface=interface, law=JointLaw(model=law()))
+    joint = FittedJoint(name="j", faces=("p0.right", "p1.left"), interface=interface, law=JointLaw(model=law()))
     structure = Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, SIMPLE), joints=(joint,))
     found = structure.assembly().solve(2000.0 * bolt_load(structure, "p1.right", "p0.left"))
     assert found.pressures[0] == pytest.approx(np.full_like(found.pressures[0], 2000.0 / 4e-4), rel=1e-8)

@@ -6,8 +6,9 @@ import faying
 from faying.fe.interface import join
 from faying.fe.mesh import Mesh
 from faying.fe.sides import sides_on
+from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
-from faying.joint.structure import Joint, Structure
+from faying.joint.structure import Structure
 from tests.helpers.boxes import block
 
 STEEL = faying.CATALOGUE["45 steel"]
@@ -37,7 +38,7 @@ def stacked(counts=(4, 2, 1), size=(0.08, 0.04, 0.01), gap=0.0, kind="hex20"):
 def plates(mesh=None, material=STEEL, bolts=(), law=LAW, friction=None, **changes):
     """The structure of two plates; changes go to Structure."""
     mesh = stacked() if mesh is None else mesh
-    joint = Joint(
+    joint = FittedJoint(
         name="j",
         faces=("low.top", "high.bottom"),
         interface=join(mesh, "low.top", "high.bottom"),

@@ -15,13 +15,13 @@ from faying.cli import main
 from faying.errors import InputError
 from faying.identify import follow
 from faying.identify import predict as module
+from faying.identify import prediction_figure as drawing
 from faying.identify.backbones import Backbones
 from faying.identify.ensemble import Ensemble
 from faying.identify.follow import Follower, sliding
 from faying.identify.prediction import Prediction
 from faying.joint.form import Form
 from faying.output import prediction as tables
-from faying.output.figures import prediction as drawing
 from faying.output.report_predicted import predicted
 from faying.progress import silent
 from faying.study import Study
@@ -266,7 +266,7 @@ def test_what_was_done_before_an_interruption_is_kept(plan, found, tmp_path, mon
         (SCATTER, LAW.partition("[backbone]")[0], 8, r"need a \[backbone\]"),
         (SCATTER, LAW, 4, "whole number from 8"),
         (SCATTER, LAW, 17, "to that of the samples, 16"),
-        (SCATTER, LAW, True, "whole number from 8"),
+        (SCATTER, LAW, True, "give a whole number"),
         (SCATTER, LAW.replace("friction = 0.2", "friction = [0.2, 0.4]"), 8, "one friction and no law"),
         (SCATTER, LAW.replace("[backbone]", SURFACE + '[backbone]\nlaw = "jk"'), 8, "one friction and no law"),
         ('[uncertain]\nE = "200 GPa +- 4 GPa"', LAW.replace("friction = 0.2", ""), 8, "has no friction"),

@@ -6,15 +6,16 @@ import numpy as np
 import pytest
 from scipy import stats
 
+import faying
 from faying.distribution import Distribution
 from faying.errors import InputError, ReadError
 from faying.identify.emulator import Emulator
 from faying.identify.fit import Seen
 from faying.identify.identification import Identification, mixed, weights_of
+from faying.identify.identification_figure import figure
 from faying.identify.identify import identify_model
 from faying.identify.noise import DISCREPANCY_SD, TEST_SD, Losses, offsets
 from faying.identify.tempering import temper
-from faying.output.figures.identification import figure
 from tests.helpers.chain import LOADS, Altered, Chain, DampedChain, Linear
 
 COUNT = 400
@@ -349,7 +350,7 @@ def test_it_is_read_as_it_was_written(chain, tmp_path):
 
 
 def test_a_file_that_is_none_is_said(tmp_path):
-    with pytest.raises(ReadError, match=r"no identification of Faying.*faying identify STUDY\.toml"):
+    with pytest.raises(ReadError, match=r"no such file.*faying identify STUDY\.toml"):
         Identification.load(tmp_path / "none.nc")
 
 
@@ -376,7 +377,17 @@ def test_the_table_fits_a_terminal(chain):
     assert max(map(len, lines)) <= 80
     assert sum("left out" in line for line in lines) == 4
     assert any(line.startswith("contact.c") and "MN/m" in line for line in lines)
-    assert repr(chain) == chain.table()
+    assert len(repr(chain).splitlines()) <= 12
+    assert f"{chain.log_evidence:.2f}" in repr(chain)
+
+
+def test_it_is_plotted_and_loaded_by_what_its_file_says(chain, tmp_path):
+    axes = chain.plot()
+    axes[0].figure.savefig(tmp_path / "identification.png")
+    assert [len(one.get_yticks()) for one in axes] == [len(chain.names), chain.test.shape[1]]
+    with pytest.raises(faying.InputError, match="draws into 2 matplotlib axes"):
+        chain.plot(axes[0])
+    assert faying.load(chain.save(tmp_path / "identification.nc")) == chain
 
 
 def test_the_same_seed_gives_the_same_numbers():

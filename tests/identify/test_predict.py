@@ -17,9 +17,9 @@ from faying.identify import predict as module
 from faying.identify.ensemble import Ensemble, Inputs
 from faying.identify.evaluate import Evaluator, Reduced
 from faying.identify.prediction import Prediction
+from faying.joint.modal import ModesChoice
 from faying.joint.reduce import Reduction
 from faying.study import Study, run
-from faying.study.keys.solution import ModesChoice
 from tests.helpers.cluster import cluster_of
 from tests.helpers.studies import write
 
@@ -93,10 +93,15 @@ def test_quantiles_are_those_of_the_samples(found):
 def test_a_prediction_is_written_and_read(found, tmp_path):
     path = found.save(tmp_path / "prediction.nc")
     assert Prediction.load(path) == found
-    with xarray.open_dataset(path) as data:
-        assert data.frequencies.dims == ("sample", "load", "mode")
+    with xarray.open_datatree(path) as data:
+        assert data["samples"].frequency.dims == ("sample", "load", "mode")
         assert list(data.input.values) == list(found.names)
-    assert found.to_xarray().frequencies.shape == found.frequencies.shape
+    assert found.to_xarray()["samples"].frequency.shape == found.frequencies.shape
+    assert len(repr(found).splitlines()) <= 12
+    assert faying.load(path) == found
+    ax = found.plot()
+    ax.figure.savefig(tmp_path / "prediction.png")
+    assert len(ax.get_yticks()) == found.observed[0].shape[2]
 
 
 def test_a_prediction_is_one_page(found):
@@ -199,7 +204,7 @@ def test_faults_of_the_table_are_named(tmp_path, more, words):
 
 def test_counts_that_make_no_prediction_are_refused(plan):
     for samples in (4, 2.5, True):
-        with pytest.raises(InputError, match="whole number from 8"):
+        with pytest.raises(InputError, match="give a whole number|whole number from 8"):
             faying.predict(plan, samples=samples)
     with pytest.raises(InputError, match="seed"):
         faying.predict(plan, seed=-1)

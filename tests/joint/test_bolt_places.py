@@ -11,8 +11,9 @@ from faying.fe.interface import join
 from faying.fe.mesh import Mesh
 from faying.fe.sides import sides_on
 from faying.joint.bolt import Bolt, Washer
+from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
-from faying.joint.structure import Joint, Structure
+from faying.joint.structure import Structure
 from tests.helpers.laws import Given
 
 STEEL = faying.CATALOGUE["45 steel"]
@@ -55,7 +56,7 @@ def bolt(**changes):
 
 
 def structure(mesh, *bolts):
-    joint = Joint(
+    joint = FittedJoint(
         name="j", faces=("upper.bottom", "lower.top"), interface=join(mesh, "upper.bottom", "lower.top"), law=LAW
     )
     return Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=(joint,), bolts=bolts)

@@ -11,8 +11,9 @@ from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
 from faying.joint.bolt import Bolt
 from faying.joint.clamping import clamping, stack_of
+from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
-from faying.joint.structure import Joint, Structure
+from faying.joint.structure import Structure
 from faying.joint.vdi2230 import cone_angle, cone_compliance, embedding_guide
 from tests.helpers.laws import Given
 from tests.helpers.rings import discs
@@ -29,7 +30,7 @@ def held(k_n):
 
 def clamped(mesh, bolts, *, k_n=1e16, materials=None):
     """Structure, stiffness and clamping of two discs under even pressure."""
-    joint = Joint(
+    joint = FittedJoint(
         name="j",
         faces=("high.bottom", "low.top"),
         interface=join(mesh, "high.bottom", "low.top"),

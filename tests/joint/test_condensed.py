@@ -10,8 +10,9 @@ from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
 from faying.joint.attachments import Support
 from faying.joint.condensed import CondensedJoint, carried, condensed_modes
+from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
-from faying.joint.structure import Joint, Structure
+from faying.joint.structure import Structure
 from tests.helpers.boxes import stack
 from tests.helpers.laws import Given
 
@@ -24,7 +25,7 @@ def rods(k=1.0, slope=0.0, material=STEEL, **mesh):
     """Two rods along x, on end: structure and springs; slope: of k_n over z."""
     made = stack([LENGTH, LENGTH], mesh.pop("counts", [4, 4]), width=WIDTH, height=HEIGHT, **mesh)
     law = JointLaw(model=Given(k_n=lambda p: k * K_N + 0 * p, k_t=lambda p: k * K_T + 0 * p))
-    joint = Joint(name="j", faces=("p0.right", "p1.left"), interface=join(made, "p0.right", "p1.left"), law=law)
+    joint = FittedJoint(name="j", faces=("p0.right", "p1.left"), interface=join(made, "p0.right", "p1.left"), law=law)
     structure = Structure(mesh=made, materials=dict.fromkeys(made.parts, material), joints=(joint,))
     i = joint.interface
     (plain,) = structure.springs([np.full(len(i.weights), 1e6)])
@@ -136,7 +137,7 @@ def test_supports_and_other_joints_stay():
     made = stack([LENGTH] * 3, [3] * 3, width=WIDTH, height=HEIGHT)
     law = JointLaw(model=Given(k_n=lambda p: K_N + 0 * p, k_t=lambda p: K_T + 0 * p))
     joints = tuple(
-        Joint(name=str(k), faces=pair, interface=join(made, *pair), law=law)
+        FittedJoint(name=str(k), faces=pair, interface=join(made, *pair), law=law)
         for k, pair in enumerate((("p0.right", "p1.left"), ("p1.right", "p2.left")))
     )
     structure = Structure(

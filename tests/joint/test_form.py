@@ -193,7 +193,7 @@ def test_a_fit_finds_the_shapes_of_a_form():
 def test_messages(tmp_path):
     with pytest.raises(faying.InputError, match="wave needs its length"):
         Form(wave=1e-6)
-    with pytest.raises(faying.InputError, match=r"seed = 1\.5; it must be a whole number"):
+    with pytest.raises(faying.InputError, match=r"seed = 1\.5; give a whole number"):
         Form(seed=1.5)
     with pytest.raises(faying.InputError, match="flatness = -1e-06 m; it must be at least 0"):
         Form(flatness=-1e-6)

@@ -4,8 +4,9 @@ import pytest
 import faying
 from faying.fe.interface import join
 from faying.joint.attachments import Support
+from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
-from faying.joint.structure import Joint, Structure
+from faying.joint.structure import Structure
 from tests.helpers.boxes import stack
 from tests.helpers.laws import Given
 
@@ -107,7 +108,9 @@ def test_springs_per_node_are_those_of_the_law_at_the_force_of_each_node(scan_ar
     mesh = stack([0.03, 0.03], [2, 2], width=0.02, height=0.02)
     faces = "p0.right", "p1.left"
     law = JointLaw(model=Given(k_n=lambda p: 3e9 * p**0.5, k_t=lambda p: 2e9 * p**0.5, loss_n=lambda p: 0.1 + 0 * p))
-    joint = Joint(name="j", faces=faces, interface=join(mesh, *faces), law=law, per_node=True, scan_area=scan_area)
+    joint = FittedJoint(
+        name="j", faces=faces, interface=join(mesh, *faces), law=law, per_node=True, scan_area=scan_area
+    )
     pressure = 1e6 + 2e7 * joint.interface.positions[:, 1]
     springs = joint.springs(pressure)
     force = springs.pressure * springs.interface.weights
@@ -126,7 +129,7 @@ def test_structures_that_differ_in_their_laws_share_what_is_assembled():
 
     mesh = stack([0.03, 0.03], [2, 2], width=0.02, height=0.02)
     faces = "p0.right", "p1.left"
-    joint = Joint(name="j", faces=faces, interface=join(mesh, *faces), law=JointLaw(model=LAW))
+    joint = FittedJoint(name="j", faces=faces, interface=join(mesh, *faces), law=JointLaw(model=LAW))
     first = Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, faying.CATALOGUE["45 steel"]), joints=(joint,))
     other = replace(first, joints=(replace(joint, law=JointLaw(model=LAW, scale=2.0)),))
     assert other.matrices[0] is first.matrices[0]

@@ -7,9 +7,10 @@ from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
 from faying.joint import preload as module
 from faying.joint.equilibrium import Equilibrium
+from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.loads import preload_index
-from faying.joint.structure import Joint, Structure
+from faying.joint.structure import Structure
 from tests.helpers.boxes import stack
 from tests.helpers.loads import bolt_load, face_load
 
@@ -23,7 +24,7 @@ def law(G=1.53e-10):
 
 def bars(sections=((2, 2), (2, 2)), material=SIMPLE, **changes):
     mesh = stack([0.05, 0.05], [3, 3], width=0.02, height=0.02, sections=sections)
-    joint = Joint(
+    joint = FittedJoint(
         name="j",
         faces=("p0.right", "p1.left"),
         interface=join(mesh, "p0.right", "p1.left"),
@@ -126,7 +127,7 @@ def test_one_load_at_once_or_in_steps_gives_the_same_pressure():
 def test_a_gap_before_the_load_is_closed_first():
     """Bars 2 um apart: the same pressure as without the gap, and the ends come that much nearer."""
     mesh = stack([0.05, 0.05], [3, 3], width=0.02, height=0.02, gap=2e-6)
-    joint = Joint(
+    joint = FittedJoint(
         name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), law=JointLaw(model=law())
     )
     structure = Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, SIMPLE), joints=(joint,))
@@ -170,7 +171,7 @@ def test_bolts_that_pull_nothing_together():
 
 def test_a_part_without_joint_is_refused():
     mesh = stack([0.05, 0.05, 0.05], [2, 2, 2], width=0.02, height=0.02, gap=1e-6)
-    joint = Joint(
+    joint = FittedJoint(
         name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), law=JointLaw(model=law())
     )
     with pytest.raises(faying.InputError, match="part p2 has no joint"):
@@ -183,7 +184,7 @@ def test_per_area_springs_do_not_depend_on_the_mesh_and_per_node_springs_do():
     for n in (1, 2, 4):
         mesh = stack([0.02, 0.02], [2 * n, 2 * n], width=0.02, height=0.02, sections=[(n, n), (n, n)])
         for per_node in totals:
-            joint = Joint(
+            joint = FittedJoint(
                 name="j",
                 faces=("p0.right", "p1.left"),
                 interface=join(mesh, "p0.right", "p1.left"),

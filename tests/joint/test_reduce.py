@@ -12,10 +12,11 @@ from faying.fe.modes import lowest_modes
 from faying.files import write_arrays
 from faying.joint.attachments import Support
 from faying.joint.bolt import Bolt
+from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.part_shares import PartShares
 from faying.joint.reduce import STATIC_SHARE, Reduction
-from faying.joint.structure import Joint, Structure
+from faying.joint.structure import Structure
 from faying.study.part_folder import load_arrays
 from tests.helpers.boxes import stack
 
@@ -30,7 +31,7 @@ def law(D=2.39, G=1.5e-10):
 
 def beam(**changes):
     mesh = stack([0.06, 0.05], [5, 4], width=0.02, height=0.015)
-    joint = Joint(name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), law=law())
+    joint = FittedJoint(name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), law=law())
     bolt = Bolt(name="b", faces=("p0.left", "p1.right"), at=(0.0, 0.009, 0.0075), seat=(0.0, 0.012))
     return Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=(joint,), bolts=(bolt,), **changes)
 

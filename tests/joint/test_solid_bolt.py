@@ -7,9 +7,10 @@ import pytest
 
 import faying
 from faying.fe.interface import join
+from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.solid_bolt import SolidBolt
-from faying.joint.structure import Joint, Structure
+from faying.joint.structure import Structure
 from faying.joint.tighten import tighten
 from tests.helpers.voxels import bolted
 from tests.joint.test_tighten import bed
@@ -22,7 +23,7 @@ def structure(mesh, bolts=1, **changes):
     for i in range(bolts):
         pairs += [(f"bolt{i}.head", f"upper.seat{i}"), (f"bolt{i}.nut", f"lower.seat{i}")]
     joints = tuple(
-        Joint(
+        FittedJoint(
             name=first,
             faces=(first, second),
             interface=join(mesh, first, second),

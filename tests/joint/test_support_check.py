@@ -10,8 +10,9 @@ from faying.fe.interface import join
 from faying.fe.modes import lowest_modes
 from faying.joint.attachments import Support
 from faying.joint.bolt import Bolt
+from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
-from faying.joint.structure import Joint, Structure
+from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions, checked_preload, open_joints
 from tests.helpers.boxes import stack
 from tests.helpers.laws import Given
@@ -33,7 +34,7 @@ def three(gap, **changes):
     for name, faces, apart in (("a", ("p0.right", "p1.left"), 0.0), ("b", ("p1.right", "p2.left"), gap)):
         interface = join(mesh, *faces)
         interface = replace(interface, gap=interface.gap + apart)
-        joints.append(Joint(name=name, faces=faces, interface=interface, law=JointLaw(model=law())))
+        joints.append(FittedJoint(name=name, faces=faces, interface=interface, law=JointLaw(model=law())))
     bolt = Bolt(name="bolt", faces=("p0.left", "p1.right"))
     return Structure(
         mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=tuple(joints), bolts=(bolt,), **changes
@@ -59,7 +60,7 @@ def test_an_open_joint_between_parts_that_are_held_otherwise():
 
 def test_a_part_that_slides_freely_is_named():
     mesh = stack([0.05, 0.03], [3, 2], width=0.02, height=0.02)
-    joint = Joint(
+    joint = FittedJoint(
         name="j",
         faces=("p0.right", "p1.left"),
         interface=join(mesh, "p0.right", "p1.left"),
@@ -83,7 +84,7 @@ def test_a_part_that_slides_freely_is_named():
 def clamped_pair(*supports):
     """Two bars bolted together on supports."""
     mesh = stack([0.03, 0.03], [2, 2], width=0.02, height=0.02)
-    joint = Joint(
+    joint = FittedJoint(
         name="j", faces=("p0.right", "p1.left"), interface=join(mesh, "p0.right", "p1.left"), law=JointLaw(model=law())
     )
     bolt = Bolt(name="bolt", faces=("p0.left", "p1.right"))

@@ -3,9 +3,9 @@ import pytest
 from matplotlib.figure import Figure
 
 from faying import FRF, compare_modes, identify_modes
+from faying.measured import figure as measured
 from faying.measured.model import ModelModes
 from faying.measured.modes import ModeSet
-from faying.output.figures import measured
 
 
 @pytest.fixture

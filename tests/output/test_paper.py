@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from faying.output.figures.law import curves
-from faying.output.figures.save import save
+from faying.style import save
 from tests.helpers.gallery import script
 
 paper, paper_asperity = script("paper"), script("paper_asperity")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from faying.output import report
-from faying.output.figures import response as curves
+from faying.output import report_curves as curves
 from faying.result import Provenance, Receptance
 from tests.helpers.backbones import made
 from tests.helpers.browser import opened, until
@@ -150,7 +150,7 @@ def test_measured_points_are_marked_on_the_curves_of_a_backbone(browser, result,
 
 
 def test_the_packed_curves_are_the_accelerance(result):
-    (group,) = curves.curves(result)
+    (group,) = curves.response_curves(result)
     np.testing.assert_allclose(array(group["frequencies"]), LINES, rtol=1e-6)
     both = array(group["values"])
     wanted = -((2 * np.pi * LINES) ** 2) * result.response.values[:, :, 0, 0]

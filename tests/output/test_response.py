@@ -7,8 +7,8 @@ import pytest
 from matplotlib.figure import Figure
 
 from faying.output import table
-from faying.output.figures import response
 from faying.result import Receptance
+from faying.result import response_figure as response
 from tests.helpers.results import small_result
 
 LINES = np.linspace(10, 200, 96)

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from faying.fe.cad import read_step
+from faying.fe.face_map import joint_map, projection, quartered
 from faying.output import scene as scenes
-from faying.output.scene.maps import joint_map, projection, quartered
 from faying.output.scene.text import to_dict
 from tests.helpers.boxes import stack
 from tests.helpers.scenes import two_boxes

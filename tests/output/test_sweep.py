@@ -6,9 +6,9 @@ from matplotlib.figure import Figure
 
 import faying
 from faying.output.figures import sweep as drawing
-from faying.output.figures.save import save
 from faying.study.axes import axis_of
 from faying.study.sweep_files import Sweep
+from faying.style import save
 
 
 def made(*texts, modes=3):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import faying
 from faying.errors import InputError, ReadError
 from faying.result.backbone import Backbone, ErrorBounds
 from tests.helpers.backbones import made
@@ -60,7 +61,7 @@ def test_below_its_first_point_the_curve_goes_to_rest():
 
 
 def test_a_curve_that_is_read_is_the_one_that_was_written(tmp_path):
-    file = LINEAR.to_netcdf(tmp_path / "curve.nc")
+    file = LINEAR.save(tmp_path / "curve.nc")
     again = Backbone.load(file)
     assert again == LINEAR
     assert again.bounds == ErrorBounds() or np.isnan(again.bounds.residual)
@@ -86,6 +87,16 @@ def test_the_curve_as_json_has_units_and_no_nan():
 def test_xarray_opens_the_file(tmp_path):
     import xarray
 
-    data = xarray.load_dataset(LINEAR.to_netcdf(tmp_path / "curve.nc"), engine="h5netcdf")
+    data = xarray.load_dataset(LINEAR.save(tmp_path / "curve.nc"), engine="h5netcdf")
     assert data["damping"].dims == ("amplitude",)
     assert data["frequency"].attrs["units"] == "Hz"
+    assert faying.load(tmp_path / "curve.nc") == LINEAR
+
+
+def test_a_curve_prints_in_a_dozen_lines_and_plots(tmp_path):
+    assert len(repr(LINEAR).splitlines()) <= 12
+    assert "100.000 Hz" in repr(LINEAR)
+    upper, lower = LINEAR.plot()
+    upper.figure.savefig(tmp_path / "curve.png")
+    assert (upper.get_ylabel(), lower.get_ylabel()) == ("frequency [Hz]", "damping ratio [%]")
+    assert np.array_equal(upper.lines[0].get_ydata(), LINEAR.frequency)

@@ -19,9 +19,9 @@ def test_names_of_other_laws_are_read_as_they_were_given_and_written_again(tmp_p
         beside_beyond_share=two[0],
         beside_reach=two[0, 0],
     )
-    read = Result.load(written.to_netcdf(tmp_path / "result.nc"))
+    read = Result.load(written.save(tmp_path / "result.nc"))
     assert read.beside == ("JK", "hollow")
-    assert Result.load(read.to_netcdf(tmp_path / "again.nc")) == written
+    assert Result.load(read.save(tmp_path / "again.nc")) == written
 
 
 def test_what_the_structure_is_made_of_is_read_as_it_was_written(tmp_path):
@@ -29,7 +29,7 @@ def test_what_the_structure_is_made_of_is_read_as_it_was_written(tmp_path):
         supports=(Support(face="p0.left"), Support(face="p1.right", directions=("z",), stiffness=1e9)),
         masses=(PointMass(mass=0.2, point=(0.1, 0.0, 0.0)), PointMass(mass=0.1, face="p1.right")),
     )
-    read = Result.load(written.to_netcdf(tmp_path / "result.nc"))
+    read = Result.load(written.save(tmp_path / "result.nc"))
     assert read == written
     assert read.supports == written.supports
     assert read.masses[0].point == (0.1, 0.0, 0.0)
@@ -37,7 +37,7 @@ def test_what_the_structure_is_made_of_is_read_as_it_was_written(tmp_path):
 
 def test_a_file_of_an_earlier_version_says_nothing_of_parts_and_faces(tmp_path):
     """Such files hold no such variable and attribute, as those of results made by hand."""
-    read = Result.load(small_result().to_netcdf(tmp_path / "result.nc"))
+    read = Result.load(small_result().save(tmp_path / "result.nc"))
     assert read.shapes_imaginary is None
     assert read.part_of_triangle is None
     assert read.parts == read.joint_faces == read.supports == ()

@@ -9,11 +9,11 @@ import pytest
 import faying
 from faying.errors import InputError
 from faying.joint.epmc import Epmc
-from faying.joint.structure import Joint
+from faying.joint.joint import FittedJoint
 from faying.output import table
-from faying.output.figures.backbone import label
 from faying.output.sections import sections
 from faying.result import Result
+from faying.result.backbone_figure import label
 from faying.study import Study, backbone_store
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.keys.law import LawChoice
@@ -119,7 +119,7 @@ def test_measured_points_of_the_study_stand_beside_the_curve(study, tmp_path):
     f, z = found.at_acceleration(600.0)
     assert (frequency[0], damping[0]) == (pytest.approx(float(f)), pytest.approx(float(z)))
     assert np.isnan(frequency[1])  # beyond the end of the curve
-    found.to_netcdf(tmp_path / "curve.nc")
+    found.save(tmp_path / "curve.nc")
     assert faying.Backbone.load(tmp_path / "curve.nc") == found
     rows = table.backbone_measured(found)
     assert [row[0] for row in rows[1:]] == ["600", "9000"]
@@ -206,12 +206,12 @@ def test_friction_of_the_joints_is_taken(study):
 
 def _without_shear(monkeypatch):
     law = Given(k_n=lambda p: 1e9 * p**0.5, k_t=lambda p: 0.0 * p)
-    springs = Joint.springs
+    springs = FittedJoint.springs
 
     def slippery(self, pressure):
         return springs(replace(self, law=replace(self.law, model=law, tangential="law")), pressure)
 
-    monkeypatch.setattr(Joint, "springs", slippery)
+    monkeypatch.setattr(FittedJoint, "springs", slippery)
 
 
 def test_faults_are_named(study, monkeypatch):
@@ -265,7 +265,7 @@ def test_a_run_follows_the_mode_that_the_study_names(tmp_path):
         assert curve.linear_frequency == pytest.approx(found.frequencies[-1, 0], rel=1e-3)
         assert np.allclose(curve.frequency, other.frequency, rtol=1e-9)
         assert np.allclose(curve.damping, other.damping, rtol=1e-6)
-    assert Result.load(found.to_netcdf(tmp_path / "result.nc")) == found
+    assert Result.load(found.save(tmp_path / "result.nc")) == found
     assert len(found.to_dict()["backbones"]) == 2
     shown = [section.name for section in sections(found)]
     assert shown.count("backbone") == shown.count("backbone bounds") == 2

@@ -84,9 +84,9 @@ def test_frequencies_of_a_model_are_not_headed_test():
     from dataclasses import replace as changed
 
     from faying.output import table
-    from faying.output.figures import structure
-    from faying.output.figures.save import new_figure
     from faying.result import Comparison
+    from faying.result import figure as structure
+    from faying.style import new_figure
     from tests.helpers.results import small_result
 
     found = small_result()

@@ -103,7 +103,7 @@ def test_other_laws_stand_beside_as_if_they_were_run_alone(default, closed, tmp_
     told = texts(default, "assumed")
     assert all("beside: " in text for text in told)
     assert any("alpha = 0.2" in text for text in told)
-    again = faying.Result.load(default.to_netcdf(tmp_path / "result.nc"))
+    again = faying.Result.load(default.save(tmp_path / "result.nc"))
     assert again == default
 
 

@@ -8,8 +8,8 @@ import pytest
 import faying
 from faying.joint.form import Form
 from faying.joint.machining import ASSUMED, GAUSSIAN, PROCESSES
+from faying.joint.modal import ModesChoice
 from faying.study import Study, build, run
-from faying.study.keys.solution import ModesChoice
 from faying.study.wave_band import TOLERANCE
 from tests.helpers.studies import write
 

@@ -36,7 +36,7 @@ def result(plan):
 def files(result, tmp_path_factory):
     folder = tmp_path_factory.mktemp("uff")
     universal.write(result, folder)
-    result.to_netcdf(folder / "result.nc")
+    result.save(folder / "result.nc")
     return folder
 
 

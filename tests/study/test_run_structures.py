@@ -84,7 +84,7 @@ def test_the_response_peaks_at_the_modes(result):
 def test_netcdf(result, tmp_path):
     import xarray
 
-    path = result.to_netcdf(tmp_path / "r.nc")
+    path = result.save(tmp_path / "r.nc")
     assert type(result).load(path) == result
     with xarray.open_dataset(path, group="response") as found:
         assert found.values_real.dims == ("load", "response_frequency", "output", "input")

@@ -9,13 +9,13 @@ import xarray
 
 import faying
 from faying.joint.form import Form
+from faying.joint.modal import ModesChoice
 from faying.joint.reduce import Reduction
 from faying.study import Study, part_folder, run
 from faying.study import sweep as module
 from faying.study.axes import Grid, axis_of
 from faying.study.case import surfaces_of
 from faying.study.keys.law import LawChoice
-from faying.study.keys.solution import ModesChoice
 from faying.study.recipe import Recipe
 from faying.study.sweep import sweep
 from tests.helpers.cluster import cluster_of

@@ -20,7 +20,7 @@ from faying_reference.rst import heading
 # title -> names; a public name that stands in none comes under the last
 GROUPS: Mapping[str, tuple[str, ...]] = {
     "Studies": ("Study", "run", "sweep", "axis_of", "backbone", "attach"),
-    "Results": ("Result", "Backbone", "MeasuredBackbone", "ring_down", "ring_down_of_frf", "read_model_modes"),
+    "Results": ("Result", "load", "Backbone", "MeasuredBackbone", "ring_down", "ring_down_of_frf", "read_model_modes"),
     "Surfaces": (
         *("read_scan", "write_scan", "Scan", "Profile", "synthesize", "fit_fractal", "FractalFit", "combine"),
         "Combined",
@@ -28,13 +28,16 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
     "Contact": ("Mates", "law_for", "JK", "HalfSpace", "solve_half_space", "solve_asperity", "contact"),
     "Materials": ("Material", "ContactPair", "CATALOGUE", "RIGID"),
     "Structures": (
-        *("Structure", "Joint", "Bolt", "Washer", "SolidBolt", "Mesh", "read_mesh", "read_matrices"),
-        *("Form", "Waviness", "GapMap", "FaceMap", "fit_form", "minimum_zone"),
+        *("Structure", "State", "VibrationModes", "Joint", "Bolt", "Washer", "SolidBolt"),
+        *("Mesh", "read_mesh", "read_matrices", "Form", "Waviness", "GapMap", "FaceMap", "fit_form", "minimum_zone"),
     ),
     "Tests": (*("FRF", "frf_from_records", "identify_modes", "read_uff", "write_uff", "ModelModes", "compare_modes"),),
     "Errors": ("FayingError", "InputError", "ReadError", "NotConverged"),
     "Others": (),
 }
+
+# where names of annotations without a module are looked for: those of overloads stand as they are written
+BARE = ("typing", "numpy", "pathlib", "matplotlib.axes", "pandas", "xarray", "faying.study.backbone")
 
 DATA = {
     "faying.CATALOGUE": "The materials that need not be given, by name: :ref:`catalogue`.",
@@ -117,7 +120,7 @@ def _exists(path: str) -> bool:
     """Whether a dotted name is something that can be imported."""
     parts = re.sub(r"\[.*", "", path).split(".")
     if len(parts) == 1:
-        return hasattr(builtins, path) or any(hasattr(importlib.import_module(m), path) for m in ("typing", "numpy"))
+        return hasattr(builtins, path) or any(hasattr(importlib.import_module(m), path) for m in BARE)
     for size in range(len(parts) - 1, 0, -1):
         try:
             value: Any = importlib.import_module(".".join(parts[:size]))

@@ -13,7 +13,7 @@ from sphinx.errors import SphinxError
 
 from faying.contact.build import laws
 from faying.contact.law import ContactLaw
-from faying.output.figures.save import new_figure, save
+from faying.style import new_figure, save
 from faying_reference.rst import escape, table
 from faying_reference.tables import Section, slug
 

@@ -142,6 +142,7 @@ class ResultVariables(Section):
             rows = [
                 (
                     f"``{meta.name or field}``" + (f" (in Python ``{field}``)" if meta.name else ""),
+                    escape(meta.group),
                     escape(", ".join(meta.dims)),
                     escape(meta.unit),
                     escape(meta.long_name) + ("; NaN where not known" if meta.gaps else ""),
@@ -149,7 +150,7 @@ class ResultVariables(Section):
                 for field, meta in declared(kind).items()
             ]
             if rows:
-                out += table(("variable", "dimensions", "unit", "meaning"), rows, (24, 22, 12, 42))
+                out += table(("variable", "group", "dimensions", "unit", "meaning"), rows, (22, 10, 20, 10, 38))
             others = [f.name for f in fields(kind) if f.name not in declared(kind) and not f.name.startswith("_")]
             if others:
                 out += ["Besides: " + ", ".join(f"``{other}``" for other in others) + ".", ""]

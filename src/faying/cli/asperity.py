@@ -88,7 +88,7 @@ def command(
         raise first
     if plot:
         from faying.output.figures.asperity import overview
-        from faying.output.figures.save import save
+        from faying.style import save
 
         save(overview(cases[0], first), plot)
     document = [described(case, result) for case, result in zip(cases, results, strict=True)]

@@ -42,11 +42,11 @@ def command(study: Path, **options: Any) -> None:
     """
     from faying.files import new_folder
     from faying.measured.ring_down import MeasuredBackbone
-    from faying.output.figures import backbone as drawing
-    from faying.output.figures.save import check_figure, save
+    from faying.result import backbone_figure as drawing
     from faying.study import Study
     from faying.study.backbone import backbones
     from faying.study.backbone_choice import names
+    from faying.style import check_figure, save
 
     plot, out = options["plot"], options["out"]
     if plot:

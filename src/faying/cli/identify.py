@@ -43,11 +43,11 @@ def command(
     What is done is kept beside the output; the same command goes on after an interruption.
     """
     from faying.files import new_folder, write_text
+    from faying.identify import identification_figure as drawing
     from faying.identify.of_study import identify
-    from faying.output.figures import identification as drawing
-    from faying.output.figures.save import check_figure, save
     from faying.output.report_predicted import identified
     from faying.study import Study
+    from faying.style import check_figure, save
 
     if plot:
         check_figure(plot)

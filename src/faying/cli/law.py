@@ -142,7 +142,7 @@ def command(
         write_text(Path(csv_file), csv_text(law, response, h))
     if plot:
         from faying.output.figures.law import curves
-        from faying.output.figures.save import save
+        from faying.style import save
 
         save(curves({law.name: response}), plot)
     if as_json:

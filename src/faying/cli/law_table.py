@@ -42,7 +42,7 @@ def show(mates: Any, names: list[str] | None, pressures: Any, output: Output) ->
         write_text(Path(output.csv_file), csv(comparison, heat))
     if output.plot:
         from faying.output.figures.law import curves
-        from faying.output.figures.save import save
+        from faying.style import save
 
         save(curves(comparison.responses), output.plot)
     if output.as_json:
@@ -64,7 +64,7 @@ def draw_contact(laws: dict[str, Any], pressure: float, path: str) -> None:
     from faying.contact.half_space import HalfSpace
     from faying.errors import InputError
     from faying.output.figures.contact_map import contact_figure
-    from faying.output.figures.save import save
+    from faying.style import save
 
     solved = [law for law in laws.values() if isinstance(law, HalfSpace)]
     if not solved:

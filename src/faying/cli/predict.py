@@ -57,13 +57,13 @@ def command(
     """
     from faying.errors import InputError
     from faying.files import new_folder, write_text
+    from faying.identify import prediction_figure as drawing
     from faying.identify.follow import choice_of
     from faying.identify.predict import check, predict
-    from faying.output.figures import prediction as drawing
-    from faying.output.figures.save import check_figure, save
     from faying.output.prediction import text
     from faying.output.report_predicted import predicted
     from faying.study import Study
+    from faying.style import check_figure, save
 
     if bands and not backbones:
         raise InputError("--bands draws backbones; ask for them with --backbones 32")

@@ -29,9 +29,9 @@ def command(record: Path, **options: Any) -> None:
     RECORD is a CSV file with the columns time [s] and acceleration [m/s^2] (or velocity [m/s], displacement [m]), or a
     universal file with the FRF of a single hit. A band-pass filter and the Hilbert transform give the points.
     """
-    from faying.output.figures import backbone as drawing
-    from faying.output.figures.save import check_figure, save
     from faying.output.table import measured_backbone, text
+    from faying.result import backbone_figure as drawing
+    from faying.style import check_figure, save
 
     if options["plot"]:
         check_figure(options["plot"])

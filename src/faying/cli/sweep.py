@@ -45,10 +45,10 @@ def command(
     """
     from faying.files import new_folder
     from faying.output.figures import sweep as drawing
-    from faying.output.figures.save import save
     from faying.study import Study
     from faying.study.axes import axis_of
     from faying.study.sweep import sweep
+    from faying.style import save
 
     axes = [axis_of(text) for text in settings]
     if plot:

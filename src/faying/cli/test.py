@@ -169,8 +169,8 @@ def draw(found: Any, path: str) -> None:
     """Write the stabilisation diagram over a fitted FRF."""
     from matplotlib.figure import Figure
 
-    from faying.output.figures import measured
-    from faying.output.figures.save import save
+    from faying.measured import figure as measured
+    from faying.style import save
 
     fig = Figure(figsize=(9, 7.5), layout="constrained")
     upper, lower = fig.subplots(2, 1)

@@ -10,11 +10,13 @@ from faying.decks.programs import MATRICES, reader_of
 from faying.decks.raw import Matrices, both_triangles, numbers_of, once, read_dofs, read_text, room, whole
 from faying.errors import InputError, ReadError
 from faying.fe.mesh import Mesh
+from faying.misuse import checked_call
 from faying.typing import Array, Index
 
 SYMMETRIC = 1e-8  # largest difference from the transpose, relative to the largest entry
 
 
+@checked_call
 def read_matrices(
     path: str | Path,
     *,

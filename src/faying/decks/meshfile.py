@@ -14,26 +14,42 @@ from faying.errors import InputError, ReadError
 from faying.fe.elements import FACES, SOLIDS
 from faying.fe.mesh import Mesh, least_jacobian
 from faying.fe.sides import Blocks, nodes_of, side_key, skin
+from faying.misuse import checked_call
 from faying.notes import Note
 from faying.typing import Array, Index
 
+STEP = (".step", ".stp")
 SMALLEST, LARGEST = 1e-3, 100.0  # sizes of a bolted structure [m] beyond which the unit is doubted
 CLOSE = 1e-7  # of the part's size: nodes nearer than this coincide
 
 
+@checked_call
 def read_mesh(
-    path: str | Path, *, unit: str | None = None, parts: Mapping[str, str] | Sequence[str] | None = None
+    path: str | Path,
+    *,
+    size: float | str | None = None,
+    face_size: Mapping[str, float | str] | None = None,
+    unit: str | None = None,
+    parts: Mapping[str, str] | Sequence[str] | None = None,
+    cache: str | Path | None = None,
 ) -> Mesh:
-    """Read a mesh file: Abaqus or CalculiX .inp, Nastran .bdf, Gmsh .msh, MAPDL .cdb, VTK .vtk or .vtu.
+    """Mesh a STEP file, or read a mesh file.
+
+    A STEP file (.step, .stp) is meshed as a study meshes it, with second-order tetrahedra; `size` is needed then. Its
+    parts and faces have the names that the CAD program gave them. Mesh files are Abaqus or CalculiX .inp, Nastran .bdf,
+    Gmsh .msh, MAPDL .cdb, VTK .vtk or .vtu; `unit` is needed then.
 
     Faces are the file's node sets, surfaces and face elements, turned outwards; a set that lies on several parts gives
     PART.SET for each. Parts that share nodes on named faces get nodes of their own there.
 
     Args:
         path: The file.
+        size: Largest edge of an element of a STEP file [m], or text with a unit such as "10 mm".
+        face_size: Name of a face of a STEP file -> largest edge there.
         unit: Length unit of the coordinates, such as "mm"; no format says it.
         parts: Names of the element sets that are the parts, or part -> element set. Where None: the bodies that the
             file names, else its element sets if they divide the elements, else the pieces that share no node.
+        cache: Folder that keeps the mesh of a STEP file for the next call; None keeps nothing.
 
     Returns:
         The mesh in metres, with the file's node numbers.
@@ -45,12 +61,44 @@ def read_mesh(
     file = Path(path)
     if not file.is_file():
         raise ReadError(f"no file {file}")
-    module = reader_of(file, MESHES)
+    if file.suffix.lower() in STEP:
+        wrong = [name for name, value in (("unit", unit), ("parts", parts)) if value is not None]
+        return _meshed(file, size, face_size, cache, wrong)
+    wrong = [name for name, value in (("size", size), ("face_size", face_size)) if value is not None]
+    if wrong:
+        raise InputError(f"{file.name} is a mesh already, and {wrong[0]} goes with a STEP file; leave it out")
+    module = reader_of(file, MESHES, STEP)
     if unit is None:
         raise InputError(f'{file.name} does not say in which unit its coordinates are; say it, for example unit = "mm"')
     scale = units.scale(unit, "m", name="unit of the mesh")
     raw = _read(module, file)
     return _Builder(raw, file.name, unit, scale).mesh(parts)
+
+
+def _meshed(
+    file: Path,
+    size: float | str | None,
+    face_size: Mapping[str, float | str] | None,
+    cache: str | Path | None,
+    wrong: Sequence[str],
+) -> Mesh:
+    """The mesh of a STEP file."""
+    from faying.fe.geometry import mesh_step
+
+    if wrong:
+        raise InputError(f"{file.name} is a STEP file, which says its unit and its parts; leave {wrong[0]} out")
+    if size is None:
+        raise InputError(
+            f'{file.name} is a STEP file and is meshed here; give the largest edge, such as size = "10 mm"'
+        )
+    return mesh_step(
+        file,
+        size=units.positive(size, "m", "size"),
+        local_size={
+            name: units.positive(one, "m", f"face_size of {name!r}") for name, one in (face_size or {}).items()
+        },
+        cache=None if cache is None else Path(cache),
+    )
 
 
 def _read(module: Any, file: Path) -> RawMesh:

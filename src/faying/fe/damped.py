@@ -15,6 +15,7 @@ from faying.errors import NotConverged
 from faying.fe.modes import Modes
 from faying.fe.nearby import LEAST, Measure, NearbyModes
 from faying.fe.product import combined, product
+from faying.fe.signs import definite
 from faying.typing import Array, Complex, Index
 
 Kind = Literal["hysteretic", "viscous"]
@@ -28,7 +29,8 @@ class DampedModes:
 
     frequencies [Hz], loss_factors [-] (m,): of the complex eigenvalue w^2 (1 + i eta) under hysteretic loss; under
     viscous damping the undamped |lambda|/2pi and twice the damping ratio. error (m,): estimated relative error of the
-    eigenvalue. shapes (unknowns, m), complex, with shapes^T M shapes = 1.
+    eigenvalue. shapes (unknowns, m), complex, with shapes^T M shapes = 1; of each real part
+    the greatest component is positive.
     """
 
     frequencies: Array
@@ -96,7 +98,7 @@ def damped_near(
             frequencies=modes.frequencies[rigid : rigid + count],
             loss_factors=np.zeros(count),
             error=modes.error[rigid : rigid + count],
-            shapes=elastic[:, :count].astype(complex),
+            shapes=definite(elastic[:, :count]).astype(complex),
         )
     measure = near.measure(2 * count)
     lossy = np.flatnonzero(np.diff(loss.tocsr().indptr))
@@ -120,7 +122,7 @@ def damped_near(
                 frequencies=_frequency(squared, root, kind),
                 loss_factors=_loss_factor(squared, root, kind),
                 error=error,
-                shapes=vectors / np.sqrt(np.einsum("im,im->m", vectors, moved)),
+                shapes=definite(vectors / np.sqrt(np.einsum("im,im->m", vectors, moved))),
             )
         if not _enrich(near, stiffness, mend, least=SLIGHT * tolerance):
             break

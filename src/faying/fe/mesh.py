@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,12 +11,20 @@ from faying.errors import InputError
 from faying.fe.elements import FACES, SOLIDS
 from faying.fe.sides import Blocks as Blocks
 from faying.fe.sides import nodes_of
+from faying.misuse import checked_call
 from faying.notes import Note
+from faying.style import Summary
+from faying.text import listed
 from faying.typing import Array, Index, Mask
+from faying.units import show
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
-@dataclass(frozen=True, kw_only=True)
-class Mesh:
+@checked_call
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Mesh(Summary):
     """Nodes, the solid elements of each part, and the faces of elements that make up each named face.
 
     No node is shared by two parts: parts meet through joints alone.
@@ -93,6 +102,46 @@ class Mesh:
         """The blocks of all parts, part by part."""
         return tuple(block for blocks in self.parts.values() for block in blocks)
 
+    @cached_property
+    def volumes(self) -> dict[str, float]:
+        """Volume of each part [m3]."""
+        return {
+            name: sum(float(volumes_of(self.points, cells).sum()) for cells in blocks)
+            for name, blocks in self.parts.items()
+        }
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and what the mesh consists of."""
+        volume = sum(self.volumes.values())
+        head = f"Mesh{f' of {self.source}' if self.source else ''}: {show(self.size, 'm')} from corner to corner"
+        kinds: dict[str, int] = {}
+        for block in self.blocks:
+            kinds[kind_of(block)] = kinds.get(kind_of(block), 0) + len(block)
+        rows = {
+            "parts": f"{len(self.parts)}: {listed(self.parts)}",
+            "faces": f"{len(self.faces)}: {listed(sorted(self.faces), 8)}",
+            "elements": ", ".join(f"{count:,} {kind}" for kind, count in kinds.items()),
+            "nodes": f"{len(self.points):,}",
+            "unknowns": f"{self.unknowns:,}",
+            "volume": f"{volume * 1e9:.6g} mm^3",
+            "mass": f"{volume * 1e3:.4g} kg for each 1000 kg/m^3 of density",
+        }
+        return head, rows | ({"notes": f"{len(self.notes)}, in .notes"} if self.notes else {})
+
+    @checked_call
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw the parts, with the largest named faces in colours of their own.
+
+        Args:
+            ax: Matplotlib axes with three dimensions to draw into; new ones where None.
+
+        Returns:
+            The axes.
+        """
+        from faying.fe.figure import mesh_axes
+
+        return mesh_axes(self, ax)
+
     def face(self, name: str) -> Blocks:
         """Blocks of a named face, each (f, a). Raises InputError that lists the faces there are."""
         if name not in self.faces:
@@ -132,6 +181,17 @@ def least_jacobian(points: Array, cells: Index) -> Array:
         jacobian = np.einsum("eai,qaj->eqij", points[cells[here]], gradients, optimize=True)
         x, y, z = (jacobian[..., i, :] for i in range(3))
         out[here] = np.einsum("eqi,eqi->eq", np.cross(x, y), z).min(axis=1)
+    return out
+
+
+def volumes_of(points: Array, cells: Index) -> Array:
+    """Volumes [m3] of elements of one kind (e,)."""
+    _, weights, _, gradients = SOLIDS[cells.shape[1]].mass_rule
+    out = np.empty(len(cells))
+    for begin in range(0, len(cells), 20000):
+        here = slice(begin, begin + 20000)
+        jacobian = np.einsum("eai,qaj->eqij", points[cells[here]], gradients, optimize=True)
+        out[here] = np.linalg.det(jacobian) @ weights
     return out
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from faying.errors import InputError, NotConverged
 from faying.fe.product import combined, product
+from faying.fe.signs import definite
 from faying.fe.solve import Factorisation, factorise, negative_eigenvalues
 from faying.typing import Array
 
@@ -89,7 +90,7 @@ def lowest_modes(
     order = np.argsort(np.abs(values))[:count]
     return Modes(
         frequencies=np.sqrt(np.abs(values[order])) / (2 * np.pi),
-        shapes=shapes[:, order],
+        shapes=definite(shapes[:, order]),
         error=np.where(np.isfinite(allowed), allowed, np.nan),
         factorisation=factor,
         factorised=stiffness,

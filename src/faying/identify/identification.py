@@ -3,22 +3,27 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from pathlib import Path
-from typing import Any, Self, final
+from typing import TYPE_CHECKING, Any, ClassVar, Self, final
 
 import numpy as np
 
-from faying import netcdf
 from faying.distribution import Distribution
 from faying.errors import ReadError
 from faying.identify.fit import Fit, Seen
+from faying.misuse import checked_call
 from faying.netcdf import Group, Variable
 from faying.notes import Note
-from faying.result.fields import Recorded, from_group, listed, to_group, variable
+from faying.result.fields import RECORD, Recorded, from_group, listed, to_group, variable
+from faying.text import listed as joined
 from faying.typing import Array, Mask
 from faying.units import show
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from xarray import DataTree
+
 LEVELS = (0.05, 0.5, 0.95)
+MOST_PARAMETERS = 5  # that a summary has a line for
 
 
 @final
@@ -35,6 +40,7 @@ class LawEvidence:
 OWN = "faying"  # the group of the file that holds everything
 
 
+@checked_call
 @final
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Identification(Recorded):
@@ -47,6 +53,9 @@ class Identification(Recorded):
     answered: those with an answer; calls: of the likelihood; rounds: how often the surrogate was drawn closer to the
     posterior.
     """
+
+    KIND: ClassVar[str] = "identification"
+    COMMAND: ClassVar[str] = "faying identify STUDY.toml"
 
     names: tuple[str, ...]
     units: tuple[str, ...]
@@ -87,8 +96,40 @@ class Identification(Recorded):
         "draw", "load", "mode", unit="1", long_name="loss factors as measured", gaps=True, default=None
     )
 
-    def __repr__(self) -> str:
-        return self.table()
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and the parameters with what the test says of them."""
+        used = int(self.used.sum())
+        head = f"Identification: {len(self.names)} parameters from {used} measured frequencies; `.table()` has all"
+        rows = {"parameters": "5 % | 50 % | 95 %, sd over that of the prior"}
+        shown = len(self.names) if len(self.names) <= MOST_PARAMETERS else MOST_PARAMETERS - 1
+        columns = zip(self.names[:shown], self.units, self.quantiles().T, self.told, strict=False)
+        for name, unit, row, share in columns:
+            cells = " | ".join(show(v, unit) if unit else f"{v:.4g}" for v in row)
+            rows[name if len(name) <= 25 else f"~{name[-24:]}"] = f"{cells}, {share:.2f}"
+        if len(self.names) > shown:
+            rows["more"] = f"{len(self.names) - shown} parameters"
+        rows["ln evidence"] = f"{self.log_evidence:.2f} +- {self.log_evidence_sd:.2f}"
+        if self.laws:
+            rows["laws"] = joined(f"{law.name} {law.weight:.0%}" for law in self.laws)
+        rows["least squares"] = f"{self.fit.misfit:.2%} rms"
+        return head, rows | ({"notes": f"{len(self.notes)}, in .notes"} if self.notes else {})
+
+    @checked_call
+    def plot(self, ax: Any = None) -> "list[Axes]":
+        """Draw each parameter before and after the test, and frequencies and loss factors beside the test.
+
+        Args:
+            ax: Two matplotlib axes to draw into, three where loss factors were used; new ones where None.
+
+        Returns:
+            The axes.
+
+        Raises:
+            InputError: The number of axes does not fit.
+        """
+        from faying.identify.identification_figure import identification_axes
+
+        return identification_axes(self, ax)
 
     # -- the posterior
 
@@ -234,8 +275,12 @@ class Identification(Recorded):
 
     # -- on disk
 
-    def _tree(self) -> Group:
-        """Groups with ArviZ's names and dimensions, and one with everything."""
+    def tree(self) -> Group:
+        """Groups with ArviZ's names and dimensions, and one with everything, from which `load` reads.
+
+        posterior has a variable for each parameter; posterior_predictive, observed_data and log_likelihood (by mode)
+        have the dimensions chain and draw.
+        """
         chain = Variable(dims=("chain",), values=np.arange(1))
         draw = Variable(dims=("draw",), values=np.arange(len(self.samples)))
         load = Variable(dims=("load",), values=self.loads, unit="N", long_name="preload")
@@ -258,40 +303,20 @@ class Identification(Recorded):
             "log_likelihood": {**sampled, "mode": mode, "frequency": drawn(self.log_likelihood, "mode")},
         }
         return Group(
-            attributes={"Conventions": "CF-1.11", "inference_library": "faying"},
+            attributes={"Conventions": "CF-1.11", "inference_library": "faying", RECORD: self.KIND},
             groups={**{name: Group(variables=held) for name, held in groups.items()}, OWN: to_group(self)},
         )
 
-    def save(self, path: str | Path) -> Path:
-        """Write everything as NetCDF-4 that ArviZ opens; the file appears complete or not at all.
-
-        Groups: posterior (a variable for each parameter), posterior_predictive, observed_data, log_likelihood (by
-        mode), with the dimensions chain and draw; and `faying`, from which `load` reads.
-        """
-        return netcdf.write(Path(path), self._tree())
-
     @classmethod
-    def load(cls, path: str | Path) -> Self:
-        """Read what `save` wrote; it equals the one that was written.
+    def of_tree(cls, tree: Group) -> Self:
+        """Return what a tree was made of. Raises ReadError that names what it lacks."""
+        if OWN not in tree.groups:
+            raise ReadError(f"it lacks the group {OWN!r}")
+        return from_group(cls, tree.groups[OWN])
 
-        Raises ReadError where the file is missing, damaged or no identification of Faying.
-        """
-        command = "write one with: faying identify STUDY.toml"
-        try:
-            return from_group(cls, netcdf.read(Path(path)).groups[OWN])
-        except (ReadError, TypeError, KeyError, ValueError, AttributeError) as fault:
-            raise ReadError(f"{path}: no identification of Faying, or damaged ({fault}); {command}") from None
-
-    def to_xarray(self) -> Any:
-        """The groups that ArviZ knows as an xarray.DataTree, as xarray.open_datatree reads them from the file."""
-        import tempfile
-
-        import xarray
-
-        with tempfile.TemporaryDirectory() as folder:
-            tree = xarray.open_datatree(self.save(Path(folder) / "identification.nc"), engine="h5netcdf")
-            with tree:
-                return tree.load().drop_nodes(OWN)
+    def to_xarray(self) -> "DataTree":
+        """Return the groups that ArviZ knows as an xarray.DataTree, as `xarray.open_datatree` reads them."""
+        return super().to_xarray().drop_nodes(OWN)
 
 
 def mixed(found: Mapping[str, Identification], prior: Mapping[str, float], *, seed: int = 0) -> Identification:

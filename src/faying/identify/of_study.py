@@ -18,6 +18,7 @@ from faying.identify.noise import DISCREPANCY_SD, LOSS_DISCREPANCY_SD, LOSS_TEST
 from faying.identify.predict import check, cut_notes, of_bases
 from faying.identify.store import Store
 from faying.joint.loads import preload_index
+from faying.misuse import checked_call
 from faying.progress import Report, silent
 from faying.study.case import mates_notes
 from faying.study.keys.test import TestChoice
@@ -86,6 +87,7 @@ class _Stage:
         self.report(self.name if stage == "evaluations" else stage, done, total)
 
 
+@checked_call
 def identify(
     study: Study | str | Path,
     leave_out: str | float | Sequence[str | float] | None = None,

@@ -13,6 +13,7 @@ from faying.identify.follow import Follower, choice_of, sliding
 from faying.identify.identity import paired, settled
 from faying.identify.prediction import Prediction
 from faying.identify.store import Store
+from faying.misuse import checked_call
 from faying.notes import Note
 from faying.progress import Report
 from faying.study.case import mates_notes
@@ -28,6 +29,7 @@ TOLERANCE = 1e-3  # relative error of a frequency by the bases from which it is 
 MOVED = 0.1  # of the distance from 5 to 95 % that half of the samples may move either by
 
 
+@checked_call
 def predict(
     study: Study | str | Path,
     samples: int = 1024,

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -13,13 +12,20 @@ from faying.identify.backbones import Backbones
 from faying.identify.ensemble import Inputs
 from faying.identify.shares import Shares, shares
 from faying.identify.surrogate import Surrogate
+from faying.misuse import checked_call, shortened
 from faying.notes import Note
-from faying.result.fields import Recorded, declared, listed, read_whole, variable, write_whole
+from faying.result.fields import Recorded, load_labels, variable
+from faying.result.fields import listed as numbers
 from faying.result.provenance import Provenance
 from faying.result.result import preload_slope
+from faying.text import listed
 from faying.typing import Array
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 LEVELS = (0.05, 0.5, 0.95)
+MOST_MODES = 5  # that a summary has a line for
 POINTS = 4096  # at which the shares of variance are taken
 
 
@@ -47,6 +53,7 @@ class Quantiles:
     backbone_damping: Array | None = None
 
 
+@checked_call
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Prediction(Recorded):
     """A study under the scatter of its numbers.
@@ -63,26 +70,70 @@ class Prediction(Recorded):
         frequencies_of_test, test_source: The test, where the study has one.
     """
 
+    KIND: ClassVar[str] = "prediction"
+    COMMAND: ClassVar[str] = "faying predict STUDY.toml"
+
     title: str
     inputs: Inputs
     seed: int
     tolerance: float
     basis: tuple[int, int]
-    loads: Array = variable("load", unit="N", long_name="preload of the first bolt")
-    values: Array = variable("sample", "input", unit="", long_name="values drawn, in the unit of each input")
-    frequencies: Array = variable(
-        "sample", "load", "mode", unit="Hz", long_name="frequencies of elastic modes", gaps=True
+    loads: Array = variable("load", unit="N", long_name="preload of the first bolt", name="preload")
+    values: Array = variable(
+        "sample", "input", unit="", long_name="values drawn, in the unit of each input", group="samples", name="value"
     )
-    loss_factors: Array = variable("sample", "load", "mode", unit="1", long_name="modal loss factors", gaps=True)
-    open_share: Array = variable("sample", "load", unit="1", long_name="share of the joints that is open", gaps=True)
+    frequencies: Array = variable(
+        "sample",
+        "load",
+        "mode",
+        unit="Hz",
+        long_name="frequencies of elastic modes",
+        gaps=True,
+        group="samples",
+        name="frequency",
+    )
+    loss_factors: Array = variable(
+        "sample",
+        "load",
+        "mode",
+        unit="1",
+        long_name="modal loss factors",
+        gaps=True,
+        group="samples",
+        name="loss_factor",
+    )
+    open_share: Array = variable(
+        "sample", "load", unit="1", long_name="share of the joints that is open", gaps=True, group="samples"
+    )
     beyond_share: Array = variable(
-        "sample", "load", unit="1", long_name="share of the contact beyond the end of the law", gaps=True
+        "sample",
+        "load",
+        unit="1",
+        long_name="share of the contact beyond the end of the law",
+        gaps=True,
+        group="samples",
+        name="above_range_share",
     )
     paired: Array | None = variable(
-        "sample", "load", "test_mode", unit="Hz", long_name="frequencies of the test's modes", gaps=True, default=None
+        "sample",
+        "load",
+        "test_mode",
+        unit="Hz",
+        long_name="frequencies of the test's modes",
+        gaps=True,
+        default=None,
+        group="samples",
+        name="frequency_of_test_mode",
     )
     test: Array | None = variable(
-        "load", "test_mode", unit="Hz", long_name="measured frequencies", gaps=True, default=None
+        "load",
+        "test_mode",
+        unit="Hz",
+        long_name="measured frequencies",
+        gaps=True,
+        default=None,
+        group="test",
+        name="frequency",
     )
     test_source: str = ""
     reasons: dict[str, int] = field(default_factory=dict)
@@ -90,8 +141,41 @@ class Prediction(Recorded):
     notes: tuple[Note, ...] = ()
     provenance: Provenance | None = None
 
-    def __repr__(self) -> str:
-        return f"Prediction({self.title!r}, {self.answered} of {len(self.values)} samples, {', '.join(self.names)})"
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, what scatters, and the intervals of the first frequencies at the last preload."""
+        head = f"Prediction {self.title!r}: {self.answered} of {len(self.values)} samples have an answer"
+        rows = {"scatters": listed(self.names, 4), "preloads": listed(load_labels(self.loads))}
+        if not self.answered:
+            return head, rows | {"why": shortened("; ".join(self.reasons))}
+        values, test = self.observed
+        low, middle, high = _levels(values[self.sound][:, -1], LEVELS)
+        rows["frequencies"] = f"5 % | 50 % | 95 % at {load_labels(self.loads)[-1]}"
+        shown = min(len(middle), MOST_MODES)
+        for k in range(shown):
+            measured = f", test {test[-1, k]:.2f} Hz" if np.isfinite(test[-1, k]) else ""
+            rows[f"mode {k + 1}"] = f"{low[k]:.2f} | {middle[k]:.2f} | {high[k]:.2f} Hz{measured}"
+        if len(middle) > shown:
+            rows["more modes"] = str(len(middle) - shown)
+        inside, count = self.covered
+        rows |= {"test": f"{inside} of {count} frequencies between 5 and 95 %"} if count else {}
+        return head, rows | ({"notes": f"{len(self.notes)}, in .notes"} if self.notes else {})
+
+    @checked_call
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw the 5 to 95 % of each frequency about its median, with the test where there is one.
+
+        Args:
+            ax: Matplotlib axes to draw into; new ones where None.
+
+        Returns:
+            The axes.
+
+        Raises:
+            InputError: It is no axes, or no sample has an answer.
+        """
+        from faying.identify.prediction_figure import interval_axes
+
+        return interval_axes(self, ax)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -108,6 +192,7 @@ class Prediction(Recorded):
         """How many samples have an answer."""
         return int(np.count_nonzero(self.sound))
 
+    @checked_call
     def quantiles(self, levels: Sequence[float] = LEVELS) -> Quantiles:
         """Quantiles of frequencies, loss factors, slopes and backbones.
 
@@ -242,24 +327,24 @@ class Prediction(Recorded):
             "samples": len(self.values),
             "answered": self.answered,
             "without_answer": self.reasons,
-            "loads": {"unit": "N", "values": listed(self.loads)},
+            "loads": {"unit": "N", "values": numbers(self.loads)},
             "inputs": [{"key": c.key, "distribution": c.distribution.text(c.unit)} for c in self.inputs.columns],
             "laws": dict(self.inputs.models),
             "quantiles": {
                 "levels": list(LEVELS),
-                "frequencies": {"unit": "Hz", "values": listed(found.frequencies)},
-                "loss_factors": {"unit": "1", "values": listed(found.loss_factors)},
-                "slopes": {"unit": "Hz/N", "values": listed(found.slopes)},
+                "frequencies": {"unit": "Hz", "values": numbers(found.frequencies)},
+                "loss_factors": {"unit": "1", "values": numbers(found.loss_factors)},
+                "slopes": {"unit": "Hz/N", "values": numbers(found.slopes)},
             },
-            "convergence": listed(self.convergence),
+            "convergence": numbers(self.convergence),
             "notes": [{"code": note.code, "text": note.text} for note in self.notes],
         }
         if found.paired is not None and self.test is not None:
             inside, count = self.covered
             out["test"] = {
                 "source": self.test_source,
-                "frequencies": {"unit": "Hz", "values": listed(self.test)},
-                "predicted": {"unit": "Hz", "values": listed(found.paired)},
+                "frequencies": {"unit": "Hz", "values": numbers(self.test)},
+                "predicted": {"unit": "Hz", "values": numbers(found.paired)},
                 "covered": {"between 5 and 95 %": inside, "of": count},
             }
         if self.backbones is not None:
@@ -270,37 +355,17 @@ class Prediction(Recorded):
             return out | {"shares": {"none": str(fault)}}
         out["shares"] = {
             "inputs": list(self.names),
-            "first": listed(found_shares.first),
-            "total": listed(found_shares.total),
-            "surrogate_error": listed(error),
+            "first": numbers(found_shares.first),
+            "total": numbers(found_shares.total),
+            "surrogate_error": numbers(error),
         }
         return out
 
-    def save(self, path: str | Path) -> Path:
-        """Write as NetCDF-4 that xarray opens, whole or not at all; `load` gives an equal Prediction."""
-        labels: dict[str, Any] = {
-            "mode": np.arange(1, self.frequencies.shape[2] + 1),
-            "input": self.names,
-        }
-        if self.test is not None:
-            labels["test_mode"] = np.arange(1, self.test.shape[1] + 1)
-        return write_whole(self, path, labels)
-
-    @classmethod
-    def load(cls, path: str | Path) -> Self:
-        """Read what `save` wrote. Raises ReadError where it cannot be read."""
-        return read_whole(cls, path, what="prediction", command="faying predict STUDY.toml")
-
-    def to_xarray(self) -> Any:
-        """The declared arrays as an xarray Dataset with named dimensions and units."""
-        import xarray
-
-        data = {
-            name: (meta.dims, getattr(self, name), {"units": meta.unit, "long_name": meta.long_name})
-            for name, meta in declared(type(self)).items()
-            if getattr(self, name) is not None
-        }
-        return xarray.Dataset(data, coords={"input": list(self.names)}).set_coords("loads")
+    def labels(self) -> dict[str, Any]:
+        """Labels of the dimensions of its arrays, by the name of the dimension."""
+        out: dict[str, Any] = {"load": load_labels(self.loads), "mode": np.arange(1, self.frequencies.shape[2] + 1)}
+        out["input"] = self.names
+        return out | ({} if self.test is None else {"test_mode": np.arange(1, self.test.shape[1] + 1)})
 
     def with_backbones(self, backbones: Backbones) -> Self:
         """The same with the backbones of its first samples, and what there is to say of them."""

@@ -16,9 +16,11 @@ from faying.fe.holes import Hole, holes
 from faying.fe.mesh import Mesh
 from faying.joint.tapped import INSIDE, RoundHole, engaged_length, round_hole
 from faying.joint.threads import Fastener
+from faying.materials import material_of
+from faying.misuse import checked_call, shortened
 from faying.notes import Note
 from faying.typing import Array
-from faying.units import show
+from faying.units import positive, show, si
 
 # proportions of hexagon heads and nuts, of the thread's diameter: width across flats, heights (ISO 4014, ISO 4032)
 ACROSS_FLATS, HEAD_HEIGHT, NUT_HEIGHT = 1.5, 0.64, 0.85
@@ -57,21 +59,41 @@ def torque_to_preload(
     return float(torque / (pitch / (2 * pi) + flank + 0.65 * diameter * head_friction))
 
 
-@dataclass(frozen=True, kw_only=True)
+@checked_call
+@dataclass(frozen=True, init=False)
 class Washer:
-    """A washer under the head or the nut of a bolt.
+    """A washer under the head or the nut of a bolt; lengths [m], or text with a unit.
 
     Args:
-        outer: Outer diameter [m].
-        inner: Inner diameter [m].
-        thickness: Thickness [m].
-        material: E [Pa], nu [-], density [kg/m3].
+        outer: Outer diameter.
+        inner: Inner diameter.
+        thickness: Thickness.
+        material: E [Pa], nu [-], density [kg/m3], or the name of a material in the catalogue.
+
+    Raises:
+        InputError: A length is not positive, the ring has no width, or the material is unknown.
     """
 
     outer: float
     inner: float
     thickness: float
     material: Solid
+
+    def __init__(
+        self, *, outer: float | str, inner: float | str, thickness: float | str, material: Solid | str
+    ) -> None:
+        values = {
+            "outer": positive(outer, "m", "washer: outer"),
+            "inner": positive(inner, "m", "washer: inner"),
+            "thickness": positive(thickness, "m", "washer: thickness"),
+            "material": solid_of(material, "washer"),
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        if self.inner >= self.outer:
+            raise InputError(
+                f"washer: inner diameter {show(self.inner, 'm')} must be less than the outer {show(self.outer, 'm')}"
+            )
 
     @property
     def area(self) -> float:
@@ -89,9 +111,12 @@ class Washer:
         return (self.material.density or 0.0) * self.area * self.thickness
 
 
-@dataclass(frozen=True, kw_only=True)
+@checked_call
+@dataclass(frozen=True, init=False)
 class Bolt:
-    """A bolt between two seats that look away from each other.
+    """A bolt between two seats that look away from each other; lengths, masses and forces also as text with a unit.
+
+    Without a diameter it is a pair of forces on its seats: it has no stiffness and no mass.
 
     Args:
         name: What messages and results call the bolt.
@@ -99,7 +124,7 @@ class Bolt:
             bolt is screwed into.
         at: A point (3,) [m] on the axis; the middle between the faces where None.
         diameter: Diameter [m] of the shank, greater than 0; None for a bolt that is a force and nothing else.
-        material: Material of the shank, given together with the diameter.
+        material: Material of the shank, or its name in the catalogue; given together with the diameter.
         seat: Inner and outer diameter [m] of the ring that head and nut press on. Where None: that of a washer; else,
             with `at`, from the hole to the width across flats of a hexagon head; else the whole faces.
         washers: Washers under head and nut together.
@@ -119,29 +144,60 @@ class Bolt:
 
     name: str
     faces: tuple[str, str]
-    at: tuple[float, float, float] | None = None
-    diameter: float | None = None
-    material: Solid | None = None
-    seat: tuple[float, float] | None = None
-    washers: tuple[Washer, ...] = ()
-    head_mass: float | None = None
-    nut_mass: float | None = None
-    preload: tuple[float, ...] = ()
-    fastener: Fastener | None = None
-    engaged: float | None = None
+    at: tuple[float, float, float] | None
+    diameter: float | None
+    material: Solid | None
+    seat: tuple[float, float] | None
+    washers: tuple[Washer, ...]
+    head_mass: float | None
+    nut_mass: float | None
+    preload: tuple[float, ...]
+    fastener: Fastener | None
+    engaged: float | None
     part: ClassVar[None] = None  # it is no part of the mesh
 
-    def __post_init__(self) -> None:
-        if (self.diameter is None) != (self.material is None):
-            raise InputError(
-                f"bolt {self.name!r} needs both diameter and material, or neither (a bolt without stiffness)"
-            )
-        if self.diameter is not None and self.diameter <= 0:
-            raise InputError(f"bolt {self.name!r}: diameter {self.diameter:g} m must be positive")
+    def __init__(
+        self,
+        name: str,
+        faces: tuple[str, str],
+        *,
+        at: Sequence[float | str] | None = None,
+        diameter: float | str | None = None,
+        material: Solid | str | None = None,
+        seat: tuple[float | str, float | str] | None = None,
+        washers: Sequence[Washer] = (),
+        head_mass: float | str | None = None,
+        nut_mass: float | str | None = None,
+        preload: float | str | Sequence[float | str] = (),
+        fastener: Fastener | None = None,
+        engaged: float | str | None = None,
+    ) -> None:
+        what = f"bolt {name!r}"
+        if (diameter is None) != (material is None):
+            raise InputError(f"{what} needs both diameter and material, or neither (a bolt without stiffness)")
+        if faces[0] == faces[1]:
+            raise InputError(f"{what}: both faces are {faces[0]!r}; name the seats of its head and of its nut")
+        if at is not None and len(at) != 3:
+            raise InputError(f"{what}: at = {shortened(at)}; give the three coordinates of a point on its axis")
+        forces = preload if isinstance(preload, Sequence) and not isinstance(preload, str) else (preload,)
+        values = {
+            "name": name,
+            "faces": (faces[0], faces[1]),
+            "at": None if at is None else tuple(si(x, "m", name=f"{what}: at") for x in at),
+            "diameter": None if diameter is None else positive(diameter, "m", f"{what}: diameter"),
+            "material": None if material is None else solid_of(material, what),
+            "seat": None if seat is None else tuple(si(d, "m", name=f"{what}: seat") for d in seat),
+            "washers": tuple(washers),
+            "head_mass": None if head_mass is None else _mass(head_mass, f"{what}: head_mass"),
+            "nut_mass": None if nut_mass is None else _mass(nut_mass, f"{what}: nut_mass"),
+            "preload": tuple(positive(force, "N", f"{what}: preload") for force in forces),
+            "fastener": fastener,
+            "engaged": None if engaged is None else positive(engaged, "m", f"{what}: engaged"),
+        }
+        for key, value in values.items():
+            object.__setattr__(self, key, value)
         if self.seat is not None and not 0 <= self.seat[0] < self.seat[1]:
-            raise InputError(f"bolt {self.name!r}: the seat's inner diameter must be less than its outer")
-        if self.engaged is not None and self.engaged <= 0:
-            raise InputError(f"bolt {self.name!r}: engaged {self.engaged:g} m must be positive")
+            raise InputError(f"{what}: the seat's inner diameter must be less than its outer")
 
     def fitted(self, mesh: Mesh) -> "FittedBolt":
         """Return the bolt in its place on a mesh. Raises InputError as `placed`, and where no element lies in its ring.
@@ -302,6 +358,24 @@ class Bolt:
                 "says how much of its faces it presses; give seat (inner and outer diameter)"
             )
         return inner, ACROSS_FLATS * size
+
+
+def solid_of(given: Solid | str, what: str) -> Solid:
+    """A material, or that of the catalogue under a name. Raises InputError for what is neither."""
+    if isinstance(given, str):
+        return material_of(given)
+    if all(hasattr(given, key) for key in ("E", "nu", "density")):
+        return given
+    raise InputError(
+        f'{what}: material = {shortened(given)}; give the name of one in the catalogue, "45 steel" say, or a Material'
+    )
+
+
+def _mass(given: float | str, name: str) -> float:
+    value = si(given, "kg", name=name)
+    if value < 0:
+        raise InputError(f"{name} = {shortened(given)}; it must be 0 or more")
+    return value
 
 
 def _extent(points: Array, centre: Array, axis: Array) -> tuple[float, float]:

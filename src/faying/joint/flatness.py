@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from faying.errors import InputError
+from faying.misuse import checked_call, numbers
 from faying.typing import Array
 
 FEW = 30  # points that the first linear program takes; those that stick out most join it
@@ -31,6 +32,7 @@ class MinimumZone:
         return np.asarray(self.flatness / 2 + self.middle(places) - heights)
 
 
+@checked_call
 def minimum_zone(places: Array, heights: Array) -> MinimumZone:
     """Find the flatness of heights as the minimum zone, by linear programming.
 
@@ -51,7 +53,10 @@ def minimum_zone(places: Array, heights: Array) -> MinimumZone:
     """
     from scipy.optimize import linprog
 
-    places, heights = np.asarray(places, dtype=float), np.asarray(heights, dtype=float)
+    places = numbers(places, "places", "points", 2)
+    heights = numbers(heights, "heights", len(places))
+    if not (np.all(np.isfinite(places)) and np.all(np.isfinite(heights))):
+        raise InputError("places and heights hold numbers that are not finite; leave these points out")
     if len(heights) < 4:
         raise InputError(f"flatness of {len(heights)} points: four or more are needed")
     centre, size = places.mean(axis=0), float(np.ptp(places, axis=0).max())

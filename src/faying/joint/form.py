@@ -18,6 +18,7 @@ from faying.joint.flatness import minimum_zone
 from faying.joint.gap_map import FaceMap, GapMap
 from faying.joint.waviness import PARAMETERS as OF_WAVINESS
 from faying.joint.waviness import LaidWaves, ScanWaves, Waviness
+from faying.misuse import checked_call
 from faying.typing import Array
 
 # what is one number: read from the study, varied by sweeps
@@ -36,6 +37,7 @@ DEGREES = 2, 3, 4  # total degrees of the polynomials of a random form: crowns a
 GRID = 33  # points along each side of the rectangle at which the flatness of a random form is taken
 
 
+@checked_call
 @dataclass(frozen=True, kw_only=True)
 class Form:
     """The form of both faces of a joint together, a sum of what is given.

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from faying.joint.flatness import MinimumZone, minimum_zone
+from faying.misuse import checked_call, numbers
 from faying.typing import Array
 
 
@@ -58,6 +59,7 @@ class FormFit:
         }
 
 
+@checked_call
 def fit_form(places: Array, values: Array, *, is_gap: bool = False) -> FormFit:
     """Take the flatness of measured heights of a face, or of gaps, and fit crowns and twist.
 
@@ -75,6 +77,8 @@ def fit_form(places: Array, values: Array, *, is_gap: bool = False) -> FormFit:
     Raises:
         InputError: fewer than four points, or all on one line.
     """
+    places = numbers(places, "places", "points", 2)
+    values = numbers(values, "values", len(places))
     good = np.isfinite(values) & np.isfinite(places).all(axis=1)
     places, values = places[good], values[good]
     zone = minimum_zone(places, values)

@@ -10,12 +10,14 @@ from faying.columns import read_numbers
 from faying.errors import InputError
 from faying.joint.face_axes import FaceAxes
 from faying.joint.flatness import minimum_zone
+from faying.misuse import checked_call, numbers
 from faying.typing import Array
 
 LISTS = (".csv", ".txt", ".dat", ".xyz", ".asc")  # endings of lists of points; all else is a scan
 MOST = 150  # places kept along each side of a scan: roughness is the law's, and is averaged out of the form
 
 
+@checked_call
 @dataclass(frozen=True, kw_only=True)
 class GapMap:
     """Measured gaps between two faces, before any load.
@@ -37,6 +39,8 @@ class GapMap:
     y_axis: tuple[float, float, float] = (0.0, 1.0, 0.0)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "places", numbers(self.places, "places", "points", 2))
+        object.__setattr__(self, "gaps", numbers(self.gaps, "gaps", len(self.places)))
         good = np.isfinite(self.gaps) & np.isfinite(self.places).all(axis=1)
         if np.count_nonzero(good) < 4:
             raise InputError(f"the map has {np.count_nonzero(good)} points with numbers; a map needs four or more")
@@ -69,6 +73,7 @@ def _box(low: Array, high: Array) -> str:
     return " x ".join(f"{1e3 * a:.4g} to {1e3 * b:.4g} mm" for a, b in zip(low, high, strict=True))
 
 
+@checked_call
 @dataclass(frozen=True, kw_only=True)
 class FaceMap:
     """Measured heights of one face, its form: the higher, the nearer to the other face.

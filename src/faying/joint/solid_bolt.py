@@ -11,11 +11,13 @@ from faying.errors import InputError
 from faying.fe.faces import face_centre
 from faying.fe.mesh import Mesh
 from faying.joint.threads import Fastener
+from faying.misuse import checked_call
 from faying.typing import Array, Index
 
 MOST = 6000  # unknowns of the layer that is drawn in: its dense block takes .3 GB then
 
 
+@checked_call
 @dataclass(frozen=True, kw_only=True)
 class SolidBolt:
     """A bolt that is a meshed part; its faces meet the seats in joints like those of any other part.

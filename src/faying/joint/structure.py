@@ -1,12 +1,13 @@
 """A bolted structure: meshed parts, the joints between them, the bolts that pull them together, what supports them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, field
+from math import inf
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 
-from faying.errors import InputError
+from faying.errors import FayingError, InputError
 from faying.fe.constraint import constrain
 from faying.fe.elasticity import Solid
 from faying.fe.interface import Interface
@@ -15,78 +16,31 @@ from faying.fe.outline import Outline, outline
 from faying.fe.quality import quality
 from faying.fe.solve import BY_PARTS, Factoriser, chosen, is_mpi
 from faying.joint.attachments import PointMass, Support
-from faying.joint.bolt import Bolt, FittedBolt
+from faying.joint.bolt import Bolt, FittedBolt, solid_of
 from faying.joint.frame import Frame, added
-from faying.joint.joint_law import JointLaw
+from faying.joint.joint import FittedJoint, Joint, each_pair_once, known_face
 from faying.joint.preload import PreloadProblem
 from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.joint.springs import Springs
+from faying.materials import STIFFEST, Material, material_of
+from faying.misuse import checked_call, shortened
 from faying.notes import Note
+from faying.style import Summary
+from faying.text import listed, titled
 from faying.typing import Array, Index
+from faying.units import show
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from faying.joint.state import State
+
+MOST_JOINTS = 4  # that a summary has a line for
 
 
-@dataclass(frozen=True, kw_only=True)
-class Joint:
-    """Two faces that meet, and the contact law between them.
-
-    Args:
-        name: What messages and results call the joint.
-        faces: Names of the two faces, on two parts.
-        interface: How they meet, from `faying.fe.interface.join`.
-        law: The contact law on the joint.
-        per_node: Springs at nodes instead of per area, as the JK paper has them; the faces must match node for node.
-        scan_area: With per_node, area of the scan [m2] to which a node's force is applied; 1 m2 where None.
-        friction: Coefficient of Coulomb slip under the preload [-], 0 to 10; None where the joint sticks everywhere.
-
-    Raises:
-        InputError: The friction is no coefficient of friction.
-
-    Source:
-        Springs at nodes: the JK paper, doi:10.3390/fractalfract8100611.
-    """
-
-    name: str
-    faces: tuple[str, str]
-    interface: Interface
-    law: JointLaw
-    per_node: bool = False
-    scan_area: float | None = None
-    friction: float | None = None
-
-    def __post_init__(self) -> None:
-        if self.friction is not None and not 0 <= self.friction < 10:
-            raise InputError(
-                f"joint {self.name!r}: friction {self.friction:g} is no coefficient of friction; give one such as "
-                "0.2, or leave it out for a joint that sticks"
-            )
-
-    def springs(self, pressure: Array) -> Springs[Interface]:
-        """Springs of this joint under a pressure [Pa] (q,) at the points of its interface."""
-        if not self.per_node:
-            return self.law.springs(self.interface, pressure)
-        # the paper's use: each node's force goes straight into the law as if the node were a whole scan
-        nodes = self.interface.at_nodes()
-        at_nodes = np.maximum(self.interface.to_nodes(nodes, pressure), 0.0)
-        area = self.scan_area or 1.0
-        scans = self.law.springs(nodes, at_nodes * nodes.weights / area)
-        per_area = area / nodes.weights
-        return replace(scans, pressure=at_nodes, k_n=scans.k_n * per_area, k_t=scans.k_t * per_area)
-
-
-def each_pair_once(joints: Mapping[str, tuple[str, str]]) -> None:
-    """Raise InputError where two joints, name -> faces, join the same faces."""
-    met: dict[frozenset[str], str] = {}
-    for name, faces in joints.items():
-        other = met.setdefault(frozenset(faces), name)
-        if other != name:
-            raise InputError(
-                f"joints {other!r} and {name!r} join the same faces {' and '.join(map(repr, sorted(faces)))}, which "
-                "would double the stiffness; leave one out"
-            )
-
-
-@dataclass(frozen=True, kw_only=True)
-class Structure:
+@checked_call
+@dataclass(frozen=True, init=False, repr=False)
+class Structure(Summary):
     """A bolted structure.
 
     What does not depend on the laws of the joints is assembled once, when it is first asked for, and shared with a
@@ -94,25 +48,61 @@ class Structure:
 
     Args:
         mesh: Parts and faces.
-        materials: Part -> its material (E [Pa], nu [-], density [kg/m3]).
+        materials: One material for all parts, or part -> its material; a `Material`, or the name of one in the
+            catalogue. They need a density.
         joints: The joints between the parts.
         bolts: Bolts as beams, forces or meshed parts.
         supports: Faces that are fixed or on springs.
         masses: Point masses.
 
     Raises:
-        InputError: A part has neither joint nor support, or is two solid bolts; a solid bolt's face is in no joint.
+        InputError: A part has neither material, joint nor support, or is two solid bolts; a solid bolt's face is in no
+            joint; a face does not exist; two joints or bolts share a name.
     """
 
     mesh: Mesh
     materials: Mapping[str, Solid]
-    joints: tuple[Joint, ...]
-    bolts: tuple[Bolt | SolidBolt, ...] = ()
-    supports: tuple[Support, ...] = ()
-    masses: tuple[PointMass, ...] = ()
-    frame: Frame | None = field(default=None, repr=False, compare=False)
+    joints: tuple[FittedJoint, ...]
+    bolts: tuple[Bolt | SolidBolt, ...]
+    supports: tuple[Support, ...]
+    masses: tuple[PointMass, ...]
+    frame: Frame | None = field(repr=False, compare=False)
 
-    def __post_init__(self) -> None:
+    def __init__(
+        self,
+        mesh: Mesh,
+        materials: str | Material | Mapping[str, str | Solid],
+        joints: Sequence[Joint | FittedJoint],
+        bolts: Sequence[Bolt | SolidBolt] = (),
+        *,
+        supports: Sequence[Support] = (),
+        masses: Sequence[PointMass] = (),
+        frame: Frame | None = None,
+    ) -> None:
+        of_parts = materials_of_parts(mesh, materials)
+        for bolt in bolts:
+            for face in bolt.faces:
+                known_face(mesh, face, f"bolt {bolt.name!r}")
+        for support in supports:
+            known_face(mesh, support.face, "support")
+        placed = tuple(
+            joint.fitted(mesh, of_parts, number) if isinstance(joint, Joint) else joint
+            for number, joint in enumerate(joints, start=1)
+        )
+        values = {
+            "mesh": mesh,
+            "materials": of_parts,
+            "joints": placed,
+            "bolts": tuple(bolts),
+            "supports": tuple(supports),
+            "masses": tuple(masses),
+            "frame": frame,
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        self._check()
+
+    def _check(self) -> None:
         faces = [face for joint in self.joints for face in joint.faces] + [support.face for support in self.supports]
         met = {self.mesh.face_part[face] for face in faces if face in self.mesh.face_part}
         solid = [bolt for bolt in self.bolts if isinstance(bolt, SolidBolt)]
@@ -246,7 +236,57 @@ class Structure:
     def notes(self) -> tuple[Note, ...]:
         """What the mesh left out, how good its elements are, and what was chosen for the bolts."""
         bolts = [note for bolt in self.fitted_bolts if isinstance(bolt, FittedBolt) for note in bolt.notes]
-        return (*self.mesh.notes, *quality(self.mesh).notes, *bolts)
+        joints = [note for joint in self.joints for note in joint.notes]
+        return (*self.mesh.notes, *joints, *quality(self.mesh).notes, *bolts)
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading and what the structure consists of."""
+        return structure_rows(self)
+
+    @checked_call
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw the parts, with the faces of joints and bolts in colours of their own.
+
+        Args:
+            ax: Matplotlib axes with three dimensions to draw into; new ones where None.
+
+        Returns:
+            The axes.
+        """
+        from faying.joint.figure import structure_axes
+
+        return structure_axes(self, ax)
+
+    @checked_call
+    def solve(
+        self,
+        preload: float | str | Mapping[str, float | str] | None = None,
+        *,
+        modes: int = 10,
+        damping: Literal["hysteretic", "viscous"] = "hysteretic",
+        order: Sequence[str] | None = None,
+        solver: str | None = None,
+    ) -> "State":
+        """Tighten the bolts and find the modes, as a study does.
+
+        Args:
+            preload: Force of each bolt [N], or text with a unit such as "8 kN"; bolt -> force where they differ. None
+                takes the one that each bolt names itself.
+            modes: How many elastic modes, 1 to 10,000.
+            damping: Kind of loss of the joints.
+            order: Names of the bolts in the order of tightening, any of them more than once; None pulls all at once.
+            solver: What factorises the matrices, by the names of a study; chosen where None.
+
+        Returns:
+            The state: pressures, springs of the joints, modes.
+
+        Raises:
+            InputError: A preload is missing or not positive, or a part is free to move.
+            NotConverged: An iteration stops short.
+        """
+        from faying.joint.state import solve_structure
+
+        return solve_structure(self, preload, modes=modes, damping=damping, order=order, solver=solver)
 
     def assembly(self, *, solver: str | None = None) -> PreloadProblem:
         """Return the preload problem of this structure."""
@@ -322,6 +362,38 @@ class Structure:
         return np.array([of_node[self.mesh.part_nodes(part)].sum() for part in self.mesh.parts])
 
 
+def materials_of_parts(mesh: Mesh, given: str | Material | Mapping[str, str | Solid]) -> Mapping[str, Solid]:
+    """Part -> its material. Raises InputError where one is missing, unknown, or no solid that vibrates."""
+    if isinstance(given, str | Material):
+        one = material_of(given)
+        found: Mapping[str, Solid] = dict.fromkeys(mesh.parts, one)
+    else:
+        lacking = [part for part in mesh.parts if part not in given]
+        absent = [part for part in given if part not in mesh.parts]
+        if lacking or absent:
+            wrong = f"say nothing of part {lacking[0]!r}" if lacking else f"name part {absent[0]!r}, which is not there"
+            raise InputError(f"the materials {wrong}; the parts of the mesh are {', '.join(map(repr, mesh.parts))}")
+        found = {part: solid_of(value, f"part {part!r}") for part, value in given.items()}
+        if all(found[part] is value for part, value in given.items()):
+            found = cast(Mapping[str, Solid], given)  # the same mapping: what is assembled for it is used again
+    return _checked_solids(found)
+
+
+def _checked_solids(found: Mapping[str, Solid]) -> Mapping[str, Solid]:
+    """The materials of parts. Raises InputError for one that no solid element can have."""
+    for part, material in found.items():
+        name = getattr(material, "name", shortened(material))
+        if material.density is None or not 0 < material.E < inf:
+            lack = "no density" if material.density is None else f"E = {material.E:g} Pa"
+            raise InputError(f"part {part!r}: material {name!r} has {lack}; modes need E and a density that are finite")
+        if material.nu > STIFFEST:
+            raise InputError(
+                f"part {part!r}: material {name!r} has nu = {material.nu:g}, and solid elements lock near 0.5; give at "
+                f"most {STIFFEST:g}"
+            )
+    return found
+
+
 def merged(matrix: Any, merge: Any) -> Any:
     """A sparse matrix on fewer unknowns, those that `bond` makes: merge' @ matrix @ merge in a fifth of the time."""
     from scipy.sparse import csr_array
@@ -356,3 +428,40 @@ def bond(mesh: Mesh, pairs: Sequence[tuple[str, str]]) -> Any | None:
     short = get_index_dtype(maxval=3 * n + 1)  # what is merged by long indices keeps them
     pieces = np.ones(3 * n), columns.astype(short), np.arange(3 * n + 1, dtype=short)
     return csr_array(pieces, shape=(3 * n, 3 * count))
+
+
+def structure_rows(structure: Structure) -> tuple[str, dict[str, str]]:
+    """A heading, and what stands below it in a summary of a structure."""
+    mesh, rows = structure.mesh, {}
+    names = [str(getattr(m, "name", "")) or f"E {show(m.E, 'Pa')}" for m in structure.materials.values()]
+    head = (
+        f"Structure: {listed(mesh.parts)}; {mesh.unknowns:,} unknowns, {show(structure.mass, 'kg')}, "
+        f"{show(mesh.size, 'm')} from corner to corner"
+    )
+    rows["materials"] = listed(dict.fromkeys(names))
+    shown = structure.joints[:MOST_JOINTS]
+    for joint in shown:
+        slip = "sticks" if joint.friction is None else f"friction {joint.friction:g}"
+        rows[titled("joint", joint.name)] = (
+            f"{joint.faces[0]} on {joint.faces[1]}, {joint.interface.area * 1e6:.4g} mm^2, "
+            f"law {joint.law.model.name}, {slip}"
+        )
+    if len(structure.joints) > len(shown):
+        rows["more joints"] = str(len(structure.joints) - len(shown))
+    if structure.bolts:
+        meshed = sum(isinstance(bolt, SolidBolt) for bolt in structure.bolts)
+        stiff = sum(bolt.diameter is not None for bolt in structure.bolts)
+        kinds = {"without stiffness": len(structure.bolts) - stiff - meshed, "with a shank": stiff, "meshed": meshed}
+        said = ", ".join(f"{count} {kind}" for kind, count in kinds.items() if count)
+        rows["bolts"] = f"{listed(bolt.name for bolt in structure.bolts)} ({said})"
+    if structure.supports:
+        rows["supports"] = listed(support.face for support in structure.supports)
+    if structure.masses:
+        rows["point masses"] = f"{len(structure.masses)}, {show(sum(m.mass for m in structure.masses), 'kg')}"
+    try:
+        notes = structure.notes
+    except FayingError as fault:  # a bolt that does not fit, which the solution says as well
+        rows["fault"] = shortened(str(fault))
+    else:
+        rows |= {"notes": f"{len(notes)}, in .notes"} if notes else {}
+    return head, rows

@@ -10,6 +10,7 @@ import numpy as np
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.joint.face_axes import FaceAxes
+from faying.misuse import checked_call
 from faying.typing import Array
 from faying.units import show
 
@@ -54,6 +55,7 @@ class ScanWaves:
         return float(self.Rq * np.sqrt(ends[1] - ends[0]))
 
 
+@checked_call
 @final
 @dataclass(frozen=True, kw_only=True)
 class Waviness:

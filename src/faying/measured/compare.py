@@ -13,6 +13,7 @@ from faying.measured.mapping import PointMap, Transform, map_points
 from faying.measured.model import ModelModes
 from faying.measured.modes import ModeSet
 from faying.measured.pairing import pair_modes
+from faying.misuse import checked_call
 from faying.typing import Array, Complex, Index, Mask
 
 ALIKE = 0.9
@@ -193,6 +194,7 @@ class ModalComparison:
         }
 
 
+@checked_call
 def compare_modes(
     test: ModeSet,
     model: ModelModes,

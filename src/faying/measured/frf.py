@@ -1,12 +1,13 @@
 """Frequency response functions between degrees of freedom, and what turns one quantity into another."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, Self
 
 import numpy as np
 
 from faying.errors import InputError
+from faying.misuse import checked_call, shortened
 from faying.typing import Array, Complex
 
 Position = tuple[float, float, float]
@@ -41,10 +42,16 @@ class Dof(NamedTuple):
 def dofs(pairs: object) -> tuple[Dof, ...]:
     """Check (point, direction) pairs. InputError where a direction is none of DIRECTIONS or a pair stands twice."""
     out = []
-    for pair in pairs:  # type: ignore[attr-defined]
+    if not isinstance(pairs, Iterable) or isinstance(pairs, str | bytes | Mapping):
+        raise InputError(f'{shortened(pairs)}; give pairs of a point and a direction, for example [(1, "z")]')
+    for pair in pairs:
+        if not isinstance(pair, tuple | list) or len(pair) != 2 or not isinstance(pair[1], str):
+            raise InputError(f'{shortened(pair)} is no pair of a point and a direction; give for example (1, "z")')
         point, direction = pair
         if direction not in DIRECTIONS:
             raise InputError(f"direction {direction!r} of point {point}: use one of {', '.join(map(repr, DIRECTIONS))}")
+        if isinstance(point, bool) or not isinstance(point, int | np.integer):
+            raise InputError(f"point {shortened(point)}: give its number, a whole one")
         out.append(Dof(int(point), direction))
     if len(set(out)) < len(out):
         twice = next(d for d in out if out.count(d) > 1)
@@ -52,6 +59,7 @@ def dofs(pairs: object) -> tuple[Dof, ...]:
     return tuple(out)
 
 
+@checked_call
 @dataclass(frozen=True, kw_only=True)
 class FRF:
     """Frequency response functions from inputs to outputs.

@@ -9,6 +9,7 @@ from faying.measured.frf import FRF, Dof
 from faying.measured.lsfd import refine, residues
 from faying.measured.modes import ModeSet
 from faying.measured.poles import Poles, Rule, poles_by_order, tracks
+from faying.misuse import checked_call
 from faying.typing import Array, Complex
 
 
@@ -29,6 +30,7 @@ class Identified:
     rule: Rule
 
 
+@checked_call
 def identify_modes(
     frf: FRF, *, band: tuple[float, float] | None = None, rule: Rule | None = None, refined: bool = True
 ) -> Identified:

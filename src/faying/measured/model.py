@@ -7,6 +7,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.measured.frf import QUANTITIES
+from faying.misuse import checked_call, numbers
 from faying.typing import Array, Complex, Index
 
 SAME_DIRECTION = 0.9998  # cosine of a degree
@@ -33,6 +34,7 @@ class FullResponse:
             )
 
 
+@checked_call
 @dataclass(frozen=True, kw_only=True)
 class ModelModes:
     """Elastic modes of a model at the points of its outline.
@@ -65,10 +67,12 @@ class ModelModes:
     near: Index | None = None
 
     def __post_init__(self) -> None:
-        m, n = len(self.frequencies), len(self.points)
-        if self.shapes.shape != (m, n, 3) or len(self.loss_factors) != m:
+        m = len(numbers(self.frequencies, "frequencies", "modes"))
+        n = len(numbers(self.points, "points", "points", 3))
+        numbers(self.loss_factors, "loss_factors", m)
+        if np.shape(self.shapes) != (m, n, 3):
             raise InputError(
-                f"shapes of {self.shapes.shape} for {m} frequencies at {n} points; they need ({m}, {n}, 3)"
+                f"shapes of {np.shape(self.shapes)} for {m} frequencies at {n} points; they need ({m}, {n}, 3)"
             )
 
     def with_places(self, corners: Index, weights: Array, nearest: Index) -> Self:

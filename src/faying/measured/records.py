@@ -5,10 +5,12 @@ from typing import Any, Literal
 import numpy as np
 
 from faying.errors import InputError
-from faying.measured.frf import FRF, Dof
+from faying.measured.frf import FRF, dofs
+from faying.misuse import checked_call, numbers
 from faying.typing import Array
 
 
+@checked_call
 def frf_from_records(
     force: Any,
     response: Any,
@@ -45,8 +47,8 @@ def frf_from_records(
     Source:
         Bendat and Piersol, doi:10.1002/9781118032428, section 6.1.4.
     """
-    f, x = np.asarray(force, float), np.asarray(response, float)
-    places = tuple(Dof(*pair) for pair in outputs)
+    f, x = numbers(force, "force", "records", "samples"), numbers(response, "response", "records", "outputs", "samples")
+    places, forced = dofs(outputs), dofs((input,))
     _check(f, x, len(places), sampling_rate)
     _check_choices(estimator, window, decay)
     weight = _window(window, f.shape[1], decay / sampling_rate)
@@ -62,7 +64,7 @@ def frf_from_records(
         frequency=np.asarray(np.fft.rfftfreq(f.shape[1], 1 / sampling_rate)[keep], np.float64),
         values=values[:, None, keep],
         outputs=places,
-        inputs=(Dof(*input),),
+        inputs=forced,
         quantity=quantity,
         coherence=coherence[:, None, keep] if len(f) > 1 else None,
         window_decay=decay,

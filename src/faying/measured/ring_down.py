@@ -10,6 +10,7 @@ from faying.columns import read_columns
 from faying.errors import InputError, ReadError
 from faying.files import write_text
 from faying.measured.frf import FRF, QUANTITIES
+from faying.misuse import checked_call
 from faying.typing import Array, Complex
 
 EDGE = 0.25  # of the band, on both sides, over which the filter rises
@@ -28,6 +29,7 @@ FORM = (
 )
 
 
+@checked_call
 @dataclass(frozen=True, kw_only=True)
 class MeasuredBackbone:
     """Frequency and damping of one mode against its amplitude, as measured; all arrays (n,), NaN where not known.
@@ -129,6 +131,7 @@ def read_record(path: str | Path) -> tuple[Array, float, Motion]:
     return table.values[found[0]], 1 / step, found[0]
 
 
+@checked_call
 def ring_down(
     signal: Any,
     sampling_rate: float,
@@ -184,6 +187,7 @@ def ring_down(
     return _curve(analytic, sampling_rate, band, MOTIONS[quantity], cycles, start)
 
 
+@checked_call
 def ring_down_of_frf(
     frf: FRF,
     *,

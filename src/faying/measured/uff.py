@@ -16,6 +16,7 @@ from faying.errors import InputError, ReadError
 from faying.measured.frf import Dof, Position
 from faying.measured.uff_units import FileUnits
 from faying.measured.universal import Function, UniversalFile
+from faying.misuse import checked_call
 from faying.typing import Array, Index
 from faying.units import scale
 
@@ -38,6 +39,7 @@ KINDS = {
 DIRECTION_CODES = {0: "", 1: "x", 2: "y", 3: "z", 4: "rx", 5: "ry", 6: "rz"}
 
 
+@checked_call
 def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFile:
     """Read a universal file (UFF, UNV) of a modal test, ascii or binary.
 

@@ -10,11 +10,13 @@ from faying.errors import InputError
 from faying.files import write_atomically
 from faying.measured.frf import FRF, Dof, Position
 from faying.measured.modes import ModeSet
+from faying.misuse import checked_call
 
 CODES = {"": 0, "x": 1, "y": 2, "z": 3, "rx": 4, "ry": 5, "rz": 6}
 TYPES = {"receptance": (8, "m"), "mobility": (11, "m/s"), "accelerance": (12, "m/s^2")}
 
 
+@checked_call
 def write_uff(path: str | Path, *contents: ModeSet | FRF, title: str = "Faying") -> Path:
     """Write modes (data set 55) and FRFs (58) with units (164) and the positions of the points (2411), in SI.
 

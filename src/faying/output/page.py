@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from faying.files import write_atomically
-from faying.output.figures.save import drawn
 from faying.output.scene import pages
 from faying.output.table import Rows
+from faying.style import drawn
 
 STYLE = """
 :root{--ink:#1c2733;--soft:#52616f;--line:#d5dde5;--head:#f3f6f9;--back:#fff;--flag:#fff4e0;--accent:#0a63b0}

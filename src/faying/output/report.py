@@ -9,11 +9,14 @@ from typing import Any
 from faying import __version__
 from faying.files import write_text
 from faying.output import page, report_measured
-from faying.output.figures import backbone, response, structure
-from faying.output.figures.save import new_figure, uncollected
+from faying.output.report_curves import backbone_curves, response_curves
 from faying.output.scene import of_result, pages, to_text
 from faying.output.sections import sections
 from faying.result import Result
+from faying.result import backbone_figure as backbone
+from faying.result import figure as structure
+from faying.result import response_figure as response
+from faying.style import new_figure, uncollected
 
 
 def html(result: Result, pictures: dict[str, str] | None = None) -> str:
@@ -82,7 +85,7 @@ def _response(result: Result, pictures: dict[str, str]) -> list[str]:
     if result.response is None:
         return []
     still = [_figure("response", pictures["response"], "of-response")] if "response" in pictures else []
-    return ["<h2>Frequency response</h2>", page.curves("response", response.curves(result)), *still]
+    return ["<h2>Frequency response</h2>", page.curves("response", response_curves(result)), *still]
 
 
 def _backbones(result: Result, pictures: dict[str, str]) -> list[str]:
@@ -91,7 +94,7 @@ def _backbones(result: Result, pictures: dict[str, str]) -> list[str]:
         return []
     still = [_figure("backbones", pictures["backbones"], "of-backbones")] if "backbones" in pictures else []
     head = f"<h2>Frequency and damping of mode {result.backbones[0].mode} over amplitude</h2>"
-    return [head, page.curves("backbones", backbone.zooming(result.backbones)), *still]
+    return [head, page.curves("backbones", backbone_curves(result.backbones)), *still]
 
 
 def _provenance(result: Result) -> list[str]:
@@ -193,7 +196,7 @@ def write(result: Result, folder: Path) -> list[Path]:
 
     With a hammer test: comparison.csv, and its figures with test_ before their names.
     """
-    made = [result.to_netcdf(folder / "result.nc"), result.to_csv(folder / "modes.csv")]
+    made = [result.save(folder / "result.nc"), result.to_csv(folder / "modes.csv")]
     if result.hammer is not None:
         made.append(write_text(folder / "comparison.csv", result.hammer.csv_text()))
     pictures = {}

@@ -7,9 +7,9 @@ from typing import Any
 from faying import __version__
 from faying.files import write_text
 from faying.measured.compare import ModalComparison
-from faying.output.figures.save import new_figure
 from faying.output.page import BITMAPS, curves, document, saved, table
 from faying.output.scene.text import packed_curves
+from faying.style import new_figure
 
 CAPTIONS = {
     "mac": "MAC of the modes of the test against those of the model, at the points of the test. Pairs are framed.",
@@ -21,7 +21,7 @@ MOST_FRFS = 4
 
 def figures(comparison: ModalComparison) -> dict[str, Any]:
     """Return the figures of a comparison by name; FRFs only where there are some."""
-    from faying.output.figures import measured
+    from faying.measured import figure as measured
 
     t, m = comparison.mac.shape
     mac = new_figure(2.6 + 0.42 * m, 1.8 + 0.42 * t)

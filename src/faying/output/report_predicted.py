@@ -22,7 +22,7 @@ TELLS = (
 
 def predicted(found: Prediction) -> str:
     """Return a prediction as the text of an HTML file."""
-    from faying.output.figures import prediction as drawing
+    from faying.identify import prediction_figure as drawing
 
     rows, words = prediction.blame(found)
     inside, count = found.covered
@@ -63,7 +63,7 @@ def predicted(found: Prediction) -> str:
 
 def identified(found: Identification, title: str, source: str) -> str:
     """Return an identification as the text of an HTML file; title: of its study; source: of its test."""
-    from faying.output.figures import identification as drawing
+    from faying.identify import identification_figure as drawing
 
     body = [
         f"<h1>{escape(title)}: identification</h1>",

@@ -4,18 +4,23 @@ import csv
 import io
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from faying.errors import InputError
 from faying.files import write_text
 from faying.measured.ring_down import MeasuredBackbone
+from faying.misuse import checked_call
 from faying.notes import Note
-from faying.result.fields import Recorded, declared, in_units, listed, read_whole, variable, write_whole
+from faying.result.fields import Recorded, declared, in_units, listed, variable
 from faying.result.provenance import Provenance
 from faying.typing import Array, Index
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MOST_POINTS = 6  # of a curve that a summary has a line for
 DECAY = 200  # points of a ring-down
 SHORT = 1e-3  # step of the logarithm of the amplitude for the slope of the frequency
 
@@ -79,6 +84,7 @@ class RingDown:
     damping: Array
 
 
+@checked_call
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Backbone(Recorded):
     """Frequency and damping of one mode against its amplitude.
@@ -88,6 +94,9 @@ class Backbone(Recorded):
     that of the first bolt. code and reason say why the curve ends. shape_at [kg^-1/2]: what the mode at rest moves
     at the point. laws: name of the contact law of each joint; measured_source: file of the measured points.
     """
+
+    KIND: ClassVar[str] = "backbone"
+    COMMAND: ClassVar[str] = "faying backbone STUDY.toml"
 
     title: str
     mode: int
@@ -139,14 +148,35 @@ class Backbone(Recorded):
     notes: tuple[Note, ...] = ()
     provenance: Provenance = field(default_factory=Provenance)
 
-    def __repr__(self) -> str:
-        lines = [
-            f"Backbone {self.title!r}: mode {self.mode}, {self.settings}",
-            f"{'m/s2':>10}{'Hz':>12}{'damping':>10}{'slips':>8}",
-        ]
-        for a, f, z, s in zip(self.acceleration, self.frequency, self.damping, self.slipping, strict=True):
-            lines.append(f"{a:>10.4g}{f:>12.3f}{100 * z:>9.3g}%{s:>8.0%}")
-        return "\n".join([*lines, f"ends: {self.reason}"])
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and some points of the curve."""
+        head = f"Backbone {self.title!r}: mode {self.mode}, {self.settings}"
+        at = ", ".join(f"{1e3 * x:.4g}" for x in self.at)
+        rows = {"at rest": f"{self.linear_frequency:.3f} Hz, damping ratio {self.rest_damping:.3g}, seen at ({at}) mm"}
+        count = len(self.acceleration)
+        for k in np.unique(np.linspace(0, count - 1, min(count, MOST_POINTS)).round().astype(int)):
+            rows[f"{self.acceleration[k]:.4g} m/s2"] = (
+                f"{self.frequency[k]:.3f} Hz, damping ratio {self.damping[k]:.3g}, slips on {self.slipping[k]:.0%}"
+            )
+        rows["ends"] = self.reason
+        return head, rows | ({"notes": f"{len(self.notes)}, in .notes"} if self.notes else {})
+
+    @checked_call
+    def plot(self, ax: Any = None) -> "list[Axes]":
+        """Draw frequency and damping against the acceleration, with what was measured and the static cycle.
+
+        Args:
+            ax: Two matplotlib axes to draw into, in a list or an array; new ones where None.
+
+        Returns:
+            The axes of frequency and of damping.
+
+        Raises:
+            InputError: The number of axes does not fit.
+        """
+        from faying.result.backbone_figure import backbone_axes
+
+        return backbone_axes(self, ax)
 
     @property
     def friction_text(self) -> str:
@@ -204,6 +234,7 @@ class Backbone(Recorded):
 
         return along(self.frequency, self.linear_frequency), along(self.damping, self.rest_damping)
 
+    @checked_call
     def ring_down(self, acceleration: float, time: float, *, points: int = DECAY) -> RingDown:
         """Free decay from an acceleration amplitude [m/s2] over a time [s].
 
@@ -238,6 +269,7 @@ class Backbone(Recorded):
         scale = self.acceleration / self.modal_amplitude
         return np.asarray(amplitude * np.interp(np.log(amplitude), np.log(self.modal_amplitude), scale))
 
+    @checked_call
     def forced_response(self, force: float, *, points: int = 400) -> ForcedResponse:
         """Steady response to a harmonic force [N] at the point `at` along `direction`, near this mode alone.
 
@@ -296,17 +328,9 @@ class Backbone(Recorded):
         out["notes"] = [asdict(note) for note in self.notes]
         return out
 
-    def to_netcdf(self, path: str | Path) -> Path:
-        """Write everything as NetCDF-4 that xarray opens; the file appears complete or not at all."""
-        return write_whole(self, path, {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")})
-
-    @classmethod
-    def load(cls, path: str | Path) -> Self:
-        """Read a curve that `to_netcdf` wrote; it equals the one that was written.
-
-        Raises ReadError where the file is missing, damaged or no backbone of Faying.
-        """
-        return read_whole(cls, path, what="backbone", command="faying backbone STUDY.toml")
+    def labels(self) -> dict[str, Any]:
+        """Labels of the dimensions of its arrays, by the name of the dimension."""
+        return {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
 
     def to_csv(self, path: str | Path) -> Path:
         """Write one row for each amplitude, units in the heading; the file appears complete or not at all."""

@@ -5,23 +5,35 @@ import types
 from collections.abc import Collection, Mapping
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from pathlib import Path
-from typing import Any, TypeVar, Union, cast, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar, Union, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 
 from faying import netcdf
 from faying.errors import InputError, ReadError
+from faying.misuse import checked_call, shortened
 from faying.netcdf import Attribute, Group, Variable
+from faying.style import Summary
+from faying.typing import Array
+from faying.units import show
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+    from xarray import DataTree
 
 Whole = TypeVar("Whole")
 KEY = "variable"
+MOST_ARRAYS = 10  # that a summary has a line for
+RECORD = "faying_record"  # attribute of a file: what it holds
+PRELOAD = "preload"  # numbers that belong to the labels of loads
 
 
 @dataclass(frozen=True, kw_only=True)
 class Declared:
     """What a field that holds an array declares: name in the file, dimensions, SI unit, long name, kind of number.
 
-    gaps: whether NaN may stand in it, for what was not predicted.
+    gaps: whether NaN may stand in it, for what was not predicted; group: of the file, its root where empty;
+    before: name in the root of files of earlier versions, where it was not that of the field.
     """
 
     name: str
@@ -30,6 +42,8 @@ class Declared:
     long_name: str
     dtype: str
     gaps: bool = False
+    group: str = ""
+    before: str = ""
 
 
 def variable(
@@ -39,21 +53,32 @@ def variable(
     dtype: str = "f8",
     name: str = "",
     gaps: bool = False,
+    group: str = "",
+    before: str = "",
     default: Any = MISSING,
 ) -> Any:
     """Declare a field of a dataclass as an array with named dimensions; writer, reader, JSON and tables follow."""
-    declared = Declared(name=name, dims=dims, unit=unit, long_name=long_name, dtype=dtype, gaps=gaps)
+    declared = Declared(
+        name=name, dims=dims, unit=unit, long_name=long_name, dtype=dtype, gaps=gaps, group=group, before=before
+    )
     return field(metadata={KEY: declared}, **({} if default is MISSING else {"default": default}))
 
 
-class Recorded:
-    """What a dataclass of declared arrays does: they are checked and frozen, and two of them are equal part by part."""
+class Recorded(Summary):
+    """What a dataclass of declared arrays does: they are checked, frozen, saved, loaded and handed to xarray.
+
+    KIND: what messages call it, which the file says as well; COMMAND: what writes one. Two of them are equal part by
+    part.
+    """
+
+    KIND: ClassVar[str] = "record"
+    COMMAND: ClassVar[str] = ""
 
     def __post_init__(self) -> None:
         for name, meta in declared(type(self)).items():
             if getattr(self, name) is None:
                 continue
-            value = np.asarray(getattr(self, name), dtype=meta.dtype)
+            value = array_of(name, getattr(self, name), meta)
             if not np.all(np.isfinite(value) | (meta.gaps and np.isnan(value))):
                 raise InputError(f"NaN in {name}; this is a fault of the input or of Faying, please report it")
             value.setflags(write=False)
@@ -63,6 +88,119 @@ class Recorded:
         return type(other) is type(self) and same(self, other)
 
     __hash__ = None  # type: ignore[assignment]
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and its arrays with their dimensions and units."""
+        rows = {
+            name: f"({', '.join(meta.dims)}) [{meta.unit}]"
+            for name, meta in declared(type(self)).items()
+            if getattr(self, name) is not None
+        }
+        return type(self).__name__, dict(list(rows.items())[:MOST_ARRAYS])
+
+    def labels(self) -> dict[str, Any]:
+        """Labels of the dimensions of its arrays, by the name of the dimension."""
+        return {}
+
+    def tree(self) -> Group:
+        """Return it as a tree of named arrays, as a file holds it."""
+        group = to_group(self)
+        coordinates = {name: _coordinate(name, item) for name, item in self.labels().items()}
+        attributes = {"Conventions": "CF-1.11", RECORD: self.KIND, **group.attributes}
+        return with_preload(
+            Group(variables={**coordinates, **group.variables}, attributes=attributes, groups=group.groups)
+        )
+
+    @classmethod
+    def of_tree(cls, tree: Group) -> Self:
+        """Return what a tree was made of. Raises ReadError that names what it lacks."""
+        return from_group(cls, tree)
+
+    @checked_call
+    def save(self, path: str | Path) -> Path:
+        """Write everything as NetCDF-4 that xarray opens; the file appears complete or not at all.
+
+        Args:
+            path: The file, ending in .nc, in a folder that exists.
+
+        Returns:
+            The path.
+
+        Raises:
+            InputError: The file cannot be written.
+        """
+        if not Path(path).name:
+            raise InputError(f'path = {shortened(path)} is no file; give its name, such as "{self.KIND}.nc"')
+        return netcdf.write(Path(path), self.tree())
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """Read what `save` wrote; it equals what was written.
+
+        Args:
+            path: The file.
+
+        Returns:
+            What the file holds.
+
+        Raises:
+            ReadError: The file is missing or damaged, holds something else, or lacks a variable, which is named.
+        """
+        return cls.of_file(path, read_tree(path, cls.KIND, cls.COMMAND))
+
+    @classmethod
+    def of_file(cls, path: str | Path, tree: Group) -> Self:
+        """Return what a file holds, whose tree is read already. Raises ReadError as `load`."""
+        command = f"; write one with: {cls.COMMAND}" if cls.COMMAND else ""
+        found = tree.attributes.get(RECORD, cls.KIND)
+        if found != cls.KIND:
+            raise ReadError(f"{path} holds a {found} and no {cls.KIND}; read it with faying.load")
+        try:
+            return cls.of_tree(tree)
+        except (ReadError, InputError, TypeError, KeyError, ValueError, AttributeError, IndexError) as fault:
+            raise ReadError(f"{path}: no {cls.KIND} of Faying, or damaged ({fault}){command}") from None
+
+    def to_xarray(self) -> "DataTree":
+        """Return the arrays as an xarray.DataTree, as `xarray.open_datatree` reads them from the file."""
+        import tempfile
+
+        import xarray
+
+        with tempfile.TemporaryDirectory() as folder:
+            tree = xarray.open_datatree(self.save(Path(folder) / "record.nc"), engine="h5netcdf")
+            with tree:
+                return tree.load()
+
+    @checked_call
+    def to_dataframe(self, group: str) -> "DataFrame":
+        """Return a group of the tree as a pandas.DataFrame.
+
+        Args:
+            group: Name of the group, such as "modes".
+
+        Returns:
+            One row for each combination of labels, those variables as columns whose dimensions are among those of the
+            first one. Units are in `attrs["units"]`, by column.
+
+        Raises:
+            InputError: There is no such group; the text lists the groups.
+        """
+        tree = self.tree()
+        found = {name: one for name, one in tree.groups.items() if one.variables}
+        if not isinstance(group, str) or group not in found:
+            raise InputError(f"group = {shortened(group)}; the groups are {', '.join(map(repr, found))}")
+        return table_of(found[group], tree.variables)
+
+
+def array_of(name: str, given: Any, meta: Declared) -> Any:
+    """What a field holds as an array. Raises InputError where it is none, or has other dimensions."""
+    try:
+        value = np.asarray(given, dtype=meta.dtype)
+    except (TypeError, ValueError):
+        value = None
+    if value is None or value.ndim != len(meta.dims):
+        raise InputError(f"{name} = {shortened(given)}; give an array of numbers ({', '.join(meta.dims)})")
+    return value
 
 
 def declared(kind: Any) -> dict[str, Declared]:
@@ -94,7 +232,7 @@ def in_units(value: Any, *, without: Collection[str] = ()) -> dict[str, Any]:
 
 def to_group(value: Any) -> Group:
     """Turn a dataclass into a tree: arrays to variables, dataclasses to groups, all else to attributes."""
-    variables: dict[str, Variable] = {}
+    variables: dict[str, dict[str, Variable]] = {"": {}}
     attributes: dict[str, Attribute] = {}
     groups: dict[str, Group] = {}
     for f in fields(value):
@@ -104,16 +242,15 @@ def to_group(value: Any) -> Group:
             continue
         if meta is not None:
             array = np.asarray(item)
-            variables[meta.name or f.name] = Variable(
-                dims=meta.dims, values=array, unit=meta.unit, long_name=meta.long_name
-            )
+            held = variables.setdefault(meta.group, {})
+            held[meta.name or f.name] = Variable(dims=meta.dims, values=array, unit=meta.unit, long_name=meta.long_name)
         elif isinstance(item, np.ndarray):
             dims = tuple(f"{f.name}_{k}" for k in range(item.ndim))
-            variables[f.name] = Variable(dims=dims, values=item)
+            variables[""][f.name] = Variable(dims=dims, values=item)
         elif _is_arrays(item):
             for k, part in enumerate(item):
                 dims = tuple(f"{f.name}_{k}_{j}" for j in range(part.ndim))
-                variables[f"{f.name}.{k}"] = Variable(dims=dims, values=part)
+                variables[""][f"{f.name}.{k}"] = Variable(dims=dims, values=part)
         elif is_dataclass(item):
             groups[f.name] = to_group(item)
         elif _is_recorded(item):
@@ -122,30 +259,80 @@ def to_group(value: Any) -> Group:
             attributes[f.name] = item if item != "" else " "  # an empty attribute is none
         else:
             attributes[f.name] = json.dumps(item, default=_jsonable, ensure_ascii=False)
-    return Group(variables=variables, attributes=attributes, groups=groups)
+    root = variables.pop("")
+    for name, held in variables.items():
+        inner = groups.get(name, Group())
+        groups[name] = Group(variables={**held, **inner.variables}, attributes=inner.attributes, groups=inner.groups)
+    return Group(variables=root, attributes=attributes, groups=groups)
 
 
-def write_whole(value: Any, path: str | Path, labels: Mapping[str, Any]) -> Path:
-    """Write a dataclass as NetCDF-4 that xarray opens, with labels of its dimensions; whole or not at all."""
-    group = to_group(value)
-    coordinates = {
-        name: Variable(dims=(name,), values=np.asarray(item, dtype=object if isinstance(item, tuple) else None))
-        for name, item in labels.items()
-    }
-    attributes = {"Conventions": "CF-1.11", **group.attributes}
-    whole = Group(variables={**coordinates, **group.variables}, attributes=attributes, groups=group.groups)
-    return netcdf.write(Path(path), whole)
+def _coordinate(name: str, item: Any) -> Variable:
+    text = isinstance(item, tuple | list)
+    return Variable(dims=(name,), values=np.asarray(item, dtype=object if text else None))
 
 
-def read_whole(kind: type[Whole], path: str | Path, *, what: str, command: str) -> Whole:
-    """Read what `write_whole` wrote. Raises ReadError, with the command that writes one, where it cannot be read."""
+def with_preload(tree: Group) -> Group:
+    """A tree whose loads have labels, with the preloads of the root as a coordinate of each group with loads."""
+    preload = tree.variables.get(PRELOAD)
+    if preload is None or preload.dims != ("load",):
+        return tree
+
+    def lend(group: Group) -> Group:
+        has = any("load" in one.dims for one in group.variables.values())
+        variables, attributes = dict(group.variables), dict(group.attributes)
+        if has:
+            variables.setdefault(PRELOAD, preload)
+            attributes["coordinates"] = PRELOAD
+        return Group(
+            variables=variables,
+            attributes=attributes,
+            groups={name: lend(inner) for name, inner in group.groups.items()},
+        )
+
+    return lend(tree)
+
+
+def load_labels(loads: Array) -> tuple[str, ...]:
+    """Loads [N] in words, each different from the others: "8 kN"."""
+    for digits in range(4, 17):
+        words = tuple(show(float(load), "N", digits=digits) for load in loads)
+        if len(set(words)) == len(words):
+            return words
+    return tuple(repr(float(load)) for load in loads)
+
+
+def table_of(group: Group, root: Mapping[str, Variable]) -> "DataFrame":
+    """The variables of a group as a table, with the labels of its dimensions; see `Recorded.to_dataframe`."""
+    import pandas
+
+    first = next(one for name, one in group.variables.items() if name != PRELOAD)
+    sizes = dict(zip(first.dims, first.values.shape, strict=True))
+    held = {name: one for name, one in group.variables.items() if one.dims and set(one.dims) <= set(first.dims)}
+    labels = [root[dim].values if dim in root else np.arange(size) for dim, size in sizes.items()]
+    index = pandas.MultiIndex.from_product(labels, names=list(sizes))
+    columns = {}
+    for name, one in sorted(held.items(), key=lambda item: item[0] != PRELOAD):
+        shape = [sizes[dim] if dim in one.dims else 1 for dim in sizes]
+        order = sorted(range(len(one.dims)), key=lambda k: list(sizes).index(one.dims[k]))
+        values = one.values.transpose(order).reshape(shape)
+        columns[name] = np.broadcast_to(values, tuple(sizes.values())).ravel()
+    table = pandas.DataFrame(columns, index=index)
+    table.attrs["units"] = {name: one.unit for name, one in held.items()}
+    return table
+
+
+def read_tree(path: str | Path, kind: str = "file", command: str = "") -> Group:
+    """Read the tree of a file; kind: what it should hold. Raises ReadError where it is missing or no NetCDF-4 file."""
+    if not isinstance(path, str | Path):
+        raise InputError(f"path = {shortened(path)}; give the path of a file that Faying has saved")
     file = Path(path)
+    hint = f"; write one with: {command}" if command else ""
     if not file.is_file():
-        raise ReadError(f"{file}: no such file; write one with: {command}")
+        raise ReadError(f"{file}: no such file{hint}")
     try:
-        return from_group(kind, netcdf.read(file))
-    except (ReadError, TypeError, KeyError, ValueError, AttributeError) as fault:
-        raise ReadError(f"{file}: no {what} of Faying, or damaged ({fault}); write one with: {command}") from None
+        return netcdf.read(file)
+    except ReadError as fault:
+        raise ReadError(f"{file}: no {kind} of Faying, or damaged ({fault}){hint}") from None
 
 
 def _is_arrays(item: Any) -> bool:
@@ -172,20 +359,21 @@ def from_group(kind: type[Whole], group: Group) -> Whole:
     hints = get_type_hints(kind)
     for f in fields(cast(Any, kind)):
         meta: Declared | None = f.metadata.get(KEY)
-        name = meta.name or f.name if meta is not None else f.name
-        hint = _without_none(hints[f.name])
-        if name in group.variables and (meta is not None or name not in group.attributes):  # else labels of its name
-            values = group.variables[name].values
-            given[f.name] = values.astype(meta.dtype) if meta is not None else _as_hinted(values, hint)
+        name, hint = f.name, _without_none(hints[f.name])
+        held = None if meta is None else _held(group, f.name, meta)
+        if meta is not None and held is not None:
+            given[f.name] = held.values.astype(meta.dtype)
+        elif meta is None and name in group.variables and name not in group.attributes:  # else labels of its name
+            given[f.name] = _as_hinted(group.variables[name].values, hint)
         elif f"{f.name}.0" in group.variables:
             count = sum(key.startswith(f"{f.name}.") for key in group.variables)
             given[f.name] = tuple(group.variables[f"{f.name}.{k}"].values for k in range(count))
         elif f"{f.name}.0" in group.groups:
             count = sum(key.startswith(f"{f.name}.") for key in group.groups)
-            kind_of_part = get_args(hint)[0]
+            kind_of_part: Any = get_args(hint)[0]
             given[f.name] = tuple(from_group(kind_of_part, group.groups[f"{f.name}.{k}"]) for k in range(count))
-        elif f.name in group.groups:
-            given[f.name] = from_group(hint, group.groups[f.name])
+        elif f.name in group.groups and is_dataclass(hint):
+            given[f.name] = from_group(cast(Any, hint), group.groups[f.name])
         elif f.name in group.attributes:
             value = group.attributes[f.name]
             if hint is str:
@@ -195,8 +383,24 @@ def from_group(kind: type[Whole], group: Group) -> Whole:
             else:
                 given[f.name] = _rebuilt(hint, json.loads(str(value)))
         elif f.default is MISSING and f.default_factory is MISSING:
+            if hint is hints[f.name]:
+                where = f" in its group {meta.group!r}" if meta is not None and meta.group else ""
+                raise ReadError(f"it lacks {meta.name or f.name if meta is not None else f.name!r}{where}")
             given[f.name] = None
     return kind(**given)
+
+
+def _held(group: Group, field_name: str, meta: Declared) -> Variable | None:
+    """The variable of a field, in its group or, as in files of earlier versions, in the root; None where absent."""
+    inner = group.groups.get(meta.group) if meta.group else group
+    name = meta.name or field_name
+    if inner is not None and name in inner.variables:
+        return inner.variables[name]
+    for earlier in (field_name, meta.before):
+        found = group.variables.get(earlier)
+        if found is not None and len(found.dims) == len(meta.dims) and found.values.dtype.kind != "O":
+            return found
+    return None
 
 
 def _as_hinted(values: Any, hint: Any) -> Any:

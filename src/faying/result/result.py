@@ -4,7 +4,7 @@ import csv
 import io
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -14,14 +14,20 @@ from faying.joint.attachments import PointMass, Support
 from faying.joint.loads import preload_index
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse, ModelModes
+from faying.misuse import checked_call, shortened
 from faying.notes import Note
 from faying.result.backbone import Backbone
 from faying.result.bolts import BoltNumbers
-from faying.result.fields import Recorded, in_units, read_whole, variable, write_whole
+from faying.result.fields import Recorded, in_units, load_labels, variable
 from faying.result.provenance import Provenance
+from faying.text import listed
 from faying.typing import Array, Complex, Index
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 Point = tuple[float, float, float]
+MOST_LOADS, MOST_MODES = 4, 5  # that a summary has a column and a line for
 MAPS = ("point", "node", "triangle", "mode_other")  # dimensions of what only a file holds, not the JSON
 
 
@@ -46,7 +52,14 @@ class Comparison:
     )
     published_name: str = "published"
     beside: Array | None = variable(
-        "beside", "load", "test_mode", unit="Hz", long_name="frequencies under another law", gaps=True, default=None
+        "law",
+        "load",
+        "test_mode",
+        unit="Hz",
+        long_name="frequencies under another law",
+        gaps=True,
+        name="predicted_by_law",
+        default=None,
     )
     kind: str = "test"  # or "model", where the frequencies are those of somebody's model
 
@@ -95,6 +108,7 @@ def _pairs(points: Array, directions: Array) -> tuple[tuple[Point, Point], ...]:
     return tuple((tuple(p), tuple(d)) for p, d in zip(points.tolist(), directions.tolist(), strict=True))
 
 
+@checked_call
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Result(Recorded):
     """What a study gives. Load [N] means the preload of the first bolt; modes are the elastic ones.
@@ -109,39 +123,95 @@ class Result(Recorded):
     made of; they and the fields that go with them are empty or None in files of earlier versions.
     """
 
+    KIND: ClassVar[str] = "result"
+    COMMAND: ClassVar[str] = "faying run STUDY.toml"
+
     title: str
-    loads: Array = variable("load", unit="N", long_name="preload of the first bolt", name="load")
-    frequencies: Array = variable("load", "mode", unit="Hz", long_name="frequency")
+    loads: Array = variable("load", unit="N", long_name="preload of the first bolt", name="preload", before="load")
+    frequencies: Array = variable("load", "mode", unit="Hz", long_name="frequency", group="modes", name="frequency")
     loss_factors: Array = variable(
-        "load", "mode", unit="1", long_name="loss factor, NaN where no joint predicts one", gaps=True
+        "load",
+        "mode",
+        unit="1",
+        long_name="loss factor, NaN where no joint predicts one",
+        gaps=True,
+        group="modes",
+        name="loss_factor",
     )
-    loss_error: Array = variable("load", "mode", unit="1", long_name="estimated relative error of the loss factor")
-    free: Array = variable("mode", unit="Hz", long_name="frequency with the faces apart")
-    bonded: Array = variable("mode", unit="Hz", long_name="frequency with the faces bonded")
-    rigid: Array = variable("rigid_motion", unit="Hz", long_name="largest frequency of each rigid motion, ideally 0")
+    loss_error: Array = variable(
+        "load",
+        "mode",
+        unit="1",
+        long_name="estimated relative error of the loss factor",
+        group="modes",
+        name="loss_factor_error",
+    )
+    free: Array = variable("mode", unit="Hz", long_name="frequency with the faces apart", group="modes")
+    bonded: Array = variable("mode", unit="Hz", long_name="frequency with the faces bonded", group="modes")
+    rigid: Array = variable(
+        "rigid_motion", unit="Hz", long_name="largest frequency of each rigid motion, ideally 0", group="modes"
+    )
     mac: Array = variable(
         "load",
         "mode",
         "mode_other",
         unit="1",
         long_name="MAC by mass of the modes at the first load with those at each",
+        group="modes",
     )
-    points: Array = variable("point", "axis", unit="m", long_name="points of the joints")
-    weights: Array = variable("point", unit="m2", long_name="area of each point")
-    joint_of_point: Index = variable("point", unit="1", long_name="joint of each point, from 0", dtype="i8")
-    pressure: Array = variable("load", "point", unit="Pa", long_name="contact pressure")
-    k_n: Array = variable("load", "point", unit="Pa/m", long_name="normal stiffness per area, as assembled")
-    k_t: Array = variable("load", "point", unit="Pa/m", long_name="tangential stiffness per area, as assembled")
-    slipping: Array = variable("load", "joint", unit="1", long_name="share of the area at the limit of friction")
-    total_k_n: Array = variable("load", "joint", unit="N/m", long_name="sum of the normal springs")
-    total_k_t: Array = variable("load", "joint", unit="N/m", long_name="sum of the tangential springs")
-    bolt_forces: Array = variable("load", "bolt", unit="N", long_name="force left when all bolts are tight")
-    imbalance: Array = variable("load", unit="1", long_name="residual force of the preload over the load")
-    newton_steps: Index = variable("load", unit="1", long_name="Newton steps of the preload", dtype="i8")
-    outline: Array = variable("node", "axis", unit="m", long_name="nodes of the outer surface")
-    triangles: Index = variable("triangle", "corner", unit="1", long_name="triangles between them", dtype="i8")
+    points: Array = variable(
+        "point", "axis", unit="m", long_name="points of the joints", group="points", name="position"
+    )
+    weights: Array = variable("point", unit="m2", long_name="area of each point", group="points", name="area")
+    joint_of_point: Index = variable(
+        "point", unit="1", long_name="joint of each point, from 0", dtype="i8", group="points", name="joint_number"
+    )
+    pressure: Array = variable("load", "point", unit="Pa", long_name="contact pressure", group="points")
+    k_n: Array = variable(
+        "load", "point", unit="Pa/m", long_name="normal stiffness per area, as assembled", group="points"
+    )
+    k_t: Array = variable(
+        "load", "point", unit="Pa/m", long_name="tangential stiffness per area, as assembled", group="points"
+    )
+    slipping: Array = variable(
+        "load",
+        "joint",
+        unit="1",
+        long_name="share of the area at the limit of friction",
+        group="joints",
+        name="slipping_share",
+    )
+    total_k_n: Array = variable(
+        "load", "joint", unit="N/m", long_name="sum of the normal springs", group="joints", name="k_n"
+    )
+    total_k_t: Array = variable(
+        "load", "joint", unit="N/m", long_name="sum of the tangential springs", group="joints", name="k_t"
+    )
+    bolt_forces: Array = variable(
+        "load", "bolt", unit="N", long_name="force left when all bolts are tight", group="bolts", name="force"
+    )
+    imbalance: Array = variable(
+        "load", unit="1", long_name="residual force of the preload over the load", group="solution"
+    )
+    newton_steps: Index = variable(
+        "load", unit="1", long_name="Newton steps of the preload", dtype="i8", group="solution"
+    )
+    outline: Array = variable(
+        "node", "axis", unit="m", long_name="nodes of the outer surface", group="surface", name="position"
+    )
+    triangles: Index = variable(
+        "triangle", "corner", unit="1", long_name="triangles between them", dtype="i8", group="surface"
+    )
     shapes: Any = variable(
-        "load", "mode", "node", "axis", unit="kg^-1/2", long_name="mass-normalised mode shapes", dtype="f4"
+        "load",
+        "mode",
+        "node",
+        "axis",
+        unit="kg^-1/2",
+        long_name="mass-normalised mode shapes",
+        dtype="f4",
+        group="surface",
+        name="shape",
     )
     shapes_imaginary: Any = variable(
         "load",
@@ -153,15 +223,27 @@ class Result(Recorded):
         "(shapes + i shapes_imaginary) exp(i phase)",
         dtype="f4",
         default=None,
+        group="surface",
+        name="shape_imaginary",
     )
     part_of_triangle: Index | None = variable(
-        "triangle", unit="1", long_name="part of each triangle, from 0", dtype="i8", default=None
+        "triangle", unit="1", long_name="part of each triangle, from 0", dtype="i8", default=None, group="surface"
     )
     face_of_triangle: Index | None = variable(
-        "triangle", unit="1", long_name="named face of each triangle, from 0, -1: none", dtype="i8", default=None
+        "triangle",
+        unit="1",
+        long_name="named face of each triangle, from 0, -1: none",
+        dtype="i8",
+        default=None,
+        group="surface",
     )
     part_masses: Array | None = variable(
-        "part", unit="kg", long_name="mass of each part, without bolts and point masses", default=None
+        "part",
+        unit="kg",
+        long_name="mass of each part, without bolts and point masses",
+        default=None,
+        group="parts",
+        name="mass",
     )
     slip: Array | None = variable(
         "load",
@@ -169,15 +251,33 @@ class Result(Recorded):
         unit="m",
         long_name="tangential displacement of the second face against the first under the preload",
         default=None,
+        group="points",
     )
     gap: Array | None = variable(
-        "point", unit="m", long_name="distance of the faces before any load, form included", default=None
+        "point",
+        unit="m",
+        long_name="distance of the faces before any load, form included",
+        default=None,
+        group="points",
     )
     bolt_seats: Array | None = variable(
-        "bolt", "end", "axis", unit="m", long_name="where the axis of each bolt meets its seats", default=None
+        "bolt",
+        "end",
+        "axis",
+        unit="m",
+        long_name="where the axis of each bolt meets its seats",
+        default=None,
+        group="bolts",
+        name="seat",
     )
     bolt_diameters: Array | None = variable(
-        "bolt", unit="m", long_name="diameter of each shank, NaN where none is given", gaps=True, default=None
+        "bolt",
+        unit="m",
+        long_name="diameter of each shank, NaN where none is given",
+        gaps=True,
+        default=None,
+        group="bolts",
+        name="diameter",
     )
     bolt_extents: Array | None = variable(
         "bolt",
@@ -186,19 +286,45 @@ class Result(Recorded):
         long_name="inner and outer diameter of the seat of each bolt, NaN for a bolt that is a part",
         gaps=True,
         default=None,
+        group="bolts",
+        name="seat_diameter",
     )
     outside_share: Array = variable(
-        "load", unit="1", long_name="share of the joints where their law is outside its validity range"
+        "load", unit="1", long_name="share of the joints where their law is outside its validity range", group="joints"
     )
-    beyond_share: Array = variable("load", unit="1", long_name="share of the joints beyond the end of their law")
+    beyond_share: Array = variable(
+        "load",
+        unit="1",
+        long_name="share of the joints beyond the end of their law",
+        group="joints",
+        name="above_range_share",
+    )
     low: Array | None = variable(
-        "load", "mode", unit="Hz", long_name="frequency at the lower end of the laws' range", default=None
+        "load",
+        "mode",
+        unit="Hz",
+        long_name="frequency at the lower end of the laws' range",
+        default=None,
+        group="modes",
+        name="frequency_low",
     )
     high: Array | None = variable(
-        "load", "mode", unit="Hz", long_name="frequency at the upper end of the laws' range", default=None
+        "load",
+        "mode",
+        unit="Hz",
+        long_name="frequency at the upper end of the laws' range",
+        default=None,
+        group="modes",
+        name="frequency_high",
     )
     beyond_frequencies: Array | None = variable(
-        "load", "mode", unit="Hz", long_name="frequency with what is beyond the law's end bonded", default=None
+        "load",
+        "mode",
+        unit="Hz",
+        long_name="frequency with what is beyond the law's end bonded",
+        default=None,
+        group="modes",
+        name="frequency_bonded_above",
     )
     beyond_loss_factors: Array | None = variable(
         "load",
@@ -207,18 +333,45 @@ class Result(Recorded):
         long_name="loss factor with what is beyond the law's end bonded",
         gaps=True,
         default=None,
+        group="modes",
+        name="loss_factor_bonded_above",
     )
     wave_seeds: Index | None = variable(
-        "draw", unit="1", long_name="draws of waves on the faces, by their seed", dtype="i8", default=None
+        "draw",
+        unit="1",
+        long_name="draws of waves on the faces, by their seed",
+        dtype="i8",
+        default=None,
+        group="waves",
+        name="seed",
     )
     wave_frequencies: Array | None = variable(
-        "draw", "load", "mode", unit="Hz", long_name="frequency with waves on the faces", default=None
+        "draw",
+        "load",
+        "mode",
+        unit="Hz",
+        long_name="frequency with waves on the faces",
+        default=None,
+        group="waves",
+        name="frequency",
     )
     wave_slopes: Array | None = variable(
-        "draw", "mode", unit="Hz/N", long_name="change of frequency with preload with waves", default=None
+        "draw",
+        "mode",
+        unit="Hz/N",
+        long_name="change of frequency with preload with waves",
+        default=None,
+        group="waves",
+        name="slope",
     )
     wave_rms: Array | None = variable(
-        "joint", unit="m", long_name="rms of the waves of each face, NaN where none are drawn", gaps=True, default=None
+        "joint",
+        unit="m",
+        long_name="rms of the waves of each face, NaN where none are drawn",
+        gaps=True,
+        default=None,
+        group="waves",
+        name="rms",
     )
     wave_lengths: Array | None = variable(
         "joint",
@@ -227,46 +380,88 @@ class Result(Recorded):
         long_name="shortest and longest wave that is drawn, NaN where none are",
         gaps=True,
         default=None,
+        group="waves",
+        name="wave_length",
     )
     beside_frequencies: Array | None = variable(
-        "beside", "load", "mode", unit="Hz", long_name="frequency under another law", gaps=True, default=None
+        "law",
+        "load",
+        "mode",
+        unit="Hz",
+        long_name="frequency under another law",
+        gaps=True,
+        default=None,
+        group="laws",
+        name="frequency",
     )
     beside_loss_factors: Array | None = variable(
-        "beside", "load", "mode", unit="1", long_name="loss factor under another law", gaps=True, default=None
+        "law",
+        "load",
+        "mode",
+        unit="1",
+        long_name="loss factor under another law",
+        gaps=True,
+        default=None,
+        group="laws",
+        name="loss_factor",
     )
     beside_beyond_frequencies: Array | None = variable(
-        "beside",
+        "law",
         "load",
         "mode",
         unit="Hz",
         long_name="frequency under another law with what is beyond its end bonded",
         gaps=True,
         default=None,
+        group="laws",
+        name="frequency_bonded_above",
     )
     beside_outside_share: Array | None = variable(
-        "beside",
+        "law",
         "load",
         unit="1",
         long_name="share of the joints where another law is outside its validity range",
         gaps=True,
         default=None,
+        group="laws",
+        name="outside_share",
     )
     beside_beyond_share: Array | None = variable(
-        "beside",
+        "law",
         "load",
         unit="1",
         long_name="share of the joints beyond the end of another law",
         gaps=True,
         default=None,
+        group="laws",
+        name="above_range_share",
     )
     beside_reach: Array | None = variable(
-        "beside", unit="Pa", long_name="pressure at which another law ends", gaps=True, default=None
+        "law",
+        unit="Pa",
+        long_name="pressure at which another law ends",
+        gaps=True,
+        default=None,
+        group="laws",
+        name="end_pressure",
     )
     thermal_conductance: Array | None = variable(
-        "load", "joint", unit="W/K", long_name="conductance of heat, clean metal in vacuum", gaps=True, default=None
+        "load",
+        "joint",
+        unit="W/K",
+        long_name="conductance of heat, clean metal in vacuum",
+        gaps=True,
+        default=None,
+        group="joints",
     )
     electrical_conductance: Array | None = variable(
-        "load", "joint", unit="S", long_name="conductance of current, clean metal", gaps=True, default=None
+        "load",
+        "joint",
+        unit="S",
+        long_name="conductance of current, clean metal",
+        gaps=True,
+        default=None,
+        group="joints",
     )
     beside: tuple[str, ...] = ()
     joints: tuple[str, ...]
@@ -292,22 +487,52 @@ class Result(Recorded):
     backbones: tuple[Backbone, ...] = ()
     provenance: Provenance = field(default_factory=Provenance)
 
-    def __repr__(self) -> str:
-        lines = [f"Result {self.title!r}: {self.unknowns:,} unknowns, joints {', '.join(self.joints)}"]
-        lines.append(
-            "  " + "".join(f"{head:>12}" for head in ("free", *(f"{v / 1e3:g} kN" for v in self.loads), "bonded"))
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and what the result says, with the first modes."""
+        head = (
+            f"Result {self.title!r}: {self.unknowns:,} unknowns, {len(self.free)} modes at {len(self.loads)} preloads"
         )
-        for j in range(min(9, len(self.free))):
-            row = (self.free[j], *self.frequencies[:, j], self.bonded[j])
-            lines.append("  " + "".join(f"{value:>9.2f} Hz" for value in row))
-        if len(self.free) > 9:
-            lines.append(f"  and {len(self.free) - 9} modes more")
-        return "\n".join([*lines, f"  {len(self.notes)} notes"])
+        laws = dict.fromkeys(str(law.get("law", law.get("name", ""))) for law in self.laws)
+        rows = {"joints": listed(self.joints) + (f" ({listed(filter(None, laws))})" if any(laws) else "")}
+        rows["bolts"] = listed(self.bolts)
+        few = list(range(len(self.loads))) if len(self.loads) <= MOST_LOADS else [0, len(self.loads) // 2, -1]
+        words = load_labels(self.loads)
+        rows["frequencies"] = f"[Hz] free | {' | '.join(words[k] for k in few)} | bonded"
+        shown = len(self.free) if len(self.free) <= MOST_MODES else MOST_MODES - 1
+        for mode in range(shown):
+            cells = (self.free[mode], *(self.frequencies[k, mode] for k in few), self.bonded[mode])
+            rows[f"mode {mode + 1}"] = " | ".join(f"{value:8.2f}" for value in cells)
+        if len(self.free) > shown:
+            rows["more modes"] = f"{len(self.free) - shown}, up to {self.frequencies[-1, -1]:.2f} Hz"
+        if self.comparison is not None:
+            c = self.comparison
+            error = np.abs(c.predicted / c.frequencies - 1)
+            paired = np.isfinite(error)
+            mean = f", mean deviation {np.mean(error[paired]):.2%}" if paired.any() else ""
+            rows[c.reference] = f"{paired.sum()} of {paired.size} frequencies paired{mean}"
+        return head, rows | ({"notes": f"{len(self.notes)}, in .notes"} if self.notes else {})
 
-    def _repr_html_(self) -> str:
-        from html import escape
+    @checked_call
+    def plot(self, modes: int = 6, ax: Any = None) -> "list[Axes]":
+        """Draw the frequency of each mode against preload.
 
-        return f"<pre>{escape(repr(self))}</pre>"
+        The range that the laws state and the draws of waves are bands; frequencies of the test are hollow dots.
+
+        Args:
+            modes: How many modes, from the lowest.
+            ax: As many matplotlib axes to draw into, in a list or an array; new ones where None.
+
+        Returns:
+            The axes, one for each mode.
+
+        Raises:
+            InputError: The number of modes or of axes does not fit.
+        """
+        from faying.result.figure import frequency_axes
+
+        if modes < 1:
+            raise InputError(f"modes = {shortened(modes)}; give how many modes, 1 to {len(self.free)}")
+        return frequency_axes(self, min(modes, len(self.free)), ax)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -330,6 +555,7 @@ class Result(Recorded):
             inputs=(r.input_points, r.input_directions),
         )
 
+    @checked_call
     def modes_at(self, load: float | None = None, source: str = "this study") -> ModelModes:
         """The modes at a preload [N], by default the greatest, for a comparison with a test.
 
@@ -379,33 +605,12 @@ class Result(Recorded):
         out["notes"] = [asdict(note) for note in self.notes]
         return out
 
-    def to_netcdf(self, path: str | Path) -> Path:
-        """Write everything as NetCDF-4 that xarray opens, with named coordinates; the file appears complete or not
-        at all."""
-        labels: dict[str, Any] = {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
-        if self.beside:
-            labels["beside"] = self.beside
-        if self.parts:
-            labels["part"] = self.parts
-        labels["mode"] = np.arange(1, len(self.free) + 1)
-        return write_whole(self, path, labels)
-
-    @classmethod
-    def load(cls, path: str | Path) -> Self:
-        """Read a result that `to_netcdf` wrote; it equals the one that was written.
-
-        Raises ReadError where the file is missing, damaged or no result of Faying.
-        """
-        return read_whole(cls, path, what="result", command="faying run STUDY.toml")
-
-    def to_xarray(self) -> Any:
-        """Return the arrays as an xarray.Dataset, as xarray.open_dataset reads them from the file."""
-        import tempfile
-
-        import xarray
-
-        with tempfile.TemporaryDirectory() as folder:
-            return xarray.load_dataset(self.to_netcdf(Path(folder) / "result.nc"), engine="h5netcdf")
+    def labels(self) -> dict[str, Any]:
+        """Labels of the dimensions of its arrays, by the name of the dimension."""
+        out: dict[str, Any] = {"load": load_labels(self.loads), "mode": np.arange(1, len(self.free) + 1)}
+        out |= {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
+        out |= {"part": self.parts} if self.parts else {}
+        return out | ({"law": self.beside} if self.beside else {})
 
     def to_csv(self, path: str | Path) -> Path:
         """Write one row for each load and mode, units in the heading; the file appears complete or not at all."""
@@ -432,6 +637,7 @@ class Result(Recorded):
         return out.getvalue()
 
 
+@checked_call
 def read_model_modes(path: str | Path, *, load: float | None = None) -> ModelModes:
     """Read the modes of a result file for a comparison with a test.
 

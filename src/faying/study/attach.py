@@ -19,6 +19,7 @@ from faying.joint.joint_law import JointLaw
 from faying.joint.loads import preload_index
 from faying.joint.pairs import NodePairs, consistent, lumped
 from faying.materials import Material
+from faying.misuse import checked_call
 from faying.study.case import checked_mesh, joint_law, structure_of, surfaces_of
 from faying.study.keys.geometry import GeometryChoice, mesh_of
 from faying.study.keys.joint import JointChoice
@@ -61,6 +62,7 @@ class Attachment:
         }
 
 
+@checked_call
 def attach(
     model: str | Path,
     faces: tuple[str, str],

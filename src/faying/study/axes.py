@@ -10,6 +10,7 @@ from faying.contact.build import find
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.joint.form import VARIED
+from faying.misuse import checked_call
 from faying.study.keys.surface import Surface
 from faying.study.keys.varied import MODEL, OWN, formed, swept
 from faying.study.study import Study
@@ -40,6 +41,7 @@ class Axis:
         return f"{self.key} = {' to '.join(ends)}, {len(self.values)} values"
 
 
+@checked_call
 def axis_of(text: str) -> Axis:
     """Read `key=first:last:count`, `key=first:last:count:log` or `key=value,value,...`, quantities with units.
 

@@ -14,10 +14,12 @@ from faying.fe.modes import Modes
 from faying.joint.attachments import nearest_node
 from faying.joint.epmc import EpmcCurve, EpmcPoint
 from faying.joint.microslip import Microslip
+from faying.joint.shared_modes import modes_of
 from faying.joint.slip_basis import SlipBasis
 from faying.joint.springs import Springs
 from faying.joint.support_check import check_motions
 from faying.measured.mac import mac
+from faying.misuse import checked_call
 from faying.progress import Report
 from faying.result.backbone import Backbone
 from faying.study.backbone_choice import chosen, friction_of, load_index, names
@@ -28,8 +30,8 @@ from faying.study.case import Case, checked_laws, law_reasons, read_for, surface
 from faying.study.keys.backbone import BackboneChoice, Point, laws
 from faying.study.keys.beside import BesideChoice
 from faying.study.keys.law import LawChoice
-from faying.study.modes import modes_of, settled
 from faying.study.part_folder import fingerprint
+from faying.study.preloads import settled
 from faying.study.study import Study
 from faying.typing import Array
 
@@ -81,6 +83,7 @@ def backbone(
 ) -> tuple[Backbone, ...]: ...
 
 
+@checked_call
 def backbone(
     study: Study | str | Path,
     mode: int | None = None,
@@ -172,7 +175,7 @@ def backbones(
         made = _curves(case, choice, indices, frictions, store, progress)
         if file is not None:
             for path, curve in zip(names(file, len(made)), made, strict=True):
-                curve.to_netcdf(path)
+                curve.save(path)
             store.finish()
     return tuple(made)
 
@@ -338,7 +341,7 @@ def _bases(places: Sequence[tuple[Case, int]], choice: BackboneChoice, progress:
 def _modes(case: Case, springs: Sequence[Springs[Interface]], mode: int) -> Modes:
     most = int(np.count_nonzero(case.structure.vibrating[1].diagonal() > 0)) // 2
     wanted = max(min(mode + EXTRA_MODES, most - case.rigid_count), 1)
-    modes, *_ = modes_of(case, springs, case.rigid_count + wanted)
+    modes, *_ = modes_of(case.modal, springs, case.rigid_count + wanted)
     check_motions(case.structure, modes)
     return modes
 

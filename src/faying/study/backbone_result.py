@@ -11,14 +11,14 @@ from faying.errors import NotConverged
 from faying.joint.epmc import Epmc, EpmcCurve, EpmcPoint
 from faying.joint.slip_basis import SlipBasis
 from faying.joint.slip_cycle import nearest, static_cycle
+from faying.joint.state import law_notes
+from faying.joint.strength import pressure_notes
 from faying.measured.ring_down import MeasuredBackbone
 from faying.notes import Note
 from faying.result.backbone import Backbone, ErrorBounds, Witness
 from faying.study.case import Case
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.provenance import provenance
-from faying.study.solve import law_notes
-from faying.study.strength import pressure_notes
 from faying.typing import Array
 
 WITNESSES = 3  # amplitudes of the static cycle, from the last a factor 5 down each

@@ -12,7 +12,7 @@ from faying.notes import Note
 from faying.study.case import Case, Progress, interface_of, joint_law, law_reasons, materials_at, surfaces_of
 from faying.study.engine import Engine
 from faying.study.keys.beside import BesideChoice
-from faying.study.solve import State, solve
+from faying.study.solve import LoadedCase, solve
 from faying.study.study import Study
 
 TOLD = ("open", "beyond-law", "outside-validity", "law-choice", "assumed")  # notes of the other law that are told
@@ -31,7 +31,7 @@ class Beside:
 
     name: str
     case: Case | None
-    states: tuple[State, ...]
+    states: tuple[LoadedCase, ...]
     notes: tuple[Note, ...]
 
 
@@ -58,7 +58,7 @@ def solve_beside(case: Case, choice: BesideChoice, engine: Engine, progress: Pro
     return Beside(name=choice.name, case=other, states=states, notes=tuple(dict.fromkeys(told)))
 
 
-def _slim(state: State) -> State:
+def _slim(state: LoadedCase) -> LoadedCase:
     """The state without its factorisation: what is beside needs none, and memory is short."""
     factor = state.modes.factorisation
     return replace(state, modes=replace(state.modes, factorisation=Released(name=factor.name, memory=factor.memory)))

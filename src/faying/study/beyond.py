@@ -11,11 +11,11 @@ from faying.contact.mates import Mates
 from faying.errors import FayingError
 from faying.fe.damped import DampedModes, damped_modes
 from faying.fe.interface import Interface
+from faying.joint.shared_modes import EXACT, joined, modes_with
 from faying.joint.springs import Springs
-from faying.joint.structure import Joint, Structure
+from faying.joint.structure import Structure
 from faying.notes import Note
 from faying.study.case import Case, materials_at
-from faying.study.modes import EXACT, joined, modes_with
 from faying.typing import Array, Mask
 
 STIFF = 1e3  # times the stiffness of the parts over their size: what counts as bonded
@@ -39,15 +39,15 @@ def bonded_beyond(case: Case, load: float, springs: Sequence[Springs[Interface]]
     law's end, `held`, and these; modes count in rising order. None where no point is beyond.
     """
     structure, study = case.structure, case.study
-    past = [past_end(joint, s) for joint, s in zip(structure.joints, springs, strict=True)]
+    past = [joint.past_end(s) for joint, s in zip(structure.joints, springs, strict=True)]
     if not any(np.any(mask) for mask in past):
         return None
     parts = stiff_as_bonded(structure)
     bonded = [_bonded(s, mask, parts) for s, mask in zip(springs, past, strict=True)]
-    stiffness, loss = joined(case, bonded)
+    stiffness, loss = joined(case.modal, bonded)
     mass = structure.vibrating[1]
     found = damped_modes(
-        modes_with(case, stiffness, mass, rigid=structure.rigid),
+        modes_with(case.modal, stiffness, mass, rigid=structure.rigid),
         stiffness,
         mass,
         loss,
@@ -63,14 +63,6 @@ def bonded_beyond(case: Case, load: float, springs: Sequence[Springs[Interface]]
 def stiff_as_bonded(structure: Structure) -> float:
     """Springs per area [Pa/m] so stiff beside the parts that their faces count as bonded."""
     return STIFF * max(m.E for m in structure.materials.values()) / structure.mesh.size
-
-
-def past_end(joint: Joint, springs: Springs[Interface]) -> Mask:
-    """Points whose pressure is beyond the end of the law, as the law is asked."""
-    pressure = springs.pressure
-    if joint.per_node:
-        pressure = pressure * springs.interface.weights / (joint.scan_area or 1.0)
-    return np.asarray(pressure > joint.law.model.greatest_pressure)
 
 
 def _bonded(springs: Springs[Interface], past: Mask, parts: float) -> Springs[Interface]:

@@ -11,14 +11,14 @@ from faying.errors import InputError
 from faying.fe.changed import Changed
 from faying.joint.bolt import FittedBolt
 from faying.joint.clamping import Clamping, Stack, clamping, stack_of
+from faying.joint.strength import seat_area, seat_limit
 from faying.joint.structure import Structure
 from faying.joint.vdi2230 import embedding_guide
 from faying.materials import ContactPair
 from faying.result.bolts import BoltNumbers
 from faying.study.case import Case, materials_at
 from faying.study.keys.surface import Surface
-from faying.study.solve import State
-from faying.study.strength import seat_area, seat_limit
+from faying.study.solve import LoadedCase
 from faying.surface.roughness import mean_peak_to_valley
 from faying.typing import Array
 
@@ -27,7 +27,7 @@ LIKE = 3  # loads before, whose motions are combined to start from
 CARRIES = 0.01  # of a bolt's force: a joint that carries less of it plays no part in its embedding
 
 
-def bolt_numbers(case: Case, states: Sequence[State], shapes: Sequence[Array]) -> BoltNumbers | None:
+def bolt_numbers(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Array]) -> BoltNumbers | None:
     """Find the numbers of the bolts of a case under each load; None where it has no bolts.
 
     shapes: of the modes (m, nodes, 3), mass-normalised, under each load. Raises NotConverged where what a bolt clamps
@@ -65,7 +65,7 @@ def bolt_numbers(case: Case, states: Sequence[State], shapes: Sequence[Array]) -
     )
 
 
-def _clamped(structure: Structure, state: State, before: Sequence[Clamping]) -> Clamping:
+def _clamped(structure: Structure, state: LoadedCase, before: Sequence[Clamping]) -> Clamping:
     stiffness = Changed(before=structure.vibrating[0], change=structure.sprung(state.springs))
     like = np.concatenate([one.motions for one in before], axis=1) if before else None
     return clamping(structure, stiffness, state.modes, state.springs, like=like)
@@ -96,7 +96,7 @@ def _limit(structure: Structure, index: int) -> float:
     return NAN if None in limits else min(limit[0] for limit in limits if limit is not None)
 
 
-def _embedding(structure: Structure, found: Clamping, state: State) -> Array:
+def _embedding(structure: Structure, found: Clamping, state: LoadedCase) -> Array:
     """Lasting approach [m] (2, joints, bolts), weighted as a bolt's clamp force spreads over each joint.
 
     By reciprocity the seats of a bolt approach each other by the sum of an approach times the traction of 1 N.
@@ -144,7 +144,7 @@ def _height(surface: Surface) -> float:
     return mean_peak_to_valley(surface.scans[0])
 
 
-def conductances(case: Case, states: Sequence[State]) -> dict[str, Any]:
+def conductances(case: Case, states: Sequence[LoadedCase]) -> dict[str, Any]:
     """Conductance of each joint (loads, joints) for heat [W/K] and current [S], as fields of the result.
 
     NaN where a material's value is not known; a field is left out where none is. Clean metal in vacuum.

@@ -5,12 +5,12 @@ import numpy as np
 from faying.fe.by_parts import PartByPart
 from faying.fe.constraint import constrain
 from faying.fe.over_mpi import OverMpi
+from faying.joint.shared_modes import modes_with
 from faying.joint.structure import bond, merged
 from faying.joint.support_check import RIGID_BELOW
 from faying.notes import Note
 from faying.study.beyond import stiff_as_bonded
 from faying.study.case import Case
-from faying.study.modes import modes_with
 from faying.typing import Array
 
 STIFFER = 40.0  # springs that are extrapolated to bonded faces, over those that stand for bonded ones
@@ -23,7 +23,7 @@ def bounds(case: Case) -> tuple[Array, Array, list[Note]]:
     that is not possible, springs between them are extrapolated to rigid ones. Other faces get stiff springs and a note.
     """
     structure = case.structure
-    free = modes_with(case, *structure.vibrating, rigid=structure.loose())
+    free = modes_with(case.modal, *structure.vibrating, rigid=structure.loose())
     still = np.where(free.frequencies < RIGID_BELOW * case.shift_frequency, 0.0, free.frequencies)
     return still[_elastic(case)], *_bonded(case)
 
@@ -58,7 +58,7 @@ def _merged(case: Case) -> Array:
     if isinstance(way, OverMpi):
         points = (merge.T @ structure.mesh.points.ravel() / share).reshape(-1, 3)
         way = OverMpi(points, way.processes)
-    return modes_with(case, K, M, rigid=rigid, solver=way).frequencies[_elastic(case)]
+    return modes_with(case.modal, K, M, rigid=rigid, solver=way).frequencies[_elastic(case)]
 
 
 def _extrapolated(case: Case) -> Array:
@@ -75,4 +75,4 @@ def _by_springs(case: Case, times: float) -> Array:
     for joint in structure.joints:
         springs = joint.interface.springs(*2 * (np.full(len(joint.interface.weights), stiff),))
         K = K + constrain(springs, structure.fixed, 0.0)
-    return modes_with(case, K, M, rigid=structure.rigid).frequencies[_elastic(case)]
+    return modes_with(case.modal, K, M, rigid=structure.rigid).frequencies[_elastic(case)]

@@ -9,10 +9,11 @@ from faying.errors import InputError
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.files import end_of
-from faying.joint.face_axes import FaceAxes
+from faying.joint.joint import FittedJoint, with_form
 from faying.joint.joint_law import JointLaw
-from faying.joint.structure import Joint, Structure
-from faying.joint.waviness import LaidWaves, Waviness
+from faying.joint.modal import ModalProblem
+from faying.joint.strength import bolt_notes, material_notes
+from faying.joint.structure import Structure
 from faying.materials import Material
 from faying.measured.mapping import PointMap
 from faying.notes import Note
@@ -23,14 +24,12 @@ from faying.study.keys.joint import JointChoice
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import NO_SURFACE, Surface, SurfaceChoice
 from faying.study.places import named_points, on_structure
-from faying.study.strength import bolt_notes, material_notes
 from faying.study.study import Study
 from faying.typing import Array
 from faying.units import show
 
 SIZES = 3e-3, 30.0  # m: a structure smaller or larger than these is noted, for its unit may be wrong
 SEEN = 1e-6  # of snap: less is rounding
-SPARE_MODES = 6  # beyond those asked for, so that the basis of the complex modes does not end at the last of them
 Read = Mapping[SurfaceChoice, Surface]  # surfaces by what they were read from
 
 
@@ -121,17 +120,17 @@ class Case:
     @property
     def shift_frequency(self) -> float:
         """Where the modes are looked for [Hz]."""
-        return self.study.modes.shift_frequency or self.structure.shift_frequency
+        return self.modal.shift_frequency
 
     @property
     def rigid_count(self) -> int:
         """Rigid motions that nothing resists."""
-        return self.structure.rigid_count
+        return self.modal.rigid_count
 
     @property
-    def mode_count(self) -> int:
-        """Real modes that are computed, rigid and spare ones included."""
-        return self.rigid_count + self.study.modes.count + SPARE_MODES
+    def modal(self) -> ModalProblem:
+        """What is asked about the modes."""
+        return ModalProblem(structure=self.structure, choice=self.study.modes)
 
 
 def law_reasons(structure: Structure, surfaces: tuple[Surface, ...]) -> list[Note]:
@@ -142,14 +141,7 @@ def law_reasons(structure: Structure, surfaces: tuple[Surface, ...]) -> list[Not
         if law.reason:
             out.append(Note(code="law-choice", text=f"contact law: {law.reason}"))
         out += mates_notes([law], alike=surface.scans is not None and surface.scans[1] == "same")
-        if law.assumes_mindlin and law.tangential is None:
-            ratio = 2 * (1 - law.nu) / (2 - law.nu)
-            text = f"{law.model.name} defines no tangential stiffness: k_t/k_n = {ratio:.3f} is Mindlin's, assumed"
-            out.append(Note(code="assumed", text=text))
-        out += [Note(code="assumed", text=f"{law.model.name}: {text}") for text in law.model.assumptions]
-        if not law.predicts_loss:
-            text = f"{joint.name}: {law.model.name} predicts no loss; give measured damping, or a law that has one"
-            out.append(Note(code="no-loss", joint=joint.name, text=text))
+        out += joint.assumptions
     return list(dict.fromkeys(out))
 
 
@@ -272,7 +264,7 @@ def structure_of(
     study: Study, mesh: Mesh, surfaces: tuple[Surface, ...], laws: Mapping[tuple[str, str, str], JointLaw] | None = None
 ) -> Structure:
     """Return the structure of a study on a mesh, with the surface of each joint; laws: those of `checked_laws`."""
-    joints: list[Joint] = []
+    joints: list[FittedJoint] = []
     notes: list[Note] = []
     for joint, surface in zip(study.joints, surfaces, strict=True):
         parts = (mesh.face_part[joint.faces[0]], mesh.face_part[joint.faces[1]])
@@ -282,7 +274,7 @@ def structure_of(
         interface, closed = interface_of(study, mesh, joint, surface)
         notes += closed
         joints.append(
-            Joint(
+            FittedJoint(
                 name=joint.name,
                 faces=joint.faces,
                 interface=interface,
@@ -304,27 +296,18 @@ def structure_of(
 
 def interface_of(study: Study, mesh: Mesh, joint: JointChoice, surface: Surface) -> tuple[Interface, list[Note]]:
     """How the faces of a joint meet, with their form; and notes on a gap that was closed and on waves."""
-    met, notes = snapped(join(mesh, *joint.faces, search_distance=joint.search_distance), study, joint.name)
+    met, notes = snapped(
+        join(mesh, *joint.faces, search_distance=joint.search_distance), study.geometry.snap, joint.name
+    )
     if joint.form is None:
         return met, notes
-    form = joint.form.with_scan(surface.waves)
-    if form.waviness is not None:
-        notes += wave_notes(joint.name, form.waviness, FaceAxes.of(mesh, joint.faces, met, form.along))
-    return form.on(met, mesh, joint.faces), notes
+    formed, more = with_form(met, mesh, joint.faces, joint.form.with_scan(surface.waves), joint.name)
+    return formed, [*notes, *more]
 
 
-def wave_notes(name: str, waviness: Waviness, axes: FaceAxes) -> list[Note]:
-    """Which waves are drawn, and which of them the mesh does not carry. Raises InputError where they do not fit."""
-    laid = LaidWaves.of(waviness, axes)
-    text = f"{name}: {laid.words()} ({waviness.origin}), draw {waviness.seed}; another draw is another joint. "
-    text += f"faying sweep over joint.{name}.form.waviness_seed, or faying predict, says how far draws differ"
-    notes = [Note(code="waves", joint=name, text=text)]
-    return notes if laid.lost <= 0 else [*notes, Note(code="waves-mesh", joint=name, text=f"{name}: {laid.cut()}")]
-
-
-def snapped(interface: Interface, study: Study, name: str) -> tuple[Interface, list[Note]]:
-    """Close a gap of the CAD model that is nowhere wider than [geometry] snap; a note says how wide it was."""
-    widest, snap = float(np.abs(interface.gap).max()), study.geometry.snap
+def snapped(interface: Interface, snap: float, name: str) -> tuple[Interface, list[Note]]:
+    """Close a gap of the CAD model that is nowhere wider than snap [m]; a note says how wide it was."""
+    widest = float(np.abs(interface.gap).max())
     if not SEEN * snap < widest <= snap:
         return interface, []
     text = f"{name}: the faces lie up to {show(widest, 'm')} apart; geometry.snap = {show(snap, 'm')} closes that"

@@ -16,8 +16,9 @@ from faying.fe.mesh_facts import mesh_facts
 from faying.fe.quality import quality
 from faying.fe.selectors import TOUCHING, chosen, points_of
 from faying.joint.bolt import Bolt, BoltPlace, each_in_its_place
+from faying.joint.joint import each_pair_once
 from faying.joint.solid_bolt import SolidBolt
-from faying.joint.structure import each_pair_once
+from faying.joint.strength import SolidPlace, bolt_notes, material_notes
 from faying.memory import available
 from faying.notes import Note
 from faying.progress import duration
@@ -29,7 +30,6 @@ from faying.study.lines import key_of, line_of, lines_of
 from faying.study.places import named_points, on_structure
 from faying.study.reach import law_findings
 from faying.study.sketch import Sketch
-from faying.study.strength import SolidPlace, bolt_notes, material_notes
 from faying.study.study import Study
 from faying.units import show
 

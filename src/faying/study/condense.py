@@ -12,11 +12,12 @@ from faying.decks.system import System
 from faying.errors import InputError
 from faying.joint.condensed import CondensedJoint, condensed_modes
 from faying.joint.loads import preload_index
+from faying.joint.shared_modes import modes_of
 from faying.joint.support_check import check_motions
 from faying.measured.mac import mac
 from faying.progress import Report
 from faying.study.case import Case, Progress
-from faying.study.modes import modes_of, settled
+from faying.study.preloads import settled
 from faying.study.study import Study
 from faying.typing import Array
 
@@ -158,7 +159,7 @@ def condense(
         state = settled(case, k, problem)
     springs = structure.springs(state.pressures)
     progress.begin("modes")
-    modes, *_ = modes_of(case, springs)
+    modes, *_ = modes_of(case.modal, springs)
     check_motions(structure, modes)
     made = CondensedJoint.of(springs[number])
     elastic = slice(case.rigid_count, case.rigid_count + study.modes.count)

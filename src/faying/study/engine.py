@@ -4,16 +4,18 @@ from collections.abc import Callable, Sequence
 from typing import Any, Protocol, final
 
 from faying.errors import InputError
-from faying.fe.damped import DampedModes, damped_modes, damped_near
+from faying.fe.damped import damped_modes
 from faying.fe.interface import Interface
 from faying.fe.modes import Modes, lowest_modes
 from faying.joint.equilibrium import PreloadState
 from faying.joint.plain import PlainPreload
 from faying.joint.preload import PreloadProblem
+from faying.joint.shared_modes import EXACT, SharedModes
 from faying.joint.springs import Springs
-from faying.joint.support_check import checked_preload
+from faying.joint.state import Vibration, vibrate
+from faying.joint.support_check import check_motions, checked_preload
 from faying.study.case import Case
-from faying.study.modes import EXACT, Preloads, SharedModes
+from faying.study.preloads import Preloads
 from faying.typing import Array
 
 RANGE_ERROR = 1e-4  # of the squared frequencies at the ends of a range, which no digit of a law's range asks for
@@ -25,11 +27,8 @@ class Engine(Protocol):
     def preload(self, number: int) -> PreloadState:
         """The equilibrium at one of the loads, counted from 0; raises as `checked_preload` does."""
 
-    def modes(self, springs: Sequence[Springs[Interface]]) -> tuple[Modes, Any]:
-        """Real modes with springs on the joints, and the stiffness [N/m] that they belong to."""
-
-    def damped(self, modes: Modes, stiffness: Any, loss: Any) -> DampedModes:
-        """Complex modes, from the real ones and the loss of the joints [N/m], or [N s/m] where it is viscous."""
+    def vibrate(self, springs: Sequence[Springs[Interface]]) -> Vibration:
+        """Real and complex modes with springs on the joints. Raises InputError where a part moves freely."""
 
     def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
         """Frequencies [Hz] of the elastic modes with other springs, to half of `RANGE_ERROR`."""
@@ -62,41 +61,44 @@ class Direct:
         study = self.case.study
         return checked_preload(self.case.structure, self._problem, study.forces(number), order=study.order)
 
-    def modes(self, springs: Sequence[Springs[Interface]]) -> tuple[Modes, Any]:
+    def vibrate(self, springs: Sequence[Springs[Interface]]) -> Vibration:
         """See `Engine`."""
-        case, structure = self.case, self.case.structure
-        stiffness, _ = structure.joined(springs)
-        return lowest_modes(
-            stiffness,
-            structure.vibrating[1],
-            case.mode_count,
-            shift_frequency=case.shift_frequency,
-            solver=case.study.modes.solver,
-            rigid=structure.rigid,
-        ), stiffness
-
-    def damped(self, modes: Modes, stiffness: Any, loss: Any) -> DampedModes:
-        """See `Engine`."""
-        case = self.case
-        return damped_modes(
+        case, structure, choice = self.case, self.case.structure, self.case.study.modes
+        modes, stiffness = self._modes(springs)
+        check_motions(structure, modes)
+        loss = structure.lost(springs, viscous=choice.damping == "viscous")
+        damped = damped_modes(
             modes,
             stiffness,
-            case.structure.vibrating[1],
+            structure.vibrating[1],
             loss,
             rigid=case.rigid_count,
-            count=case.study.modes.count,
-            kind=case.study.modes.damping,
+            count=choice.count,
+            kind=choice.damping,
             tolerance=EXACT,
         )
+        return Vibration(modes=modes, damped=damped, stiffness=stiffness, loss=loss)
 
     def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
         """See `Engine`."""
-        modes, _ = self.modes(springs)
+        modes, _ = self._modes(springs)
         return modes.frequencies[self.case.rigid_count :][: self.case.study.modes.count]
 
     def of(self, case: Case) -> "Direct":
         """See `Engine`."""
         return Direct(case)
+
+    def _modes(self, springs: Sequence[Springs[Interface]]) -> tuple[Modes, Any]:
+        case, structure = self.case, self.case.structure
+        stiffness, _ = structure.joined(springs)
+        return lowest_modes(
+            stiffness,
+            structure.vibrating[1],
+            case.modal.mode_count,
+            shift_frequency=case.shift_frequency,
+            solver=case.study.modes.solver,
+            rigid=structure.rigid,
+        ), stiffness
 
 
 @final
@@ -117,27 +119,16 @@ class Reanalysis:
         """See `Engine`."""
         return self._preloads.at(number)
 
-    def modes(self, springs: Sequence[Springs[Interface]]) -> tuple[Modes, Any]:
+    def vibrate(self, springs: Sequence[Springs[Interface]]) -> Vibration:
         """See `Engine`."""
-        self._shared.begin(self.case, self._preloads.problem)
-        modes, stiffness = self._shared.of(self.case, springs)
-        self._preloads.problem.take(modes.factorisation, self.case.shift_frequency)
-        return modes, stiffness
-
-    def damped(self, modes: Modes, stiffness: Any, loss: Any) -> DampedModes:
-        """See `Engine`."""
-        near, modes_asked = self._shared.near, self.case.study.modes
-        assert near is not None
-        return damped_near(
-            near, modes, stiffness, loss, count=modes_asked.count, kind=modes_asked.damping, tolerance=EXACT
-        )
+        return vibrate(self.case.modal, springs, self._preloads.problem, self._shared)
 
     def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
         """See `Engine`."""
         if not self._looked and self._shared.near is not None:
             self._shared.near.look_everywhere()
             self._looked = True
-        modes, _ = self._shared.of(self.case, springs, tolerance=RANGE_ERROR, shapes=False)
+        modes, _ = self._shared.of(self.case.modal, springs, tolerance=RANGE_ERROR, shapes=False)
         return modes.frequencies[self.case.rigid_count :][: self.case.study.modes.count]
 
     def of(self, case: Case) -> "Reanalysis":

@@ -11,13 +11,13 @@ from faying.contact.stability import stability, stiffness_at
 from faying.errors import FayingError
 from faying.notes import Note
 from faying.study.case import Case, materials_at
-from faying.study.solve import State
+from faying.study.solve import LoadedCase
 
 FALL = 1e-6  # relative: a smaller fall is none
 FAR = 2.0  # factor between a law and the exact contact that is told
 
 
-def falling(case: Case, states: Sequence[State]) -> list[Note]:
+def falling(case: Case, states: Sequence[LoadedCase]) -> list[Note]:
     """Say which modes fall as the preload grows, and why."""
     out = []
     for before, after in pairwise(states):
@@ -41,7 +41,7 @@ def falling(case: Case, states: Sequence[State]) -> list[Note]:
     return out
 
 
-def against_exact_contact(case: Case, state: State) -> list[Note]:
+def against_exact_contact(case: Case, state: LoadedCase) -> list[Note]:
     """Say where a law lies far from the half-space contact of its own scan, and where the window decides its k_n.
 
     Both at the mean pressure of the joint where it touches. Joints that share surface and law have one note.

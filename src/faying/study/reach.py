@@ -14,13 +14,13 @@ from faying.errors import FayingError
 from faying.joint.bolt import BoltPlace
 from faying.joint.clamping import BESIDE, seat_ring
 from faying.joint.joint_law import JointLaw
+from faying.joint.strength import SolidPlace
 from faying.joint.vdi2230 import cone_pressure
 from faying.materials import Material
 from faying.study.case import surfaces_of
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.surface import Surface
 from faying.study.sketch import Sketch
-from faying.study.strength import SolidPlace
 from faying.typing import Array
 from faying.units import show
 

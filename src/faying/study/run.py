@@ -12,6 +12,7 @@ from faying.fe.over_mpi import OverMpi
 from faying.fe.solve import chosen, is_mpi
 from faying.joint.bolt import FittedBolt
 from faying.joint.structure import Structure
+from faying.misuse import checked_call
 from faying.notes import Note
 from faying.progress import Report
 from faying.result import BoltNumbers, Comparison, Receptance, Result
@@ -24,7 +25,7 @@ from faying.study.case import Case, Progress
 from faying.study.engine import engine_of
 from faying.study.findings import against_exact_contact, falling
 from faying.study.provenance import provenance
-from faying.study.solve import State, solve
+from faying.study.solve import LoadedCase, solve
 from faying.study.study import Study
 from faying.study.tracks import compared, encounters, macs, shapes_of
 from faying.study.wave_band import wave_band
@@ -33,6 +34,7 @@ from faying.typing import Array
 NOT_ZERO = 1e-2  # Hz: a rigid motion above it is noted
 
 
+@checked_call
 def run(study: Study | str | Path, *, report: Report | None = None, engine: str = "reanalysis") -> Result:
     """Run a study from the surface to the modes.
 
@@ -73,7 +75,7 @@ def run(study: Study | str | Path, *, report: Report | None = None, engine: str 
     return replace(result, backbones=curves, notes=tuple(dict.fromkeys(every)))
 
 
-def findings(case: Case, states: Sequence[State]) -> list[Note]:
+def findings(case: Case, states: Sequence[LoadedCase]) -> list[Note]:
     """What the states say of the laws and the joint, beyond where a law ends."""
     return [*falling(case, states), *against_exact_contact(case, states[0])]
 
@@ -95,7 +97,7 @@ def stages(study: Study) -> list[str]:
 
 def collect(
     case: Case,
-    states: Sequence[State],
+    states: Sequence[LoadedCase],
     bounds: tuple[Array, Array],
     notes: Sequence[Note],
     besides: Sequence[Beside] = (),
@@ -161,7 +163,7 @@ def collect(
     return replace(result, hammer=case.hammer.beside(result, full))
 
 
-def _bolts(case: Case, states: Sequence[State], shapes: Sequence[Array]) -> tuple[BoltNumbers | None, list[Note]]:
+def _bolts(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Array]) -> tuple[BoltNumbers | None, list[Note]]:
     try:
         return bolt_numbers(case, states, shapes), []
     except NotConverged as fault:
@@ -183,7 +185,7 @@ def _predicted(beside: Beside, comparison: Comparison) -> Array:
     return np.full(comparison.frequencies.shape, np.nan)
 
 
-def _at_loads(states: Sequence[State], lossless: bool, bounds: tuple[Array, Array]) -> dict[str, Any]:
+def _at_loads(states: Sequence[LoadedCase], lossless: bool, bounds: tuple[Array, Array]) -> dict[str, Any]:
     """Fields of the result that have a value or a row for each load.
 
     The ends of the range of a law lie between the frequencies of free and of bonded faces, as stiffness raises each of
@@ -204,7 +206,7 @@ def _at_loads(states: Sequence[State], lossless: bool, bounds: tuple[Array, Arra
     }
 
 
-def _outline(structure: Structure, shapes: Sequence[Array], states: Sequence[State]) -> dict[str, Any]:
+def _outline(structure: Structure, shapes: Sequence[Array], states: Sequence[LoadedCase]) -> dict[str, Any]:
     """Fields of the result on the outer surface."""
     outer, mass = structure.surface(), structure.vibrating[1]
     lagging = [s.damped.scaled_shapes(mass)[1].T.reshape(len(s.damped.frequencies), -1, 3) for s in states]
@@ -236,7 +238,7 @@ def _made_of(structure: Structure) -> dict[str, Any]:
     }
 
 
-def _on_faces(structure: Structure, states: Sequence[State]) -> dict[str, Any]:
+def _on_faces(structure: Structure, states: Sequence[LoadedCase]) -> dict[str, Any]:
     """Gap and slip at the points of the joints' springs."""
 
     def at_springs(k: int, values: Array) -> Array:
@@ -251,7 +253,7 @@ def _on_faces(structure: Structure, states: Sequence[State]) -> dict[str, Any]:
     }
 
 
-def _at_points(states: Sequence[State]) -> dict[str, Any]:
+def _at_points(states: Sequence[LoadedCase]) -> dict[str, Any]:
     """Fields of the result at the points of the joints, and their sums over each joint."""
     interfaces = [spring.interface for spring in states[0].springs]
     totals = np.array([[spring.total() for spring in s.springs] for s in states])
@@ -268,7 +270,7 @@ def _at_points(states: Sequence[State]) -> dict[str, Any]:
     }
 
 
-def _bonded_beyond(states: Sequence[State], lossless: bool) -> dict[str, Any]:
+def _bonded_beyond(states: Sequence[LoadedCase], lossless: bool) -> dict[str, Any]:
     """Frequencies and loss factors with what is beyond the end of a law bonded, where anything is at any load."""
     if all(s.beyond is None for s in states):
         return {}
@@ -279,7 +281,7 @@ def _bonded_beyond(states: Sequence[State], lossless: bool) -> dict[str, Any]:
     }
 
 
-def _response(study: Study, states: Sequence[State]) -> Receptance | None:
+def _response(study: Study, states: Sequence[LoadedCase]) -> Receptance | None:
     found = [s.response for s in states if s.response is not None]
     if study.response is None or not found:
         return None

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from faying.fe.face_facts import Contact, FaceFacts, GeometryFacts
 from faying.fe.face_triangles import FaceTriangles
 from faying.joint.bolt import BoltPlace
+from faying.joint.strength import SolidPlace
 from faying.materials import Material
-from faying.study.strength import SolidPlace
 from faying.study.study import Study
 
 

@@ -9,20 +9,19 @@ from faying.fe.interface import Interface
 from faying.fe.modes import Modes
 from faying.joint.equilibrium import PreloadState
 from faying.joint.springs import Springs
-from faying.joint.structure import Structure
-from faying.joint.support_check import check_motions, open_joints
+from faying.joint.state import law_notes
+from faying.joint.strength import pressure_notes
 from faying.measured.model import FullResponse
 from faying.notes import Note
-from faying.study.beyond import Beyond, bonded_beyond, past_end
+from faying.study.beyond import Beyond, bonded_beyond
 from faying.study.case import Case, Progress
 from faying.study.engine import Engine
 from faying.study.response import LoadedStructure, ResponseAtLoad
-from faying.study.strength import pressure_notes
 from faying.typing import Array, Mask
 
 
 @dataclass(frozen=True, kw_only=True)
-class State:
+class LoadedCase:
     """A case under one preload.
 
     Args:
@@ -58,7 +57,7 @@ class State:
         return self.damped.frequencies if self.beyond is None else self.beyond.frequencies
 
 
-def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges: bool = True) -> State:
+def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges: bool = True) -> LoadedCase:
     """Solve a case at one of its loads, counted from 0.
 
     ranges: whether to find the frequencies at the ends of the laws' ranges. Raises InputError where a part is held by
@@ -70,17 +69,20 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
     preload = engine.preload(number)
     springs = structure.springs(preload.pressures)
     progress.begin(f"modes at {load / 1e3:g} kN")
-    modes, stiffness = engine.modes(springs)
-    check_motions(structure, modes)
-    loss = structure.lost(springs, viscous=study.modes.damping == "viscous")
-    damped = engine.damped(modes, stiffness, loss)
-    mass = structure.vibrating[1]
+    found = engine.vibrate(springs)
+    modes, damped = found.modes, found.damped
     loaded = LoadedStructure(
-        study=study, structure=structure, modes=modes, damped=damped, stiffness=stiffness, mass=mass, loss=loss
+        study=study,
+        structure=structure,
+        modes=modes,
+        damped=damped,
+        stiffness=found.stiffness,
+        mass=structure.vibrating[1],
+        loss=found.loss,
     )
     response, test_response, notes = _responses(case, number, loaded, progress)
     beyond = bonded_beyond(case, load, springs, damped)
-    return State(
+    return LoadedCase(
         load=load,
         preload=preload,
         springs=springs,
@@ -100,7 +102,7 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
         outside_share=_share(
             springs, [~j.law.answer(s.pressure).valid for j, s in zip(structure.joints, springs, strict=True)]
         ),
-        beyond_share=_share(springs, [past_end(j, s) for j, s in zip(structure.joints, springs, strict=True)]),
+        beyond_share=_share(springs, [j.past_end(s) for j, s in zip(structure.joints, springs, strict=True)]),
     )
 
 
@@ -135,22 +137,3 @@ def _at_end(end: Literal["low", "high"], case: Case, preload: PreloadState, engi
         return None
     joints = [replace(j, law=replace(j.law, end=end)) if j.law.has_range else j for j in structure.joints]
     return engine.frequencies(replace(structure, joints=tuple(joints)).springs(preload.pressures))
-
-
-def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[Note]:
-    """Say where contact is lost and where a law leaves its validity range, with the share of the joint's area."""
-    kilo = f"{load / 1e3:g} kN"
-    out = [
-        Note(code="open", joint=name, load=load, text=f"{name}, {kilo}: no contact is left; the joint carries nothing")
-        for name in open_joints(structure, preload.pressures)
-    ]
-    for joint, pressure in zip(structure.joints, preload.pressures, strict=True):
-        model, weights, area = joint.law.model, joint.interface.weights, joint.interface.area
-        answer = joint.law.answer(pressure)
-        for reason, mask in answer.reasons.items():
-            share = float(weights @ mask / area)
-            if share > 0:
-                where = f"{model.name} is outside its validity range on {share:.0%} of the joint"
-                text = f"{joint.name}, {kilo}: {where}: {reason}"
-                out.append(Note(code="outside-validity", joint=joint.name, load=load, share=share, text=text))
-    return out

@@ -8,8 +8,10 @@ from typing import Any, Self
 from faying.errors import ReadError
 from faying.joint.attachments import PointMass, Support
 from faying.joint.bolt import Bolt
+from faying.joint.modal import ModesChoice
 from faying.joint.solid_bolt import SolidBolt
 from faying.materials import Material
+from faying.misuse import checked_call
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.keys.beside import BesideChoice
 from faying.study.keys.bolt import read_bolt
@@ -18,13 +20,14 @@ from faying.study.keys.joint import JointChoice
 from faying.study.keys.law import LawChoice
 from faying.study.keys.material import read_materials, read_parts
 from faying.study.keys.reader import Faults, Table
-from faying.study.keys.solution import ModesChoice, ResponseChoice, read_order
+from faying.study.keys.solution import ResponseChoice, read_modes, read_order
 from faying.study.keys.support import read_mass, read_support
 from faying.study.keys.surface import SurfaceChoice
 from faying.study.keys.test import HammerChoice, TestChoice, read_test
 from faying.study.keys.uncertain import Known, UncertainChoice, lifted, read_uncertain
 
 
+@checked_call
 @dataclass(frozen=True, kw_only=True)
 class Study:
     """One whole study. Read it with Study.read(path); every fault of the file is reported in one InputError.
@@ -123,7 +126,7 @@ class Study:
             faults.add(
                 f"the bolts have {' and '.join(map(str, sorted(counts)))} preloads; give each bolt the same number"
             )
-        modes = ModesChoice.of(top.table("modes"))
+        modes = read_modes(top.table("modes"))
         order = read_order(top.table("tightening"), [bolt.name for bolt in bolts])
         response = ResponseChoice.of(top.table("response"))
         test, hammer = read_test(top, max((b.preload for b in bolts if b.preload), key=len, default=()))

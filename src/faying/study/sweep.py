@@ -9,6 +9,7 @@ import numpy as np
 
 from faying.errors import FayingError, InputError
 from faying.joint.reduced import ReducedModel
+from faying.misuse import checked_call
 from faying.progress import Report, silent
 from faying.study.axes import Axis, Grid
 from faying.study.case import checked_laws, surfaces_of
@@ -63,6 +64,7 @@ def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dic
     return {name: np.array(values) for name, values in rows.items()}
 
 
+@checked_call
 def sweep(
     study: Study | str | Path,
     axes: Sequence[Axis],

@@ -9,17 +9,17 @@ from faying.measured.pairing import Paired, changes, pair_over_loads
 from faying.notes import Note
 from faying.result import Comparison
 from faying.study.case import Case
-from faying.study.solve import State
+from faying.study.solve import LoadedCase
 from faying.typing import Array
 
 
-def shapes_of(case: Case, states: Sequence[State]) -> list[Array]:
+def shapes_of(case: Case, states: Sequence[LoadedCase]) -> list[Array]:
     """Shapes (m, nodes, 3) at each load: those of the complex modes, for real modes that lie close mix."""
     mass = case.structure.vibrating[1]
     return [s.damped.real_shapes(mass).T.reshape(len(s.damped.frequencies), -1, 3) for s in states]
 
 
-def macs(case: Case, states: Sequence[State]) -> tuple[list[Array], Array]:
+def macs(case: Case, states: Sequence[LoadedCase]) -> tuple[list[Array], Array]:
     """MAC, weighted by mass, of the modes of each load with those of the next (m, m), and with those of the first.
 
     The latter (load, m, m).
@@ -35,7 +35,7 @@ def macs(case: Case, states: Sequence[State]) -> tuple[list[Array], Array]:
     return steps, np.stack(with_first)
 
 
-def encounters(states: Sequence[State], steps: Sequence[Array]) -> list[Note]:
+def encounters(states: Sequence[LoadedCase], steps: Sequence[Array]) -> list[Note]:
     """Say which modes cross and which couple from one load to the next; steps: MAC from load to load."""
     out = []
     for code, word, found in zip(("modes-cross", "modes-couple"), ("cross", "couple"), changes(steps), strict=True):
@@ -48,7 +48,7 @@ def encounters(states: Sequence[State], steps: Sequence[Array]) -> list[Note]:
 
 
 def compared(
-    case: Case, states: Sequence[State], shapes: Sequence[Array], steps: Sequence[Array]
+    case: Case, states: Sequence[LoadedCase], shapes: Sequence[Array], steps: Sequence[Array]
 ) -> tuple[Comparison | None, list[Note]]:
     """Pair the test's frequencies with the computed modes, followed over the loads; see `pair_frequencies`.
 

@@ -17,7 +17,7 @@ from faying.joint.waviness import LaidWaves
 from faying.notes import Note
 from faying.result.result import preload_slope
 from faying.study.case import Case
-from faying.study.solve import State
+from faying.study.solve import LoadedCase
 from faying.typing import Array
 from faying.units import show
 
@@ -67,7 +67,7 @@ class _Wavy:
         return self.base + waves.gap(self.positions, self.axes, self.weights)
 
 
-def wave_band(case: Case, states: Sequence[State]) -> tuple[WaveBand | None, list[Note]]:
+def wave_band(case: Case, states: Sequence[LoadedCase]) -> tuple[WaveBand | None, list[Note]]:
     """Take the frequencies with a few draws of waves on the faces, at no full solution.
 
     Where a joint says nothing of its form, the waves are those that are assumed of machined faces. A form that is given

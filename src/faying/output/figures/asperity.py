@@ -7,7 +7,7 @@ import numpy as np
 from faying.asperity_fe.drive import AsperityCase
 from faying.asperity_fe.result import AsperityResult
 from faying.materials import RIGID, ContactPair
-from faying.output.figures.law import figure
+from faying.style import new_panels
 
 LAWS = ("KogutEtsion", "JacksonGreen", "LinLin", "ZhaoMaiettaChang", "JK")
 
@@ -84,7 +84,7 @@ def stresses(fig: Any, ax: Any, case: AsperityCase, result: AsperityResult) -> N
 
 def overview(case: AsperityCase, result: AsperityResult) -> Any:
     """Return a figure: force, area, and the stress at the last step."""
-    fig = figure(3, width=4.6, height=3.9)
+    fig = new_panels(3, width=4.6, height=3.9)
     curves(fig.axes[:2], case, result)
     stresses(fig, fig.axes[2], case, result)
     return fig

@@ -82,9 +82,9 @@ def pressure_map(ax: Any, contact: HalfSpaceContact, *, pixels: int = 1200) -> A
 
 def contact_figure(contact: HalfSpaceContact) -> Any:
     """Return a figure with the contact's states beside its pressures."""
-    from faying.output.figures.law import figure
+    from faying.style import new_panels
 
-    fig = figure(2, width=5.2, height=4.8)
+    fig = new_panels(2, width=5.2, height=4.8)
     left, right = fig.axes
     contact_map(left, contact)
     pressure_map(right, contact)

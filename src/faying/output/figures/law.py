@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from faying.contact.law import Response
-from faying.output.figures.save import new_figure
+from faying.style import new_panels
 
 PANELS = (
     ("area", "real area / nominal area", 1.0),
@@ -12,13 +12,6 @@ PANELS = (
     ("k_t", "tangential stiffness k_t [MPa/um]", 1e-12),
     ("loss_n", "normal loss factor", 1.0),
 )
-
-
-def figure(columns: int, rows: int = 1, *, width: float = 4.4, height: float = 3.6) -> Any:
-    """Return a figure with rows x columns axes that needs no display."""
-    fig = new_figure(width * columns, height * rows)
-    fig.subplots(rows, columns, squeeze=False)
-    return fig
 
 
 def panel(ax: Any, responses: Mapping[str, Response], name: str, label: str, scale: float = 1.0) -> Any:
@@ -46,7 +39,7 @@ def panel(ax: Any, responses: Mapping[str, Response], name: str, label: str, sca
 def curves(responses: Mapping[str, Response]) -> Any:
     """Return a figure with one panel per quantity that any of the laws defines."""
     panels = [p for p in PANELS if any(p[0] in r.quantities() for r in responses.values())]
-    fig = figure(min(2, len(panels)), -(-len(panels) // 2))
+    fig = new_panels(min(2, len(panels)), -(-len(panels) // 2))
     for ax, (name, label, scale) in zip(fig.axes, panels, strict=False):
         panel(ax, responses, name, label, scale)
     for ax in fig.axes[len(panels) :]:

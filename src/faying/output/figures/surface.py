@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.output.figures.save import new_figure, plain, save
+from faying.style import new_figure, plain, save
 from faying.surface.convention import density
 from faying.surface.form import Prepared
 from faying.surface.fractal import FractalFit

@@ -9,9 +9,9 @@ from faying.fe.mesh import Mesh
 from faying.fe.outline import edges_of, normals, outline, regions
 from faying.joint.attachments import PointMass, nearest_node
 from faying.joint.attachments import Support as HeldFace
-from faying.output.scene.maps import joint_map
-from faying.output.scene.model import Bolt, Face, Joint, Map, Mass, Modes, Scene, Support
+from faying.output.scene.model import Bolt, Face, Joint, Mass, Modes, Scene, Support
 from faying.result import Result
+from faying.result.maps import joint_map_of
 from faying.typing import Array, Index
 
 if TYPE_CHECKING:
@@ -144,23 +144,6 @@ def feature_edges(points: Array, triangles: Index, of_triangle: Index) -> Index:
     normal = normals(points, triangles)
     sharp = np.einsum("ij,ij->i", normal[first], normal[last]) < np.cos(SHARP)
     return np.asarray(edges[sharp | (of_triangle[first] != of_triangle[last]) | (first == last)])
-
-
-def joint_map_of(result: Result, joint: int) -> Map | None:
-    """Values on the first face of a joint; None where the result does not say which triangles those are."""
-    if result.face_of_triangle is None or joint >= len(result.joint_faces):
-        return None
-    name = result.joint_faces[joint][0]
-    if name not in result.faces:
-        return None
-    at, here = result.joint_of_point == joint, result.face_of_triangle == result.faces.index(name)
-    if not np.any(here) or not np.any(at):
-        return None
-    fields = {"pressure": result.pressure, "k_n": result.k_n, "k_t": result.k_t, "slip": result.slip}
-    values = {name: rows[:, at] for name, rows in fields.items() if rows is not None}
-    if result.gap is not None and np.ptp(result.gap) > 1e-9 * float(np.ptp(result.outline)):
-        values["gap"] = result.gap[None, at]
-    return joint_map(result.outline, result.triangles[here], result.points[at], result.weights[at], values)
 
 
 def _bolts(result: Result) -> tuple[Bolt, ...]:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from faying.fe.face_map import FaceValues
 from faying.typing import Array, Index
 
 UNITS = ((0.5e-3, "µm", 1e6), (2.0, "mm", 1e3), (np.inf, "m", 1.0))  # up to this size of the structure [m]
@@ -32,27 +33,12 @@ class Face:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Map:
-    """Triangles on the first face of a joint, each triangle of the outline cut into four, with values at their corners.
-
-    Args:
-        parents: Two nodes of the outline (k, 2) between which each corner lies half-way; the same twice at a node.
-        triangles: Triangles (m, 3) between these corners.
-        fields: Name -> values (loads, k), or (1, k) for what does not depend on the load; SI.
-    """
-
-    parents: Index
-    triangles: Index
-    fields: dict[str, Array]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Joint:
     """A joint: its name, its two faces by their position in `Scene.faces`, and the maps on the first of them."""
 
     name: str
     faces: tuple[int, ...]
-    map: Map | None = None
+    map: FaceValues | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -8,10 +8,10 @@ from typing import Any, Literal
 from faying import units
 from faying.contact.build import find
 from faying.errors import InputError
+from faying.joint.modal import MOST_MODES
 from faying.measured.ring_down import MeasuredBackbone
 from faying.study.keys.law import LawChoice
 from faying.study.keys.reader import Table, number, point
-from faying.study.keys.solution import MOST_MODES
 
 Point = tuple[float, float, float]
 RANGE = (0.1, 100.0)  # m/s2

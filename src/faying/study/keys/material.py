@@ -3,10 +3,8 @@
 from collections.abc import Mapping
 
 from faying.errors import InputError
-from faying.materials import CATALOGUE, Material
+from faying.materials import CATALOGUE, STIFFEST, Material
 from faying.study.keys.reader import Table
-
-STIFFEST = 0.495  # Poisson's ratio from which displacements alone cannot describe a solid
 
 
 def read_materials(top: Table) -> dict[str, Material]:

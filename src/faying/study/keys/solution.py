@@ -2,38 +2,28 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 from faying.errors import InputError
-from faying.fe.solve import BY_PARTS, MPI
+from faying.joint.modal import MOST_MODES, SOLVERS, ModesChoice
 from faying.study.keys.reader import Table, direction, point
 
-MOST_MODES, MOST_POINTS, MOST_PASSES = 10_000, 1_000_000, 100
+MOST_POINTS, MOST_PASSES = 1_000_000, 100
 Point = tuple[float, float, float]
 
 
-@dataclass(frozen=True, kw_only=True)
-class ModesChoice:
-    """How many elastic modes, which kind of loss, which factorisation, which shift [Hz] (None: chosen)."""
-
-    count: int = 10
-    damping: Literal["hysteretic", "viscous"] = "hysteretic"
-    solver: str | None = None
-    shift_frequency: float | None = None
-
-    @classmethod
-    def of(cls, table: Table | None) -> "ModesChoice":
-        """Read [modes]."""
-        if table is None:
-            return cls()
-        choice = cls(
-            count=table.count("count", 10, most=MOST_MODES),
-            damping=table.text("damping", "hysteretic", ("hysteretic", "viscous")),
-            solver=table.text("solver", None, ("pardiso", BY_PARTS, "mumps", "cholmod", "superlu", MPI)),
-            shift_frequency=table.quantity("shift_frequency", "Hz", None),
-        )
-        table.close()
-        return choice
+def read_modes(table: Table | None) -> ModesChoice:
+    """Read [modes]."""
+    if table is None:
+        return ModesChoice()
+    choice = ModesChoice(
+        count=table.count("count", 10, most=MOST_MODES),
+        damping=table.text("damping", "hysteretic", ("hysteretic", "viscous")),
+        solver=table.text("solver", None, SOLVERS),
+        shift_frequency=table.quantity("shift_frequency", "Hz", None),
+    )
+    table.close()
+    return choice
 
 
 @dataclass(frozen=True, kw_only=True)

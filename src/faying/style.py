@@ -1,14 +1,19 @@
-"""How every figure is made and written."""
+"""How figures and printed summaries look: one style, units on the axes, files that appear complete or not at all."""
 
 import gc
-from collections.abc import Iterator
+from abc import abstractmethod
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from html import escape
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from faying.errors import InputError
 from faying.files import write_atomically
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"))
 
@@ -20,6 +25,67 @@ def new_figure(width: float, height: float) -> Any:
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout="constrained")
+
+
+def new_panels(columns: int, rows: int = 1, *, width: float = 4.4, height: float = 3.6) -> Any:
+    """Return a figure of rows x columns axes of this size [inches] each, which needs no display."""
+    figure = new_figure(width * columns, height * rows)
+    figure.subplots(rows, columns, squeeze=False)
+    return figure
+
+
+def axes_of(given: Any, count: int, *, width: float = 5.0, height: float = 3.8, columns: int = 2) -> "list[Axes]":
+    """Return the `count` axes that a method `plot` draws into.
+
+    Args:
+        given: what the user handed over: None for a new figure, which a notebook or `matplotlib.pyplot.show` shows;
+            one axes; or a list or array of axes.
+        count: how many panels are drawn.
+        width, height: size of a panel of a new figure [inches].
+        columns: panels in a row of a new figure.
+
+    Raises:
+        InputError: it is not the right number of axes.
+    """
+    if given is None:
+        from matplotlib import pyplot
+
+        columns, rows = min(columns, count), -(-count // columns)
+        figure = pyplot.figure(figsize=(width * columns, height * rows), layout="constrained")
+        axes = list(figure.subplots(rows, columns, squeeze=False).flat)
+        for unused in axes[count:]:
+            unused.set_visible(False)
+        return axes[:count]
+    from matplotlib.axes import Axes
+
+    axes = list(given.flat) if hasattr(given, "flat") else list(given) if isinstance(given, list | tuple) else [given]
+    if len(axes) != count or not all(isinstance(ax, Axes) for ax in axes):
+        what = "one matplotlib axes" if count == 1 else f"{count} matplotlib axes in a list or array"
+        raise InputError(f"this plot draws into {what}; got {type(given).__name__}. Leave it out for a new figure")
+    return axes
+
+
+class Summary:
+    """A class that prints itself in a dozen lines at most, and as a table in a notebook."""
+
+    @abstractmethod
+    def summary(self) -> tuple[str, Mapping[str, str]]:
+        """Return a heading and what stands below it, by name: at most eleven lines of text with units."""
+
+    def __repr__(self) -> str:
+        """Return the heading and one line for each entry."""
+        heading, rows = self.summary()
+        width = max(map(len, rows), default=0)
+        return "\n".join((heading, *(f"  {name:<{width}}  {text}" for name, text in rows.items())))
+
+    def _repr_html_(self) -> str:
+        """Return the summary as the table that a notebook shows."""
+        heading, rows = self.summary()
+        cells = (
+            f'<tr><th style="text-align:left">{escape(name)}</th><td style="text-align:left">{escape(text)}</td></tr>'
+            for name, text in rows.items()
+        )
+        return f"<table><caption><b>{escape(heading)}</b></caption><tbody>{''.join(cells)}</tbody></table>"
 
 
 @contextmanager

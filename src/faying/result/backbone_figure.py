@@ -2,16 +2,17 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from faying.measured.ring_down import MeasuredBackbone
-from faying.output.figures.save import new_figure, plain
-from faying.output.scene.text import packed_backbones
 from faying.result.backbone import Backbone
+from faying.style import axes_of, new_figure, plain
 
-AROUND = 1.05  # room beside measured points, as a factor of the acceleration
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 ROUNDING = 1e-9  # of the greatest damping: less is rounding
 
 
@@ -97,31 +98,6 @@ def framed(ax: Any, quantity: str) -> Any:
     return ax
 
 
-def zooming(curves: Sequence[Backbone], points: int = 200) -> dict[str, Any]:
-    """Curves of one mode for a page: on one grid of accelerations, none beyond its own end."""
-    low = max(curve.acceleration[0] for curve in curves)
-    grid = np.geomspace(low, max(curve.acceleration[-1] for curve in curves), points)
-    measured, marked = curves[0].measured, ""
-    if measured is not None:
-        ends = measured.acceleration.min() / AROUND, measured.acceleration.max() * AROUND
-        grid = np.unique(np.concatenate([grid, measured.acceleration, ends]))
-    found = {}
-    for curve in curves:
-        inside = (grid >= low) & (grid <= curve.acceleration[-1] * (1 + 1e-9))
-        frequency, damping = (np.full(len(grid), np.nan) for _ in range(2))
-        frequency[inside], damping[inside] = curve.at_acceleration(grid[inside])
-        damping[damping < ROUNDING * curve.damping.max()] = np.nan  # nothing slips yet
-        found[label(curve, curves)] = (frequency, 100 * damping)
-    if measured is not None:
-        place = np.searchsorted(grid, measured.acceleration)
-        frequency, damping = (np.full(len(grid), np.nan) for _ in range(2))
-        frequency[place], damping[place] = measured.frequency, 100 * measured.damping
-        marked = f"measured ({measured.source})"
-        found[marked] = (frequency, damping)
-    at = ", ".join(f"{1e3 * x:.4g}" for x in curves[0].at)
-    return packed_backbones(f"acceleration at ({at}) mm [m/s²]", grid, found, marked)
-
-
 def _readable(axis: Any) -> None:
     """Plain numbers on a logarithmic axis."""
     from matplotlib.ticker import FuncFormatter, NullFormatter
@@ -149,6 +125,18 @@ def figure(curves: Sequence[Backbone], measured: Sequence[MeasuredBackbone] = ()
     upper.set_title(f"{plain(first.title)}: mode {first.mode}", fontsize=10)
     upper.legend(fontsize=8)
     return fig
+
+
+def backbone_axes(curve: Backbone, ax: Any = None) -> "list[Axes]":
+    """Draw frequency and damping of a curve, one axes each."""
+    axes = axes_of(ax, 2, width=4.6, height=3.6)
+    at = ", ".join(f"{1e3 * x:.4g}" for x in curve.at)
+    for one, quantity in zip(axes, ("frequency", "damping"), strict=True):
+        panel(one, [curve], quantity)
+        one.set_xlabel(f"acceleration at ({at}) mm [m/s²]")
+    axes[0].set_title(f"{plain(curve.title)}: mode {curve.mode}, {curve.preload / 1e3:g} kN", fontsize=9)
+    axes[0].legend(fontsize=8)
+    return axes
 
 
 def measured(points: MeasuredBackbone) -> Any:

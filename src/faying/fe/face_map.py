@@ -8,15 +8,30 @@ least, and the integral over the face is that of the points. Peaks narrower than
 the greatest value at any point. A corner without a point around it takes the mean of its neighbours.
 """
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from faying.fe.outline import edges_of
-from faying.output.scene.model import Map
 from faying.typing import Array, Index
 
 TRIED = 12  # triangles, nearest by their centres, in which a point is looked for
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FaceValues:
+    """Triangles on the first face of a joint, each triangle of the outline cut into four, with values at their corners.
+
+    Args:
+        parents: Two nodes of the outline (k, 2) between which each corner lies half-way; the same twice at a node.
+        triangles: Triangles (m, 3) between these corners.
+        fields: Name -> values (loads, k), or (1, k) for what does not depend on the load; SI.
+    """
+
+    parents: Index
+    triangles: Index
+    fields: dict[str, Array]
 
 
 def quartered(triangles: Index) -> tuple[Index, Index]:
@@ -80,7 +95,7 @@ def projection(points: Array, triangles: Index, places: Array, weights: Array) -
     return mean
 
 
-def joint_map(points: Array, triangles: Index, places: Array, weights: Array, fields: dict[str, Array]) -> Map:
+def joint_map(points: Array, triangles: Index, places: Array, weights: Array, fields: dict[str, Array]) -> FaceValues:
     """Return the map of a joint.
 
     Args:
@@ -93,4 +108,4 @@ def joint_map(points: Array, triangles: Index, places: Array, weights: Array, fi
     parents, quarters = quartered(triangles)
     matrix = projection(points[parents].mean(axis=1), quarters, places, weights)
     at_corners = {name: np.asarray((matrix @ values.T).T) for name, values in fields.items()}
-    return Map(parents=parents, triangles=quarters, fields=at_corners)
+    return FaceValues(parents=parents, triangles=quarters, fields=at_corners)

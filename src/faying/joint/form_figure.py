@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from faying.joint.form_fit import FormFit
-from faying.output.figures.save import new_figure
+from faying.style import new_figure
 from faying.units import show
 
 

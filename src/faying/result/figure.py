@@ -1,53 +1,36 @@
 """Figures of a bolted structure: pressure on the joint, frequencies against preload, mode shapes."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from faying.output.figures.save import new_figure, plain
-from faying.output.scene.build import joint_map_of
-from faying.result import Result
+from faying.fe.figure import draw_shape
+from faying.joint.figure import PressureMap
+from faying.result.maps import joint_map_of
+from faying.result.result import Result
+from faying.style import axes_of, new_figure, plain
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 def pressure_map(ax: Any, result: Result, load: int = -1, joint: int = 0, *, bar: bool = True) -> Any:
     """Draw the pressure [MPa] on one joint at one load along the axes of the model; no contact stays pale.
 
-    The colours span all loads and joints. Values are shaded over the elements, as `faying.output.scene.maps` says; of a
+    The colours span all loads and joints. Values are shaded over the elements, as `faying.fe.face_map` says; of a
     result of an earlier version, whose file has no faces, points are drawn.
     """
     here = result.joint_of_point == joint
     found = joint_map_of(result, joint)
-    places = result.points[here] if found is None else result.outline[found.parents].mean(axis=1)
-    across = int(np.argmin(np.ptp(places, axis=0)))  # the axis that the face lies across
-    x, y = (k for k in range(3) if k != across)
-    most = max(float(result.pressure.max()), 1e-300) * 1e-6
-    style: dict[str, Any] = {"cmap": _pale(), "vmin": 1e-6 * most, "vmax": most}
-    if found is None:
-        values = result.pressure[load][here] * 1e-6
-        area = 2e5 * result.weights[here] / max(float(np.prod(np.ptp(places[:, [x, y]], axis=0))), 1e-300)
-        drawn = ax.scatter(*(places[:, [x, y]].T * 1e3), c=values, s=area, linewidths=0, rasterized=True, **style)
-    else:
-        values = found.fields["pressure"][load] * 1e-6
-        grid = (*(places[:, [x, y]].T * 1e3), found.triangles)
-        drawn = ax.tripcolor(*grid, values, shading="gouraud", rasterized=True, **style)
-    if bar:
-        ax.figure.colorbar(drawn, ax=ax, label="pressure [MPa]", shrink=0.8)
     share = float(result.weights[here] @ (result.pressure[load][here] <= 0) / result.weights[here].sum())
-    ax.set(
-        aspect="equal",
-        xlabel=f"{'xyz'[x]} [mm]",
-        ylabel=f"{'xyz'[y]} [mm]",
+    return PressureMap(
+        places=result.points[here] if found is None else result.outline[found.parents].mean(axis=1),
+        triangles=None if found is None else found.triangles,
+        values=result.pressure[load][here] if found is None else found.fields["pressure"][load],
+        most=float(result.pressure.max()),
+        areas=result.weights[here],
         title=f"{plain(result.joints[joint])}, {result.loads[load] / 1e3:g} kN: open on {share:.0%}",
-    )
-    ax.title.set_fontsize(10)
-    return ax
-
-
-def _pale() -> Any:
-    """The colour map of the pressure: pale where there is none."""
-    from matplotlib import colormaps
-
-    return colormaps["viridis"].with_extremes(under="0.9")
+    ).draw(ax, bar=bar)
 
 
 def frequencies(ax: Any, result: Result, modes: int = 8) -> Any:
@@ -76,6 +59,45 @@ def frequencies(ax: Any, result: Result, modes: int = 8) -> Any:
     ax.legend(fontsize=7, loc="best")
     ax.grid(alpha=0.3)
     return ax
+
+
+def frequency_axes(result: Result, modes: int, ax: Any = None) -> "list[Axes]":
+    """Draw frequency [Hz] against preload [kN], one axes for each of the first modes, with bands and the test."""
+    axes = axes_of(ax, modes, width=3.4, height=2.7, columns=3)
+    load = result.loads * 1e-3
+    for mode, one in enumerate(axes):
+        _band(one, load, result.low, result.high, mode, "C0", "range of the law")
+        waves = result.wave_frequencies
+        if waves is not None:
+            _band(one, load, waves.min(axis=0), waves.max(axis=0), mode, "C2", f"{len(waves)} draws of waves")
+        one.plot(load, result.frequencies[:, mode], "o-", color="C0", ms=4, lw=1.4, label="Faying")
+        for k, name in enumerate(result.beside):
+            if result.beside_frequencies is not None:
+                one.plot(
+                    load, result.beside_frequencies[k, :, mode], ".--", color=f"C{k + 3}", lw=1.0, label=plain(name)
+                )
+        c = result.comparison
+        if c is not None:
+            found = c.modes == mode
+            rows, columns = np.nonzero(found)
+            style: dict[str, Any] = {"mfc": "none", "mec": "0.2", "ms": 6, "mew": 1.2}
+            one.plot(load[rows], c.frequencies[rows, columns], "o", label=c.reference, **style)
+        one.set_title(f"mode {mode + 1}, bonded {result.bonded[mode]:.1f} Hz", fontsize=9)
+        one.set(xlabel="preload per bolt [kN]", ylabel="frequency [Hz]")
+        one.ticklabel_format(axis="y", useOffset=False)
+        one.grid(alpha=0.3)
+    axes[0].legend(fontsize=7)
+    return axes
+
+
+def _band(ax: Any, load: Any, low: Any, high: Any, mode: int, color: str, label: str) -> None:
+    """The band between two frequencies (load, mode), as bars where there is one load."""
+    if low is None or high is None:
+        return
+    if len(load) > 1:
+        ax.fill_between(load, low[:, mode], high[:, mode], color=color, alpha=0.18, lw=0, label=label)
+    else:
+        ax.vlines(load, low[:, mode], high[:, mode], color=color, alpha=0.35, lw=6, label=label)
 
 
 def comparison(ax: Any, result: Result) -> Any:
@@ -114,27 +136,7 @@ def pressures(result: Result) -> Any:
 
 def mode_shape(ax: Any, result: Result, mode: int, load: int = -1) -> Any:
     """Draw one mode shape on 3-D axes, deformed, coloured by the size of its motion."""
-    from matplotlib import colormaps
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-
-    shape = result.shapes[load, mode]
-    size = float(np.linalg.norm(np.ptp(result.outline, axis=0)))
-    motion = np.linalg.norm(shape, axis=1)
-    moved = (result.outline + 0.06 * size * shape / motion.max()) * 1e3
-    colour = motion[result.triangles].mean(axis=1) / motion.max()
-    surface = Poly3DCollection(
-        moved[result.triangles], facecolors=colormaps["viridis"](colour), edgecolors="none", linewidths=0
-    )
-    ax.add_collection3d(surface)
-    low, high = moved.min(axis=0), moved.max(axis=0)
-    ax.set_xlim(low[0], high[0])
-    ax.set_ylim(low[1], high[1])
-    ax.set_zlim(low[2], high[2])
-    ax.set_box_aspect(high - low)
-    ax.set_axis_off()
-    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
-        axis.set_visible(False)  # or a layout measures its labels, although none is drawn
-    ax.view_init(elev=12, azim=-62)
+    draw_shape(ax, result.outline, result.triangles, result.shapes[load, mode])
     ax.set_title(
         f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz"
         + ("" if np.isnan(eta := result.loss_factors[load, mode]) else f", loss {eta:.1e}"),

@@ -1,13 +1,17 @@
 """Figure of an identification: each parameter before and after the test, frequencies and loss beside the test."""
 
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from faying.identify.identification import Identification
-from faying.output.figures.prediction import COLOURS
-from faying.output.figures.save import new_figure, plain
+from faying.identify.prediction_figure import COLOURS
+from faying.style import axes_of, new_figure, plain
 from faying.typing import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 def figure(found: Identification) -> Any:
@@ -17,17 +21,39 @@ def figure(found: Identification) -> Any:
     test says nothing of it. Below, the predicted 5 to 95 % of each frequency over its median, the test as dots, hollow
     where it was left out; and the same of loss factors where they were used.
     """
+    heights = _heights(found)
+    fig = new_figure(6.3, 0.4 + sum(heights))
+    _draw(list(fig.subplots(len(heights), 1, height_ratios=heights)), found)
+    return fig
+
+
+def identification_axes(found: Identification, ax: Any = None) -> "list[Axes]":
+    """Draw the same into axes, one for each panel."""
+    heights = _heights(found)
+    axes = axes_of(ax, len(heights), width=6.3, height=max(heights), columns=1)
+    _draw(axes, found)
+    return axes
+
+
+def _draw(axes: "Sequence[Axes]", found: Identification) -> None:
+    upper, *lower = axes
+    _parameters(upper, found)
+    for ax, (test, predicted, unit) in zip(lower, _parts(found), strict=True):
+        _beside_test(ax, found, test, predicted, unit)
+
+
+def _parts(found: Identification) -> list[tuple[Array, Array, str]]:
+    """What was measured, its intervals, and the unit."""
     parts = [(found.test, found.predicted, "Hz")]
     if found.losses is not None and found.predicted_losses is not None:
         parts.append((found.losses, found.predicted_losses, ""))
+    return parts
+
+
+def _heights(found: Identification) -> list[float]:
+    """Heights of the panels [inches]."""
     heights = [0.6 + 0.27 * len(found.names)]
-    heights += [0.6 + 0.3 * found.test.shape[1] * len(found.loads) ** 0.5] * len(parts)
-    fig = new_figure(6.3, 0.4 + sum(heights))
-    upper, *lower = fig.subplots(len(heights), 1, height_ratios=heights)
-    _parameters(upper, found)
-    for ax, (test, predicted, unit) in zip(lower, parts, strict=True):
-        _beside_test(ax, found, test, predicted, unit)
-    return fig
+    return heights + [0.6 + 0.3 * found.test.shape[1] * len(found.loads) ** 0.5] * len(_parts(found))
 
 
 def _parameters(ax: Any, found: Identification) -> None:

@@ -1,13 +1,16 @@
 """Figures of a prediction: intervals beside the test, shares of the variance, the samples against each other."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from faying.errors import InputError
 from faying.identify.prediction import LEVELS, Prediction
-from faying.output.figures.backbone import ROUNDING, factor_of, framed, marks
-from faying.output.figures.save import new_figure, plain, prefixed
+from faying.result.backbone_figure import ROUNDING, factor_of, framed, marks
+from faying.style import axes_of, new_figure, plain, prefixed
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 MOST_INPUTS = 6  # of the scatter matrix
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#999999", "#f0e442")  # Okabe and Ito
@@ -15,11 +18,28 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#9
 
 def intervals(found: Prediction) -> Any:
     """Return the figure of the 5 to 95 % of each frequency over its median, one column a preload, the test as dots."""
+    count = found.observed[0].shape[2]
+    fig = new_figure(6.3, 1.2 + 0.32 * count * len(found.loads) ** 0.5)
+    _draw_intervals(fig.subplots(), found)
+    fig.legend(loc="outside lower center", ncols=4, fontsize=8, frameon=False)
+    return fig
+
+
+def interval_axes(found: Prediction, ax: "Axes | None" = None) -> "Axes":
+    """Draw the 5 to 95 % of each frequency over its median, and the test."""
+    if not found.answered:
+        raise InputError(f"no sample has an answer: {'; '.join(found.reasons)}")
+    count = found.observed[0].shape[2]
+    (target,) = axes_of(ax, 1, width=6.3, height=1.2 + 0.32 * count * len(found.loads) ** 0.5)
+    _draw_intervals(target, found)
+    target.legend(loc="best", fontsize=8)
+    return target
+
+
+def _draw_intervals(ax: Any, found: Prediction) -> None:
     values, test = found.observed
     full = values[found.sound]
     low, middle, high = (np.nanquantile(full, level, axis=0) for level in (0.05, 0.5, 0.95))
-    fig = new_figure(6.3, 1.2 + 0.32 * middle.shape[1] * len(found.loads) ** 0.5)
-    ax = fig.subplots()
     count = len(found.loads)
     for load in range(count):
         y = np.arange(middle.shape[1]) + (load - (count - 1) / 2) * 0.7 / count
@@ -35,9 +55,7 @@ def intervals(found: Prediction) -> Any:
     ax.set_xlabel("difference from the median [%]; bars from 5 to 95 %")
     ax.set_ylabel("mode and its median")
     ax.grid(axis="x", alpha=0.3)
-    fig.legend(loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     ax.set_title(plain(found.title), fontsize=10)
-    return fig
 
 
 def tornado(found: Prediction) -> Any:

@@ -9,8 +9,8 @@ import pytest
 
 import faying
 from faying.joint.joint_law import JointLaw
+from faying.joint.strength import bolt_notes, material_notes, pressure_notes
 from faying.study import Study, build
-from faying.study.strength import bolt_notes, material_notes, pressure_notes
 from faying.study.template import write
 from tests.helpers.laws import Given
 
@@ -132,9 +132,9 @@ def test_a_material_whose_units_look_wrong(made):
         assert [note.code for note in notes] == ["odd-material"] * (2 if odd else 0)
     assert (
         "part 'upper': E = 2e+05 GPa"
-        in material_notes(
-            replace(structure, materials={"upper": faying.Material(name="one", E=200e12, nu=0.3, density=7800.0)})
-        )[0].text
+        in material_notes(replace(structure, materials=faying.Material(name="one", E=200e12, nu=0.3, density=7800.0)))[
+            0
+        ].text
     )
 
 

@@ -4,9 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from faying.output.figures.save import new_figure
-from faying.output.scene.text import packed_curves
-from faying.result import Result
+from faying.result.result import Result
+from faying.style import new_figure
 
 
 def _curves(ax: Any, result: Result, output: int, input: int, of: Any) -> None:
@@ -26,7 +25,7 @@ def amplitude(ax: Any, result: Result, output: int = 0, input: int = 0) -> Any:
     assert result.response is not None
     (at, along), (place, push) = result.response.outputs[output], result.response.inputs[input]
     ax.set(yscale="log", ylabel="|accelerance| [m/s²/N]")
-    ax.set_title(f"{_words(at, along)} / {_words(place, push)}", fontsize=9)
+    ax.set_title(f"{words(at, along)} / {words(place, push)}", fontsize=9)
     ax.legend(fontsize=7)
     return ax
 
@@ -43,7 +42,7 @@ def phase(ax: Any, result: Result, output: int = 0, input: int = 0) -> Any:
     return ax
 
 
-def _words(point: Any, axis: Any) -> str:
+def words(point: Any, axis: Any) -> str:
     """A degree of freedom in words: (40, 0, 15) mm along z."""
     unit = np.array(axis) / np.linalg.norm(axis)
     k = int(np.abs(unit).argmax())
@@ -51,23 +50,6 @@ def _words(point: Any, axis: Any) -> str:
         ("-" if unit[k] < 0 else "") + "xyz"[k] if abs(unit[k]) > 0.9998 else f"({', '.join(f'{v:.2f}' for v in unit)})"
     )
     return f"({', '.join(f'{1e3 * v:.4g}' for v in point)}) mm along {name}"
-
-
-def curves(result: Result, most: int = 12) -> list[dict[str, Any]]:
-    """Accelerance of the first pairs of output and input at every preload, for curves in a page."""
-    found = result.response
-    assert found is not None
-    loads = [f"{load / 1e3:g} kN" for load in result.loads]
-    accelerance = -((2 * np.pi * found.frequencies) ** 2)[None, :, None, None] * found.values
-    return [
-        packed_curves(
-            f"{_words(*found.outputs[o])} / {_words(*found.inputs[i])}",
-            "|accelerance| [m/s²/N]",
-            found.frequencies,
-            dict(zip(loads, accelerance[:, :, o, i], strict=True)),
-        )
-        for o, i in list(np.ndindex(*found.values.shape[2:]))[:most]
-    ]
 
 
 def responses(result: Result, most: int = 4) -> Any:

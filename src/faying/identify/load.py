@@ -1,0 +1,50 @@
+"""Read what Faying has saved, whatever it is."""
+
+from pathlib import Path
+
+from faying.errors import ReadError
+from faying.identify.identification import OWN, Identification
+from faying.identify.prediction import Prediction
+from faying.misuse import checked_call
+from faying.netcdf import Group
+from faying.result.backbone import Backbone
+from faying.result.fields import RECORD, read_tree
+from faying.result.result import Result
+
+Saved = Result | Backbone | Prediction | Identification
+KINDS: tuple[type[Result] | type[Backbone] | type[Prediction] | type[Identification], ...] = (
+    Result,
+    Backbone,
+    Prediction,
+    Identification,
+)
+
+
+@checked_call
+def load(path: str | Path) -> Saved:
+    """Read a file that Faying has saved: a result, a backbone, a prediction or an identification.
+
+    Args:
+        path: The file.
+
+    Returns:
+        What was saved, which the file says; it equals what was written.
+
+    Raises:
+        ReadError: The file is missing or damaged, is none of these, or lacks a variable, which is named.
+    """
+    tree = read_tree(path)
+    name = tree.attributes.get(RECORD) or _earlier(tree)
+    for kind in KINDS:
+        if name == kind.KIND:
+            return kind.of_file(path, tree)
+    known = ", ".join(kind.KIND for kind in KINDS)
+    raise ReadError(f"{path} holds none of what faying.load reads, which is {known}; a sweep is read by xarray")
+
+
+def _earlier(tree: Group) -> str:
+    """What a file of an earlier version holds, which does not say it itself."""
+    if OWN in tree.groups:
+        return Identification.KIND
+    marks = {"bonded": Result.KIND, "modal_amplitude": Backbone.KIND, "values": Prediction.KIND}
+    return next((kind for variable, kind in marks.items() if variable in tree.variables), "")

@@ -1,0 +1,153 @@
+"""Real modes of a structure under one set of springs after another, by one factorisation where that will do."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from faying.errors import NotConverged
+from faying.fe.changed import Changed, whole
+from faying.fe.constraint import constrain
+from faying.fe.interface import Interface
+from faying.fe.memory import check_modes
+from faying.fe.modes import Modes, lowest_modes
+from faying.fe.nearby import NearbyModes, near_factor, refined_modes
+from faying.fe.shifted import Shifted
+from faying.fe.single import factorise_roughly
+from faying.fe.solve import Factoriser
+from faying.joint.frame import added
+from faying.joint.modal import SPARE_MODES, ModalProblem
+from faying.joint.preload import PreloadProblem
+from faying.joint.springs import Springs
+from faying.typing import Array
+
+EXACT = 1e-8  # of the squared frequencies, complex or not: 5e-9 of a frequency, 1e-8 of a loss factor, 1e-4 of a shape
+FEW = 6  # rounds of enrichment that cost about what a factorisation and the two rounds after it do
+KEPT, ROOM = 8, 24_000_000  # what the basis keeps: times the modes of one state, or numbers, whichever is more
+
+
+def modes_of(
+    problem: ModalProblem, springs: Sequence[Springs[Interface]], count: int | None = None
+) -> tuple[Modes, Any, Any]:
+    """Real modes of a structure with springs on its joints, and the stiffness and loss that they belong to.
+
+    count: rigid motions included; those of the problem where None.
+    """
+    stiffness, loss = joined(problem, springs)
+    return modes_with(problem, stiffness, problem.structure.vibrating[1], count), stiffness, loss
+
+
+def joined(problem: ModalProblem, springs: Sequence[Springs[Interface]]) -> tuple[Any, Any]:
+    """Stiffness of a structure with springs on its joints, and their loss, hysteretic or viscous as asked."""
+    return problem.structure.joined(springs, viscous=problem.choice.damping == "viscous")
+
+
+class SharedModes:
+    """Real modes of a structure under one set of springs after another, by one factorisation where that will do.
+
+    The first springs give the factorisation and the basis; those that differ so much that the basis does not reach them
+    in a few rounds get a factorisation of their own, which serves what comes later.
+    """
+
+    def __init__(self) -> None:
+        self.near: NearbyModes | None = None  # where the modes were found last
+        self._sprung: Any = None  # stiffness [N/m] of the springs in that of its basis
+
+    def begin(self, problem: ModalProblem, preload: PreloadProblem) -> None:
+        """Take the factorisation of a preload where its springs are near to those that it led to, if none is at hand.
+
+        It must be of what vibrates: bolts that have a stiffness or a mass of their own are not in it.
+        """
+        structure, factor = problem.structure, preload.factor
+        alike = structure.is_bare and preload.shift_frequency == problem.shift_frequency
+        if self.near is not None or preload.sprung is None or factor is None or not alike:
+            return
+        laid = [
+            constrain(j.interface.springs(*k), structure.fixed, 0.0)
+            for j, k in zip(structure.joints, preload.sprung, strict=True)
+        ]
+        sprung = added(None, laid)
+        stiffness, mass = added(structure.vibrating[0], [sprung]), structure.vibrating[1]
+        check_modes(problem.mode_count, stiffness.shape[0])
+        self.near = near_factor(
+            factor,
+            stiffness,
+            mass,
+            problem.mode_count,
+            rigid=structure.rigid,
+            shift_frequency=problem.shift_frequency,
+            spare=SPARE_MODES,
+            most=_most(problem),
+        )
+        self._sprung = sprung
+
+    def of(
+        self,
+        problem: ModalProblem,
+        springs: Sequence[Springs[Interface]],
+        *,
+        tolerance: float = EXACT,
+        shapes: bool = True,
+    ) -> tuple[Modes, Any]:
+        """Real modes, and the stiffness [N/m] that they belong to, which may be a `Changed` one.
+
+        tolerance: of the squared frequencies, relative; shapes: False where only these are wanted.
+        """
+        structure = problem.structure
+        sprung = structure.sprung(springs)
+        if self.near is not None:
+            # the sum with the parts would take longer than the modes where the basis has them
+            stiffness = Changed(before=self.near.span.stiffness, change=sprung - self._sprung)
+            try:
+                return self._from_near(problem, stiffness, tolerance, shapes), stiffness
+            except NotConverged:
+                self._factorise(problem, whole(stiffness))
+            try:
+                return self._from_near(problem, stiffness, tolerance, shapes), stiffness
+            except NotConverged:
+                self.near = None  # before the next factorisation: one at a time in memory
+        stiffness, mass = added(structure.vibrating[0], [sprung]), structure.vibrating[1]
+        modes = modes_with(problem, stiffness, mass, rigid=structure.rigid)
+        self.near = NearbyModes(modes, stiffness, mass, rigid=problem.rigid_count, most=_most(problem))
+        self._sprung = sprung
+        return modes, stiffness
+
+    def _from_near(self, problem: ModalProblem, stiffness: Any, tolerance: float, shapes: bool) -> Modes:
+        assert self.near is not None
+        count = problem.choice.count
+        spare = problem.mode_count - problem.rigid_count - count
+        return self.near.under(stiffness, count, tolerance=tolerance, spare=spare, rounds=FEW, shapes=shapes)
+
+    def _factorise(self, problem: ModalProblem, stiffness: Any) -> None:
+        """Factorise a stiffness [N/m] that the factorisation at hand is far from; the basis stays."""
+        assert self.near is not None
+        matrix = Shifted(stiffness=stiffness, mass=problem.structure.vibrating[1], shift=self.near.modes.shift)
+        solver = problem.structure.solver(problem.choice.solver)
+        self.near.take(factorise_roughly(matrix, rigid=problem.structure.rigid, solver=solver), stiffness)
+
+
+def _most(problem: ModalProblem) -> int:
+    """How many vectors the basis of a problem keeps from one state to the next."""
+    return max(KEPT * problem.mode_count, ROOM // problem.structure.mesh.unknowns)
+
+
+def modes_with(
+    problem: ModalProblem,
+    stiffness: Any,
+    mass: Any,
+    count: int | None = None,
+    *,
+    rigid: Array | None = None,
+    solver: str | Factoriser | None = None,
+) -> Modes:
+    """Real modes of any stiffness [N/m] and mass [kg], by the solver and the shift of a problem.
+
+    count: those of the problem where None, its spare ones to no tolerance. rigid: the motions (n, r) that the stiffness
+    leaves free, with which a factorisation in single precision will do; None where they are not known. solver: in place
+    of that of the problem.
+    """
+    spare = SPARE_MODES if count is None else 0
+    count = count or problem.mode_count
+    check_modes(count, stiffness.shape[0])
+    frequency, solver = problem.shift_frequency, solver or problem.structure.solver(problem.choice.solver)
+    if rigid is None:
+        return lowest_modes(stiffness, mass, count, shift_frequency=frequency, solver=problem.choice.solver)
+    return refined_modes(stiffness, mass, count, rigid=rigid, shift_frequency=frequency, solver=solver, spare=spare)

@@ -1,0 +1,338 @@
+"""A bolted structure under one preload: pressures, springs of the joints, modes."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.fe.damped import DampedModes, damped_near
+from faying.fe.interface import Interface
+from faying.fe.modes import Modes
+from faying.joint.equilibrium import PreloadState
+from faying.joint.modal import MOST_MODES, SOLVERS, ModalProblem, ModesChoice
+from faying.joint.preload import PreloadProblem
+from faying.joint.shared_modes import EXACT, SharedModes
+from faying.joint.springs import Springs
+from faying.joint.strength import pressure_notes
+from faying.joint.structure import Structure
+from faying.joint.support_check import check_motions, checked_preload, open_joints
+from faying.misuse import checked_call, shortened
+from faying.notes import Note
+from faying.style import Summary
+from faying.text import titled
+from faying.typing import Array
+from faying.units import positive, show
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MOST_ROWS = 10  # of a summary
+
+
+@dataclass(frozen=True, kw_only=True)
+class Vibration:
+    """Real and complex modes under the springs of the joints, with stiffness and loss [N/m] that they belong to."""
+
+    modes: Modes
+    damped: DampedModes
+    stiffness: Any
+    loss: Any
+
+
+def vibrate(
+    problem: ModalProblem, springs: Sequence[Springs[Interface]], preload: PreloadProblem, shared: SharedModes
+) -> Vibration:
+    """Find the modes of a structure under the springs of its joints; preload and shared lend their factorisations.
+
+    Raises InputError where a part moves freely.
+    """
+    structure, choice = problem.structure, problem.choice
+    shared.begin(problem, preload)
+    modes, stiffness = shared.of(problem, springs)
+    loss = structure.lost(springs, viscous=choice.damping == "viscous")
+    check_motions(structure, modes)
+    preload.take(modes.factorisation, problem.shift_frequency)
+    assert shared.near is not None
+    damped = damped_near(shared.near, modes, stiffness, loss, count=choice.count, kind=choice.damping, tolerance=EXACT)
+    return Vibration(modes=modes, damped=damped, stiffness=stiffness, loss=loss)
+
+
+@checked_call
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class VibrationModes(Summary):
+    """Elastic modes of a structure in rising order.
+
+    Args:
+        frequencies: [Hz] (m,).
+        loss_factors: Modal loss factors [-] (m,); NaN where no law of a joint predicts a loss.
+        shapes: Motion of each node (m, nodes, 3) [kg^-1/2], mass-normalised; the greatest component of each is
+            positive.
+        structure: What moves.
+        load: Preload in words.
+    """
+
+    frequencies: Array
+    loss_factors: Array
+    shapes: Array
+    structure: Structure
+    load: str = ""
+
+    @property
+    def damping(self) -> Array:
+        """Damping ratios [-] (m,): half of the loss factors."""
+        return self.loss_factors / 2
+
+    def __len__(self) -> int:
+        return len(self.frequencies)
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading and the first modes."""
+        count = len(self)
+        head = f"{count} elastic mode{'s' * (count > 1)}{f' at {self.load}' if self.load else ''}"
+        return head, self.rows(MOST_ROWS)
+
+    def rows(self, most: int) -> dict[str, str]:
+        """The first modes in words, by their number."""
+        shown = len(self) if len(self) <= most else most - 1
+        rows = enumerate(zip(self.frequencies[:shown], self.damping, strict=False), start=1)
+        out = {f"mode {k}": f"{f:10.2f} Hz{_ratio(zeta)}" for k, (f, zeta) in rows}
+        if len(self) > shown:
+            out[f"{len(self) - shown} more"] = f"up to {self.frequencies[-1]:.2f} Hz"
+        return out
+
+    @checked_call
+    def plot(self, mode: int = 1, ax: "Axes | None" = None) -> "Axes":
+        """Draw the shape of a mode on the structure, coloured by the size of its motion.
+
+        Args:
+            mode: Number of the mode, from 1.
+            ax: Matplotlib axes with three dimensions to draw into; new ones where None.
+
+        Returns:
+            The axes.
+
+        Raises:
+            InputError: There is no such mode.
+        """
+        from faying.joint.figure import mode_axes
+
+        return mode_axes(self, self.number(mode), ax)
+
+    def number(self, mode: int) -> int:
+        """Index of a mode, counted from 0. Raises InputError where there is none of this number."""
+        if not 1 <= mode <= len(self):
+            raise InputError(f"mode = {shortened(mode)}; the modes are numbered from 1 to {len(self)}")
+        return int(mode) - 1
+
+
+def _ratio(value: float) -> str:
+    return "" if np.isnan(value) else f", damping ratio {value:.3g}"
+
+
+@checked_call
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class State(Summary):
+    """A structure under one preload.
+
+    Args:
+        structure: The structure.
+        forces: Force that each bolt is tightened to [N] (b,).
+        preload: The equilibrium of the joints: displacement [m], pressures [Pa], forces that are left in the bolts.
+        springs: Stiffness and loss of each joint at its points.
+        vibration: Real and complex modes with the matrices that they belong to.
+        notes: Where a law leaves its validity range, and the like.
+    """
+
+    structure: Structure
+    forces: tuple[float, ...]
+    preload: PreloadState
+    springs: tuple[Springs[Interface], ...]
+    vibration: Vibration
+    notes: tuple[Note, ...]
+
+    @cached_property
+    def modes(self) -> VibrationModes:
+        """The elastic modes."""
+        damped = self.vibration.damped
+        shapes = damped.real_shapes(self.structure.vibrating[1])
+        lossless = not self.structure.predicts_loss
+        return VibrationModes(
+            frequencies=damped.frequencies,
+            loss_factors=np.full_like(damped.loss_factors, np.nan) if lossless else damped.loss_factors,
+            shapes=shapes.T.reshape(len(damped.frequencies), -1, 3),
+            structure=self.structure,
+            load=self.load,
+        )
+
+    @property
+    def load(self) -> str:
+        """The preload in words."""
+        values = sorted(set(self.forces))
+        if len(values) == 1:
+            return f"{show(values[0], 'N')} per bolt"
+        return f"{show(values[0], 'N')} to {show(values[-1], 'N')} per bolt"
+
+    @property
+    def pressures(self) -> dict[str, Array]:
+        """Pressure [Pa] (q,) at the points of the springs of each joint, by its name."""
+        return {joint.name: s.pressure for joint, s in zip(self.structure.joints, self.springs, strict=True)}
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, the pressures of the joints and the first modes."""
+        head = f"State at {self.load}: {self.structure.mesh.unknowns:,} unknowns, {len(self.modes)} elastic modes"
+        rows = {}
+        joints = list(zip(self.structure.joints, self.springs, strict=True))
+        for joint, s in joints[:2]:
+            area = s.interface.weights
+            shut = float(area @ (s.pressure <= 0) / area.sum())
+            rows[titled("joint", joint.name)] = (
+                f"mean pressure {show(float(area @ s.pressure / area.sum()), 'Pa')}, greatest "
+                f"{show(float(s.pressure.max()), 'Pa')}, open on {shut:.0%}"
+            )
+        if len(joints) > 2:
+            rows["more joints"] = str(len(joints) - 2)
+        rows |= self.modes.rows(7)
+        rows |= {"notes": f"{len(self.notes)}, in .notes"} if self.notes else {}
+        return head, rows
+
+    @checked_call
+    def plot(self, joint: str | None = None, ax: "Axes | None" = None) -> "Axes":
+        """Draw the pressure on a joint, as `plot_pressure` does."""
+        return self.plot_pressure(joint, ax)
+
+    @checked_call
+    def plot_pressure(self, joint: str | None = None, ax: "Axes | None" = None) -> "Axes":
+        """Draw the pressure on a joint along the axes of the model; where there is no contact stays pale.
+
+        Args:
+            joint: Name of the joint; the first one where None.
+            ax: Matplotlib axes to draw into; new ones where None.
+
+        Returns:
+            The axes.
+
+        Raises:
+            InputError: There is no joint of this name.
+        """
+        from faying.joint.figure import pressure_axes
+
+        names = [one.name for one in self.structure.joints]
+        if joint is not None and joint not in names:
+            raise InputError(f"joint = {shortened(joint)}; the joints are {', '.join(map(repr, names))}")
+        return pressure_axes(self, 0 if joint is None else names.index(joint), ax)
+
+
+def solve_structure(
+    structure: Structure,
+    preload: float | str | Mapping[str, float | str] | None,
+    *,
+    modes: int,
+    damping: Literal["hysteretic", "viscous"],
+    order: Sequence[str] | None,
+    solver: str | None,
+) -> State:
+    """Solve a structure under one preload; see `Structure.solve`."""
+    choice = ModesChoice(count=_count(modes), damping=damping, solver=_solver(solver))
+    forces = bolt_forces(structure, preload)
+    problem = ModalProblem(structure=structure, choice=choice)
+    assembly = structure.assembly(solver=solver)
+    found = checked_preload(structure, assembly, forces, order=_order(structure, order))
+    springs = structure.springs(found.pressures)
+    vibration = vibrate(problem, springs, assembly, SharedModes())
+    notes = [
+        *structure.notes,
+        *(note for joint in structure.joints for note in joint.assumptions),
+        *law_notes(structure, found, forces[0]),
+        *end_notes(structure, springs, forces[0]),
+        *pressure_notes(structure, found.pressures, forces[0]),
+    ]
+    return State(
+        structure=structure,
+        forces=forces,
+        preload=found,
+        springs=springs,
+        vibration=vibration,
+        notes=tuple(dict.fromkeys(notes)),
+    )
+
+
+def bolt_forces(structure: Structure, preload: float | str | Mapping[str, float | str] | None) -> tuple[float, ...]:
+    """Force of each bolt [N]. Raises InputError where one is missing, unknown or not positive."""
+    names = [bolt.name for bolt in structure.bolts]
+    if not names:
+        raise InputError("the structure has no bolts, so nothing pulls its joints together; give it bolts=[Bolt(...)]")
+    if preload is None:
+        own = {bolt.name: bolt.preload for bolt in structure.bolts}
+        unclear = [name for name, forces in own.items() if len(forces) != 1]
+        if unclear:
+            raise InputError(
+                f"bolt {unclear[0]!r} names {len(own[unclear[0]])} preloads of its own; give solve one, for example "
+                'preload = "8 kN"'
+            )
+        return tuple(forces[0] for forces in own.values())
+    if not isinstance(preload, Mapping):
+        return (positive(preload, "N", "preload"),) * len(names)
+    unknown = [name for name in preload if name not in names]
+    lacking = [name for name in names if name not in preload]
+    if unknown or lacking:
+        wrong = f"names bolt {unknown[0]!r}, which is not there" if unknown else f"misses bolt {lacking[0]!r}"
+        raise InputError(f"preload {wrong}; the bolts are {', '.join(map(repr, names))}")
+    return tuple(positive(preload[name], "N", f"preload of bolt {name!r}") for name in names)
+
+
+def _count(modes: int) -> int:
+    if not 1 <= modes <= MOST_MODES:
+        raise InputError(f"modes = {shortened(modes)}; give how many elastic modes, 1 to {MOST_MODES:,}")
+    return int(modes)
+
+
+def _solver(solver: str | None) -> str | None:
+    if solver is not None and solver not in SOLVERS:
+        raise InputError(f"solver = {shortened(solver)}; the solvers are {', '.join(map(repr, SOLVERS))}")
+    return solver
+
+
+def _order(structure: Structure, order: Sequence[str] | None) -> list[int] | None:
+    if order is None:
+        return None
+    names = [bolt.name for bolt in structure.bolts]
+    if isinstance(order, str) or set(order) != set(names):
+        raise InputError(f"order = {shortened(order)} should name every bolt: {', '.join(map(repr, names))}")
+    return [names.index(name) for name in order]
+
+
+def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[Note]:
+    """Say where contact is lost and where a law leaves its validity range, with the share of the joint's area."""
+    kilo = f"{load / 1e3:g} kN"
+    out = [
+        Note(code="open", joint=name, load=load, text=f"{name}, {kilo}: no contact is left; the joint carries nothing")
+        for name in open_joints(structure, preload.pressures)
+    ]
+    for joint, pressure in zip(structure.joints, preload.pressures, strict=True):
+        model, weights, area = joint.law.model, joint.interface.weights, joint.interface.area
+        answer = joint.law.answer(pressure)
+        for reason, mask in answer.reasons.items():
+            share = float(weights @ mask / area)
+            if share > 0:
+                where = f"{model.name} is outside its validity range on {share:.0%} of the joint"
+                text = f"{joint.name}, {kilo}: {where}: {reason}"
+                out.append(Note(code="outside-validity", joint=joint.name, load=load, share=share, text=text))
+    return out
+
+
+def end_notes(structure: Structure, springs: Sequence[Springs[Interface]], load: float) -> list[Note]:
+    """Say where the pressure exceeds the end of a law, with the share of the joint's area."""
+    out = []
+    for joint, s in zip(structure.joints, springs, strict=True):
+        share = float(s.interface.weights @ joint.past_end(s) / s.interface.weights.sum())
+        if share > 0:
+            model = joint.law.model
+            text = (
+                f"{joint.name}, {load / 1e3:g} kN: on {share:.2%} of the joint the pressure exceeds the "
+                f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends; stiffness is held there"
+            )
+            out.append(Note(code="beyond-law", joint=joint.name, load=load, share=share, text=text))
+    return out
