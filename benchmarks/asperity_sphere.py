@@ -13,7 +13,7 @@ from faying import RIGID, ContactPair, Material, solve_asperity
 from faying.contact.asperity.jackson_green import JacksonGreen
 from faying.contact.asperity.kogut_etsion import KogutEtsion
 from faying.contact.asperity.unloading import EtsionKligermanKadin
-from faying.output.figures.law import figure
+from faying.contact.figure import figure
 
 X = (1.5, 2, 3, 5.9, 6.1, 10, 20, 50, 76.8, 110)
 STEEL = Material(name="steel", E=100e9, nu=0.3, yield_strength=355e6, hardness=994e6)

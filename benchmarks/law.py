@@ -18,7 +18,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from faying import CATALOGUE, JK, RIGID, ContactPair
-from faying.contact import SurfaceInputs, laws_of_surface
+from faying.contact import SurfaceInputs
+from faying.contact.mates import Mates
 
 LAW = JK(D=2.39, G=1.53e-10, pair=ContactPair(CATALOGUE["45 steel"], RIGID), scan_area=16e-6)
 SIX = ("area", "k_n", "k_t", "loss_n", "loss_t", "energy_n")
@@ -43,7 +44,7 @@ def curve() -> dict[str, float]:
 def curves() -> dict[str, float]:
     surface = SurfaceInputs.from_fractal(D=2.4, G=1e-11, scan_area=16e-6, shortest=1e-5)
     times = {}
-    for name, law in laws_of_surface(surface, LAW.pair)[0].items():
+    for name, law in Mates.of_surface(surface, materials=LAW.pair).laws()[0].items():
         first, last = law.closure_range
         u = np.linspace(0, 1, 500)
         at = first * (last / first) ** u if law.geometric else first + u * (last - first)

@@ -12,6 +12,7 @@ SOURCE = Path(__file__).parent.parent / "src" / "faying"
 ORDER = [
     {"errors"},
     {"units", "files", "memory", "typing", "notes", "progress"},
+    {"checks"},
     {"hardness", "misuse", "text"},
     {"materials", "netcdf", "columns", "distribution", "cache", "style"},
     {"surface", "fe", "halfspace"},

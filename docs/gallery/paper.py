@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from faying.contact.compare import Comparison, compare, laws_of_surface
+from faying.contact.compare import Comparison, compare
 from faying.contact.inputs import SurfaceInputs
 from faying.contact.jk import JK
 from faying.contact.law import Response
+from faying.contact.mates import Mates
 from faying.contact.power_law import PowerLaw
 from faying.materials import CATALOGUE, RIGID, ContactPair
 from faying.style import new_panels, save
@@ -186,7 +187,7 @@ def measured_joints(pressure: Array | None = None) -> tuple[Comparison, Mapping[
     p = np.geomspace(1e5, 9.8e6, 60) if pressure is None else pressure
     surface = SurfaceInputs.from_fractal(D=2.39, G=1.53e-10, scan_area=SIDE**2, shortest=10e-6)
     pair = ContactPair(STEEL, STEEL)
-    laws, left_out = laws_of_surface(surface, pair, names=["JK", "ME", "Persson", "GW", "GW-KE", "GW-JG"])
+    laws, left_out = Mates.of_surface(surface, materials=pair).laws(["JK", "ME", "Persson", "GW", "GW-KE", "GW-JG"])
     laws["JK, rigid plane"] = JK.from_surface(surface, PAIR)
     steel = {name: PowerLaw.measured(C=C, m=m, origin=f"S45C {name}") for name, (m, C) in S45C.items()}
     steel["mean"] = PowerLaw.measured(C=S45C_MEAN[1], m=S45C_MEAN[0], origin="S45C mean")

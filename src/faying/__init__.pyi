@@ -1,10 +1,13 @@
 # The public names. Each is imported when it is first used (lazy_loader reads this file).
 from . import contact as contact
 from .asperity_fe import solve_asperity as solve_asperity
+from .contact.compare import Comparison as Comparison
 from .contact.half_space import HalfSpace as HalfSpace
 from .contact.jk import JK as JK
+from .contact.law import ContactLaw as ContactLaw
 from .contact.mates import Mates as Mates
 from .contact.mates import law_for as law_for
+from .contact.response import Response as Response
 from .decks.matrices import read_matrices as read_matrices
 from .decks.meshfile import read_mesh as read_mesh
 from .distribution import Distribution as Distribution
@@ -61,6 +64,7 @@ from .surface.combine import combine as combine
 from .surface.fractal import FractalFit as FractalFit
 from .surface.fractal import fit_fractal as fit_fractal
 from .surface.read import read_scan as read_scan
+from .surface.roughness import Roughness as Roughness
 from .surface.scan import Profile as Profile
 from .surface.scan import Scan as Scan
 from .surface.write import write_scan as write_scan

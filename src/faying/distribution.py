@@ -11,7 +11,8 @@ from typing import Any, Literal, Self, final
 import numpy as np
 
 from faying import units
-from faying.errors import InputError
+from faying.checks import real, text
+from faying.errors import InputError, shown
 from faying.typing import Array
 
 FACTOR_SCORE = 1.6448536269514722  # standard normal score of 95 %: a factor spans 5 to 95 %
@@ -50,8 +51,10 @@ class Distribution:
     high: float = inf
 
     def __post_init__(self) -> None:
-        if self.kind not in _KEYS:
-            raise InputError(f"distribution {self.kind!r}; allowed are {', '.join(_KEYS)}")
+        if not isinstance(self.kind, str) or self.kind not in _KEYS:
+            raise InputError(f"distribution {shown(self.kind)}; allowed are {', '.join(_KEYS)}")
+        for name in ("centre", "spread", "low", "high"):
+            object.__setattr__(self, name, real(getattr(self, name), f"{self.kind} distribution: {name}"))
         if not isfinite(self.centre):
             raise InputError(f"{self.kind} distribution: centre = {self.centre}; it must be finite")
         if not (isfinite(self.spread) and self.spread > 0):
@@ -279,13 +282,15 @@ class Distribution:
         Raises:
             InputError: it is none of these; the text shows the forms.
         """
+        text(unit, "unit")
+        text(name, "name")
         try:
             if isinstance(value, Mapping):
                 return cls(**_of_table(value, unit, name))
             return cls(**_of_text(value, unit, name))
         except InputError as fault:
-            text = str(fault)
-            raise InputError(text if text.startswith(name) else f"{name}: {text}") from None
+            said = str(fault)
+            raise InputError(said if said.startswith(name) else f"{name}: {said}") from None
 
 
 def uncertain_text(value: object) -> bool:
@@ -320,7 +325,7 @@ def _number(value: object, unit: str, name: str) -> float:
     except ValueError:
         out = nan
     if not isfinite(out):
-        raise InputError(f"{name} = {value!r} should be a plain finite number, for example 0.3")
+        raise InputError(f"{name} = {shown(value)} should be a plain finite number, for example 0.3")
     return out
 
 
@@ -336,8 +341,8 @@ def _of_text(value: object, unit: str, name: str) -> dict[str, Any]:
         except InputError as fault:
             plain = str(fault).partition("; write")[0].removeprefix(f"{name} = ").removeprefix(f"{name}: ")
             raise InputError(f'{name} = "{value}": {plain}; {_forms(unit)}') from None
-    shown = f'"{value}"' if isinstance(value, str) else repr(value)
-    raise InputError(f"{name} = {shown} is no distribution; {_forms(unit)}, or a table with `distribution`")
+    given = f'"{value}"' if isinstance(value, str) else shown(value)
+    raise InputError(f"{name} = {given} is no distribution; {_forms(unit)}, or a table with `distribution`")
 
 
 def _sd(value: object, centre: float, unit: str, name: str) -> float:
@@ -363,7 +368,7 @@ def _uniform(low: float, high: float, name: str) -> dict[str, Any]:
 def _of_table(table: Mapping[str, Any], unit: str, name: str) -> dict[str, Any]:
     kind = table.get("distribution")
     if kind not in _KEYS:
-        given = "has no `distribution`" if kind is None else f"has distribution = {kind!r}"
+        given = "has no `distribution`" if kind is None else f"has distribution = {shown(kind)}"
         raise InputError(f"{name} {given}; allowed are {', '.join(_KEYS)}, {_example('normal', unit)}")
     needed, optional = _KEYS[kind]
     for key in table:

@@ -1,14 +1,28 @@
 """Materials and the pair of them that meets in a joint."""
 
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cached_property
 from math import inf, isfinite, isnan
 
-from faying.errors import InputError
+from faying.checks import instance, real, text
+from faying.errors import InputError, shown
 from faying.hardness import BRINELL_RANGE, VickersHardness
 
 STIFFEST = 0.495  # Poisson's ratio from which displacements alone cannot describe a solid
+UNITS = {
+    "E": "Pa",
+    "nu": "",
+    "density": "kg/m^3",
+    "yield_strength": "Pa",
+    "hardness": "Pa",
+    "brinell": "Pa",
+    "friction": "",
+    "conductivity": "W/(m*K)",
+    "resistivity": "ohm*m",
+    "bearing_limit": "Pa",
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +45,8 @@ class Material:
         bearing_limit: pressure [Pa] that it bears under the head of a bolt (p_G of VDI 2230).
         source: where the numbers come from.
 
+    Quantities may also be text with a unit, for example "210 GPa".
+
     Raises:
         InputError: for values that no isotropic material can have.
     """
@@ -50,6 +66,14 @@ class Material:
     source: str = ""
 
     def __post_init__(self) -> None:
+        text(self.name, "name of a material")
+        text(self.source, f"material {self.name!r}: source")
+        for name, unit in UNITS.items():
+            value = getattr(self, name)
+            if value is not None or name in ("E", "nu"):
+                object.__setattr__(self, name, real(value, f"material {self.name!r}: {name}", unit))
+        if self.vickers is not None:
+            instance(self.vickers, VickersHardness, f"material {self.name!r}: vickers", "give a VickersHardness")
         if isnan(self.E) or self.E <= 0:
             raise InputError(f"material {self.name!r}: E = {self.E} Pa; it must be positive, for example 200e9")
         if not -1 < self.nu <= 0.5:
@@ -57,7 +81,8 @@ class Material:
         strengths = ("yield_strength", "hardness", "brinell", "bearing_limit")
         for field in ("density", *strengths, "conductivity", "resistivity"):
             value = getattr(self, field)
-            if value is not None and (isnan(value) or value <= 0):
+            endless = field in ("density", "conductivity", "resistivity", "bearing_limit") and value == inf
+            if value is not None and (isnan(value) or value <= 0 or endless):
                 raise InputError(f"material {self.name!r}: {field} = {value}; it must be positive, or left out")
         if self.friction is not None and not (isfinite(self.friction) and self.friction >= 0):
             raise InputError(f"material {self.name!r}: friction = {self.friction}; it must be 0 or more, or left out")
@@ -165,47 +190,81 @@ class ContactPair:
         return min(given)
 
 
-CATALOGUE = {
-    m.name: m
-    for m in (
-        Material(
-            name="45 steel",
-            E=200e9,
-            nu=0.3,
-            density=7800.0,
-            yield_strength=355e6,
-            hardness=994e6,
-            brinell=1.67e9,
-            friction=0.25,
-            source="Zhang et al. 2024, doi:10.3390/fractalfract8100611, Table 2; Brinell hardness: HB 170, the lower "
-            "end of 170 to 210 that producers state for C45 (AISI 1045), hot rolled or normalised",
-        ),
-        Material(
-            name="S355",
-            E=210e9,
-            nu=0.3,
-            density=7850.0,
-            yield_strength=355e6,
-            brinell=1.59e9,
-            conductivity=53.3,
-            bearing_limit=760e6,
-            source="EN 1993-1-1, 3.2.6 and Table 3.1; EN 1991-1-1, Table A.4; conductivity at 20 degrees C: "
-            "EN 1993-1-2, 3.4.1.3; bearing limit: VDI 2230:2003, Table A9; Brinell hardness: HB 162, from the "
-            "tensile strength 470 to 630 MPa of EN 10025-2 over 3.4",
-        ),
-        Material(
-            name="EN AW-6082 T6",
-            E=70e9,
-            nu=0.3,
-            density=2700.0,
-            yield_strength=260e6,
-            brinell=0.93e9,
-            conductivity=191.4,
-            source="EN 1999-1-1, 3.2.5 and Table 3.2b (extrusions, 5 < t <= 15 mm); conductivity at 20 degrees C: "
-            "EN 1999-1-2, 3.3.3; Brinell hardness: HB 95, typical of the temper",
-        ),
-    )
-}
+class Catalogue(Mapping[str, Material]):
+    """Materials by name. A name that is not there is an `InputError`, and a KeyError too, that lists the nearest."""
+
+    def __init__(self, *materials: Material) -> None:
+        self._of = {material.name: material for material in materials}
+
+    def __getitem__(self, name: str) -> Material:
+        if not isinstance(name, str) or name not in self._of:
+            raise MissingMaterial(_missing(name, self._of))
+        return self._of[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._of)
+
+    def __len__(self) -> int:
+        return len(self._of)
+
+    def __repr__(self) -> str:
+        return "\n".join(("Catalogue of materials", *(f"  {name}" for name in self._of)))
+
+
+class MissingMaterial(InputError, KeyError):
+    """A name that the catalogue lacks."""
+
+    __str__ = Exception.__str__  # that of KeyError would quote the sentence
+
+
+def _missing(given: object, known: Iterable[str]) -> str:
+    """That there is no such material, the nearest name, and all of them."""
+    names = list(known)
+    near = get_close_matches(given, names, n=1, cutoff=0.5) if isinstance(given, str) else []
+    hint = f'; did you mean "{near[0]}"?' if near else ""
+    called = repr(given) if isinstance(given, str) and len(given) <= 60 else shown(given)
+    listed = ", ".join(name for name in names if name != RIGID.name)
+    return f"no material {called} in the catalogue{hint}; it has {listed}; make your own with Material"
+
+
+CATALOGUE = Catalogue(
+    Material(
+        name="45 steel",
+        E=200e9,
+        nu=0.3,
+        density=7800.0,
+        yield_strength=355e6,
+        hardness=994e6,
+        brinell=1.67e9,
+        friction=0.25,
+        source="Zhang et al. 2024, doi:10.3390/fractalfract8100611, Table 2; Brinell hardness: HB 170, the lower "
+        "end of 170 to 210 that producers state for C45 (AISI 1045), hot rolled or normalised",
+    ),
+    Material(
+        name="S355",
+        E=210e9,
+        nu=0.3,
+        density=7850.0,
+        yield_strength=355e6,
+        brinell=1.59e9,
+        conductivity=53.3,
+        bearing_limit=760e6,
+        source="EN 1993-1-1, 3.2.6 and Table 3.1; EN 1991-1-1, Table A.4; conductivity at 20 degrees C: "
+        "EN 1993-1-2, 3.4.1.3; bearing limit: VDI 2230:2003, Table A9; Brinell hardness: HB 162, from the "
+        "tensile strength 470 to 630 MPa of EN 10025-2 over 3.4",
+    ),
+    Material(
+        name="EN AW-6082 T6",
+        E=70e9,
+        nu=0.3,
+        density=2700.0,
+        yield_strength=260e6,
+        brinell=0.93e9,
+        conductivity=191.4,
+        source="EN 1999-1-1, 3.2.5 and Table 3.2b (extrusions, 5 < t <= 15 mm); conductivity at 20 degrees C: "
+        "EN 1999-1-2, 3.3.3; Brinell hardness: HB 95, typical of the temper",
+    ),
+)
 """A few materials with their sources. Friction depends on the pair and its finish: give your own."""
 
 
@@ -217,12 +276,9 @@ def material_of(given: object) -> Material:
     if isinstance(given, Material):
         return given
     if not isinstance(given, str):
-        raise InputError(f'material = {given!r}; give the name of one in the catalogue, "45 steel" say, or a Material')
-    known = CATALOGUE | {RIGID.name: RIGID}
-    if given not in known:
-        near = get_close_matches(given, known, n=1, cutoff=0.5)
-        hint = f'; did you mean "{near[0]}"?' if near else ""
-        raise InputError(
-            f"no material {given!r} in the catalogue{hint}; it has {', '.join(CATALOGUE)}; make your own with Material"
-        )
-    return known[given]
+        raise InputError(f'material = {shown(given)}; give a name in the catalogue, "45 steel" say, or a Material')
+    if given == RIGID.name:
+        return RIGID
+    if given not in CATALOGUE:
+        raise InputError(_missing(given, (*CATALOGUE, RIGID.name)))
+    return CATALOGUE[given]

@@ -13,3 +13,5 @@ Sparse: TypeAlias = Any
 """A SciPy sparse matrix or array: SciPy ships no types, so that a checker cannot see into it."""
 AnyArray: TypeAlias = Any
 """An array of NumPy, CuPy or another library that follows the array API standard."""
+Quantity: TypeAlias = Any
+"""An array of numbers, or None where a model does not define it; a script that asks for one knows its model."""

@@ -3,9 +3,10 @@
 import re
 from functools import cache
 from math import isfinite
+from numbers import Real
 from typing import Any
 
-from faying.errors import InputError
+from faying.errors import InputError, shown
 
 # what a quantity of each SI unit looks like when a user writes it
 EXAMPLES = {
@@ -133,9 +134,10 @@ def si(value: object, unit: str, *, name: str = "value") -> float:
     if isinstance(value, str):
         return parse(value, unit, name=name)
     try:
-        number = float("nan") if isinstance(value, bool) else float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        number = float("nan")
+        # bytes and arrays of one value would pass as numbers
+        number = float("nan") if isinstance(value, bool) or not isinstance(value, Real) else float(value)
+    except OverflowError:
+        number = float("inf")
     if not isfinite(number):
         example = EXAMPLES.get(unit, f"1 {unit}")
         raise InputError(
@@ -154,7 +156,9 @@ def positive(value: object, unit: str, name: str) -> float:
 
 def _short(text: object) -> str:
     """What was given, cut where it is long."""
-    given = f'"{text}"' if isinstance(text, str) else repr(text)
+    if not isinstance(text, str):
+        return shown(text)
+    given = f'"{text}"'
     return given if len(given) <= 80 else f"{given[:60]}... ({len(given)} characters)"
 
 

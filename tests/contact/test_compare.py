@@ -5,14 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from faying import JK, RIGID, ContactPair, InputError, Material
+from faying import JK, RIGID, ContactPair, InputError, Material, Mates
 from faying.contact import (
     GreenwoodWilliamson,
     RoughSurface,
     SurfaceInputs,
     TabulatedLaw,
     compare,
-    laws_of_surface,
 )
 
 PAIR = ContactPair(Material(name="m", E=200e9, nu=0.3, yield_strength=355e6), RIGID)
@@ -20,6 +19,10 @@ SURFACE = SurfaceInputs(
     D=2.4, G=1e-11, scan_area=16e-6, m0=1e-12, m2=1e-4, m4=1e6, slope=0.014, h_rms=1e-6, shortest=1e-6
 )
 P = np.geomspace(1e5, 1e8, 7)
+
+
+def laws_of_surface(surface, pair, names=None):
+    return Mates.of_surface(surface, materials=pair).laws(names)
 
 
 def test_every_model_that_lives_on_numbers_is_there() -> None:

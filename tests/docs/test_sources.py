@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from faying.contact.build import kinds, laws
-from faying.contact.compare import laws_of_surface
 from tests.helpers.published import KEYS
 
 ROOT = Path(__file__).parents[2]
@@ -102,15 +101,12 @@ def test_the_curves_of_the_law_pages_are_those_of_the_laws(reference):
     """Of the laws that are quick: the half-space solution of this scan is compared by other tests."""
     from faying_reference.law_pages import curves
 
-    from faying.contact.two_faces import faces_of
-    from faying.materials import CATALOGUE, ContactPair
-    from faying.surface.read import read_scan
+    from faying import Mates, read_scan
 
-    faces = faces_of(read_scan(ROOT / "examples" / "t-specimen" / "milled.x3p"), "same")
-    steel = CATALOGUE["45 steel"]
+    mates = Mates(read_scan(ROOT / "examples" / "t-specimen" / "milled.x3p"), materials="45 steel")
     found = curves()
     names = [name for name in found if name != "half-space"]
-    made, _ = laws_of_surface(faces.rough, ContactPair(steel, steel), names=names)
+    made, _ = mates.laws(names)
     assert set(names) <= set(made)
     for name in names:
         pressure = found[name]["pressure [Pa]"][::6]

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from faying.output.figures.law import curves
+from faying.contact.figure import curves
 from faying.style import save
 from tests.helpers.gallery import script
 

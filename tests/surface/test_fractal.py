@@ -156,9 +156,9 @@ def test_every_method_answers_for_scans_and_profiles(method):
 
 def test_errors_say_what_is_allowed():
     scan = spectral((64, 64), spacing=1e-6, D=2.5, G=G, seed=1)
-    with pytest.raises(InputError, match="allowed: psd, structure"):
+    with pytest.raises(InputError, match='allowed: "psd", "structure"'):
         fit_fractal(scan, "wavelet")
-    with pytest.raises(InputError, match=r"needs a Scan or a Profile, not ndarray"):
+    with pytest.raises(InputError, match=r"scan: an array of shape .*give a Scan or a Profile"):
         fit_fractal(scan.heights)
     with pytest.raises(InputError, match="every point is missing"):
         fit_fractal(scan.with_heights(np.full((64, 64), np.nan)))

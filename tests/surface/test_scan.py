@@ -47,7 +47,8 @@ def test_profiles_of_a_scan_keep_the_right_spacing():
         ([["a", "b"], ["c", "d"]], (1e-6, 1e-6), "real numbers"),
         (np.zeros((3, 3)), 1e-6, "two distances"),
         (np.zeros((3, 3)), (1e-6, 0.0), "positive"),
-        (np.zeros((3, 3)), (1e-6, "1 um"), "not a length"),
+        (np.zeros((3, 3)), (1e-6, "1 kg"), "not in a unit like m"),
+        (np.zeros((3, 3)), (1e-6, True), "dy = True; give a number in m"),
         (np.zeros((3, 3)), (float("nan"), 1e-6), "positive"),
     ],
 )

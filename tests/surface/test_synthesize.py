@@ -107,11 +107,11 @@ def test_noise_and_missing_points():
         ({"D": 3.0}, "between 2 and 3"),
         ({"G": 1e-9}, "one of them"),
         ({"Rq": None}, "one of them"),
-        ({"Rq": -1.0}, "positive length"),
-        ({"longest": 0.0}, "positive length"),
-        ({"lay": (0.0, 0.5)}, "stretch 1 or more"),
-        ({"shape": (1, 5)}, "2 points at least"),
-        ({"spacing": (1e-6, -1e-6)}, "positive distances"),
+        ({"Rq": -1.0}, "must be positive"),
+        ({"longest": 0.0}, "must be positive"),
+        ({"lay": (0.0, 0.5)}, "stretch of the lay = 0.5; it must be at least 1"),
+        ({"shape": (1, 5)}, "a whole number, at least 2"),
+        ({"spacing": (1e-6, -1e-6)}, "spacing = -1e-06 m; it must be positive"),
     ],
 )
 def test_faulty_requests(change, match):
@@ -121,9 +121,9 @@ def test_faulty_requests(change, match):
 
 
 def test_faulty_series():
-    with pytest.raises(InputError, match="shortest below length"):
+    with pytest.raises(InputError, match="the shortest wavelength is below the longest"):
         synthesize.weierstrass_mandelbrot((8, 8), spacing=1e-6, D=2.4, G=1e-9, length=1e-6, shortest=1e-5)
     with pytest.raises(InputError, match="greater than 1"):
         synthesize.weierstrass_mandelbrot((8, 8), spacing=1e-6, D=2.4, G=1e-9, gamma=0.9)
-    with pytest.raises(InputError, match="between 0 and 1"):
+    with pytest.raises(InputError, match="share of missing points = 1; it must be at least 0 and below 1"):
         with_missing(spectral((8, 8), spacing=1e-6, D=2.4, Rq=1e-6), share=1.0)

@@ -23,9 +23,12 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
     "Results": ("Result", "load", "Backbone", "MeasuredBackbone", "ring_down", "ring_down_of_frf", "read_model_modes"),
     "Surfaces": (
         *("read_scan", "write_scan", "Scan", "Profile", "synthesize", "fit_fractal", "FractalFit", "combine"),
-        "Combined",
+        *("Combined", "Roughness"),
     ),
-    "Contact": ("Mates", "law_for", "JK", "HalfSpace", "solve_half_space", "solve_asperity", "contact"),
+    "Contact": (
+        *("Mates", "law_for", "JK", "HalfSpace", "solve_half_space", "solve_asperity", "contact"),
+        *("ContactLaw", "Response", "Comparison"),
+    ),
     "Materials": ("Material", "ContactPair", "CATALOGUE", "RIGID"),
     "Structures": (
         *("Structure", "State", "VibrationModes", "Joint", "Bolt", "Washer", "SolidBolt"),

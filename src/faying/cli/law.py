@@ -141,7 +141,7 @@ def command(
     if csv_file:
         write_text(Path(csv_file), csv_text(law, response, h))
     if plot:
-        from faying.output.figures.law import curves
+        from faying.contact.figure import curves
         from faying.style import save
 
         save(curves({law.name: response}), plot)

@@ -41,7 +41,7 @@ def show(mates: Any, names: list[str] | None, pressures: Any, output: Output) ->
     if output.csv_file:
         write_text(Path(output.csv_file), csv(comparison, heat))
     if output.plot:
-        from faying.output.figures.law import curves
+        from faying.contact.figure import curves
         from faying.style import save
 
         save(curves(comparison.responses), output.plot)
@@ -63,7 +63,7 @@ def draw_contact(laws: dict[str, Any], pressure: float, path: str) -> None:
     """Write the picture of where the scan touches at a pressure [Pa]; InputError unless one is solved on the scan."""
     from faying.contact.half_space import HalfSpace
     from faying.errors import InputError
-    from faying.output.figures.contact_map import contact_figure
+    from faying.halfspace.figure import contact_figure
     from faying.style import save
 
     solved = [law for law in laws.values() if isinstance(law, HalfSpace)]

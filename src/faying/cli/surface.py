@@ -59,7 +59,7 @@ def command(
 
         document["cross_check"] = [vars(o) for o in cross_check(scan, file, xy_unit, z_unit)]
     if plot:
-        from faying.output.figures.surface import overview
+        from faying.surface.figure import overview
 
         overview(scan, ready, fits, plot)
     click.echo(json.dumps(document, indent=2, allow_nan=False) if as_json else table(document))
@@ -88,11 +88,18 @@ def describe(scan: Any, ready: Any, rough: Any, fits: Any) -> dict[str, Any]:
         "instrument": asdict(scan.instrument),
         "missing": ready.missing,
         "spikes": ready.spikes,
-        "roughness": asdict(rough),
-        "fits": {n: {"error": f} if isinstance(f, str) else asdict(f) for n, f in fits.items()},
+        "roughness": {name: value for name, value in asdict(rough).items() if name != "areal"},
+        "fits": {n: {"error": f} if isinstance(f, str) else _fit(f) for n, f in fits.items()},
         "units": "SI: lengths in metres",
     }
     return dict(clean(out))
+
+
+def _fit(fit: Any) -> dict[str, Any]:
+    """A fit as a tree, without the heights that it was made from."""
+    from dataclasses import asdict, replace
+
+    return {name: value for name, value in asdict(replace(fit, drawn=None)).items() if name != "drawn"}
 
 
 def table(document: dict[str, Any]) -> str:

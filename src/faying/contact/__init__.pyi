@@ -2,7 +2,7 @@
 from . import asperity
 from .build import build, find_law, laws
 from .cmy import CMY
-from .compare import Comparison, compare, laws_of_surface
+from .compare import Comparison, compare
 from .greenwood_williamson import GreenwoodWilliamson
 from .half_space import HalfSpace
 from .inputs import FractalSurface, RoughSurface, SurfaceInputs
@@ -47,5 +47,4 @@ __all__ = [
     "compare",
     "find_law",
     "laws",
-    "laws_of_surface",
 ]

@@ -9,10 +9,11 @@ from inspect import isabstract, isclass
 from pkgutil import iter_modules
 from typing import ClassVar, final
 
+from faying.checks import instance
 from faying.contact.inputs import RoughSurface
 from faying.contact.law import ContactLaw
 from faying.contact.parameter import FRACTAL
-from faying.errors import InputError
+from faying.errors import InputError, shown
 from faying.materials import ContactPair
 
 
@@ -67,6 +68,7 @@ def laws() -> Mapping[str, type[ContactLaw]]:
 
 
 AUTO = "auto"
+NAMED = "give the parameters of the law by name, for example {'alpha': 0.3}"
 
 
 class _Auto(ContactLaw):
@@ -98,20 +100,24 @@ def _plain(name: str) -> str:
     return name.strip().lower().replace("-", "").replace("_", "").replace(" ", "")
 
 
+def _quoted(name: str) -> str:
+    return repr(name) if len(name) <= 60 else shown(name)
+
+
 def find(name: str) -> LawKind:
     """Return the law called `name`, by label ("gw-ke") or class, in any case, with or without hyphens.
 
     Raises InputError that lists the known labels, the nearest first.
     """
     if not isinstance(name, str):
-        raise InputError(f'contact law = {name!r}; give its name as text, for example "jk"')
+        raise InputError(f'contact law = {shown(name)}; give its name as text, for example "jk"')
     known = {_plain(label): kind for label, kind in kinds().items()}
     known |= {_plain(key): kinds()[law.name] for key, law in laws().items() if _plain(key) not in known}
     kind = known.get(_plain(name))
     if kind is None:
         near = get_close_matches(_plain(name), known, n=1)
         hint = f"; did you mean {known[near[0]].label}?" if near else ""
-        raise InputError(f"no contact law {name!r}{hint}; known are {', '.join(sorted(kinds(), key=str.lower))}")
+        raise InputError(f"no contact law {_quoted(name)}{hint}; known are {', '.join(sorted(kinds(), key=str.lower))}")
     return kind
 
 
@@ -142,7 +148,10 @@ def build(
     Raises:
         InputError: unknown names and entries, missing inputs (with where they can come from), values out of range.
     """
-    kind = find(name) if isinstance(name, str) else name
+    kind = name if isinstance(name, LawKind) else find(name)
+    instance(given, Mapping, "given", NAMED)
+    instance(surface, RoughSurface | None, "surface", "give a RoughSurface, or None")
+    instance(pair, ContactPair, "pair", 'give the two materials that meet, ContactPair("45 steel", "45 steel")')
     check_entries(kind, given)
     missing = kind.missing(given, surface)
     if missing:

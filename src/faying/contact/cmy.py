@@ -8,19 +8,17 @@ from typing import Any, ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.law import ContactLaw, Response, require
+from faying.contact.area_fraction import OF_PROFILES, AreaFractionLaw
+from faying.contact.law import Response, require
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.hardness import VickersHardness
 from faying.materials import ContactPair
 
-LEAST, MOST = 1e-12, 0.5  # area: from 7 rms heights between the mean planes to none
-FITTED = (1e-6, 2.3e-2)  # p/H_c of the fit by a power
-
 
 @final
 @dataclass(frozen=True, kw_only=True)
-class CMY(ContactLaw):
+class CMY(AreaFractionLaw):
     """k_n = 1.25 E* (m/sigma) (p/H_c)^0.95, A = p/H_c. doi:10.1016/0017-9310(69)90011-8.
 
     h_rms sigma [m] of both faces together; mean_slope m [-], mean absolute slope of profiles, both faces together;
@@ -47,8 +45,7 @@ class CMY(ContactLaw):
     source: ClassVar[str] = "doi:10.1016/0017-9310(69)90011-8"
     validity: ClassVar[str] = "isotropic rough faces, flat, whose spots yield; p/H_c from 1e-6 to 0.023; first loading"
     parameters: ClassVar = {
-        "h_rms": Parameter("m", "rms height sigma, both faces together", 0, surface="h_rms"),
-        "mean_slope": Parameter("", "mean absolute slope m of profiles, both faces together", 0, surface="mean_slope"),
+        **OF_PROFILES,
         "hardness": Parameter("Pa", "hardness of the spots; that of the pair where not given", 0),
         "c1": Parameter("Pa", "Vickers hardness at a diagonal of 1 um", 0),
         "c2": Parameter("", "power of the diagonal in the Vickers hardness", -1, 1),
@@ -74,11 +71,6 @@ class CMY(ContactLaw):
         except InputError as fault:
             raise InputError(f"{self.name}: {fault}; or give hardness, or c1 and c2, of the spots") from None
 
-    @property
-    def closure_range(self) -> tuple[float, float]:
-        """Area fractions at the least and the greatest load."""
-        return LEAST, MOST
-
     def facts(self) -> dict[str, Any]:
         """Facts of every law, with the hardness over the size of an indentation that is used."""
         return super().facts() | {"c1 [Pa]": self._hardness.c1, "c2": self._hardness.c2}
@@ -97,12 +89,7 @@ class CMY(ContactLaw):
         """Return the response at real area fractions, any shape; InputError unless above 0 and at most a half."""
         from scipy.special import erfcinv
 
-        A = np.asarray(area, float)
-        require(
-            self.name,
-            bool(np.all((A > 0) & (A <= MOST * (1 + 1e-9)))),
-            "the real area fraction lies above 0, up to 0.5",
-        )
+        A = self._area(area)
         grows = 1 + 0.071 * self._hardness.c2
         p = self._hardness.at(1.62 * self.h_rms / self.mean_slope) * A**grows
         H = p / A
@@ -110,7 +97,7 @@ class CMY(ContactLaw):
         Y = sqrt(2) * erfcinv(2 * A)
         flattening = grows * H * np.exp(-(Y**2) / 2) / (sqrt(2 * pi) * self.h_rms)
         reasons = {
-            "p/H_c outside of 1e-6 to 0.023": np.asarray((FITTED[0] > A) | (FITTED[1] < A)),
+            "p/H_c outside of 1e-6 to 0.023": self._unfitted(A),
             "contacts stay elastic: H_c above E* m/sqrt(2)": np.asarray(
                 self.pair.E_star * self.mean_slope / sqrt(2) < H
             ),

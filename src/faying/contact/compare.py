@@ -1,19 +1,17 @@
-"""Several laws on one surface: each takes its own inputs from it, all answer the same pressures."""
+"""Several laws at one row of pressures."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.auto import pick
-from faying.contact.build import AUTO, find, kinds, label_of
+from faying.checks import choice
 from faying.contact.half_space import HalfSpace
-from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.law import ContactLaw, Response, checked
-from faying.errors import FayingError
-from faying.materials import ContactPair
+from faying.contact.response import UNITS
+from faying.errors import FayingError, InputError, shown
 from faying.typing import Array
 
 
@@ -35,6 +33,7 @@ class Comparison:
 
         NaN where fewer than two laws answer.
         """
+        choice(quantity, "quantity", tuple(UNITS))
         given = [r.quantities()[quantity] for r in self.responses.values() if quantity in r.quantities()]
         out = np.full(self.pressure.shape, np.nan)
         values = np.array([np.broadcast_to(v, out.shape) for v in given]) if given else np.empty((0, out.size))
@@ -46,43 +45,18 @@ class Comparison:
 
     def ratios(self, quantity: str) -> dict[str, Array]:
         """A quantity of every law that defines it over that of the half-space, per pressure [-]; empty without it."""
+        choice(quantity, "quantity", tuple(UNITS))
         values = {name: r.quantities()[quantity] for name, r in self.responses.items() if quantity in r.quantities()}
         exact = values.get(HalfSpace.name)
         return {} if exact is None else {name: value / exact for name, value in values.items()}
-
-
-def laws_of_surface(
-    surface: RoughSurface | FractalSurface, pair: ContactPair, *, names: Sequence[str] | None = None
-) -> tuple[dict[str, ContactLaw], dict[str, str]]:
-    """Return the laws of a measured surface by label, and why others are left out.
-
-    Args:
-        surface: the rough surface, or its numbers alone.
-        pair: the materials that meet.
-        names: the laws to take, in any spelling; None takes all that the surface feeds, the half-space among them
-            where there is a scan.
-
-    Raises:
-        InputError: unknown names.
-    """
-    rough = RoughSurface(inputs=surface) if isinstance(surface, FractalSurface) else surface
-    fed = ("fractal", "moments", "scan") if rough.scan is not None else ("fractal", "moments")
-    numbers = [kind for kind in kinds().values() if kind.label != AUTO and kind.law.takes() in fed]
-    made: dict[str, ContactLaw] = {}
-    left_out: dict[str, str] = {}
-    for kind in numbers if names is None else [find(name) for name in names]:
-        try:
-            law = pick(kind, {}, rough, pair).law
-            made[label_of(law).label if kind.label == AUTO else kind.label] = law
-        except FayingError as fault:
-            left_out[kind.label] = str(fault)
-    return made, left_out
 
 
 def compare(
     laws: Mapping[str, ContactLaw], pressure: ArrayLike, left_out: Mapping[str, str] | None = None
 ) -> Comparison:
     """Ask every law for a row of pressures [Pa]; InputError for pressures that are not finite or not positive."""
+    if not isinstance(laws, Mapping) or not all(isinstance(law, ContactLaw) for law in laws.values()):
+        raise InputError(f'laws = {shown(laws)}; give contact laws by name, {{"JK": law}} say')
     p = np.atleast_1d(checked(pressure, name="pressure", unit="Pa", zero=False))
     missing = dict(left_out or {})
     responses = {}

@@ -1,4 +1,4 @@
-"""A comparison of laws as a labelled table, and as curves."""
+"""A comparison of laws as a labelled table, and how its quantities are called on axes."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -7,10 +7,9 @@ import numpy as np
 from faying.contact.compare import Comparison
 from faying.contact.half_space import HalfSpace
 from faying.contact.response import UNITS
-from faying.errors import InputError
+from faying.errors import InputError, shown
 
 if TYPE_CHECKING:
-    import matplotlib.axes
     import xarray
 
 MEANINGS = {
@@ -57,37 +56,7 @@ def dataset(comparison: Comparison, *, mates: str) -> "xarray.Dataset":
 
 def label_and_scale(quantity: str) -> tuple[str, float]:
     """Text of an axis and factor from SI to what it shows. Raises InputError for an unknown quantity."""
-    if quantity not in MEANINGS:
-        raise InputError(f"quantity = {quantity!r}; allowed: {', '.join(MEANINGS)}")
+    if not isinstance(quantity, str) or quantity not in MEANINGS:
+        raise InputError(f"quantity = {shown(quantity)}; allowed: {', '.join(MEANINGS)}")
     stiff = UNITS[quantity] == "Pa/m"
     return MEANINGS[quantity] + (" [MPa/um]" if stiff else ""), STIFFNESS if stiff else 1.0
-
-
-def axes_of(
-    comparison: Comparison, quantity: str, *, title: str, ax: "matplotlib.axes.Axes | None"
-) -> "matplotlib.axes.Axes":
-    """Draw one quantity of the laws that have it; thick within the validity range, thin and dotted outside it."""
-    from matplotlib import colormaps
-
-    label, scale = label_and_scale(quantity)
-    if ax is None:
-        from matplotlib import pyplot
-
-        _, ax = pyplot.subplots(figsize=(7.0, 4.4), layout="constrained")
-    p = comparison.pressure * 1e-6
-    for k, (law, response) in enumerate(comparison.responses.items()):
-        value = response.quantities().get(quantity)
-        if value is None:
-            continue
-        solved = law == HalfSpace.name
-        color = "black" if solved else colormaps["tab20"]((2 * k + k // 10) % 20)
-        ax.plot(p, value * scale, ":", color=color, lw=1.0)
-        shown = np.where(response.valid, value * scale, np.nan)
-        ax.plot(p, shown, color=color, lw=2.6 if solved else 1.6, label=law)
-    ax.set(xscale="log", xlabel="nominal pressure [MPa]", ylabel=label)
-    ax.set_title(title, fontsize="small")
-    if not quantity.startswith("loss"):
-        ax.set_yscale("log")
-    ax.grid(alpha=0.3)
-    ax.legend(title="dotted: outside its range", loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-    return ax

@@ -10,11 +10,12 @@ from typing import Any, ClassVar, Literal, final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from faying.checks import flag
 from faying.contact.inputs import HeightMap
 from faying.contact.law import ContactLaw, Response
 from faying.contact.parameter import TABLE, TEXT, Parameter
 from faying.contact.pressure_series import PressureSeries, cached, cached_numbers, solve_series
-from faying.errors import InputError
+from faying.errors import InputError, shown
 from faying.halfspace.arrays import Device
 from faying.halfspace.solution import HalfSpaceContact
 from faying.halfspace.solve import halved_map, refined_map, solve_half_space
@@ -22,6 +23,7 @@ from faying.halfspace.spots import solve_with_size
 from faying.hardness import VickersHardness
 from faying.materials import ContactPair
 from faying.typing import Array
+from faying.units import show
 
 FEWEST_SPOTS = 10
 COARSE = 0.5  # greatest share of the stiffness on spots of fewer than 4 points
@@ -115,6 +117,9 @@ class HalfSpace(ContactLaw):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        flag(self.elastic, "half-space: elastic")
+        flag(self.periodic, "half-space: periodic")
+        _check_map(self.scan)
         object.__setattr__(self, "points", int(self.points))  # the command line reads numbers as floats
         low, high = self.asked
         if not 0 < low < high < np.inf:
@@ -324,6 +329,29 @@ class HalfSpace(ContactLaw):
         )
 
     @property
+    def branch(self) -> str:
+        """What k_n is the slope of."""
+        return self.stiffness
+
+    def _reach(self) -> str:
+        """What the solved contacts cover; what is asked of them as long as none is solved."""
+        if "series" in vars(self):
+            return super()._reach()
+        low, high = self.asked
+        return f"from {show(low, 'Pa')} to {show(high, 'Pa')} at most; contacts are solved on first use"
+
+    def _assumed(self) -> tuple[str, ...]:
+        return self.assumptions if "series" in vars(self) else ()
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """As of every law, with the size of the map."""
+        rows, columns = np.shape(self.scan.heights)
+        dx, dy = self.scan.spacing
+        heading, own = super().summary()
+        size = f"{columns} x {rows} points on {show(columns * dx, 'm')} x {show(rows * dy, 'm')}"
+        return heading, {"source": own.pop("source"), "scan": size, **own}
+
+    @property
     def assumptions(self) -> tuple[str, ...]:
         """That k_t is one number, where the lay makes two of it."""
         ratio = float(np.median(self.series.values["lay"]))
@@ -360,6 +388,15 @@ class HalfSpace(ContactLaw):
             "numerical": float(np.log(k_n["refined"] / k_n["coarse"])),
             "band": float(np.log(k_n["fine"] / k_n["refined"])),
         }
+
+
+def _check_map(scan: object) -> None:
+    """Raise InputError unless something has heights [m] in rows and columns and spacing (dx, dy) [m]."""
+    heights, spacing = getattr(scan, "heights", None), getattr(scan, "spacing", None)
+    if np.ndim(heights) != 2 or np.size(spacing) != 2:  # type: ignore[arg-type]
+        raise InputError(
+            f"half-space: scan: {shown(scan)}; give an areal scan, as faying.read_scan returns it, levelled and filled"
+        )
 
 
 def _monotone(x: Array, values: Array) -> Callable[[Array], Array]:

@@ -9,11 +9,13 @@ from typing import ClassVar, Protocol, Self, final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from faying.checks import instance, number, real
 from faying.contact.parameter import Parameter
-from faying.errors import InputError
+from faying.errors import InputError, shown
 from faying.materials import ContactPair
 from faying.typing import Array
 
+UNITS_OF_SURFACE = {"G": "m", "scan_area": "m^2", "m0": "m^2", "m4": "1/m^2", "h_rms": "m", "shortest": "m"}
 AT_SHARE = 0.01  # of the hardness: the pressure at which the size of spots is taken
 OF_SCAN = ("scan", "cache", "progress")  # what a law takes from a scan beside numbers
 
@@ -43,7 +45,9 @@ class FractalSurface:
     gamma: float = 1.5
 
     def __post_init__(self) -> None:
-        for name, value in vars(self).items():
+        for name in tuple(vars(self)):
+            value = real(vars(self)[name], f"surface: {name}", UNITS_OF_SURFACE.get(name, ""))
+            object.__setattr__(self, name, value)
             if not 0 < value < inf and not (isnan(value) and name in ("D", "G")):
                 raise InputError(f"surface: {name} = {value}; it must be positive and finite")
 
@@ -81,8 +85,9 @@ class SurfaceInputs(FractalSurface):
     mean_slope: float = nan
 
     def __post_init__(self) -> None:
-        if isnan(self.mean_slope) and self.m2 > 0:
-            object.__setattr__(self, "mean_slope", sqrt(2 * self.m2 / pi))
+        slope, m2 = real(self.mean_slope, "surface: mean_slope"), real(self.m2, "surface: m2")
+        if isnan(slope) and m2 > 0:
+            object.__setattr__(self, "mean_slope", sqrt(2 * m2 / pi))
         super().__post_init__()
         if self.alpha <= 0.8968:
             raise InputError(
@@ -97,12 +102,19 @@ class SurfaceInputs(FractalSurface):
         Slopes and curvatures by differences of neighbours, so that the shortest wavelength is twice the
         spacing. Raises InputError for fewer than 5 points a side.
         """
-        z = np.asarray(heights, float)
+        try:
+            given = np.asarray(heights)
+        except ValueError:
+            given = np.asarray("rows of unequal length")
+        z = given.astype(float) if given.dtype.kind in "fiu" else np.zeros(0)
+        if not isinstance(spacing, list | tuple | np.ndarray) or len(spacing) != 2:
+            raise InputError(f"spacing = {shown(spacing)}; give the two distances (dx, dy) in metres")
+        dx, dy = (number(step, "spacing", "m", least=0) for step in spacing)
         if z.ndim != 2 or min(z.shape) < 5:
-            raise InputError(f"heights of shape {z.shape}; give a grid of at least 5 x 5 points")
+            raise InputError(f"heights: {shown(heights)}; give a grid of at least 5 x 5 points")
         z = z - np.nanmean(z)
         m2, m4, absolute = [], [], []
-        for axis, step in ((1, spacing[0]), (0, spacing[1])):
+        for axis, step in ((1, dx), (0, dy)):
             first = np.diff(z, axis=axis) / step
             second = np.diff(z, 2, axis=axis) / step**2
             m2.append(float(np.nanmean(first**2)))
@@ -112,13 +124,13 @@ class SurfaceInputs(FractalSurface):
         return cls(
             D=D,
             G=G,
-            scan_area=float(z.shape[0] * spacing[1] * z.shape[1] * spacing[0]),
+            scan_area=float(z.shape[0] * dy * z.shape[1] * dx),
             m0=m0,
             m2=sum(m2) / 2,
             m4=sum(m4) / 2,
             slope=sqrt(sum(m2)),
             h_rms=sqrt(m0),
-            shortest=2 * max(spacing),
+            shortest=2 * max(dx, dy),
             mean_slope=sum(absolute) / 2,
         )
 
@@ -130,8 +142,10 @@ class SurfaceInputs(FractalSurface):
         of an isotropic surface has half its squared gradient and 3/8 of its fourth moment. Raises InputError as the
         class, and for D outside 2 to 3 or a shortest wave not below the side.
         """
-        side = sqrt(scan_area) if scan_area > 0 else 0.0
-        if not (2 < D < 3 and 0 < shortest < side and G > 0 and gamma > 1):
+        lengths = (("G", G, "m"), ("scan_area", scan_area, "m^2"), ("shortest", shortest, "m"))
+        G, scan_area, shortest = (number(value, name, unit, least=0) for name, value, unit in lengths)
+        D, gamma, side = number(D, "D"), number(gamma, "gamma"), sqrt(scan_area)
+        if not (2 < D < 3 and 0 < shortest < side and gamma > 1):
             raise InputError(
                 f"D = {D}, G = {G} m, scan_area = {scan_area} m2, shortest = {shortest} m, gamma = {gamma}; need D "
                 "between 2 and 3, G positive, gamma above 1 and the shortest wave below the side of the scan"
@@ -197,6 +211,9 @@ class RoughSurface:
     cache: Path | None = None
     unfitted: str = ""
     progress: Callable[[int, int], object] | None = field(default=None, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        instance(self.inputs, FractalSurface, "inputs", "give SurfaceInputs or a FractalSurface")
 
     FRACTAL: ClassVar = ("D", "G", "scan_area", "gamma", "side", "G_majumdar_bhushan")
 

@@ -4,19 +4,24 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, replace
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from faying.checks import flag
 from faying.contact.inputs import FractalSurface, RoughSurface
-from faying.contact.parameter import FILE, Parameter, check_all
+from faying.contact.parameter import FILE, Parameter, checked_all
 from faying.contact.response import Response
 from faying.contact.table import PressureTable
-from faying.errors import InputError, NotConverged
+from faying.errors import FayingError, InputError, NotConverged, shown
 from faying.materials import ContactPair
+from faying.style import Summary
 from faying.typing import Array
-from faying.units import si
+from faying.units import show, si
+
+if TYPE_CHECKING:
+    import matplotlib.axes
 
 __all__ = ["ContactLaw", "Parameter", "Response", "checked", "require"]
 
@@ -55,12 +60,21 @@ def _floats(values: ArrayLike, name: str, unit: str) -> Array:
             return np.asarray(given, dtype=float)
         given = np.asarray(values, dtype=object)
     except (TypeError, ValueError):
-        raise InputError(f"{name} = {values!r}: the rows differ in length; give numbers in {unit}") from None
+        raise InputError(f"{name} = {shown(values)}: the rows differ in length; give numbers in {unit}") from None
     read = [si(value, unit, name=name) for value in given.ravel()]
     return np.asarray(read, dtype=float).reshape(given.shape)
 
 
-class ContactLaw(ABC):
+def _entry(name: str, value: object, parameter: Parameter) -> str:
+    """One parameter of a law as text; empty where it is not given or is no number and no word."""
+    if isinstance(value, bool) or not isinstance(value, int | float | str) or value == "":
+        return ""
+    if isinstance(value, str):
+        return f"{name} {value}"
+    return f"{name} {show(float(value), parameter.unit)}" if parameter.unit else f"{name} {value:.4g}"
+
+
+class ContactLaw(Summary, ABC):
     """A law of rough contact. A model states its equations along its own closure variable; this class inverts them.
 
     A model gives `at_closure`, `closure_range` (the closures of the least and of the greatest load that it covers,
@@ -77,6 +91,11 @@ class ContactLaw(ABC):
     variants: ClassVar[Mapping[str, Mapping[str, object]]] = {}
     geometric: ClassVar[bool] = True
     plastic_summits: ClassVar[bool] = False  # whether a surface gives it the hardness that its small spots have
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        if "__repr__" not in vars(cls):  # else a dataclass writes its own, with every point of a scan
+            cls.__repr__ = Summary.__repr__  # type: ignore[method-assign]
 
     @abstractmethod
     def at_closure(self, closure: ArrayLike) -> Response:
@@ -97,14 +116,14 @@ class ContactLaw(ABC):
 
     def __post_init__(self) -> None:
         for label, fixed in self.variants.items():
-            if all(getattr(self, key) == value for key, value in fixed.items()):
+            if all(isinstance(own := getattr(self, key), type(value)) and own == value for key, value in fixed.items()):
                 object.__setattr__(self, "name", label)
-        pair = getattr(self, "pair", None)
-        if pair is not None and not isinstance(pair, ContactPair):
+        if self._has("pair") and not isinstance(pair := vars(self).get("pair"), ContactPair):
             raise InputError(
-                f'{self.name}: pair = {pair!r}; give the two materials that meet, ContactPair("45 steel", "45 steel")'
+                f'{self.name}: pair = {shown(pair)}; give the materials that meet, ContactPair("45 steel", "45 steel")'
             )
-        check_all(self.name, self.parameters, vars(self))
+        for key, value in checked_all(self.name, self.parameters, vars(self), self._optional()).items():
+            object.__setattr__(self, key, value)
 
     @classmethod
     def entries(cls) -> Mapping[str, Parameter]:
@@ -118,6 +137,11 @@ class ContactLaw(ABC):
         if cls._has("pair"):
             own["pair"] = pair
         return cls(**own)
+
+    @classmethod
+    def _optional(cls) -> frozenset[str]:
+        """Parameters that are None where nobody gives them."""
+        return frozenset(f.name for f in fields(cls) if f.default is None)  # type: ignore[arg-type]
 
     @classmethod
     def _has(cls, name: str) -> bool:
@@ -163,6 +187,51 @@ class ContactLaw(ABC):
     def assumptions(self) -> tuple[str, ...]:
         """What the law assumes that nobody measured, each beginning with the number that rests on it."""
         return ()
+
+    @property
+    def branch(self) -> str:
+        """The branch of k_n where no k_load is stated; with k_load, k_n is that of unloading."""
+        return "loading and unloading"
+
+    def _reach(self) -> str:
+        """Pressures that the law covers, in words."""
+        try:
+            return f"from {show(self.least_pressure, 'Pa')} to {show(self.greatest_pressure, 'Pa')}"
+        except FayingError as fault:
+            return f"none: {fault}"
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Parameters, materials, source, the pressures that the law covers, what it assumes and where it is valid."""
+        rows = {"source": self.source}
+        numbers = [_entry(name, getattr(self, name, None), p) for name, p in self.parameters.items()]
+        rows["parameters"] = ", ".join(filter(None, numbers)) or "none"
+        pair = getattr(self, "pair", None)
+        if isinstance(pair, ContactPair):
+            rows["materials"] = f"{pair.first.name} on {pair.second.name}"
+        rows["covers"] = self._reach()
+        rows["valid for"] = self.validity
+        rows["assumes"] = "; ".join(self._assumed()) or "nothing beyond its parameters"
+        return f"Contact law {self.name}", rows
+
+    def _assumed(self) -> tuple[str, ...]:
+        return self.assumptions
+
+    def plot(self, pressure: ArrayLike | None = None, *, axes: Any = None) -> "list[matplotlib.axes.Axes]":
+        """Draw stiffness, and real area where the law has one, against pressure; dotted where the law is not valid.
+
+        Args:
+            pressure: nominal, numbers in Pa or text with a unit; 0.1 to 50 MPa where None, as far as the law covers.
+            axes: matplotlib axes to draw into, one for a law without an area, else two; a new figure where None.
+
+        Returns:
+            The axes.
+
+        Raises:
+            InputError: for pressures outside what the law covers, and for another number of axes.
+        """
+        from faying.contact.figure import law_plot
+
+        return law_plot(self, pressure, axes)
 
     def _pressure_at(self, closure: Array) -> Array:
         """Pressure alone; a model overrides this where it is quicker than the whole response."""
@@ -211,6 +280,8 @@ class ContactLaw(ABC):
         touches: every quantity is 0. Raises InputError for NaN or negative pressures and for those above
         `greatest_pressure` or below the least that the law resolves.
         """
+        if exact is not None:
+            flag(exact, "exact")
         p = checked(pressure, name="pressure", unit="Pa", zero=True)
         if p.size and p.max() > self.greatest_pressure * (1 + 1e-12):
             raise InputError(

@@ -8,16 +8,18 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from faying.checks import instance, real
 from faying.contact.auto import Choice, pick
-from faying.contact.build import AUTO, LawKind, find, kinds
+from faying.contact.build import AUTO, NAMED, LawKind, find, kinds
 from faying.contact.compare import Comparison, compare
 from faying.contact.half_space import HalfSpace
 from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.law import ContactLaw, checked
 from faying.contact.parameter import TABLE
 from faying.contact.two_faces import GIVEN, Counter, Faces, together
-from faying.errors import FayingError, InputError
+from faying.errors import FayingError, InputError, shown
 from faying.materials import ContactPair, Material, material_of
+from faying.style import Summary
 from faying.surface.convention import NAMES
 from faying.surface.fractal import FractalFit
 from faying.surface.scan import Profile, Scan
@@ -36,7 +38,7 @@ COMPARED = (0.1e6, 50e6, 28)  # Pa: pressures of a comparison where none are giv
 
 @final
 @dataclass(frozen=True, init=False, eq=False, repr=False)
-class Mates:
+class Mates(Summary):
     """The two faces of a joint: what was measured of both, and their materials.
 
     Laws, tables and commands take both faces from here, so that one question has one answer. The default is the same
@@ -56,7 +58,7 @@ class Mates:
     Raises:
         InputError: for what is no scan, unknown materials, two rigid faces, and a line scan without scan_area.
 
-    `Mates.of_fractal` and `Mates.of_fit` take D and G in place of a scan.
+    `Mates.of_fractal` and `Mates.of_fit` take D and G in place of a scan, `Mates.of_surface` other numbers.
     """
 
     faces: Faces
@@ -115,9 +117,9 @@ class Mates:
         Raises:
             InputError: for numbers out of range, unknown materials, and another word for `of`.
         """
-        if of not in (ONE, BOTH):
-            raise InputError(f'of = {of!r}; D and G are those of "{BOTH}" together, or of "{ONE}"')
-        dimension, roughness = _plain(D, "D"), si(G, "m", name="G")
+        if not isinstance(of, str) or of not in (ONE, BOTH):
+            raise InputError(f'of = {shown(of)}; D and G are those of "{BOTH}" together, or of "{ONE}"')
+        dimension, roughness = real(D, "D"), si(G, "m", name="G")
         if not 2 < dimension < 3:
             raise InputError(f"D = {dimension}: the dimension of a surface lies between 2 and 3, for example 2.4")
         if roughness <= 0:
@@ -131,17 +133,38 @@ class Mates:
         return cls(Faces(face=numbers, stated=stated), materials=materials)
 
     @classmethod
+    def of_surface(cls, surface: RoughSurface | FractalSurface, *, materials: Materials) -> "Mates":
+        """Return the mates of the rough surface that both faces make together.
+
+        Args:
+            surface: its numbers, `FractalSurface` or `SurfaceInputs`; or a `RoughSurface`, maybe with heights.
+            materials: as in `Mates`.
+
+        Returns:
+            The mates.
+
+        Raises:
+            InputError: for anything else, and for unknown materials.
+        """
+        if isinstance(surface, FractalSurface):
+            surface = RoughSurface(inputs=surface)
+        remedy = "give FractalSurface, SurfaceInputs or RoughSurface; for a scan call Mates itself"
+        made = instance(surface, RoughSurface, "surface", remedy)
+        return cls(Faces(face=made.inputs, made=made), materials=materials)
+
+    @classmethod
     def of_fit(cls, fit: FractalFit, *, scan_area: float | str, materials: Materials, of: str = ONE) -> "Mates":
         """Return the mates of a fit; of: "one face" for that of `fit_fractal`, "both faces" for that of `combine`.
 
-        scan_area [m2], materials: as in `of_fractal`. Raises InputError as it does, and for a fit in another
+        scan_area [m2], materials: as in `of_fractal`. The fit of a profile counts as that of the isotropic surface that
+        it is cut from (`FractalFit.surface_G`). Raises InputError as it does, and for a fit in another
         convention than that of Yan and Komvopoulos.
         """
         if not isinstance(fit, FractalFit):
             raise InputError(f"a fit is given as {type(fit).__name__}; give what faying.fit_fractal returns")
         if not fit.convention.startswith("Yan-Komvopoulos"):
             raise InputError(f'this fit has the convention "{fit.convention}"; fit with convention = "{NAMES[0]}"')
-        return cls.of_fractal(D=fit.D, G=fit.G, scan_area=scan_area, materials=materials, of=of)
+        return cls.of_fractal(D=fit.D, G=fit.surface_G, scan_area=scan_area, materials=materials, of=of)
 
     def watched(self, progress: Callable[[int, int], object]) -> "Mates":
         """The same mates, which call progress(contacts solved, contacts in all) while contacts are solved."""
@@ -154,23 +177,24 @@ class Mates:
         """Both faces and both materials in one line."""
         return line_of(self.faces, self.pair)
 
-    def __repr__(self) -> str:
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Both faces, both materials, and where D and G come from."""
         faces, pair = self.faces, self.pair
-        lines = [f"Mates: {self.line}"]
+        rows: dict[str, str] = {}
         if isinstance(faces.face, Scan):
-            lines.append(f"  one face: {_size(faces.face)}")
+            rows["one face"] = _size(faces.face)
         elif isinstance(faces.face, Profile):
-            lines.append(f"  one face: {faces.face.heights.size} points on {show(faces.face.length, 'm')}")
+            rows["one face"] = f"{faces.face.heights.size} points on {show(faces.face.length, 'm')}"
         if isinstance(faces.counter, Scan):
-            lines.append(f"  other face: {_size(faces.counter)}")
+            rows["other face"] = _size(faces.counter)
         elif isinstance(faces.face, Scan | Profile):
             words = {"same": "alike in its statistics, unrelated point by point", "smooth": "smooth"}
-            lines.append(f"  other face: {words[faces.counter]}")
-        lines.append(f"  materials: {_material(pair.first)}")
-        lines.append(f"  on {_material(pair.second)}; E* {show(pair.E_star, 'Pa')}")
+            rows["other face"] = words[faces.counter]
+        rows["materials"] = _material(pair.first)
+        rows["on"] = f"{_material(pair.second)}; E* {show(pair.E_star, 'Pa')}"
         if not isinstance(faces.face, FractalSurface):
-            lines.append(f"  {self._source_of_numbers()}")
-        return "\n".join(lines)
+            rows["numbers"] = self._source_of_numbers()
+        return f"Mates: {self.line}", rows
 
     def _source_of_numbers(self) -> str:
         """Where D and G come from; they are not fitted for this."""
@@ -207,7 +231,7 @@ class Mates:
             InputError: as `faying.contact.auto.pick`.
         """
         kind = find(name) if not isinstance(name, LawKind) else name
-        values = read_entries(kind, given or {})
+        values = read_entries(kind, instance({} if given is None else given, Mapping, "given", NAMED))
         key = kind.label, tuple(sorted(values.items(), key=lambda item: item[0]))
         plain = all(isinstance(value, str | int | float | Path) for value in values.values())
         if plain and key in self._made:
@@ -244,7 +268,8 @@ class Mates:
         names: the laws to take, in any spelling; None takes all that the faces feed.
         """
         if names is None:
-            fed = ("fractal", "moments", *(("scan",) if isinstance(self.faces.face, Scan) else ()))
+            scanned = isinstance(self.faces.face, Scan) or self.faces.unfitted.scan is not None
+            fed = ("fractal", "moments", *(("scan",) if scanned else ()))
             named = [kind for kind in kinds().values() if kind.label != AUTO and kind.law.takes() in fed]
         else:
             named = [find(name) for name in _listed(names)]
@@ -304,10 +329,14 @@ class Mates:
         Raises:
             InputError: as `compare`, and for an unknown quantity.
         """
-        from faying.contact.comparison_table import axes_of, label_and_scale
+        from faying.contact.comparison_table import label_and_scale
+        from faying.contact.figure import comparison_plot
+        from faying.style import axes_of
 
-        label_and_scale(quantity)  # an unknown one is told before contacts are solved
-        return axes_of(self.comparison(pressure, laws), quantity, title=self.line, ax=ax)
+        label_and_scale(quantity)  # faults are reported before contacts are solved
+        if ax is not None:
+            axes_of(ax, 1)
+        return comparison_plot(self.comparison(pressure, laws), quantity, title=self.line, ax=ax)
 
 
 def law_for(
@@ -364,16 +393,11 @@ def read_entries(kind: LawKind, given: Mapping[str, object]) -> dict[str, object
         parameter = entries[name]
         if isinstance(value, str) and parameter.unit != TABLE:
             out[name] = parameter.read(value, name)
-            continue
-        if parameter.unit != TABLE and not isinstance(value, Path):
-            parameter.check(_number(value), name)
-        out[name] = value
+        elif parameter.unit == TABLE or isinstance(value, Path):
+            out[name] = value
+        else:
+            out[name] = parameter.value(value, name)
     return out
-
-
-def _number(value: object) -> object:
-    """Numbers of numpy as those of Python."""
-    return value.item() if isinstance(value, np.generic) else value
 
 
 def _faces(face: object, **given: Any) -> Faces:
@@ -382,18 +406,12 @@ def _faces(face: object, **given: Any) -> Faces:
         if given[name] is not None:
             given[name] = si(given[name], unit, name=name)
     if given["D"] is not None:
-        given["D"] = _plain(given["D"], "D")
+        given["D"] = real(given["D"], "D")
     cache = given.pop("cache")
     if cache is not None and not isinstance(cache, str | Path):
-        raise InputError(f"cache = {cache!r}; give the folder as text or a Path")
+        raise InputError(f"cache = {shown(cache)}; give the folder as text or a Path")
     other = given.pop("other")
     return Faces(face=face, counter=other, cache=None if cache is None else Path(cache), **given)  # type: ignore[arg-type]
-
-
-def _plain(value: object, name: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
-        raise InputError(f"{name} = {value!r} should be a plain number, for example 2.4")
-    return float(value)
 
 
 def _watched(surface: RoughSurface, progress: Callable[[int, int], object]) -> RoughSurface:
@@ -403,7 +421,7 @@ def _watched(surface: RoughSurface, progress: Callable[[int, int], object]) -> R
 def _listed(names: object) -> list[Any]:
     """Names of laws as a list; InputError for one text, which would be read letter by letter, and for no list."""
     if isinstance(names, str) or not isinstance(names, Sequence):
-        raise InputError(f'laws = {names!r}; give a list of names, for example ["jk", "persson"]')
+        raise InputError(f'laws = {shown(names)}; give a list of names, for example ["jk", "persson"]')
     return list(names)
 
 
@@ -424,4 +442,6 @@ def _material(material: Material) -> str:
     if material.is_rigid:
         return "rigid"
     hard = "" if material.hardness is None else f", hardness {show(material.hardness, 'Pa')}"
+    if material.brinell is not None and material.brinell != material.hardness:
+        hard += f", Brinell {show(material.brinell, 'Pa')}"
     return f"{material.name}, E {show(material.E, 'Pa')}, nu {material.nu:g}{hard}"

@@ -7,18 +7,16 @@ from typing import ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.law import ContactLaw, Response, require
-from faying.contact.parameter import Parameter
+from faying.contact.area_fraction import OF_PROFILES, AreaFractionLaw
+from faying.contact.law import Response
 from faying.materials import ContactPair
 
-LEAST, MOST = 1e-12, 0.5
-FITTED = (1e-6, 2.3e-2)  # of the area, within which the power is right to 4 %
 POWER = 0.94
 
 
 @final
 @dataclass(frozen=True, kw_only=True)
-class Mikic(ContactLaw):
+class Mikic(AreaFractionLaw):
     """k_n = 1.54 E* (m/sigma) (p/H_e)^0.94, A = p/H_e, H_e = E* m/sqrt(2). doi:10.1016/0017-9310(74)90082-9.
 
     h_rms sigma [m] of both faces together; mean_slope m [-], mean absolute slope of profiles, both faces together;
@@ -36,28 +34,15 @@ class Mikic(ContactLaw):
     name: ClassVar[str] = "Mikic"
     source: ClassVar[str] = "doi:10.1016/0017-9310(74)90082-9"
     validity: ClassVar[str] = "isotropic rough faces, flat, whose spots stay elastic; real area from 1e-6 to 0.023"
-    parameters: ClassVar = {
-        "h_rms": Parameter("m", "rms height sigma, both faces together", 0, surface="h_rms"),
-        "mean_slope": Parameter("", "mean absolute slope m of profiles, both faces together", 0, surface="mean_slope"),
-    }
-
-    @property
-    def closure_range(self) -> tuple[float, float]:
-        """Area fractions at the least and the greatest load."""
-        return LEAST, MOST
+    parameters: ClassVar = OF_PROFILES
 
     def at_closure(self, area: ArrayLike) -> Response:
         """Return the response at real area fractions, any shape; InputError unless above 0 and at most a half."""
-        A = np.asarray(area, float)
-        require(
-            self.name,
-            bool(np.all((A > 0) & (A <= MOST * (1 + 1e-9)))),
-            "the real area fraction lies above 0, up to 0.5",
-        )
+        A = self._area(area)
         H = self.pair.E_star * self.mean_slope / sqrt(2)
         p = H * A
         k_n = 1.54 * self.pair.E_star * self.mean_slope / self.h_rms * A**POWER
-        reasons = {"real area outside of 1e-6 to 0.023": np.asarray((FITTED[0] > A) | (FITTED[1] < A))}
+        reasons = {"real area outside of 1e-6 to 0.023": self._unfitted(A)}
         if any(m.hardness for m in (self.pair.first, self.pair.second)):
             reasons["mean pressure of the contacts above the hardness"] = np.full(A.shape, self.pair.hardness < H)
         return Response(

@@ -1,15 +1,18 @@
 """What one parameter of a contact law is, and how a value for it is read and checked."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from math import inf
 from pathlib import Path
 from typing import Literal, final
 
-from faying import units
-from faying.errors import InputError
+import numpy as np
 
+from faying import units
+from faying.errors import InputError, shown
+
+FARTHEST = 1e308  # whole numbers beyond it are no floats
 TEXT, FILE, TABLE = "text", "file", "table"  # in place of a unit: a word, the name of a file, an array
 
 
@@ -43,6 +46,11 @@ class Parameter:
         return self.unit not in (TEXT, FILE, TABLE)
 
     @property
+    def is_switch(self) -> bool:
+        """Whether values are 0 or 1, which True and False stand for as well."""
+        return self.whole and (self.least, self.greatest, self.ends) == (0, 1, "[]")
+
+    @property
     def allowed(self) -> str:
         """The allowed values in words."""
         words = {TEXT: "" if self.choices else "any text", FILE: "the name of a file", TABLE: "an array"}
@@ -64,18 +72,37 @@ class Parameter:
     def check(self, value: object, name: str) -> None:
         """Raise InputError unless a value in SI units is allowed."""
         if not self.is_number or isinstance(value, str):
+            if not isinstance(value, str):
+                if self.unit != TEXT:
+                    return
+                raise InputError(f"{name} = {shown(value)}; allowed is {self.allowed}")
             if self.choices and value not in self.choices:
                 near = get_close_matches(str(value), self.choices, n=1)
                 hint = f"; did you mean {near[0]}?" if near else ""
-                raise InputError(f"{name} = {value!r}; allowed is {self.allowed}{hint}")
+                raise InputError(f"{name} = {shown(value)}; allowed is {self.allowed}{hint}")
             return
-        if not isinstance(value, int | float):
-            raise InputError(f"{name} = {value!r}; allowed is {self.allowed}")
+        if (isinstance(value, bool) and not self.is_switch) or not isinstance(value, int | float):
+            raise InputError(f"{name} = {shown(value)}; allowed is {self.allowed}")
+        if abs(value) > FARTHEST:
+            value = inf if value > 0 else -inf
         above = value >= self.least if self.ends[0] == "[" else value > self.least
         below = value <= self.greatest if self.ends[1] == "]" else value < self.greatest
         if not (above and below and abs(value) < inf) or (self.whole and value != int(value)):
             unit = f" {self.unit}" if self.unit else ""
             raise InputError(f"{name} = {value:.12g}{unit}; it must be {self.allowed}")
+
+    def value(self, value: object, name: str) -> object:
+        """Return what a Python user gives as a value in SI units; InputError where it is not allowed.
+
+        value: a number, or text with a unit for a quantity; a word. name: what the error calls it.
+        """
+        if self.is_number and not (isinstance(value, str) and value in self.choices):
+            number = units.parse(value, self.unit, name=name) if isinstance(value, str) and self.unit else value
+            value = number.item() if isinstance(number, np.generic) else number
+            if isinstance(value, str):
+                raise InputError(f"{name} = {shown(value)}; allowed is {self.allowed}")
+        self.check(value, name)
+        return value
 
     def read(self, value: object, name: str, folder: Path | None = None) -> object:
         """Turn what a user wrote (TOML or text) into a value in SI units; InputError where it is not allowed.
@@ -90,7 +117,7 @@ class Parameter:
         out: object = value
         if self.unit in (TEXT, FILE):
             if not isinstance(value, str):
-                raise InputError(f"{name} = {value!r} should be text in quotes")
+                raise InputError(f"{name} = {shown(value)} should be text in quotes")
             if self.unit == FILE:
                 out = (folder or Path()) / value
                 if not out.is_file():
@@ -112,22 +139,32 @@ def _plain(value: object, name: str, choices: tuple[str, ...]) -> float:
             raise ValueError
         number = float(value)
     except ValueError:
-        raise InputError(f"{name} = {value!r} should be a plain number, for example 0.3{words}") from None
+        raise InputError(f"{name} = {shown(value)} should be a plain number, for example 0.3{words}") from None
     if not abs(number) < inf:
-        raise InputError(f"{name} = {value!r} should be a plain finite number, for example 0.3{words}")
+        raise InputError(f"{name} = {shown(value)} should be a plain finite number, for example 0.3{words}")
     return number
 
 
-def check_all(law: str, parameters: Mapping[str, Parameter], values: Mapping[str, object]) -> None:
-    """Raise InputError, with the law's name before it, for the first of the values that is not allowed."""
+def checked_all(
+    law: str, parameters: Mapping[str, Parameter], values: Mapping[str, object], optional: Collection[str]
+) -> dict[str, object]:
+    """Return the values that differ from those given once they are read: text with a unit, numbers of numpy.
+
+    Raises InputError, with the law's name before it, for the first of the values that is not allowed; None is, for
+    those that are `optional`.
+    """
+    read: dict[str, object] = {}
     for name, parameter in parameters.items():
         value = values.get(name)
-        if value is None or parameter.unit == TABLE:
+        if parameter.unit == TABLE or (value is None and name in optional):
             continue
         try:
-            parameter.check(value, name)
+            plain = parameter.value(value, name)
         except InputError as fault:
             raise InputError(f"{law}: {fault}") from None
+        if plain is not value:
+            read[name] = plain
+    return read
 
 
 # what the laws of fractal surfaces share

@@ -6,6 +6,7 @@ from typing import ClassVar, Self, final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from faying.checks import number
 from faying.contact.law import ContactLaw, Response, checked
 from faying.contact.parameter import TEXT, Parameter
 
@@ -38,6 +39,7 @@ class PowerLaw(ContactLaw):
     @classmethod
     def measured(cls, *, C: float, m: float, origin: str, greatest: float = 9.8e6) -> Self:
         """Return the law of C in um/MPa^m, as tables of joints print it."""
+        C, m = number(C, "C [um/MPa^m]", least=0), number(m, "m", least=0, greatest=1)
         return cls(C=C * 1e-6 / 1e6**m, m=m, origin=origin, greatest=greatest)
 
     @property

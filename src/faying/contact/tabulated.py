@@ -9,6 +9,8 @@ from typing import Any, ClassVar, Self, final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from faying.checks import path as checked_path
+from faying.checks import text
 from faying.columns import read_columns
 from faying.contact.law import ContactLaw, Response, checked, require
 from faying.contact.parameter import FILE, TABLE, TEXT, Parameter
@@ -72,6 +74,7 @@ class TabulatedLaw(ContactLaw):
         return cls.from_csv(str(given["file"]))
 
     def __post_init__(self) -> None:
+        text(self.origin, "origin of the table")
         p = checked(self.pressure, name="pressure of the table", unit="Pa", zero=False)
         require(
             self.name, p.ndim == 1 and p.size >= 2, f"pressure has shape {p.shape}; give at least 2 values in a row"
@@ -80,7 +83,7 @@ class TabulatedLaw(ContactLaw):
         columns = self._columns
         require(self.name, bool(columns), f"nothing but pressure is given; give any of {', '.join(QUANTITIES)}")
         for name, value in columns.items():
-            checked(value, name=f"{name} of the table", unit=UNITS[name] or "no unit", zero=True)
+            checked(value, name=f"{name} of the table", unit=UNITS[name], zero=True)
             require(self.name, value.shape == p.shape, f"{name} has shape {value.shape}, pressure {p.shape}")
         object.__setattr__(self, "pressure", _frozen(p))
         for name, value in columns.items():
@@ -109,8 +112,9 @@ class TabulatedLaw(ContactLaw):
         `faying law --csv` writes such files. Raises ReadError, with the file and the line, for files that are missing
         or do not hold a table.
         """
+        file = checked_path(path, "path of a table")
         try:
-            return cls(**_read(Path(path)), origin=str(path))
+            return cls(**_read(file), origin=str(path))
         except ReadError:
             raise
         except InputError as fault:
@@ -119,7 +123,11 @@ class TabulatedLaw(ContactLaw):
     @property
     def _columns(self) -> dict[str, Array]:
         given = {f.name: getattr(self, f.name) for f in fields(self) if f.name in QUANTITIES}
-        return {name: np.asarray(value, float) for name, value in given.items() if value is not None}
+        return {
+            name: checked(value, name=f"{name} of the table", unit=UNITS[name], zero=True)
+            for name, value in given.items()
+            if value is not None
+        }
 
     @property
     def closure_range(self) -> tuple[float, float]:

@@ -9,7 +9,7 @@ from typing import Any, final
 import numpy as np
 
 from faying.contact.inputs import FractalSurface, RoughSurface, SurfaceInputs
-from faying.errors import FayingError, InputError
+from faying.errors import FayingError, InputError, shown
 from faying.surface.combine import combine
 from faying.surface.estimators.table import METHODS
 from faying.surface.form import Prepared, levelled, prepared
@@ -28,6 +28,9 @@ GIVEN = "as given"
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Faces:
     """Two faces as one rough surface. What nobody asks for is not computed; what was asked for is not computed again.
+
+    A line scan stands for the isotropic surface that it is cut from: D is that of the line plus 1, and G is that of the
+    surface, `FractalFit.surface_G`. Laws take G of the surface, the power of all directions together.
 
     Args:
         face: the scan of one face; or the numbers of both faces together, and then only `stated` is given besides.
@@ -61,11 +64,11 @@ class Faces:
                 f"a face is given as {type(self.face).__name__}; give a scan as faying.read_scan returns it, or D, G "
                 "and scan_area with Mates.of_fractal"
             )
-        if not isinstance(self.counter, Scan) and self.counter not in COUNTERS:
+        if not isinstance(self.counter, Scan | str) or (isinstance(self.counter, str) and self.counter not in COUNTERS):
             given = f'"{self.counter}"' if isinstance(self.counter, str) else type(self.counter).__name__
             raise InputError(f'counter = {given}; give the scan of the other face, "same" or "smooth"')
-        if self.method not in METHODS:
-            raise InputError(f"method = {self.method!r}; allowed: {', '.join(METHODS)}")
+        if not isinstance(self.method, str) or self.method not in METHODS:
+            raise InputError(f"method = {shown(self.method)}; allowed: {', '.join(METHODS)}")
         if isinstance(self.face, Profile) and self.scan_area is None:
             raise InputError(f"{self.face.source} is a line scan, which covers no area; give surface.scan_area as well")
         if isinstance(self.face, Profile) and isinstance(self.counter, Scan):
@@ -147,7 +150,7 @@ class Faces:
         dimension, roughness = self.D or (fit.D if fit else nan), self.G or nan
         if not self.G and fit:
             factor = 2.0 if self.counter == "same" else 1.0
-            roughness = together(fit.G, dimension, factor)
+            roughness = together(fit.surface_G, dimension, factor)
         inputs = replace(self.unfitted.inputs, D=dimension, G=roughness)
         return replace(self.unfitted, inputs=inputs, unfitted=why)
 
@@ -155,8 +158,15 @@ class Faces:
     def warnings(self) -> tuple[str, ...]:
         """What the fit of the scan warns of, and what its file says."""
         if self.fit is not None:
-            return tuple(self.fit.warnings)
+            return (*self.fit.warnings, *self._of_a_line(self.fit))
         return (self.rough.unfitted,) if self.rough.unfitted else ()
+
+    def _of_a_line(self, fit: FractalFit) -> tuple[str, ...]:
+        """What is assumed where G of a surface is taken from a line."""
+        if fit.areal or self.G:
+            return ()
+        factor = fit.surface_G / fit.G
+        return (f"G is {factor:.3g} times that of the line, which counts as a cut through an isotropic surface",)
 
     def with_numbers(self, **changes: float) -> "Faces":
         """The same faces with some of D, G [m] and scan_area [m2] of both together changed; nothing is fitted anew."""

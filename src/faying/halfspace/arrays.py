@@ -10,7 +10,7 @@ from typing import Any, Literal, final
 
 import numpy as np
 
-from faying.errors import InputError
+from faying.errors import InputError, shown
 from faying.typing import AnyArray, Array
 
 PART = 1 << 17  # values of a part: 1 MB in double precision, within the second cache
@@ -174,10 +174,10 @@ class Place:
 
 def place_for(heights: Any, device: Device | None, precision: Precision, workers: int | None) -> Place:
     """Place of a solution: the device asked for, else where the heights are. Raises InputError where it is missing."""
-    if precision not in ("double", "single"):
-        raise InputError(f'precision = {precision!r}; it must be "double" or "single"')
-    if device not in (None, "cpu", "gpu"):
-        raise InputError(f'device = {device!r}; it must be "cpu", "gpu" or None (where the heights are)')
+    if not isinstance(precision, str) or precision not in ("double", "single"):
+        raise InputError(f'precision = {shown(precision)}; it must be "double" or "single"')
+    if not isinstance(device, str | None) or device not in (None, "cpu", "gpu"):
+        raise InputError(f'device = {shown(device)}; it must be "cpu", "gpu" or None (where the heights are)')
     if device == "gpu":
         return Place(_cupy(), precision, workers)
     if device == "cpu" or not hasattr(heights, "__array_namespace__"):

@@ -3,15 +3,19 @@
 from dataclasses import dataclass
 from functools import cached_property
 from math import log, pi
-from typing import TYPE_CHECKING, final
+from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from faying.halfspace.arrays import Device, Place, place_for
+from faying.style import Summary
 from faying.typing import Array, Mask
+from faying.units import show
 
 if TYPE_CHECKING:
+    import matplotlib.axes
+
     from faying.halfspace.slip import Slip
     from faying.halfspace.spots import Spots
     from faying.halfspace.tangent import Tangent
@@ -20,8 +24,8 @@ OPEN, ELASTIC, AT_HARDNESS = 0, 1, 2
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False)
-class HalfSpaceContact:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class HalfSpaceContact(Summary):
     """A height map pressed against a rigid plane.
 
     Args:
@@ -55,6 +59,40 @@ class HalfSpaceContact:
     applications: int
     workers: int | None = None
     device: Device = "cpu"
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """The map, the pressure, what touches, the error bound."""
+        rows, columns = self.heights.shape
+        (dx, dy), hard = self.spacing, self.hardness
+        limit = "none" if hard is None else show(hard, "Pa") if isinstance(hard, float) else "one for each point"
+        return f"Half-space contact at {show(self.pressure, 'Pa')}", {
+            "map": f"{columns} x {rows} points on {show(columns * dx, 'm')} x {show(rows * dy, 'm')}",
+            "E*": show(self.E_star, "Pa"),
+            "hardness": limit,
+            "area": f"{100 * self.area:.4g} % of the points, {100 * self.saturated:.4g} % at hardness",
+            "spots": str(self.spots.count),
+            "residual": f"{self.residual:.2g}",
+        }
+
+    def plot(self, axes: Any = None) -> "list[matplotlib.axes.Axes]":
+        """Draw which points touch, and the pressure at each point.
+
+        Args:
+            axes: two matplotlib axes to draw into; a new figure where None.
+
+        Returns:
+            Both axes.
+
+        Raises:
+            InputError: for anything but two axes.
+        """
+        from faying.halfspace.figure import contact_map, pressure_map
+        from faying.style import axes_of
+
+        states, pressure = axes_of(axes, 2, width=5.2, height=4.8)
+        contact_map(states, self)
+        pressure_map(pressure, self)
+        return [states, pressure]
 
     @property
     def place(self) -> Place:

@@ -3,11 +3,13 @@
 from dataclasses import dataclass
 from functools import partial
 from math import isfinite, isnan
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.errors import InputError, NotConverged
+from faying.checks import flag, instance, number, real, whole
+from faying.errors import InputError, NotConverged, shown
 from faying.halfspace.arrays import Device, Place, Precision, deviation, parts, place_for, total
 from faying.halfspace.bounded import Minimum, Problem, Progress, Start, best_level, duality_gap, minimise
 from faying.halfspace.kernels import normal_kernel, transform_shape
@@ -76,7 +78,12 @@ def solve_half_space(
     place = place_for(heights, device, precision, workers)
     h, (dx, dy) = _checked_map(heights, spacing, place)
     limit = _checked_hardness(hardness, h.shape)
-    _check_numbers(E_star, nu, tol)
+    E_star, nu, tol = number(E_star, "E_star", "Pa", least=0), real(nu, "nu"), real(tol, "tol")
+    _check_numbers(nu, tol)
+    if workers is not None:
+        whole(workers, "workers", least=1, greatest=4096)
+    flag(periodic, "periodic")
+    instance(start, HalfSpaceContact | None, "start", "give an earlier contact, or leave it out")
     _check_memory(h.shape, periodic, place)
     if (pressure is None) == (displacement is None):
         raise InputError("give either pressure or displacement to solve_half_space, one of the two")
@@ -84,8 +91,9 @@ def solve_half_space(
     problem = _Pressing(h, (dx, dy), options, progress)
     first = None if start is None else _first(start, h.shape, (dx, dy))
     if displacement is not None:
-        return _at_displacement(problem, displacement, first)
+        return _at_displacement(problem, real(displacement, "displacement", "m"), first)
     assert pressure is not None
+    pressure = real(pressure, "pressure", "Pa")
     _check_pressure(pressure, limit)
     return problem.at(pressure / E_star, first)
 
@@ -260,7 +268,7 @@ def error_bound(
     """
     h, (dx, dy) = _checked_map(heights, spacing, Place())
     limit = _checked_hardness(hardness, h.shape)
-    _check_numbers(E_star, 0.3, 0.5)
+    E_star = number(E_star, "E_star", "Pa", least=0)
     given = np.asarray(traction)
     if given.shape != h.shape or not (given > 0).any():
         raise InputError(f"traction of shape {given.shape}; give pressures above 0 on a map of shape {h.shape}")
@@ -342,9 +350,9 @@ def _checked_map(
     heights: ArrayLike, spacing: float | tuple[float, float], place: Place
 ) -> tuple[Array, tuple[float, float]]:
     """A copy of the heights that nobody changes, and (dx, dy)."""
-    given = heights if isinstance(heights, (np.ndarray, list, tuple)) else place.fetch(heights)
+    given = heights if isinstance(heights, (np.ndarray, list, tuple)) else _fetched(heights, place)
     keep = place.precision == "single" and isinstance(given, np.ndarray) and given.dtype == np.float32
-    h: Array = np.array(given, dtype=np.float32 if keep else np.float64)
+    h = _numbers(given, "heights", np.float32 if keep else np.float64)
     if h.ndim != 2 or min(h.shape) < 2:
         raise InputError(f"heights of shape {h.shape}; give a map of rows and columns, at least 2 by 2")
     bad = int(np.count_nonzero(~np.isfinite(h)))
@@ -355,17 +363,39 @@ def _checked_map(
             f"heights: {bad} of {h.size} points are NaN or infinite; fill the missing points of the scan "
             "first, or cut out a part that is whole"
         )
-    dx, dy = (spacing, spacing) if isinstance(spacing, (int, float)) else (float(spacing[0]), float(spacing[1]))
-    if not (isfinite(dx) and isfinite(dy) and dx > 0 and dy > 0):
-        raise InputError(f"spacing = {spacing}; give the distance between points in metres, for example 1e-6")
-    return _frozen(h), (float(dx), float(dy))
+    pair = tuple(spacing) if isinstance(spacing, list | tuple | np.ndarray) else (spacing, spacing)
+    if len(pair) != 2:
+        raise InputError(f"spacing = {shown(spacing)}; give the distance between points in metres, one or (dx, dy)")
+    return _frozen(h), (number(pair[0], "spacing", "m", least=0), number(pair[1], "spacing", "m", least=0))
+
+
+def _fetched(heights: Any, place: Place) -> Any:
+    """Heights of another library as an array of NumPy."""
+    if not hasattr(heights, "__array__") and not hasattr(heights, "__array_namespace__"):
+        raise InputError(f"heights: {shown(heights)}; give an array of heights in metres, rows and columns")
+    return place.fetch(heights)
+
+
+def _numbers(given: Any, name: str, kind: type = np.float64) -> Array:
+    """A copy as an array of real numbers; InputError for anything else."""
+    try:
+        array = np.asarray(given)
+    except ValueError:
+        array = np.array("ragged")
+    if array.dtype.kind not in "fiu":
+        raise InputError(f"{name}: {shown(given)}; give real numbers in SI units")
+    return np.array(array, dtype=kind)
 
 
 def _checked_hardness(hardness: float | ArrayLike | None, shape: tuple[int, ...]) -> float | Array | None:
     """The hardness as one number or as a map that nobody changes."""
     if hardness is None:
         return None
-    given = np.asarray(hardness, dtype=float)
+    given = np.asarray(
+        real(hardness, "hardness", "Pa")
+        if not isinstance(hardness, list | tuple) and np.ndim(hardness) == 0
+        else _numbers(hardness, "hardness")
+    )
     if given.shape not in ((), shape):
         raise InputError(f"hardness of shape {given.shape}; give one number, or one for each point of the map {shape}")
     if not np.all(np.isfinite(given) & (given > 0)):
@@ -373,9 +403,7 @@ def _checked_hardness(hardness: float | ArrayLike | None, shape: tuple[int, ...]
     return float(given) if given.ndim == 0 else _frozen(given.copy())
 
 
-def _check_numbers(E_star: float, nu: float, tol: float) -> None:
-    if not (isfinite(E_star) and E_star > 0):
-        raise InputError(f"E_star = {E_star} Pa; it must be positive, for example 110e9")
+def _check_numbers(nu: float, tol: float) -> None:
     if not -1 < nu <= 0.5:
         raise InputError(f"nu = {nu}; it must lie in (-1, 0.5], for example 0.3")
     if not 0 < tol < 1:

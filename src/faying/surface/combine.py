@@ -138,7 +138,7 @@ def combine(
     m0, m2, m4 = (sum(getattr(p, name) for p in parts) for name in ("m0", "m2", "m4"))
     facts = _facts(m0, ready, (scan_a, scan_b))
     return Combined(
-        fit=result(estimate, facts, method="psd", convention=convention, gamma=gamma),
+        fit=result(estimate, facts, method="psd", convention=convention, gamma=gamma, drawn=joint),
         Rq=m0**0.5,
         m0=m0,
         m2=m2,

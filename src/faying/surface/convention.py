@@ -13,6 +13,7 @@ JK model) and c = 1/ln(gamma) for that of Majumdar and Bhushan (doi:10.1115/1.29
 
 from math import cos, exp, gamma, lgamma, log, pi
 
+from faying.checks import number, shown
 from faying.errors import InputError
 
 NAMES = ("yan-komvopoulos", "majumdar-bhushan")
@@ -20,18 +21,18 @@ NAMES = ("yan-komvopoulos", "majumdar-bhushan")
 
 def prefactor(convention: str, wm_gamma: float) -> float:
     """Return c of the module's formula. Raises InputError for an unknown convention or gamma <= 1."""
-    if convention not in NAMES:
-        raise InputError(f'convention = {convention!r}; allowed: "{NAMES[0]}" (c = 1), "{NAMES[1]}" (c = 1/ln gamma)')
-    if not wm_gamma > 1:
+    if not isinstance(convention, str) or convention not in NAMES:
+        raise InputError(
+            f'convention = {shown(convention)}; allowed: "{NAMES[0]}" (c = 1), "{NAMES[1]}" (c = 1/ln gamma)'
+        )
+    if not number(wm_gamma, "gamma") > 1:
         raise InputError(f"gamma = {wm_gamma}: the ratio of neighbouring frequencies is greater than 1, usually 1.5")
     return 1.0 if convention == NAMES[0] else 1 / log(wm_gamma)
 
 
 def check_dimension(D: float) -> float:
     """Return D, or raise InputError where it is not the dimension of a surface."""
-    if not 2 < D < 3:
-        raise InputError(f"D = {D}: the dimension of a surface lies between 2 and 3, for example 2.4")
-    return float(D)
+    return number(D, "D, the dimension of a surface,", least=2, greatest=3)
 
 
 def cut_factor(D: float) -> float:
@@ -69,6 +70,6 @@ def implied_Rq(D: float, G: float, length: float, c: float = 1.0) -> float:
 def G_from_Rq(D: float, Rq: float, length: float, c: float = 1.0) -> float:
     """Return the G [m] whose implied Rq over `length` is `Rq` [m] (both positive, InputError else)."""
     check_dimension(D)
-    if not (Rq > 0 and length > 0):
-        raise InputError(f"Rq = {Rq}, length = {length}: both must be positive, in metres")
+    for name, value in (("Rq", Rq), ("length", length)):
+        number(value, name, "m", least=0)
     return G_from_density(D, log(Rq**2 * (6 - 2 * D)) - (6 - 2 * D) * log(length), c)

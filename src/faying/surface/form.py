@@ -6,7 +6,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from faying.errors import InputError
+from faying.errors import InputError, shown
 from faying.surface.scan import Profile, Scan, usable
 from faying.typing import Array, Mask
 
@@ -38,14 +38,19 @@ def _design(scan: Scan | Profile, degree: int) -> list[Array]:
     return [(x**i) * (y**j) for j in range(degree + 1) for i in range(degree + 1 - j)]
 
 
+def check_degree(degree: object) -> None:
+    """Raise InputError unless a polynomial of this degree can be taken out."""
+    if isinstance(degree, bool) or not isinstance(degree, int | np.integer) or not 0 <= degree <= 8:
+        raise InputError(f"degree = {shown(degree)}: form is removed by a polynomial of degree 0 to 8")
+
+
 def levelled(scan: Lines, degree: int = 1) -> Lines:
     """Subtract the least-squares polynomial of total degree `degree` (0 mean, 1 plane or line, 2.. form).
 
     Missing points take no part and stay missing. Raises InputError for degrees outside 0..8, or scans that do not
     hold enough points for the polynomial.
     """
-    if not isinstance(degree, int) or not 0 <= degree <= 8:
-        raise InputError(f"degree = {degree!r}: form is removed by a polynomial of degree 0 to 8")
+    check_degree(degree)
     heights = scan.heights
     terms = _design(scan, degree)
     known = ~np.isnan(heights)
@@ -147,6 +152,7 @@ def prepared(scan: Scan | Profile, *, degree: int = 1, spikes: bool = True) -> P
     Raises InputError when more than half the points are missing, all heights are equal, or there are under 16 points
     each way. What was prepared is kept as long as the scan is.
     """
+    check_degree(degree)
     made = _PREPARED.setdefault(scan, {})
     if (degree, spikes) not in made:
         made[degree, spikes] = _prepared(scan, degree, spikes)

@@ -1,23 +1,29 @@
 """D and G of a scan or profile by several estimators, each with an interval and the band it used."""
 
-from dataclasses import dataclass
-from typing import Any, final
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
 from faying import units
+from faying.checks import choice, flag, instance, number, shown
 from faying.errors import FayingError, InputError
+from faying.style import Summary
 from faying.surface.convention import NAMES, check_dimension, cut_factor, implied_Rq, prefactor
 from faying.surface.estimators.base import Estimate, Scatter
 from faying.surface.estimators.table import ESTIMATORS, METHODS
 from faying.surface.form import Prepared, prepared
 from faying.surface.roughness import roughness
 from faying.surface.scan import Profile, Scan
+from faying.surface.spectrum import Spectrum
+
+if TYPE_CHECKING:
+    import matplotlib.axes
 
 
 @final
-@dataclass(frozen=True, kw_only=True)
-class FractalFit:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class FractalFit(Summary):
     """What one estimator says of a surface.
 
     Args:
@@ -38,6 +44,9 @@ class FractalFit:
         bias: what a self-test took off D [-], None without one.
         warnings: what the user ought to know.
         scatter: of D and G together, where the estimator states their covariance.
+        c: prefactor of the convention [-].
+        areal: whether D and G are those of a scan; else G is that of the profile itself.
+        drawn: what `plot` takes the spectrum from: the levelled heights, or the spectrum itself.
     """
 
     method: str
@@ -57,11 +66,60 @@ class FractalFit:
     bias: float | None = None
     warnings: tuple[str, ...] = ()
     scatter: Scatter | None = None
+    c: float = 1.0
+    areal: bool = True
+    drawn: Scan | Profile | Spectrum | None = field(default=None, compare=False)
+
+    @property
+    def surface_G(self) -> float:
+        """G [m] of the surface: that of a scan itself; of a profile that of the isotropic surface it is cut from.
+
+        The power of a profile is a part of that of its surface, the mean of |cos|^(6 - 2 D) over all directions, and
+        G^(2 D - 4) goes with it. NaN where a profile has no D between 2 and 3.
+        """
+        if self.areal:
+            return self.G
+        return self.G * cut_factor(self.D) ** (-1 / (2 * self.D - 4)) if 2 < self.D < 3 else float("nan")
 
     @property
     def implied_Ra(self) -> float:
         """Mean absolute height [m] of Gaussian heights of rms `implied_Rq`: (2/pi)^(1/2) of it."""
         return float(self.implied_Rq * (2 / np.pi) ** 0.5)
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """D and G with their intervals, the band, the rms heights, the convention, and what the user ought to know."""
+        (low, high), (least, most) = self.D_interval, self.G_interval
+        rms = "Sq" if self.areal else "Rq"
+        rows = {
+            "D": f"{self.D:.4g}, 95 % interval {low:.4g} to {high:.4g}",
+            "G": f"{_m(self.G)}, 95 % interval {_m(least)} to {_m(most)}",
+            "band": f"wavelengths from {_m(self.band[0])} to {_m(self.band[1])}",
+            rms: f"{_m(self.Rq)}; D and G imply {_m(self.implied_Rq)}",
+            "convention": self.convention,
+        }
+        if self.missing or self.spikes:
+            rows["filled in"] = f"{self.missing} missing points and {self.spikes} spikes"
+        if self.bias is not None:
+            rows["self-test"] = f"took {self.bias:.3g} off D"
+        if self.warnings:
+            rows["warnings"] = "; ".join(self.warnings)
+        return f"Fractal fit of a {'scan' if self.areal else 'profile'} by {self.method}", rows
+
+    def plot(self, ax: "matplotlib.axes.Axes | None" = None) -> "matplotlib.axes.Axes":
+        """Draw the power spectrum, the band of the fit, and its power law.
+
+        Args:
+            ax: matplotlib axes to draw into; a new figure where None.
+
+        Returns:
+            The axes.
+
+        Raises:
+            InputError: for anything but axes, and for a fit that was not made from heights.
+        """
+        from faying.surface.figure import fit_plot
+
+        return fit_plot(self, ax)
 
 
 @final
@@ -97,7 +155,7 @@ def fit_fractal(
     scan: Scan | Profile,
     method: str = "psd",
     *,
-    band: tuple[float, float] | None = None,
+    band: tuple[float, float] | tuple[str, str] | None = None,
     degree: int = 1,
     spikes: bool = True,
     convention: str = "yan-komvopoulos",
@@ -111,8 +169,8 @@ def fit_fractal(
         method: "psd" (power law with white noise fitted to the spectrum; recommended), "moments" (ratio of the
             spectral moments m2 and m0), "fpenn" (a network on moments), "structure" (structure function),
             "roughness-length", "higuchi", "mfdfa" (detrended fluctuation) or "box" (box counting).
-        band: shortest and longest wavelength [m] to use instead of what the data support, from twice the spacing to
-            the side.
+        band: shortest and longest wavelength to use instead of what the data support, from twice the spacing to the
+            side; [m], or text with a unit.
         degree: of the polynomial that levels the heights, 0 to 8.
         spikes: take single outlying points out.
         convention: "yan-komvopoulos" (that of the JK model, c = 1) or "majumdar-bhushan" (c = 1/ln gamma).
@@ -130,12 +188,11 @@ def fit_fractal(
     Source:
         Yan and Komvopoulos 1998, doi:10.1063/1.368536, eq. (5), for the meaning of D and G.
     """
-    if not isinstance(scan, (Scan, Profile)):
-        raise InputError(f"fit_fractal needs a Scan or a Profile, not {type(scan).__name__}; build faying.Scan first")
-    if method not in ESTIMATORS:
-        raise InputError(f"method = {method!r}; allowed: {', '.join(METHODS)}")
+    instance(scan, Scan | Profile, "scan", "give a Scan or a Profile, as faying.read_scan returns it")
+    choice(method, "method", METHODS)
     prefactor(convention, gamma)
-    if self_test:
+    flag(spikes, "spikes")
+    if flag(self_test, "self_test"):
         from faying.surface import selftest
 
         if band is not None:
@@ -143,7 +200,8 @@ def fit_fractal(
         return selftest.self_test(scan, method, degree=degree, spikes=spikes, convention=convention, gamma=gamma)
     ready = prepared(scan, degree=degree, spikes=spikes)
     estimate = _estimated(ready, method, _limits(ready, band), prefactor(convention, gamma))
-    return result(estimate, Facts.of(scan, ready), method=method, convention=convention, gamma=gamma)
+    facts = Facts.of(scan, ready)
+    return result(estimate, facts, method=method, convention=convention, gamma=gamma, drawn=ready.scan)
 
 
 def _estimated(ready: Prepared, method: str, limits: tuple[float, float] | None, c: float) -> Estimate:
@@ -157,23 +215,32 @@ def _estimated(ready: Prepared, method: str, limits: tuple[float, float] | None,
         ) from fault
 
 
-def _limits(ready: Prepared, band: tuple[float, float] | None) -> tuple[float, float] | None:
+def _limits(ready: Prepared, band: object) -> tuple[float, float] | None:
     if band is None:
         return None
     scan = ready.scan
     longest = scan.length if isinstance(scan, Profile) else min(scan.size)
     shortest = 2 * (scan.spacing if isinstance(scan, Profile) else max(scan.spacing))
-    low, high = float(min(band)), float(max(band))
+    if not isinstance(band, list | tuple | np.ndarray) or len(band) != 2:
+        raise InputError(f"band = {shown(band)}; give the shortest and the longest wavelength in metres")
+    low, high = sorted(number(wave, "band", "m", least=0) for wave in band)
     if not (shortest * (1 - 1e-9) <= low < high <= longest * (1 + 1e-9)):
         raise InputError(
-            f"band = {band}: give wavelengths in metres between twice the spacing, {shortest:.4g}, and the side, "
-            f"{longest:.4g}"
+            f"band = ({low:.4g}, {high:.4g}): give wavelengths in metres between twice the spacing, "
+            f"{shortest:.4g}, and the side, {longest:.4g}"
         )
     return low, high
 
 
 def result(
-    e: Estimate, facts: Facts, *, method: str, convention: str, gamma: float, bias: float | None = None
+    e: Estimate,
+    facts: Facts,
+    *,
+    method: str,
+    convention: str,
+    gamma: float,
+    bias: float | None = None,
+    drawn: Scan | Profile | Spectrum | None = None,
 ) -> FractalFit:
     """Complete an estimate by what it implies over the side, its convention in words, and its warnings."""
     c = prefactor(convention, gamma)
@@ -204,6 +271,9 @@ def result(
         bias=bias,
         warnings=tuple(words),
         scatter=e.scatter,
+        c=c,
+        areal=facts.areal,
+        drawn=drawn,
     )
 
 

@@ -2,18 +2,20 @@
 
 import zipfile
 from dataclasses import dataclass, replace
-from math import isfinite
 from pathlib import Path
 
 import numpy as np
 
+from faying.checks import instance, number, shown
+from faying.checks import path as checked_path
 from faying.errors import FayingError, InputError, ReadError
 from faying.files import end_of
 from faying.surface.scan import Profile, Scan
 from faying.surface.text import Layout
+from faying.units import scale
 
 ASK = 'for example read_scan("{name}", xy_unit="mm", z_unit="um"), or on the command line --xy-unit mm --z-unit um'
-Lengths = float | tuple[float, float] | None
+Lengths = float | str | tuple[float, float] | tuple[str, str] | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,13 +46,11 @@ class Lateral:
 def _pair(value: Lengths, name: str) -> tuple[float, float] | None:
     if value is None:
         return None
-    try:
-        pair = (value, value) if isinstance(value, (int, float)) else tuple(value)
-        numbers = tuple(float(v) for v in pair)
-    except (TypeError, ValueError):
-        numbers = ()
-    if len(numbers) != 2 or not all(isfinite(v) and v > 0 for v in numbers):
-        raise InputError(f"{name} = {value!r}: give one positive length in metres or two (x, y), for example 4e-3")
+    given: object = value
+    pair = tuple(given) if isinstance(given, list | tuple | np.ndarray) else (given, given)
+    if len(pair) != 2:
+        raise InputError(f"{name} = {shown(value)}: give one positive length in metres or two (x, y), for example 4e-3")
+    numbers = tuple(number(length, name, "m", least=0) for length in pair)
     return numbers[0], numbers[1]
 
 
@@ -71,7 +71,8 @@ def read_scan(
         path: the file.
         xy_unit: unit of x and y where the file states none, such as "mm".
         z_unit: unit of the heights where the file states none, such as "um".
-        size: length of the scan [m], one number or (x, y), where the file states none or one that cannot be.
+        size: length of the scan, one or (x, y), [m] or text with a unit, where the file states none
+            or one that cannot be.
         spacing: distance between points [m], in place of `size`.
 
     Returns:
@@ -81,7 +82,10 @@ def read_scan(
         InputError: when a unit or a size is needed and not given, or given against the file.
         ReadError: for files that are missing, damaged, of an unknown format, or of implausible size.
     """
-    file = Path(path)
+    file = checked_path(path, "path of a scan")
+    for name, unit in (("xy_unit", xy_unit), ("z_unit", z_unit)):
+        if unit is not None:
+            scale(instance(unit, str, name, 'give the name of a unit as text, "mm" say'), "m", name=name)
     lateral = Lateral.of(size, spacing)
     head = _head(file)
     if head[:2] == b"PK" and _is_x3p(file):

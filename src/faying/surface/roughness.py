@@ -5,17 +5,31 @@ from typing import final
 
 import numpy as np
 
+from faying.errors import InputError
+from faying.style import Summary
 from faying.surface.form import Prepared, prepared
 from faying.surface.scan import Profile, Scan
+from faying.typing import Array
+from faying.units import show
 
 
 @final
-@dataclass(frozen=True, kw_only=True)
-class Roughness:
-    """Rq (rms), Ra (mean absolute), Rz (highest minus lowest height) [m]; skewness, kurtosis, Rdq (rms slope) [-].
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Roughness(Summary):
+    """Numbers of levelled heights, without a filter.
 
-    For a scan these are Sq, Sa, Sz, Ssk, Sku and Sdq of ISO 25178-2, taken over the whole area without a filter; the
-    slope is the rms gradient of forward differences, hence tied to the pixel. For a profile they are Rq .. Rdq.
+    Args:
+        Rq: rms height [m].
+        Ra: mean absolute height [m].
+        Rz: highest minus lowest height [m].
+        skewness: mean cube of the heights over Rq^3 [-].
+        kurtosis: mean fourth power of the heights over Rq^4 [-].
+        Rdq: rms slope [-]; of a scan the rms gradient. By differences of neighbours, hence tied to the spacing.
+        Rdr: developed over projected length, less 1 [-]; of a scan developed over projected area, less 1.
+        areal: whether the heights are those of a scan: they go by Sq, Sa, Sz, Ssk, Sku, Sdq and Sdr of ISO 25178-2, as
+            those of a profile go by Rq, Ra, Rsk, Rku, Rdq and Rdr of ISO 21920-2. Rz here spans the line.
+
+    Asking a profile for a number of a scan raises InputError.
     """
 
     Rq: float
@@ -24,21 +38,80 @@ class Roughness:
     skewness: float
     kurtosis: float
     Rdq: float
+    Rdr: float
+    areal: bool
+
+    def _of(self, areal: bool, name: str, value: float) -> float:
+        if self.areal != areal:
+            one, other = ("a scan", "a profile") if areal else ("a profile", "a scan")
+            raise InputError(
+                f"{name} is a number of {one}; these heights are those of {other}, which has {_like(name)}"
+            )
+        return value
 
     @property
     def Sq(self) -> float:
-        """Rms height of an areal scan [m]."""
-        return self.Rq
+        """Rms height of a scan [m]."""
+        return self._of(True, "Sq", self.Rq)
 
     @property
     def Sa(self) -> float:
-        """Mean absolute height of an areal scan [m]."""
-        return self.Ra
+        """Mean absolute height of a scan [m]."""
+        return self._of(True, "Sa", self.Ra)
+
+    @property
+    def Sz(self) -> float:
+        """Highest minus lowest height of a scan [m]."""
+        return self._of(True, "Sz", self.Rz)
+
+    @property
+    def Ssk(self) -> float:
+        """Skewness of the heights of a scan [-]."""
+        return self._of(True, "Ssk", self.skewness)
+
+    @property
+    def Sku(self) -> float:
+        """Kurtosis of the heights of a scan [-]."""
+        return self._of(True, "Sku", self.kurtosis)
 
     @property
     def Sdq(self) -> float:
-        """Rms gradient of an areal scan [-]."""
-        return self.Rdq
+        """Rms gradient of a scan [-]."""
+        return self._of(True, "Sdq", self.Rdq)
+
+    @property
+    def Sdr(self) -> float:
+        """Developed area of a scan over its projected area, less 1 [-]."""
+        return self._of(True, "Sdr", self.Rdr)
+
+    @property
+    def Rsk(self) -> float:
+        """Skewness of the heights of a profile [-]."""
+        return self._of(False, "Rsk", self.skewness)
+
+    @property
+    def Rku(self) -> float:
+        """Kurtosis of the heights of a profile [-]."""
+        return self._of(False, "Rku", self.kurtosis)
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """All numbers, by their names in the standard."""
+        S = "S" if self.areal else "R"
+        standard = "ISO 25178-2" if self.areal else "ISO 21920-2"
+        return f"Roughness, {standard} without a filter", {
+            f"{S}q": show(self.Rq, "m"),
+            f"{S}a": show(self.Ra, "m"),
+            f"{S}z": show(self.Rz, "m"),
+            f"{S}sk": f"{self.skewness:.4g}",
+            f"{S}ku": f"{self.kurtosis:.4g}",
+            f"{S}dq": f"{self.Rdq:.4g}",
+            f"{S}dr": f"{self.Rdr:.4g}",
+        }
+
+
+def _like(name: str) -> str:
+    """The name of the same number on the other kind of heights."""
+    return ("R" if name[0] == "S" else "S") + name[1:]
 
 
 def roughness(scan: Scan | Profile | Prepared, *, degree: int = 1) -> Roughness:
@@ -53,15 +126,32 @@ def roughness(scan: Scan | Profile | Prepared, *, degree: int = 1) -> Roughness:
     rq = float(np.sqrt(np.mean(known**2)))
     holes = np.where(ready.known, z, np.nan)
     steps = [ready.scan.spacing] if z.ndim == 1 else [ready.scan.spacing[1], ready.scan.spacing[0]]
-    slope2 = sum(float(np.nanmean((np.diff(holes, axis=i) / d) ** 2)) for i, d in enumerate(steps))
+    slopes = [np.diff(holes, axis=axis) / step for axis, step in enumerate(steps)]
     return Roughness(
         Rq=rq,
         Ra=float(np.mean(np.abs(known))),
         Rz=float(np.ptp(known)),
         skewness=float(np.mean(known**3)) / rq**3,
         kurtosis=float(np.mean(known**4)) / rq**4,
-        Rdq=slope2**0.5,
+        Rdq=sum(float(np.nanmean(slope**2)) for slope in slopes) ** 0.5,
+        Rdr=_developed(slopes),
+        areal=z.ndim == 2,
     )
+
+
+def _developed(slopes: list[Array]) -> float:
+    """Developed length or area over the projected one, less 1, from the slopes between neighbours.
+
+    Of a map each cell of four points is two triangles, cut along one diagonal and along the other, in the mean.
+    """
+    if len(slopes) == 1:
+        squares = [slopes[0] ** 2]
+    else:
+        down, across = slopes
+        squares = [a**2 + d**2 for a in (across[:-1], across[1:]) for d in (down[:, :-1], down[:, 1:])]
+    # sqrt(1 + s) - 1 without the loss of digits where s is small
+    parts = [float(np.nanmean(s / (1 + np.sqrt(1 + s)))) for s in squares]
+    return sum(parts) / len(parts)
 
 
 LENGTHS = 5  # sampling lengths in a line

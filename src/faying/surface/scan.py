@@ -1,14 +1,16 @@
 """Measured heights with their spacing: frozen, in metres, missing points as NaN."""
 
 from dataclasses import dataclass, field, replace
-from math import isfinite
 from typing import Any, Self, final
 
 import numpy as np
 
+from faying.checks import instance, number, shown, text, whole
 from faying.errors import InputError, ReadError
 from faying.memory import GB, available
+from faying.surface.heights import Heights
 from faying.typing import Array
+from faying.units import show
 
 
 @final
@@ -40,9 +42,14 @@ def check_points(source: str, count: float) -> None:
 
 def _frozen(heights: Any, dimensions: int, name: str) -> Array:
     try:
-        out = np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan)
+        given = np.ma.asarray(heights)
+        out = np.ma.filled(given.astype(np.float64), np.nan) if given.dtype.kind in "fiu" else None
     except (TypeError, ValueError):
-        raise InputError(f"{name}: heights must be real numbers in metres, with NaN where a point is missing") from None
+        out = None
+    if out is None:
+        raise InputError(
+            f"{name}: heights = {shown(heights)}; give real numbers in metres, NaN where a point is missing"
+        )
     if out.ndim != dimensions:
         want = "rows and columns, heights[iy, ix]" if dimensions == 2 else "one row of points"
         raise InputError(f"{name}: heights have {out.ndim} dimensions; give {want}")
@@ -55,24 +62,28 @@ def _frozen(heights: Any, dimensions: int, name: str) -> Array:
     return out
 
 
-def _positive(value: Any, name: str) -> float:
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} = {value!r} is not a length; give metres, for example 5e-6") from None
-    if not isfinite(number) or number <= 0:
-        raise InputError(f"{name} = {number}: the distance between points must be a positive number of metres")
-    return number
+def _describe(scan: "Scan | Profile") -> None:
+    """Raise InputError where what is said of the heights is not of its kind."""
+    kind = type(scan).__name__
+    instance(scan.source, str, f"{kind}: source", "give the name of the file or recipe as text")
+    instance(
+        scan.instrument, Instrument, f"{kind}: instrument", "give a faying.surface.scan.Instrument, or leave it out"
+    )
+    for name in ("history", "notes"):
+        lines = getattr(scan, name)
+        if not isinstance(lines, list | tuple) or not all(isinstance(line, str) for line in lines):
+            raise InputError(f"{kind}: {name} = {shown(lines)}; give a tuple of texts, or leave it out")
+        object.__setattr__(scan, name, tuple(lines))
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Scan:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Scan(Heights):
     """An areal scan.
 
     Args:
         heights: heights[iy, ix] [m], shape (ny, nx), NaN where a point is missing; copied and made read-only.
-        spacing: (dx, dy) [m], positive.
+        spacing: (dx, dy) [m], positive; each also as text with a unit, for example "5 um".
         source: the file or recipe.
         instrument: the limits that the file states.
         history: what was done to the heights since.
@@ -92,8 +103,11 @@ class Scan:
     def __post_init__(self) -> None:
         object.__setattr__(self, "heights", _frozen(self.heights, 2, "Scan"))
         if not isinstance(self.spacing, (tuple, list, np.ndarray)) or len(self.spacing) != 2:
-            raise InputError(f"Scan: spacing = {self.spacing!r}; give the two distances (dx, dy) in metres")
-        object.__setattr__(self, "spacing", (_positive(self.spacing[0], "dx"), _positive(self.spacing[1], "dy")))
+            raise InputError(f"Scan: spacing = {shown(self.spacing)}; give the two distances (dx, dy) in metres")
+        dx, dy = self.spacing
+        steps = number(dx, "Scan: dx", "m", least=0), number(dy, "Scan: dy", "m", least=0)
+        object.__setattr__(self, "spacing", steps)
+        _describe(self)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -105,14 +119,23 @@ class Scan:
         """(Lx, Ly) [m]: number of points times spacing."""
         return self.shape[1] * self.spacing[0], self.shape[0] * self.spacing[1]
 
-    @property
-    def missing(self) -> int:
-        """How many points have no height."""
-        return int(np.isnan(self.heights).sum())
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Size, points, spacing, Sq, missing points and source."""
+        rows, columns = self.shape
+        dx, dy = self.spacing
+        step = show(dx, "m") if abs(dx - dy) <= 1e-9 * dx else f"{show(dx, 'm')} x {show(dy, 'm')}"
+        name, words = self._statistics()
+        return "Scan", {
+            "size": " x ".join(show(side, "m") for side in self.size),
+            "points": f"{columns} x {rows}",
+            "spacing": step,
+            name: words,
+            **self._origin(),
+        }
 
     def with_heights(self, heights: Any, note: str = "") -> Self:
         """Return the same scan with other heights [m] and one more line of history."""
-        return replace(self, heights=heights, history=(*self.history, note) if note else self.history)
+        return replace(self, heights=heights, history=(*self.history, note) if text(note, "note") else self.history)
 
     def cropped(self, share: float) -> Self:
         """Return the middle part of the scan.
@@ -126,8 +149,7 @@ class Scan:
         Raises:
             InputError: for a share outside 0 .. 1, and where fewer than 5 points a side are left.
         """
-        if not 0 < share <= 1:
-            raise InputError(f"share = {share}: the middle part has a share of each side above 0 and at most 1")
+        share = number(share, "share", least=0, greatest=1, ends="(]")
         rows, columns = (max(1, round(share * n)) for n in self.shape)
         if min(rows, columns) < 5:
             raise InputError(
@@ -140,10 +162,10 @@ class Scan:
 
     def profile(self, along: str, index: int) -> "Profile":
         """Return one row (along="x") or one column (along="y") as a Profile."""
-        if along not in ("x", "y"):
-            raise InputError(f'along = {along!r}: a profile runs along "x" or "y"')
+        if not isinstance(along, str) or along not in ("x", "y"):
+            raise InputError(f'along = {shown(along)}: a profile runs along "x" or "y"')
         count = self.shape[0] if along == "x" else self.shape[1]
-        if not -count <= index < count:
+        if not -count <= whole(index, "index of a profile") < count:
             raise InputError(f"profile {index} along {along}: the scan has {count} of them")
         heights = self.heights[index] if along == "x" else self.heights[:, index]
         return Profile(
@@ -157,13 +179,13 @@ class Scan:
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Profile:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Profile(Heights):
     """A line scan.
 
     Args:
         heights: [m], shape (n,), NaN where a point is missing; copied and made read-only.
-        spacing: [m], positive.
+        spacing: [m], positive; or text with a unit, for example "5 um".
         source: the file or recipe.
         instrument: the limits that the file states.
         history: what was done to the heights since.
@@ -182,21 +204,28 @@ class Profile:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "heights", _frozen(self.heights, 1, "Profile"))
-        object.__setattr__(self, "spacing", _positive(self.spacing, "spacing"))
+        object.__setattr__(self, "spacing", number(self.spacing, "Profile: spacing", "m", least=0))
+        _describe(self)
 
     @property
     def length(self) -> float:
         """Number of points times spacing [m]."""
         return len(self.heights) * self.spacing
 
-    @property
-    def missing(self) -> int:
-        """How many points have no height."""
-        return int(np.isnan(self.heights).sum())
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Length, points, spacing, Rq, missing points and source."""
+        name, words = self._statistics()
+        return "Profile", {
+            "length": show(self.length, "m"),
+            "points": str(len(self.heights)),
+            "spacing": show(self.spacing, "m"),
+            name: words,
+            **self._origin(),
+        }
 
     def with_heights(self, heights: Any, note: str = "") -> Self:
         """Return the same profile with other heights [m] and one more line of history."""
-        return replace(self, heights=heights, history=(*self.history, note) if note else self.history)
+        return replace(self, heights=heights, history=(*self.history, note) if text(note, "note") else self.history)
 
 
 def usable(scan: Scan | Profile, *, least: int = 16) -> None:

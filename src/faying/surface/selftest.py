@@ -146,4 +146,5 @@ def _corrected(
         convention=options["convention"],
         gamma=options["gamma"],
         bias=raw.D - D,
+        drawn=raw.drawn,
     )

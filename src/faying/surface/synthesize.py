@@ -4,22 +4,35 @@ from math import ceil, cos, floor, log, pi, sin
 
 import numpy as np
 
+from faying.checks import flag, instance, number, shown, whole
 from faying.errors import InputError
 from faying.surface.convention import G_from_Rq, check_dimension, density, prefactor
 from faying.surface.scan import Profile, Scan
 from faying.typing import Array
+
+MOST_POINTS = 2**31  # along a side
+Seed = int | np.random.Generator
+
+
+def _generator(seed: Seed) -> np.random.Generator:
+    """A generator of random numbers; InputError unless a whole number, 0 or more, or a generator is given."""
+    if isinstance(seed, np.random.Generator):
+        return seed
+    return np.random.default_rng(whole(seed, "seed", least=0, greatest=2**128))
 
 
 def _grid(
     shape: int | tuple[int, int], spacing: float | tuple[float, float]
 ) -> tuple[tuple[int, ...], tuple[float, ...]]:
     """Counts and spacings in the order of the axes of the heights (y, x), or (x,)."""
-    counts = (shape,) if isinstance(shape, int) else tuple(shape)
-    steps = tuple(float(s) for s in spacing) if isinstance(spacing, (tuple, list)) else (float(spacing),) * len(counts)
-    if len(counts) not in (1, 2) or min(counts) < 2:
-        raise InputError(f"shape = {shape!r}: give (ny, nx) for a scan or n for a profile, 2 points at least")
-    if len(steps) != len(counts) or min(steps) <= 0:
-        raise InputError(f"spacing = {spacing!r}: give positive distances in metres, one or (dx, dy)")
+    given = shape if isinstance(shape, list | tuple) else (shape,)
+    if len(given) not in (1, 2):
+        raise InputError(f"shape = {shown(shape)}: give (ny, nx) for a scan or n for a profile, 2 points at least")
+    counts = tuple(whole(n, "shape (points)", least=2, greatest=MOST_POINTS) for n in given)
+    apart = spacing if isinstance(spacing, list | tuple) else (spacing,) * len(counts)
+    if len(apart) != len(counts):
+        raise InputError(f"spacing = {shown(spacing)}: give positive distances in metres, one or (dx, dy)")
+    steps = tuple(number(step, "spacing", "m", least=0) for step in apart)
     return counts, steps[::-1]
 
 
@@ -42,7 +55,7 @@ def spectral(
     periodic: bool = False,
     convention: str = "yan-komvopoulos",
     gamma: float = 1.5,
-    seed: int | np.random.Generator = 0,
+    seed: Seed = 0,
 ) -> Scan | Profile:
     """Return Gaussian heights whose spectrum is S(f) = c G^(2Ds-2)/2 f^-(5-2Ds) (see `faying.surface.convention`).
 
@@ -69,20 +82,19 @@ def spectral(
     """
     check_dimension(D)
     counts, steps = _grid(shape, spacing)
+    lengths = {"G": G, "Rq": Rq, "longest": longest, "shortest": shortest}
+    G, Rq, longest, shortest = (v if v is None else number(v, n, "m", least=0) for n, v in lengths.items())
     _scale_of(G, Rq)
-    for name, value in (("G", G), ("Rq", Rq), ("longest", longest), ("shortest", shortest)):
-        if value is not None and not 0 < value < float("inf"):
-            raise InputError(f"{name} = {value}: give a positive length in metres")
     c = prefactor(convention, gamma)
     level = density(D, G, c) if G is not None else density(D, G_from_Rq(D, 1e-6, 1e-3, c), c)
-    total = counts if periodic else tuple(2 * n for n in counts)
+    total = counts if flag(periodic, "periodic") else tuple(2 * n for n in counts)
     f, real, uneven = _frequencies(total, steps, D, lay)
     cut = 0.5 / max(steps) if shortest is None else 1 / shortest
     effective = np.maximum(f, 1 / longest) if longest is not None else f
     with np.errstate(divide="ignore"):
         power = level / uneven * effective ** -(7 - 2 * D) / (2 * pi * effective if len(counts) == 2 else 2.0)
     power[(real > cut * (1 + 1e-12)) | (real == 0)] = 0.0
-    z = _coloured(power, total, steps, np.random.default_rng(seed))
+    z = _coloured(power, total, steps, _generator(seed))
     z = np.ascontiguousarray(z[tuple(slice(0, n) for n in counts)])
     z -= z.mean()
     if Rq is not None:
@@ -102,9 +114,10 @@ def _frequencies(
 ) -> tuple[Array, Array, float]:
     """Frequencies [1/m] of the half-plane as the spectrum sees them (stretched by the lay) and as they are, and the
     mean over directions that keeps the power of all directions together that of G."""
-    angle, stretch = lay if lay is not None else (0.0, 1.0)
-    if not 1 <= stretch < float("inf"):
-        raise InputError(f"lay = {lay!r}: give (angle in radians, stretch), the stretch 1 or more")
+    if lay is not None and (not isinstance(lay, list | tuple) or len(lay) != 2):
+        raise InputError(f"lay = {shown(lay)}: give (angle in radians, stretch), the stretch 1 or more")
+    angle, stretch = (number(lay[0], "angle of the lay", "rad"), lay[1]) if lay is not None else (0.0, 1.0)
+    number(stretch, "stretch of the lay", least=1, ends="[)")
     last = np.asarray(np.fft.rfftfreq(total[-1], steps[-1]), np.float64)
     if len(total) == 1:
         return last, last, 1.0
@@ -134,7 +147,7 @@ def weierstrass_mandelbrot(
     length: float | None = None,
     shortest: float | None = None,
     convention: str = "yan-komvopoulos",
-    seed: int | np.random.Generator | None = 0,
+    seed: Seed | None = 0,
 ) -> Scan | Profile:
     """Return the Weierstrass-Mandelbrot surface of Yan and Komvopoulos, or its profile.
 
@@ -165,15 +178,16 @@ def weierstrass_mandelbrot(
     check_dimension(D)
     c = prefactor(convention, gamma)
     counts, steps = _grid(shape, spacing)
-    L = max(n * d for n, d in zip(counts, steps, strict=True)) if length is None else length
-    end = 2 * max(steps) if shortest is None else shortest
-    if not (G > 0 and L > 0 and 0 < end < L) or ridges < 1:
-        raise InputError(
-            f"G = {G}, length = {L}, shortest = {end}, ridges = {ridges}: all positive, shortest below length"
-        )
+    G = number(G, "G", "m", least=0)
+    side = max(n * d for n, d in zip(counts, steps, strict=True))
+    L = side if length is None else number(length, "length", "m", least=0)
+    end = 2 * max(steps) if shortest is None else number(shortest, "shortest", "m", least=0)
+    whole(ridges, "ridges", least=1, greatest=MOST_POINTS)
+    if not end < L:
+        raise InputError(f"shortest = {end:.4g} m, length = {L:.4g} m: the shortest wavelength is below the longest")
     M = ridges if len(counts) == 2 else 1
     n = np.arange(floor(log(L / end) / log(gamma) + 1e-12) + 1)
-    rng = np.random.default_rng(seed if seed is not None else 0)
+    rng = _generator(seed if seed is not None else 0)
     phase = rng.uniform(0, 2 * pi, (M, len(n))) if seed is not None else np.zeros((M, len(n)))
     # c ln(gamma) is ln(gamma) for Yan-Komvopoulos and 1 for Majumdar-Bhushan
     amplitude = L * (G / L) ** (D - 2) * (c * log(gamma) / M) ** 0.5 * gamma ** ((D - 3) * n)  # eq. (5)
@@ -196,17 +210,17 @@ def _waves(k: Array, amplitude: Array, phase: Array, counts: tuple[int, ...], st
     return np.asarray((np.cos(a) * weight) @ np.cos(b) - (np.sin(a) * weight) @ np.sin(b))
 
 
-def with_noise(scan: Scan, *, rms: float, seed: int = 0) -> Scan:
-    """Add white Gaussian noise of `rms` [m] to every known point."""
-    rng = np.random.default_rng(seed)
+def with_noise(scan: Scan, *, rms: float, seed: Seed = 0) -> Scan:
+    """Add white Gaussian noise of `rms` [m], or text with a unit, to every known point."""
+    instance(scan, Scan, "scan", "give a Scan, as faying.read_scan returns it")
+    rms, rng = number(rms, "rms", "m", least=0, ends="[)"), _generator(seed)
     return scan.with_heights(scan.heights + rng.normal(0, rms, scan.shape), f"white noise of {rms:.3g} m added")
 
 
-def with_missing(scan: Scan, *, share: float, seed: int = 0) -> Scan:
+def with_missing(scan: Scan, *, share: float, seed: Seed = 0) -> Scan:
     """Make a random `share` (0..1) of the points missing."""
-    if not 0 <= share < 1:
-        raise InputError(f"share = {share}: the share of missing points lies between 0 and 1")
-    rng = np.random.default_rng(seed)
+    instance(scan, Scan, "scan", "give a Scan, as faying.read_scan returns it")
+    share, rng = number(share, "share of missing points", least=0, greatest=1, ends="[)"), _generator(seed)
     count = ceil(share * scan.heights.size - 1e-9)
     z = scan.heights.ravel().copy()
     z[rng.choice(z.size, count, replace=False)] = np.nan

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from faying.checks import instance
+from faying.checks import path as checked_path
 from faying.errors import InputError
 from faying.surface import text, x3p
 from faying.surface.scan import Profile, Scan
@@ -35,7 +37,8 @@ def write_scan(
     """
     from faying.units import scale
 
-    file = Path(path)
+    instance(scan, Scan | Profile, "scan", "give a Scan or a Profile")
+    file = checked_path(path, "path")
     suffix = file.suffix.lower()
     try:
         if suffix == ".x3p":

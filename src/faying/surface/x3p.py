@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from faying.errors import InputError, ReadError
+from faying.errors import InputError, ReadError, shown
 from faying.surface.scan import Instrument, Profile, Scan, check_points
 from faying.typing import Array
 
@@ -210,8 +210,8 @@ def write(scan: Scan | Profile, path: Path, *, precision: str = "F") -> None:
 
     Raises InputError for other precisions, and for missing points in integer files.
     """
-    if precision not in NUMBERS:
-        raise InputError(f'precision = {precision!r}; allowed: "F", "D", "I", "L"')
+    if not isinstance(precision, str) or precision not in NUMBERS:
+        raise InputError(f'precision = {shown(precision)}; allowed: "F", "D", "I", "L"')
     data, z_axis = _packed(scan.heights, precision)
     dx, dy = scan.spacing if isinstance(scan, Scan) else (scan.spacing, scan.spacing)
     xml = TEMPLATE.format(

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.law import checked
-from faying.errors import InputError
+from faying.errors import InputError, shown
 from faying.materials import ContactPair
 from faying.typing import Array
 
@@ -179,7 +179,7 @@ def summed_model(name: str, law: str) -> type[AsperityModel]:
     """
     known = {key: cls for key, cls in models().items() if key != "ZX"}
     plain = {key.lower(): cls for key, cls in known.items()}
-    cls = plain.get(name.lower().replace("-", "").replace("_", ""))
+    cls = plain.get(name.lower().replace("-", "").replace("_", "")) if isinstance(name, str) else None
     if cls is None:
-        raise InputError(f"{law}: asperity = {name!r}; use one of {', '.join(known)}")
+        raise InputError(f"{law}: asperity = {shown(name)}; use one of {', '.join(known)}")
     return cls

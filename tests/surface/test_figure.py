@@ -3,7 +3,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from faying import InputError
-from faying.output.figures import surface as plot
+from faying.surface import figure as plot
 from faying.surface.form import prepared
 from faying.surface.fractal import fit_all
 from faying.surface.spectrum import spectrum

@@ -2,16 +2,21 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from faying.style import new_figure, plain, save
+from faying.errors import InputError
+from faying.style import axes_of, new_figure, plain, save
 from faying.surface.convention import density
-from faying.surface.form import Prepared
+from faying.surface.form import Prepared, prepared
 from faying.surface.fractal import FractalFit
 from faying.surface.scan import Profile, Scan
-from faying.surface.spectrum import Spectrum
+from faying.surface.spectrum import Spectrum, spectrum
+from faying.units import show
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _PREFIXES = ((1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm"), (1e-12, "pm"))
 
@@ -55,14 +60,14 @@ def profile(scan: Profile, ax: Any) -> Any:
     return ax
 
 
-def power_spectrum(spectrum: Spectrum, fits: Mapping[str, FractalFit | str], ax: Any, *, c: float = 1.0) -> Any:
+def power_spectrum(of: Spectrum, fits: Mapping[str, FractalFit | str], ax: Any, *, name: str = "scan") -> Any:
     """Draw the power per radial frequency with the law of each fit over its band; wavelengths along the top."""
-    ax.loglog(spectrum.frequency, spectrum.density, ".", ms=3, color="0.55", label="scan")
-    for name, fit in fits.items():
+    ax.loglog(of.frequency, of.density, ".", ms=3, color="0.55", label=name)
+    for method, fit in fits.items():
         if isinstance(fit, str) or not (fit.G > 0 and 2 < fit.D < 3):
             continue
         f = np.geomspace(1 / fit.band[1], 1 / fit.band[0], 50)
-        ax.loglog(f, density(fit.D, fit.G, c) * f ** (2 * fit.D - 7), lw=1.6, label=f"{name}, D {fit.D:.3f}")
+        ax.loglog(f, density(fit.D, fit.G, fit.c) * f ** (2 * fit.D - 7), lw=1.6, label=f"{method}, D {fit.D:.3f}")
     ax.set_xlabel("frequency [1/m]")
     ax.set_ylabel("power per frequency [m³]")
     top = ax.secondary_xaxis("top", functions=(_inverse, _inverse))
@@ -74,6 +79,41 @@ def power_spectrum(spectrum: Spectrum, fits: Mapping[str, FractalFit | str], ax:
 def _inverse(x: Any) -> Any:
     with np.errstate(divide="ignore"):
         return 1 / np.asarray(x, float)
+
+
+def overview_of(scan: Scan | Profile, axes: Any, *, degree: int) -> "list[Axes]":
+    """Draw levelled heights and their spectrum for `plot` of a scan or profile; missing points stay blank."""
+    ready = prepared(scan, degree=degree)
+    heights, power = axes_of(axes, 2)
+    holes = ready.scan.with_heights(np.where(ready.known, ready.scan.heights, np.nan))
+    if isinstance(scan, Scan):
+        height_map(holes, heights)
+    else:
+        profile(holes, heights)
+    heights.set_title(f"{plain(Path(scan.source).name)}, levelled", fontsize="medium")
+    power_spectrum(spectrum(ready.scan), {}, power, name="spectrum")
+    return [heights, power]
+
+
+def fit_plot(fit: FractalFit, ax: Any) -> "Axes":
+    """Draw the spectrum, the band of a fit shaded, its power law in the band and thin beyond it."""
+    if fit.drawn is None:
+        raise InputError("this fit was made from numbers alone and has no spectrum to draw; make it with fit_fractal")
+    (axes,) = axes_of(ax, 1, width=6.4, height=4.6)
+    of = fit.drawn if isinstance(fit.drawn, Spectrum) else spectrum(fit.drawn)
+    source = "both scans, summed" if isinstance(fit.drawn, Spectrum) else Path(fit.drawn.source).name
+    axes.axvspan(1 / fit.band[1], 1 / fit.band[0], color="C0", alpha=0.1, lw=0, label="band of the fit")
+    power_spectrum(of, {fit.method: fit}, axes, name="spectrum")
+    if fit.G > 0 and 2 < fit.D < 3:
+        law = density(fit.D, fit.G, fit.c) * of.frequency ** (2 * fit.D - 7)
+        axes.loglog(of.frequency, law, "--", color="0.3", lw=0.8, zorder=1)
+    (low, high), (least, most) = fit.D_interval, fit.G_interval
+    axes.set_title(
+        f"{plain(source)}: D {fit.D:.3f} ({low:.3f} to {high:.3f}), "
+        f"G {show(fit.G, 'm', digits=3)} ({show(least, 'm', digits=3)} to {show(most, 'm', digits=3)})",
+        fontsize="small",
+    )
+    return axes
 
 
 def estimators(fits: Mapping[str, FractalFit | str], ax: Any) -> Any:
@@ -94,8 +134,6 @@ def overview(scan: Scan | Profile, ready: Prepared, fits: Mapping[str, FractalFi
 
     Raises InputError for a suffix that matplotlib does not know or a folder that cannot be written.
     """
-    from faying.surface.spectrum import spectrum
-
     figure = new_figure(11, 7.5)
     axes = figure.subplots(2, 2)
     if isinstance(scan, Scan):

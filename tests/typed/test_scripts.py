@@ -1,0 +1,33 @@
+"""Scripts as users write them: they run, and mypy accepts them in its strict mode."""
+
+import runpy
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SCRIPTS = sorted(path for path in Path(__file__).parent.glob("*.py") if not path.name.startswith(("test_", "__")))
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
+def test_it_runs(script, monkeypatch, capsys):
+    import matplotlib.pyplot as plt
+
+    monkeypatch.chdir(ROOT)
+    plt.switch_backend("agg")
+    runpy.run_path(str(script))
+    figures = [plt.figure(number) for number in plt.get_fignums()]
+    plt.close("all")
+    assert figures
+    assert all(ax.get_xlabel() for figure in figures for ax in figure.axes if ax.get_visible() and ax.lines)
+    assert capsys.readouterr().out
+
+
+def test_mypy_accepts_them_in_strict_mode(tmp_path):
+    pytest.importorskip("mypy")
+    command = [sys.executable, "-m", "mypy", "--strict", "--config-file", "", "--cache-dir", str(tmp_path)]
+    command += ["--follow-imports", "silent", *map(str, SCRIPTS)]
+    found = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert found.returncode == 0, found.stdout
