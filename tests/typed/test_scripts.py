@@ -1,6 +1,7 @@
 """Scripts as users write them: they run, and mypy accepts them in its strict mode."""
 
 import runpy
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -11,11 +12,17 @@ ROOT = Path(__file__).parents[2]
 SCRIPTS = sorted(path for path in Path(__file__).parent.glob("*.py") if not path.name.startswith(("test_", "__")))
 
 
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
-def test_it_runs(script, monkeypatch, capsys):
+LONG = {"five_tasks"}  # two minutes
+
+
+@pytest.mark.parametrize(
+    "script", [pytest.param(s, marks=[pytest.mark.slow] * (s.stem in LONG), id=s.stem) for s in SCRIPTS]
+)
+def test_it_runs(script, monkeypatch, capsys, tmp_path):
     import matplotlib.pyplot as plt
 
-    monkeypatch.chdir(ROOT)
+    shutil.copytree(ROOT / "examples", tmp_path / "examples", ignore=shutil.ignore_patterns("results"))
+    monkeypatch.chdir(tmp_path)
     plt.switch_backend("agg")
     runpy.run_path(str(script))
     figures = [plt.figure(number) for number in plt.get_fignums()]
