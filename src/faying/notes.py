@@ -1,6 +1,66 @@
 """What a reader of a result should know, as facts rather than sentences alone."""
 
-from dataclasses import dataclass
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+Severity = Literal["wrong", "limit", "remark"]
+TITLES: dict[Severity, str] = {
+    "wrong": "what may be wrong",
+    "limit": "what limits this result",
+    "remark": "what was read and assumed",
+}
+WRONG = frozenset(
+    {
+        "open",
+        "not-converged",
+        "beyond-law-matters",
+        "bolt-yield",
+        "seat-yield",
+        "joint-yield",
+        "beyond-proof",
+        "rigid",
+        "distorted-elements",
+        "reference-points",
+        "bases",
+        "law-materials",
+        "odd-material",
+        "no-answer",
+    }
+)
+LIMITS = frozenset(
+    {
+        "outside-validity",
+        "beyond-law",
+        "no-loss",
+        "window",
+        "falls",
+        "far-from-exact",
+        "slight-preload",
+        "near-proof",
+        "size",
+        "waves-assumed",
+        "bonded-by-springs",
+        "viscous",
+        "wave-band",
+        "uncertain-cut",
+        "interval",
+        "few-samples",
+        "surrogate-wide",
+        "surrogate-rough",
+        "stiff-elements",
+        "backbone-ends",
+        "backbone-bound",
+        "model-modes",
+        "test-modes",
+        "left-out",
+        "not-mixed",
+    }
+)
+NUMBER = re.compile(r"(?<![\w.])\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?(?![\w])")
+FIRST_NOTES = 3  # that stand before the tables
+MOST_DIFFERENCES = 3  # numbers that may differ between notes that are said as one
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,3 +83,47 @@ class Note:
 
     def __str__(self) -> str:
         return self.text
+
+    @property
+    def severity(self) -> Severity:
+        """Whether the result may be wrong, is limited, or is only described."""
+        return "wrong" if self.code in WRONG else "limit" if self.code in LIMITS else "remark"
+
+
+def percent(share: float) -> str:
+    """A share in words: "12%", and "less than 1%" where it would be none."""
+    return "less than 1%" if 0 < share < 0.01 else f"{share:.0%}"
+
+
+def grouped(notes: Iterable[Note]) -> tuple[Note, ...]:
+    """Notes of one kind that differ in a few numbers alone, as one with the least and the greatest of them.
+
+    "flange, 4 kN: ... on 16% of the joint" and "flange, 12 kN: ... on 18% of the joint" become "flange, 4 to 12 kN: ...
+    on 16% to 18% of the joint". A grouped note is in the place of the first; those of another joint stay apart.
+    """
+    groups: dict[tuple[str, str, str], list[Note]] = {}
+    for note in notes:
+        groups.setdefault((note.code, note.joint, NUMBER.sub("#", note.text)), []).append(note)
+    return tuple(one for group in groups.values() for one in _as_one(group))
+
+
+def by_severity(notes: Iterable[Note]) -> dict[Severity, tuple[Note, ...]]:
+    """Grouped notes of each severity that occurs, the gravest first."""
+    every = grouped(notes)
+    found = {kind: tuple(note for note in every if note.severity == kind) for kind in TITLES}
+    return {kind: some for kind, some in found.items() if some}
+
+
+def _as_one(group: Sequence[Note]) -> Sequence[Note]:
+    distinct = list(dict.fromkeys(group))
+    rows = [NUMBER.findall(note.text) for note in distinct]
+    differing = [k for k in range(len(rows[0])) if len({row[k] for row in rows}) > 1]
+    if len(distinct) < 2 or len(differing) > MOST_DIFFERENCES:
+        return distinct
+    spans = iter(_span([row[k] for row in rows]) for k in range(len(rows[0])))
+    return [replace(distinct[0], text=NUMBER.sub(lambda _: next(spans), distinct[0].text), load=None, share=None)]
+
+
+def _span(words: Sequence[str]) -> str:
+    ends = sorted(words, key=lambda word: float(word.replace(",", "")))
+    return words[0] if len(set(words)) == 1 else f"{ends[0]} to {ends[-1]}"

@@ -78,6 +78,7 @@ def command(
 
 def text(result: Any) -> str:
     """The tables and notes of a result for the terminal."""
+    from faying.notes import FIRST_NOTES, TITLES, by_severity
     from faying.output import table
     from faying.output.sections import sections
 
@@ -85,6 +86,23 @@ def text(result: Any) -> str:
         f"{result.title}: {result.unknowns:,} unknowns, {result.solver} ({result.factor_memory / 1e9:.2g} GB), "
         f"{result.damping} loss in the joints\n"
     )
-    tables = (f"{section.above}\n{table.text(section.rows)}\n" for section in sections(result))
-    notes = (*result.warnings, *(() if result.hammer is None else result.hammer.notes))
-    return "\n".join([head, *tables, *(f"note: {line}" for line in notes)])
+    first, *others = (f"{section.above}\n{table.text(section.rows)}\n" for section in sections(result))
+    groups = by_severity(result.notes)
+    grave = [note for kind, some in groups.items() if kind != "remark" for note in some]
+    lines = [line for note in grave[:FIRST_NOTES] for line in _item(note.text)]
+    more = len(grave) - FIRST_NOTES
+    lines += [f"  {more} more at the end"] if more > 0 else []
+    notes = [
+        line
+        for kind, some in groups.items()
+        for line in (f"\n{TITLES[kind]}", *(part for note in some for part in _item(note.text)))
+    ]
+    hammer = [] if result.hammer is None else [line for text in result.hammer.notes for line in _item(text)]
+    return "\n".join([head, first, *([*lines, ""] if lines else []), *others, *notes, *hammer])
+
+
+def _item(text: str) -> list[str]:
+    """A note as an item of a list, 80 columns wide."""
+    from textwrap import wrap
+
+    return wrap(text, 80, initial_indent="- ", subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)

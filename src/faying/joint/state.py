@@ -20,7 +20,7 @@ from faying.joint.strength import pressure_notes
 from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions, checked_preload, open_joints
 from faying.misuse import checked_call, shortened
-from faying.notes import Note
+from faying.notes import Note, percent
 from faying.style import Summary
 from faying.text import titled
 from faying.typing import Array
@@ -317,7 +317,7 @@ def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[
         for reason, mask in answer.reasons.items():
             share = float(weights @ mask / area)
             if share > 0:
-                where = f"{model.name} is outside its validity range on {share:.0%} of the joint"
+                where = f"{model.name} is outside its validity range on {percent(share)} of the joint"
                 text = f"{joint.name}, {kilo}: {where}: {reason}"
                 out.append(Note(code="outside-validity", joint=joint.name, load=load, share=share, text=text))
     return out

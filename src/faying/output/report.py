@@ -1,6 +1,6 @@
 """One self-contained HTML file from a result: tables, figures, flags, sources."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -8,10 +8,11 @@ from typing import Any
 
 from faying import __version__
 from faying.files import write_text
+from faying.notes import FIRST_NOTES, TITLES, by_severity
 from faying.output import page, report_measured
 from faying.output.report_curves import backbone_curves, response_curves
 from faying.output.scene import of_result, pages, to_text
-from faying.output.sections import sections
+from faying.output.sections import Section, sections
 from faying.result import Result
 from faying.result import backbone_figure as backbone
 from faying.result import figure as structure
@@ -27,16 +28,17 @@ def html(result: Result, pictures: dict[str, str] | None = None) -> str:
         f"<h1>{escape(result.title)}</h1>",
         f'<p class="soft">{escape(_made_by(result))}</p>',
     ]
-    if result.warnings:
-        body.append("<h2>Read this first</h2>")
-        body += [f'<p class="flag">{escape(line)}</p>' for line in result.warnings]
+    first, *others = sections(result)
+    body += _table(first)
+    body += _first_notes(result)
     body += _view(result, pictures)
-    body += _tables(result, pictures)
+    body += _tables(others, result, pictures)
     body += _response(result, pictures)
     body += _backbones(result, pictures)
     body.append("<h2>Figures</h2>")
     body += [_figure(name, text) for name, text in pictures.items() if name not in (*MOVING, "response", "backbones")]
     body += _contact(result)
+    body += _notes(result)
     body += ["<h2>Sources</h2>", "<ul>", *(f"<li>{escape(line)}</li>" for line in result.sources), "</ul>"]
     body += _provenance(result)
     run = "\n".join([pages.inline(), *(pages.added(name) for name in ("charts.js", "report.js"))])
@@ -68,15 +70,39 @@ def _view(result: Result, pictures: dict[str, str]) -> list[str]:
     ]
 
 
-def _tables(result: Result, pictures: dict[str, str]) -> list[str]:
+def _first_notes(result: Result) -> list[str]:
+    """What a reader must know before the tables: at most three notes, the gravest first."""
+    grave = [(kind, note) for kind, some in by_severity(result.notes).items() if kind != "remark" for note in some]
+    out = [f'<p class="flag">{escape(note.text)}</p>' for _, note in grave[:FIRST_NOTES]]
+    if len(grave) > FIRST_NOTES:
+        out.append(
+            f'<p class="soft">{len(grave) - FIRST_NOTES} more stand at the end, under <a href="#notes">Notes</a>.</p>'
+        )
+    return out
+
+
+def _notes(result: Result) -> list[str]:
+    """All notes, by what they mean for the result."""
     out = []
-    for section in sections(result):
+    for kind, some in by_severity(result.notes).items():
+        title = TITLES[kind][:1].upper() + TITLES[kind][1:]
+        out += [f"<h3>{title}</h3>", "<ul>", *(f"<li>{escape(note.text)}</li>" for note in some), "</ul>"]
+    return ['<h2 id="notes">Notes</h2>', *out] if out else []
+
+
+def _table(section: Section) -> list[str]:
+    below = [f"<p>{escape(section.below)}</p>"] if section.below else []
+    return [f"<h2>{escape(section.title)}</h2>", page.table(section.rows, section.name), *below]
+
+
+def _tables(every: Sequence[Section], result: Result, pictures: dict[str, str]) -> list[str]:
+    out = []
+    for section in every:
         if section.name == "hammer" and result.hammer is not None:
             of_test = {name.removeprefix(TEST): text for name, text in pictures.items() if name.startswith(TEST)}
             out.append(report_measured.section(result.hammer, of_test, moving=True))
         else:
-            out += [f"<h2>{escape(section.title)}</h2>", page.table(section.rows, section.name)]
-            out += [f"<p>{escape(section.below)}</p>"] if section.below else []
+            out += _table(section)
     return out
 
 

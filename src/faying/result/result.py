@@ -15,7 +15,7 @@ from faying.joint.loads import preload_index
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse, ModelModes
 from faying.misuse import checked_call, shortened
-from faying.notes import Note
+from faying.notes import Note, grouped
 from faying.result.backbone import Backbone
 from faying.result.bolts import BoltNumbers
 from faying.result.fields import Recorded, in_units, load_labels, variable
@@ -536,8 +536,8 @@ class Result(Recorded):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """The notes as sentences."""
-        return tuple(note.text for note in self.notes)
+        """The notes as sentences, those that differ in load and share alone as one; see `faying.notes.grouped`."""
+        return tuple(note.text for note in grouped(self.notes))
 
     def open_share(self) -> Array:
         """Share of the joints' area that carries nothing [-] (l,)."""

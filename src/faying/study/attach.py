@@ -20,6 +20,7 @@ from faying.joint.loads import preload_index
 from faying.joint.pairs import NodePairs, consistent, lumped
 from faying.materials import Material
 from faying.misuse import checked_call
+from faying.notes import percent
 from faying.study.case import checked_mesh, joint_law, structure_of, surfaces_of
 from faying.study.keys.geometry import GeometryChoice, mesh_of
 from faying.study.keys.joint import JointChoice
@@ -308,7 +309,7 @@ def _flags(law: JointLaw, pressure: Array, area: Array) -> list[str]:
     for text, mask in law.answer(pressure).reasons.items():
         share = float(area @ mask) / total
         if share > 0:
-            out.append(f"validity: {model.name} is outside its validity range on {share:.0%} of the joint: {text}")
+            out.append(f"validity: {model.name} is outside its validity range on {percent(share)} of the joint: {text}")
     if not np.any(pressure > 0):
         out.append("validity: the joint carries no pressure, so it has no stiffness")
     return out
