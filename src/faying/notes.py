@@ -34,6 +34,7 @@ LIMITS = frozenset(
         "outside-validity",
         "beyond-law",
         "no-loss",
+        "level-damping",
         "window",
         "falls",
         "far-from-exact",

@@ -28,10 +28,12 @@ counterbody = "part"
 def write(study: Path, *, force: bool = False, flat: bool = True) -> list[Path]:
     """Write that study, with the geometry that `faying init` gives it.
 
-    flat: its faces are flat; else nothing is said of them, and a run has the band of waves, which doubles its time.
+    Damping at levels of acceleration is left out. flat: its faces are flat; else nothing is said of them, and a run has
+    the band of waves, which doubles its time.
     """
     made = template.write(study, force=force)
     text = TEXT.format(name=study.name, step="two-blocks.step")
+    text = text.replace("[modes]\n", "[modes]\nlevels = []\n")
     if flat:
         text = text.replace("\n[[bolt]]", "\n[joint.form]\nflat = true\n\n[[bolt]]", 1)
     study.write_text(text, encoding="utf-8")

@@ -46,6 +46,7 @@ OWN: dict[str, dict[str, Any]] = {
     "surface.size": QUANTITY,
     "surface.spacing": QUANTITY,
     "bolt.preload": ONE_OR_MORE,
+    "modes.levels": listed({"$ref": "#/$defs/quantity"}, 0),
     "bolt.torque": ONE_OR_MORE,
     "bolt.seat": listed({"$ref": "#/$defs/quantity"}, 2, 2),
     "support.directions": listed({"enum": ["x", "y", "z"]}, 1, 3),

@@ -13,12 +13,16 @@ SOLVERS = ("pardiso", BY_PARTS, "mumps", "cholmod", "superlu", MPI)
 
 @dataclass(frozen=True, kw_only=True)
 class ModesChoice:
-    """How many elastic modes, which kind of loss, which factorisation, which shift [Hz] (None: chosen)."""
+    """How many elastic modes, which kind of loss, which factorisation, which shift [Hz] (None: chosen).
+
+    levels: accelerations [m/s2] of the point that moves most, at which damping is found; none where empty.
+    """
 
     count: int = 10
     damping: Literal["hysteretic", "viscous"] = "hysteretic"
     solver: str | None = None
     shift_frequency: float | None = None
+    levels: tuple[float, ...] = (0.1, 1.0, 10.0)
 
 
 @dataclass(frozen=True, kw_only=True)

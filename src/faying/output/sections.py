@@ -60,6 +60,14 @@ def _modes(result: Result) -> tuple[Section, ...]:
             title="Range of the frequencies, from that of the stiffness",
         ),
         Section(
+            name="damping",
+            rows=table.damping(result),
+            title=f"Damping ratio at levels of acceleration, {_last(result)}",
+            line=f"damping ratio {_last(result)}, at accelerations where a mode moves most: low .. median .. high",
+            below="Low, median and high, at the acceleration of the point that moves most: slip of the joints in one "
+            "cycle of the mode, and the damping at rest. The change of the frequency is that at the highest level.",
+        ),
+        Section(
             name="waves",
             rows=table.waves(result),
             title="Frequencies over the waves that machined faces have",

@@ -49,6 +49,20 @@ def ranges(result: Result) -> Rows:
     return rows
 
 
+def damping(result: Result) -> Rows:
+    """One row per mode: damping at each level at the greatest preload, with both ends; empty where there is none."""
+    if result.levels is None or result.level_damping is None or result.level_low is None or result.level_high is None:
+        return []
+    assert result.level_frequencies is not None
+    rows: Rows = [["mode", *(f"{level:g} m/s2 [%]" for level in result.levels), "change of frequency [%]"]]
+    ends = (result.level_low[-1], result.level_damping[-1], result.level_high[-1])
+    change = 100 * (result.level_frequencies[-1, -1] / result.frequencies[-1] - 1)
+    for j in range(len(result.bonded)):
+        cells = [" .. ".join(f"{100 * one[k, j]:.2g}" for one in ends) for k in range(len(result.levels))]
+        rows.append([str(j + 1), *cells, f"{change[j]:+.3f}"])
+    return rows
+
+
 def _five(value: float) -> str:
     """A number to five digits, not in powers of ten."""
     return f"{value:.{max(0, 4 - floor(log10(value)))}f}" if value > 0 else f"{value:.2f}"

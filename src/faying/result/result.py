@@ -317,6 +317,32 @@ class Result(Recorded):
         group="modes",
         name="frequency_high",
     )
+    levels: Array | None = variable(
+        "level",
+        unit="m/s2",
+        long_name="peak acceleration of the point that moves most",
+        default=None,
+        group="modes",
+        name="level_acceleration",
+    )
+    level_frequencies: Array | None = variable(
+        "load", "level", "mode", unit="Hz", long_name="frequency at a level", default=None, group="modes"
+    )
+    level_damping: Array | None = variable(
+        "load", "level", "mode", unit="1", long_name="damping ratio at a level", default=None, group="modes"
+    )
+    level_low: Array | None = variable(
+        "load", "level", "mode", unit="1", long_name="lower end of damping at a level", default=None, group="modes"
+    )
+    level_high: Array | None = variable(
+        "load", "level", "mode", unit="1", long_name="upper end of damping at a level", default=None, group="modes"
+    )
+    level_slip: Array | None = variable(
+        "load", "level", "mode", unit="1", long_name="damping by slip at a level", default=None, group="modes"
+    )
+    level_error: Array | None = variable(
+        "load", "level", "mode", unit="1", long_name="error of damping by slip", default=None, group="modes"
+    )
     beyond_frequencies: Array | None = variable(
         "load",
         "mode",

@@ -3,6 +3,8 @@
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol, final
 
+import numpy as np
+
 from faying.errors import InputError
 from faying.fe.damped import damped_modes
 from faying.fe.interface import Interface
@@ -33,6 +35,9 @@ class Engine(Protocol):
     def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
         """Frequencies [Hz] of the elastic modes with other springs, to half of `RANGE_ERROR`."""
 
+    def basis(self) -> Array:
+        """Vectors (unknowns, m), orthonormal with the mass, in which modes near the last ones can be found."""
+
     def of(self, case: Case) -> "Engine":
         """The same for the case under another law or form, on the same mesh."""
 
@@ -55,6 +60,7 @@ class Direct:
             fixed=structure.fixed,
             solver=solver,
         )
+        self._shapes = np.zeros((structure.mesh.unknowns, 0))
 
     def preload(self, number: int) -> PreloadState:
         """See `Engine`."""
@@ -65,6 +71,7 @@ class Direct:
         """See `Engine`."""
         case, structure, choice = self.case, self.case.structure, self.case.study.modes
         modes, stiffness = self._modes(springs)
+        self._shapes = modes.shapes
         check_motions(structure, modes)
         loss = structure.lost(springs, viscous=choice.damping == "viscous")
         damped = damped_modes(
@@ -83,6 +90,10 @@ class Direct:
         """See `Engine`."""
         modes, _ = self._modes(springs)
         return modes.frequencies[self.case.rigid_count :][: self.case.study.modes.count]
+
+    def basis(self) -> Array:
+        """See `Engine`: the modes of the last springs."""
+        return self._shapes
 
     def of(self, case: Case) -> "Direct":
         """See `Engine`."""
@@ -130,6 +141,11 @@ class Reanalysis:
             self._looked = True
         modes, _ = self._shared.of(self.case.modal, springs, tolerance=RANGE_ERROR, shapes=False)
         return modes.frequencies[self.case.rigid_count :][: self.case.study.modes.count]
+
+    def basis(self) -> Array:
+        """See `Engine`: all that the states so far have made of it."""
+        assert self._shared.near is not None
+        return self._shared.near.span.vectors
 
     def of(self, case: Case) -> "Reanalysis":
         """See `Engine`; the factorisation at hand serves the other case, too."""

@@ -24,6 +24,7 @@ from faying.study.bounds import bounds
 from faying.study.case import Case, Progress
 from faying.study.engine import engine_of
 from faying.study.findings import against_exact_contact, falling
+from faying.study.level_damping import level_notes
 from faying.study.provenance import provenance
 from faying.study.solve import LoadedCase, solve
 from faying.study.study import Study
@@ -31,6 +32,7 @@ from faying.study.tracks import compared, encounters, macs, shapes_of
 from faying.study.wave_band import wave_band
 from faying.typing import Array
 
+LEVEL_FIELDS = ("frequencies", "damping", "low", "high", "slip", "error")
 NOT_ZERO = 1e-2  # Hz: a rigid motion above it is noted
 
 
@@ -120,6 +122,7 @@ def collect(
     rigid = np.max([s.modes.frequencies[: case.rigid_count] for s in states], axis=0)
     every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more]
     every += encounters(states, steps)
+    every += level_notes(case, [state.levels for state in states], lossless)
     every += [*(note for b in besides for note in b.notes), *_closing_notes(study, rigid)]
     way = structure.solver(study.modes.solver)
     bolts, more = _bolts(case, states, shapes)
@@ -134,6 +137,7 @@ def collect(
         rigid=rigid,
         mac=with_first,
         **_at_loads(states, lossless, bounds),
+        **_at_levels(case, states),
         **_bonded_beyond(states, lossless),
         **_at_points(states),
         **_on_faces(structure, states),
@@ -204,6 +208,15 @@ def _at_loads(states: Sequence[LoadedCase], lossless: bool, bounds: tuple[Array,
         "imbalance": np.array([s.preload.imbalance for s in states]),
         "newton_steps": np.array([s.preload.newton_steps for s in states]),
     }
+
+
+def _at_levels(case: Case, states: Sequence[LoadedCase]) -> dict[str, Any]:
+    """Fields of the result that have a row for each level of acceleration; none where there are none."""
+    found = [one for state in states if (one := state.levels) is not None]
+    if len(found) < len(states):
+        return {}
+    stacked = {f"level_{name}": np.stack([getattr(one, name) for one in found]) for name in LEVEL_FIELDS}
+    return {"levels": np.array(case.study.modes.levels), **stacked}
 
 
 def _outline(structure: Structure, shapes: Sequence[Array], states: Sequence[LoadedCase]) -> dict[str, Any]:

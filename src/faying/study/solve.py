@@ -16,6 +16,7 @@ from faying.notes import Note
 from faying.study.beyond import Beyond, bonded_beyond
 from faying.study.case import Case, Progress
 from faying.study.engine import Engine
+from faying.study.level_damping import LevelDamping, level_damping
 from faying.study.response import LoadedStructure, ResponseAtLoad
 from faying.typing import Array, Mask
 
@@ -33,6 +34,7 @@ class LoadedCase:
         response: what [response] asks for; test_response: that at the points of a hammer test.
         beyond: what bonding the points beyond the end of their law makes of the modes; None where there are none.
         notes: where a law leaves its validity range, and the like.
+        levels: damping at levels of acceleration; None where none is asked for, or no joint can slip.
         outside_share, beyond_share: of the area of all joints [-], where their law is outside its validity range and
             where the pressure exceeds its end.
     """
@@ -50,6 +52,7 @@ class LoadedCase:
     notes: tuple[Note, ...]
     outside_share: float
     beyond_share: float
+    levels: LevelDamping | None = None
 
     @property
     def bonded_frequencies(self) -> Array:
@@ -82,14 +85,17 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
     )
     response, test_response, notes = _responses(case, number, loaded, progress)
     beyond = bonded_beyond(case, load, springs, damped)
+    low = _at_end("low", case, preload, engine) if ranges else None
+    high = _at_end("high", case, preload, engine) if ranges else None
     return LoadedCase(
         load=load,
+        levels=level_damping(case, preload, found, engine.basis()) if ranges else None,
         preload=preload,
         springs=springs,
         modes=modes,
         damped=damped,
-        low=_at_end("low", case, preload, engine) if ranges else None,
-        high=_at_end("high", case, preload, engine) if ranges else None,
+        low=low,
+        high=high,
         response=response,
         test_response=test_response,
         beyond=beyond,

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 from faying.errors import InputError
 from faying.joint.modal import MOST_MODES, SOLVERS, ModesChoice
-from faying.study.keys.reader import Table, direction, point
+from faying.study.keys.reader import Table, direction, point, quantity
 
 MOST_POINTS, MOST_PASSES = 1_000_000, 100
 Point = tuple[float, float, float]
@@ -21,9 +22,20 @@ def read_modes(table: Table | None) -> ModesChoice:
         damping=table.text("damping", "hysteretic", ("hysteretic", "viscous")),
         solver=table.text("solver", None, SOLVERS),
         shift_frequency=table.quantity("shift_frequency", "Hz", None),
+        levels=table.take("levels", _levels, ModesChoice.levels),
     )
     table.close()
     return choice
+
+
+def _levels(value: Any, name: str) -> tuple[float, ...]:
+    """Accelerations, rising; none where empty."""
+    if not isinstance(value, list):
+        raise InputError(f'{name} = {value!r} should be a list, such as ["0.1 m/s^2", "1 m/s^2", "10 m/s^2"], or []')
+    found = tuple(quantity(one, "m/s^2", name) for one in value)
+    if any(b <= a for a, b in pairwise(found)):
+        raise InputError(f"{name} = {value!r}: levels must rise")
+    return found
 
 
 @dataclass(frozen=True, kw_only=True)

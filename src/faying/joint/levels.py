@@ -1,0 +1,165 @@
+"""Frequency and damping of modes at levels of acceleration: a mode is marched through one cycle of slip.
+
+The mode at rest moves the sliders of every joint to and fro. What they dissipate is the damping, and the first harmonic
+of their traction gives secant stiffnesses, under which the mode is found again, until frequency and damping settle.
+Harmonics, and the mean opening that a cycle leaves, are not followed: `backbone` has them.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from faying.fe.product import product
+from faying.joint.equilibrium import PreloadState
+from faying.joint.microslip import Microslip
+from faying.joint.slip_model import SlipJoint, SlipModel
+from faying.joint.structure import Structure
+from faying.typing import Array
+
+PASSES = 12
+SETTLED = 1e-4  # relative change of the squared frequency, and a tenth of that of the damping, that ends the passes
+STILL = 1e-3  # of the greatest motion of a joint's points: what moves less keeps its stiffness at rest
+SAMPLES = 32  # instants of a cycle
+SPRINGS = 32  # into which a law is cut at each point
+
+
+@dataclass(frozen=True, kw_only=True)
+class AtLevels:
+    """Frequency and damping by slip of modes (m,) at levels (l,).
+
+    Args:
+        levels: peak acceleration [m/s2] at the point that moves most.
+        frequencies: [Hz] (l, m).
+        damping: ratio of slip [-] (l, m).
+        error: change of the damping in the last pass, over it [-] (l, m).
+        slipping: share of the springs' limit of friction that slides [-] (l, m).
+    """
+
+    levels: Array
+    frequencies: Array
+    damping: Array
+    error: Array
+    slipping: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class LevelModel:
+    """A structure with joints that slip, in a basis.
+
+    Args:
+        slip: the parts in the basis (m,) and the joints in it.
+        vectors: the basis at the nodes (unknowns, m).
+        rigid: how many of its lowest modes are rigid motions.
+    """
+
+    slip: SlipModel
+    vectors: Array
+    rigid: int
+
+    def lowest(self, count: int) -> "LevelModel":
+        """The same on its lowest modes (count,), rigid ones included."""
+        _, shapes = self.slip.modes
+        shapes = shapes[:, :count]
+        return replace(self, slip=self.slip.turned(shapes), vectors=self.vectors @ shapes)
+
+    def at(self, levels: Sequence[float], count: int) -> AtLevels:
+        """The lowest elastic modes, so many of them, at each level."""
+        found = np.array([[self._mode(level, self.rigid + k) for k in range(count)] for level in levels])
+        frequency, damping, error, slipping = np.moveaxis(found, 2, 0)
+        return AtLevels(
+            levels=np.asarray(levels, dtype=float),
+            frequencies=frequency,
+            damping=damping,
+            error=error,
+            slipping=slipping,
+        )
+
+    def _mode(self, level: float, number: int) -> tuple[float, float, float, float]:
+        """Frequency [Hz], damping of slip, its change in the last pass and the sliding share of one mode."""
+        speeds, shapes = self.slip.modes
+        speed, shape = float(speeds[number]), shapes[:, number]
+        rest, damping, error = shape, 0.0, 0.0
+        for done in range(PASSES):
+            amplitude = level / speed**2 / self._greatest(shape)
+            motion = np.zeros((3, len(shape)))
+            motion[1] = amplitude * shape
+            cycles = self.slip.forces(motion, derivative=False, samples=SAMPLES).cycles
+            lost = sum(float(j.weights @ c.dissipated) for j, c in zip(self.slip.joints, cycles, strict=True))
+            before, damping = damping, max(lost, 0.0) / (2 * np.pi * speed**2 * amplitude**2)
+            error = abs(damping - before) / damping if damping > 0 else 0.0
+            change = self._change(motion, cycles)
+            squared = speed**2
+            softer = float(shape @ change @ shape)  # of the squared frequency, to first order
+            if done == 0 and abs(softer) < SETTLED * squared:
+                speed, error = float(np.sqrt(squared + softer)), abs(softer) / squared
+                break
+            speed, shape = self._under(change, rest)
+            if abs(speed**2 - squared) < SETTLED * squared and error < 10 * SETTLED:
+                break
+        areas = [float(joint.weights.sum()) for joint in self.slip.joints]
+        slid = [float(j.weights @ c.slipping) for j, c in zip(self.slip.joints, cycles, strict=True)]
+        return speed / (2 * np.pi), damping, error, sum(slid) / sum(areas)
+
+    def _greatest(self, shape: Array) -> float:
+        """The greatest displacement of a node in a shape."""
+        moved = (self.vectors @ shape).reshape(-1, 3)
+        return float(np.sqrt(np.einsum("ni,ni->n", moved, moved).max()))
+
+    def _change(self, motion: Array, cycles: Sequence[Any]) -> Array:
+        """What secant stiffnesses change of the stiffness at rest, in the basis (m, m)."""
+        out = np.zeros_like(self.slip.stiffness)
+        for joint, cycle in zip(self.slip.joints, cycles, strict=True):
+            u, t = joint.motion(motion)[1], cycle.traction[1]
+            rest = joint.at_rest[1]
+            change = np.zeros_like(rest)
+            size = float(np.linalg.norm(u, axis=1).max())
+            for axes in ([0], [1, 2]):
+                square = np.einsum("qi,qi->q", u[:, axes], u[:, axes])
+                moves = square > (STILL * size) ** 2
+                k = np.einsum("qi,qi->q", t[:, axes], u[:, axes])[moves] / square[moves]
+                for axis in axes:
+                    change[moves, axis, axis] = k - rest[moves, axis, axis]
+            out += joint.projected(change)
+        return out
+
+    def _under(self, change: Array, rest: Array) -> tuple[float, Array]:
+        """Circular frequency and shape of the mode that is most like that at rest."""
+        from scipy.linalg import eigh
+
+        squared, shapes = eigh(self.slip.linear + change, self.slip.mass)
+        like = np.abs(shapes.T @ self.slip.mass @ rest)
+        number = int(np.argmax(like))
+        return float(np.sqrt(max(squared[number], 0.0))), shapes[:, number]
+
+
+def level_model(
+    structure: Structure, preload: PreloadState, vectors: Array, friction: Sequence[float], *, springs: int = SPRINGS
+) -> LevelModel:
+    """A structure under its preload in a basis, ready to be marched.
+
+    Args:
+        structure: with joints whose laws have a tangential stiffness.
+        preload: its equilibrium under the bolts.
+        vectors: the basis (unknowns, m), orthonormal with the mass: modes and directions near them.
+        friction: coefficient [-] of each joint, 0 or more.
+        springs: into which the law is cut at each point.
+
+    Raises:
+        InputError: a law without stiffness, or a joint that is wholly open.
+    """
+    joints = []
+    for joint, opening, mu in zip(structure.joints, preload.openings, friction, strict=True):
+        interface = joint.interface
+        joints.append(
+            SlipJoint(
+                weights=interface.weights,
+                relative=np.asarray(interface.relative @ vectors),
+                rest=np.asarray(interface.relative @ preload.displacement).reshape(-1, 3),
+                law=Microslip.cut(joint.law, -opening, friction=mu, springs=springs, gap=interface.gap),
+            )
+        )
+    parts = vectors.T @ product(structure.vibrating[0], vectors)
+    slip = SlipModel(stiffness=(parts + parts.T) / 2, mass=np.eye(vectors.shape[1]), joints=tuple(joints))
+    return LevelModel(slip=slip, vectors=vectors, rigid=structure.rigid_count)

@@ -1,0 +1,111 @@
+"""Damping and frequency of every mode at levels of acceleration, with what is not known of friction and of rest."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.joint.equilibrium import PreloadState
+from faying.joint.levels import AtLevels, LevelModel, level_model
+from faying.joint.state import Vibration
+from faying.notes import Note
+from faying.study.case import Case
+from faying.typing import Array
+
+# coefficient of friction of faces of which nothing is said: 5 %, median and 95 % of a lognormal. Handbooks have 0.1 to
+# 0.6 for dry steel; the measured curve of the Brake-Reuss beam is met with 0.03
+FRICTION = (0.03, 0.12, 0.5)
+# damping ratio at rest of bolted structures of which nothing is measured: measured are 0.034 and 0.087 % on the
+# Brake-Reuss beam, 0.10 and 0.13 % on another of its kind by ring-down
+REST = (3e-4, 1e-3, 3e-3)
+MORE_MODES = 40  # of the basis, beyond those asked for, in which a mode is found again
+FEW_SPRINGS = 12  # into which a law is cut for the ends of friction: they differ by factors, this changes a hundredth
+
+
+@dataclass(frozen=True, kw_only=True)
+class LevelDamping:
+    """Modes (m,) at levels (l,), of one load.
+
+    Args:
+        frequencies: [Hz] (l, m), at the friction of the study or the median of its prior.
+        damping, low, high: ratio [-] (l, m), of slip and rest together: median, and both ends.
+        slip: of slip alone [-] (l, m), at the median.
+        error: of slip, of the iteration [-] (l, m).
+    """
+
+    frequencies: Array
+    damping: Array
+    low: Array
+    high: Array
+    slip: Array
+    error: Array
+
+
+def level_damping(case: Case, preload: PreloadState, found: Vibration, basis: Array) -> LevelDamping | None:
+    """Damping at the levels of a case under one preload.
+
+    Args:
+        case: the case.
+        preload: its equilibrium.
+        found: its modes at rest; a loss that the laws predict counts as damping at rest, else that has its prior.
+        basis: modes and directions near them (unknowns, m), orthonormal with the mass.
+
+    Returns:
+        None where no level is asked for, or where a law has no stiffness that slips.
+    """
+    structure, choice = case.structure, case.study.modes
+    if not choice.levels or any(joint.per_node for joint in structure.joints):
+        return None
+    given = [joint.friction for joint in structure.joints]
+    try:
+        model = level_model(structure, preload, basis, [FRICTION[1] if mu is None else mu for mu in given])
+    except InputError:
+        return None
+    model = model.lowest(min(basis.shape[1], case.rigid_count + choice.count + MORE_MODES))
+    middle = model.at(choice.levels, choice.count)
+    rest = (found.damped.loss_factors / 2,) * 3 if structure.predicts_loss else REST
+    # a loss at rest moves the complex modes as well
+    moved = found.damped.frequencies / found.modes.frequencies[case.rigid_count :][: choice.count]
+    ends = [middle, middle]
+    if any(mu is None for mu in given):
+        ends = [_with_friction(model, case, preload, mu) for mu in (FRICTION[2], FRICTION[0])]
+    slip = [one.damping for one in (ends[0], middle, ends[1])]
+    low, high = np.minimum(*slip[::2]), np.maximum(*slip[::2])
+    return LevelDamping(
+        frequencies=middle.frequencies * moved,
+        damping=slip[1] + rest[1],
+        low=np.minimum(low, slip[1]) + rest[0],
+        high=np.maximum(high, slip[1]) + rest[2],
+        slip=slip[1],
+        error=middle.error,
+    )
+
+
+def _with_friction(model: LevelModel, case: Case, preload: PreloadState, friction: float) -> AtLevels:
+    """The same with another friction at the joints of which nothing is said, and laws cut into fewer springs."""
+    joints = []
+    for joint, slip, opening in zip(case.structure.joints, model.slip.joints, preload.openings, strict=True):
+        mu = friction if joint.friction is None else joint.friction
+        law = slip.law.cut(joint.law, -opening, friction=mu, springs=FEW_SPRINGS, gap=joint.interface.gap)
+        joints.append(replace(slip, law=law))
+    changed = replace(model, slip=replace(model.slip, joints=tuple(joints)))
+    return changed.at(case.study.modes.levels, case.study.modes.count)
+
+
+def level_notes(case: Case, found: Sequence[LevelDamping | None], lossless: bool) -> list[Note]:
+    """What is assumed of friction and of rest."""
+    if any(one is None for one in found) or not found:
+        return []
+    words = []
+    if any(joint.friction is None for joint in case.structure.joints):
+        words.append(f"friction {FRICTION[1]:g}, between {FRICTION[0]:g} and {FRICTION[2]:g} (joint.friction gives it)")
+    if lossless:
+        low, middle, high = (f"{100 * one:g}" for one in REST)
+        words.append(f"{middle} % at rest, between {low} and {high} %, as bolted structures have it")
+    if not words:
+        return []
+    text = (
+        f"damping at levels of acceleration assumes {' and '.join(words)}; a ring-down of the structure narrows it most"
+    )
+    return [Note(code="level-damping", text=text)]
