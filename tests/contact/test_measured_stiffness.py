@@ -106,6 +106,7 @@ def test_cmy_lies_near_hardened_ground_steel_by_ultrasound(script: ModuleType, p
     assert 0.5 < min(ratios) < max(ratios) < 2
 
 
+@pytest.mark.slow
 def test_the_solved_contact_and_cmy_agree_at_the_same_hardness(script: ModuleType) -> None:
     """One number of hardness in both: on rough soft faces, where spots yield, within a factor of 1.5."""
     from faying.contact import CMY

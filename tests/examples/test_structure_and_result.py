@@ -79,6 +79,7 @@ def check_everything_is_drawn_and_kept(structure, state, result, tmp_path):
     assert np.array_equal(found.values, result.frequencies[0])
 
 
+@pytest.mark.slow  # joint/test_structure_api and result/test_record have its parts on two blocks
 def test_a_structure_and_a_result_on_a_coarse_mesh(tmp_path):
     made = check_state_is_that_of_the_study(tmp_path, COARSE)
     check_everything_is_drawn_and_kept(*made, tmp_path)

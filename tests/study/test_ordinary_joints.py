@@ -22,7 +22,7 @@ def proposed(path, size):
     done = CliRunner().invoke(cli, ["new", str(path), "--yes", "--out", str(out)], standalone_mode=False)
     assert done.exception is None, done.output
     text = re.sub(r'^size = "[^"]*"', f'size = "{size}"', out.read_text(), flags=re.M)
-    text = text.replace('model = "auto"', 'model = "jk"').replace("count = 10 ", "count = 4 ")
+    text = text.replace('model = "auto"', 'model = "jk"').replace("count = 10 ", "levels = []\ncount = 4 ")
     out.write_text(re.sub(r"(\[\[joint\]\]\n(?:.+\n)+)", r"\1[joint.form]\nflat = true\n\n", text))
     return out
 

@@ -155,6 +155,7 @@ def test_a_point_of_the_test_far_from_the_structure(folder):
         run(Study.from_dict(given, folder=folder))
 
 
+@pytest.mark.slow  # test_engines has a plainer structure part by part
 @pytest.mark.skipif("pardiso" not in available(), reason="only PARDISO factorises part by part")
 def test_part_by_part_gives_the_same_answer(folder, result):
     """Shank, elastic support, point mass, slip and response: none of them is lost between the parts."""
