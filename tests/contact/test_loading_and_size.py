@@ -61,11 +61,11 @@ def scan_named(name: str, folder: Path) -> Scan:
     ("name", "tolerance"),
     [
         ("init", 0.08),
-        ("Hurst 0.5", 0.08),
+        pytest.param("Hurst 0.5", 0.08, marks=pytest.mark.slow),
         ("Hurst 0.8", 0.08),
         ("test1", 0.08),
         ("test2", 0.08),
-        ("test4", 0.08),
+        pytest.param("test4", 0.08, marks=pytest.mark.slow),
         pytest.param("milled", 0.01, marks=pytest.mark.slow),
         pytest.param("ski", 0.01, marks=pytest.mark.slow),
     ],

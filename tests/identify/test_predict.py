@@ -157,6 +157,7 @@ def test_an_interrupted_prediction_goes_on(plan, tmp_path, monkeypatch):
     assert not out.with_name("p.nc.part").exists()
 
 
+@pytest.mark.slow  # the same cluster runs a sweep in tests/study/test_sweep.py
 def test_a_cluster_gives_the_same_when_a_worker_dies_half_way(plan, tmp_path, monkeypatch):
     """To the last bit, in the same bases."""
     pytest.importorskip("distributed", reason="the extra dask is not installed")

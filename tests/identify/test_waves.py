@@ -63,6 +63,7 @@ def test_size_and_draw_are_inputs_of_every_joint(study):
     assert both[0] == both[1]  # a sample has the same waves at all of its loads
 
 
+@pytest.mark.slow
 def test_samples_differ_and_come_again_with_the_seed(study, found):
     assert np.isfinite(found.frequencies).all()
     assert len(np.unique(np.round(found.frequencies[:, 0, 0], 3))) == 8
@@ -71,6 +72,7 @@ def test_samples_differ_and_come_again_with_the_seed(study, found):
     assert not np.isin(other.values[other.training :, 1], found.values[:, 1]).any()
 
 
+@pytest.mark.slow
 def test_a_sample_is_the_study_with_its_waves(study, found):
     """A sample from the small bases, against a full run with its size and its draw as a form: to what bases promise."""
     joint, bare = study.joints[0], replace(study, uncertain=None)
