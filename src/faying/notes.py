@@ -115,6 +115,11 @@ def by_severity(notes: Iterable[Note]) -> dict[Severity, tuple[Note, ...]]:
     return {kind: some for kind, some in found.items() if some}
 
 
+def grave(notes: Iterable[Note]) -> tuple[Note, ...]:
+    """Grouped notes that are more than remarks, the gravest first."""
+    return tuple(note for kind, some in by_severity(notes).items() if kind != "remark" for note in some)
+
+
 def _as_one(group: Sequence[Note]) -> Sequence[Note]:
     distinct = list(dict.fromkeys(group))
     rows = [NUMBER.findall(note.text) for note in distinct]

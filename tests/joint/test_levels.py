@@ -55,7 +55,7 @@ def test_two_masses_agree_with_harmonic_balance(mode, monkeypatch):
         point = Epmc(model=model, mode=mode, harmonics=1, samples=256).solve(amplitude)
         shape = np.abs(point.coordinates[1] + 1j * point.coordinates[2]).max()
         level = point.frequency**2 * shape
-        frequency, damping, _, _ = found._mode(level, mode)
+        frequency, damping, _ = found._mode(level, mode)
         speed = 2 * np.pi * frequency
         assert speed == pytest.approx(point.frequency, rel=2e-3)
         assert damping == pytest.approx(point.damping, rel=0.05)

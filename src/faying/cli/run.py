@@ -78,7 +78,7 @@ def command(
 
 def text(result: Any) -> str:
     """The tables and notes of a result for the terminal."""
-    from faying.notes import FIRST_NOTES, TITLES, by_severity
+    from faying.notes import FIRST_NOTES, TITLES, by_severity, grave
     from faying.output import table
     from faying.output.sections import sections
 
@@ -87,14 +87,13 @@ def text(result: Any) -> str:
         f"{result.damping} loss in the joints\n"
     )
     first, *others = (f"{section.above}\n{table.text(section.rows)}\n" for section in sections(result))
-    groups = by_severity(result.notes)
-    grave = [note for kind, some in groups.items() if kind != "remark" for note in some]
-    lines = [line for note in grave[:FIRST_NOTES] for line in _item(note.text)]
-    more = len(grave) - FIRST_NOTES
+    before = grave(result.notes)
+    lines = [line for note in before[:FIRST_NOTES] for line in _item(note.text)]
+    more = len(before) - FIRST_NOTES
     lines += [f"  {more} more at the end"] if more > 0 else []
     notes = [
         line
-        for kind, some in groups.items()
+        for kind, some in by_severity(result.notes).items()
         for line in (f"\n{TITLES[kind]}", *(part for note in some for part in _item(note.text)))
     ]
     hammer = [] if result.hammer is None else [line for text in result.hammer.notes for line in _item(text)]

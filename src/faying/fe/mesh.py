@@ -1,6 +1,6 @@
 """A mesh of named parts with named faces: solid elements of any kind, nodes in metres."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -176,9 +176,7 @@ def least_jacobian(points: Array, cells: Index) -> Array:
     """Least determinant of the map from the reference element [m3 per unit] at the points of integration (e,)."""
     _, _, _, gradients = SOLIDS[cells.shape[1]].stiffness_rule
     out = np.empty(len(cells))
-    for begin in range(0, len(cells), 20000):
-        here = slice(begin, begin + 20000)
-        jacobian = np.einsum("eai,qaj->eqij", points[cells[here]], gradients, optimize=True)
+    for here, jacobian in _jacobians(points, cells, gradients):
         x, y, z = (jacobian[..., i, :] for i in range(3))
         out[here] = np.einsum("eqi,eqi->eq", np.cross(x, y), z).min(axis=1)
     return out
@@ -188,11 +186,16 @@ def volumes_of(points: Array, cells: Index) -> Array:
     """Volumes [m3] of elements of one kind (e,)."""
     _, weights, _, gradients = SOLIDS[cells.shape[1]].mass_rule
     out = np.empty(len(cells))
-    for begin in range(0, len(cells), 20000):
-        here = slice(begin, begin + 20000)
-        jacobian = np.einsum("eai,qaj->eqij", points[cells[here]], gradients, optimize=True)
+    for here, jacobian in _jacobians(points, cells, gradients):
         out[here] = np.linalg.det(jacobian) @ weights
     return out
+
+
+def _jacobians(points: Array, cells: Index, gradients: Array) -> Iterator[tuple[slice, Array]]:
+    """Jacobians (e, q, 3, 3) at the points of a rule, of as many elements at a time as take little room."""
+    for begin in range(0, len(cells), 20000):
+        here = slice(begin, begin + 20000)
+        yield here, np.einsum("eai,qaj->eqij", points[cells[here]], gradients, optimize=True)
 
 
 def kind_of(cells: Index) -> str:

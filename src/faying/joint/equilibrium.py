@@ -18,7 +18,7 @@ from faying.errors import InputError, NotConverged
 from faying.fe.product import product_of_sizes
 from faying.joint.joint_law import JointLaw
 from faying.joint.springs import InterfaceMotion
-from faying.typing import Array, Mask
+from faying.typing import Array, Index, Mask
 
 Found = TypeVar("Found")
 Steps = Generator[Array, Array, Found]  # yields forces (unknowns,), and is sent displacements near their answer
@@ -339,6 +339,19 @@ class Equilibrium(ABC):
                 return at(middle)
             low, high = (middle, high) if value < 0 else (low, middle)
         return at((low + high) / 2, known=False)
+
+
+def admissible(force: Array, rigid: Array, fixed: Index) -> Array:
+    """A force [N] (n,) without what moves along rigid motions (n, r) or pulls at unknowns that supports fix.
+
+    rigid: orthonormal columns.
+    """
+    if rigid.size:
+        force = force - rigid @ (rigid.T @ force)
+    if len(fixed):
+        force = force.copy()
+        force[fixed] = 0.0
+    return force
 
 
 def check_balance(load: Array, rigid: Array) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from faying.fe.product import product
 from faying.joint.equilibrium import PreloadState
 from faying.joint.microslip import Microslip
-from faying.joint.slip_model import SlipJoint, SlipModel
+from faying.joint.slip_model import SlipModel, slip_joints
 from faying.joint.structure import Structure
 from faying.typing import Array
 
@@ -30,18 +30,14 @@ class AtLevels:
     """Frequency and damping by slip of modes (m,) at levels (l,).
 
     Args:
-        levels: peak acceleration [m/s2] at the point that moves most.
         frequencies: [Hz] (l, m).
         damping: ratio of slip [-] (l, m).
         error: change of the damping in the last pass, over it [-] (l, m).
-        slipping: share of the springs' limit of friction that slides [-] (l, m).
     """
 
-    levels: Array
     frequencies: Array
     damping: Array
     error: Array
-    slipping: Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,19 +61,13 @@ class LevelModel:
         return replace(self, slip=self.slip.turned(shapes), vectors=self.vectors @ shapes)
 
     def at(self, levels: Sequence[float], count: int) -> AtLevels:
-        """The lowest elastic modes, so many of them, at each level."""
+        """The lowest elastic modes, so many, at each level: acceleration [m/s2] of the point that moves most."""
         found = np.array([[self._mode(level, self.rigid + k) for k in range(count)] for level in levels])
-        frequency, damping, error, slipping = np.moveaxis(found, 2, 0)
-        return AtLevels(
-            levels=np.asarray(levels, dtype=float),
-            frequencies=frequency,
-            damping=damping,
-            error=error,
-            slipping=slipping,
-        )
+        frequency, damping, error = np.moveaxis(found, 2, 0)
+        return AtLevels(frequencies=frequency, damping=damping, error=error)
 
-    def _mode(self, level: float, number: int) -> tuple[float, float, float, float]:
-        """Frequency [Hz], damping of slip, its change in the last pass and the sliding share of one mode."""
+    def _mode(self, level: float, number: int) -> tuple[float, float, float]:
+        """Frequency [Hz], damping of slip and its change in the last pass, of one mode."""
         speeds, shapes = self.slip.modes
         speed, shape = float(speeds[number]), shapes[:, number]
         rest, damping, error = shape, 0.0, 0.0
@@ -98,9 +88,7 @@ class LevelModel:
             speed, shape = self._under(change, rest)
             if abs(speed**2 - squared) < SETTLED * squared and error < 10 * SETTLED:
                 break
-        areas = [float(joint.weights.sum()) for joint in self.slip.joints]
-        slid = [float(j.weights @ c.slipping) for j, c in zip(self.slip.joints, cycles, strict=True)]
-        return speed / (2 * np.pi), damping, error, sum(slid) / sum(areas)
+        return speed / (2 * np.pi), damping, error
 
     def _greatest(self, shape: Array) -> float:
         """The greatest displacement of a node in a shape."""
@@ -134,9 +122,18 @@ class LevelModel:
         return float(np.sqrt(max(squared[number], 0.0))), shapes[:, number]
 
 
-def level_model(
-    structure: Structure, preload: PreloadState, vectors: Array, friction: Sequence[float], *, springs: int = SPRINGS
-) -> LevelModel:
+def cut_laws(structure: Structure, preload: PreloadState, friction: Sequence[float], springs: int) -> list[Microslip]:
+    """The law of each joint under a preload, cut into so many springs with sliders; friction: coefficient of each.
+
+    Raises InputError as `Microslip.cut`.
+    """
+    return [
+        Microslip.cut(joint.law, -opening, friction=mu, springs=springs, gap=joint.interface.gap)
+        for joint, opening, mu in zip(structure.joints, preload.openings, friction, strict=True)
+    ]
+
+
+def level_model(structure: Structure, preload: PreloadState, vectors: Array, friction: Sequence[float]) -> LevelModel:
     """A structure under its preload in a basis, ready to be marched.
 
     Args:
@@ -144,22 +141,14 @@ def level_model(
         preload: its equilibrium under the bolts.
         vectors: the basis (unknowns, m), orthonormal with the mass: modes and directions near them.
         friction: coefficient [-] of each joint, 0 or more.
-        springs: into which the law is cut at each point.
 
     Raises:
         InputError: a law without stiffness, or a joint that is wholly open.
     """
-    joints = []
-    for joint, opening, mu in zip(structure.joints, preload.openings, friction, strict=True):
-        interface = joint.interface
-        joints.append(
-            SlipJoint(
-                weights=interface.weights,
-                relative=np.asarray(interface.relative @ vectors),
-                rest=np.asarray(interface.relative @ preload.displacement).reshape(-1, 3),
-                law=Microslip.cut(joint.law, -opening, friction=mu, springs=springs, gap=interface.gap),
-            )
-        )
+    interfaces = [joint.interface for joint in structure.joints]
+    relatives = [np.asarray(interface.relative @ vectors) for interface in interfaces]
+    laws = cut_laws(structure, preload, friction, SPRINGS)
+    joints = slip_joints(interfaces, preload.displacement, laws, relatives)
     parts = vectors.T @ product(structure.vibrating[0], vectors)
-    slip = SlipModel(stiffness=(parts + parts.T) / 2, mass=np.eye(vectors.shape[1]), joints=tuple(joints))
+    slip = SlipModel(stiffness=(parts + parts.T) / 2, mass=np.eye(vectors.shape[1]), joints=joints)
     return LevelModel(slip=slip, vectors=vectors, rigid=structure.rigid_count)

@@ -8,7 +8,7 @@ import numpy as np
 from faying.fe.constraint import constrain
 from faying.fe.interface import Motion
 from faying.fe.solve import factorise
-from faying.joint.equilibrium import Equilibrium, Steps, StickSlip, check_balance
+from faying.joint.equilibrium import Equilibrium, Steps, StickSlip, admissible, check_balance
 from faying.joint.joint_law import JointLaw
 from faying.typing import Array, Index
 
@@ -74,14 +74,10 @@ class PlainPreload(Equilibrium):
         raise AssertionError("no step of this iteration asks for a solution near its own")
 
     def _admissible(self, force: Array) -> Array:
-        if self._rigid.size:
-            force = force - self._rigid @ (self._rigid.T @ force)
-        force = force.copy()
-        force[self._fixed] = 0.0
-        return force
+        return admissible(force, self._rigid, self._fixed)
 
     def _solved(self, stiffness: Any, force: Array) -> Array:
-        right = self._admissible(force)
+        right = self._admissible(force).copy()
         right[self._held] = 0.0
         return factorise(constrain(stiffness, self._held).tocsr(), self.solver).solve(right)
 

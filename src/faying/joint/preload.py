@@ -18,7 +18,16 @@ from faying.fe.interface import Motion
 from faying.fe.shifted import Shifted
 from faying.fe.single import factorise_roughly
 from faying.fe.solve import Factorisation, Factoriser
-from faying.joint.equilibrium import MOST_STEPS, Equilibrium, Newton, PreloadState, Steps, StickSlip, check_balance
+from faying.joint.equilibrium import (
+    MOST_STEPS,
+    Equilibrium,
+    Newton,
+    PreloadState,
+    Steps,
+    StickSlip,
+    admissible,
+    check_balance,
+)
 from faying.joint.joint_law import JointLaw
 from faying.typing import Array, Index
 
@@ -230,12 +239,7 @@ class PreloadProblem(Equilibrium):
         return np.asarray(force)
 
     def _admissible(self, force: Array) -> Array:
-        if self._rigid.size:
-            force = force - self._rigid @ (self._rigid.T @ force)
-        if len(self.fixed):
-            force = force.copy()
-            force[self.fixed] = 0.0
-        return force
+        return admissible(force, self._rigid, self.fixed)
 
     def _near(self, forces: Array) -> Array:
         assert self.factor is not None

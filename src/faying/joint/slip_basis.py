@@ -19,7 +19,7 @@ from faying.joint.basis import Basis
 from faying.joint.epmc import ALL_SLIDING, OTHER_MODES, Epmc, EpmcPoint
 from faying.joint.equilibrium import PreloadState
 from faying.joint.microslip import Microslip
-from faying.joint.slip_model import SlipJoint, SlipModel
+from faying.joint.slip_model import SlipModel, slip_joints
 from faying.joint.springs import Springs
 from faying.joint.structure import Structure
 from faying.typing import Array
@@ -148,11 +148,9 @@ class SlipBasis:
 
     def model(self, laws: Sequence[Microslip]) -> SlipModel:
         """The structure in the basis, with a microslip law for each joint."""
-        joints = []
-        for joint, law, relative in zip(self.structure.joints, laws, self.basis.relative, strict=True):
-            rest = np.asarray(joint.interface.relative @ self.preload.displacement).reshape(-1, 3)
-            joints.append(SlipJoint(weights=joint.interface.weights, relative=relative, rest=rest, law=law))
-        return SlipModel(stiffness=self.basis.small[0], mass=self.basis.small[1], joints=tuple(joints))
+        interfaces = [joint.interface for joint in self.structure.joints]
+        joints = slip_joints(interfaces, self.preload.displacement, laws, self.basis.relative)
+        return SlipModel(stiffness=self.basis.small[0], mass=self.basis.small[1], joints=joints)
 
     def epmc(self, laws: Sequence[Microslip], *, harmonics: int, samples: int, observer: Array | None = None) -> Epmc:
         """The curve of the mode; observer (unknowns,): what takes a displacement to the one observed [m]."""

@@ -10,6 +10,7 @@ from typing import Self
 
 import numpy as np
 
+from faying.fe.interface import Motion
 from faying.joint.hysteresis import Cycle
 from faying.joint.microslip import Microslip
 from faying.typing import Array
@@ -63,6 +64,28 @@ class SlipJoint:
             rest=self.rest[kept],
             law=replace(law, **at),
         )
+
+
+def slip_joints(
+    interfaces: Sequence[Motion], displacement: Array, laws: Sequence[Microslip], relatives: Sequence[Array]
+) -> tuple[SlipJoint, ...]:
+    """Joints in a basis, under a preload.
+
+    Args:
+        interfaces: how the faces of each joint meet.
+        displacement: under the preload [m] (unknowns,).
+        laws: of each joint, at the points of its interface.
+        relatives: relative motion of each joint (3q, m) from the coordinates of the basis.
+    """
+    return tuple(
+        SlipJoint(
+            weights=interface.weights,
+            relative=relative,
+            rest=np.asarray(interface.relative @ displacement).reshape(-1, 3),
+            law=law,
+        )
+        for interface, law, relative in zip(interfaces, laws, relatives, strict=True)
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 from faying import __version__
 from faying.files import write_text
-from faying.notes import FIRST_NOTES, TITLES, by_severity
+from faying.notes import FIRST_NOTES, TITLES, by_severity, grave
 from faying.output import page, report_measured
 from faying.output.report_curves import backbone_curves, response_curves
 from faying.output.scene import of_result, pages, to_text
@@ -72,12 +72,11 @@ def _view(result: Result, pictures: dict[str, str]) -> list[str]:
 
 def _first_notes(result: Result) -> list[str]:
     """What a reader must know before the tables: at most three notes, the gravest first."""
-    grave = [(kind, note) for kind, some in by_severity(result.notes).items() if kind != "remark" for note in some]
-    out = [f'<p class="flag">{escape(note.text)}</p>' for _, note in grave[:FIRST_NOTES]]
-    if len(grave) > FIRST_NOTES:
-        out.append(
-            f'<p class="soft">{len(grave) - FIRST_NOTES} more stand at the end, under <a href="#notes">Notes</a>.</p>'
-        )
+    every = grave(result.notes)
+    out = [f'<p class="flag">{escape(note.text)}</p>' for note in every[:FIRST_NOTES]]
+    more = len(every) - FIRST_NOTES
+    if more > 0:
+        out.append(f'<p class="soft">{more} more stand at the end, under <a href="#notes">Notes</a>.</p>')
     return out
 
 

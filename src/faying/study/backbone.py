@@ -13,6 +13,7 @@ from faying.fe.interface import Interface
 from faying.fe.modes import Modes
 from faying.joint.attachments import nearest_node
 from faying.joint.epmc import EpmcCurve, EpmcPoint
+from faying.joint.levels import cut_laws
 from faying.joint.microslip import Microslip
 from faying.joint.shared_modes import modes_of
 from faying.joint.slip_basis import SlipBasis
@@ -364,15 +365,13 @@ class _Prepared:
 
     def laws(self, friction: Sequence[float], springs: int = SPRINGS) -> list[Microslip]:
         """The microslip law of each joint under the preload."""
-        out = []
-        openings = self.basis.preload.openings
-        for joint, opening, mu in zip(self.case.structure.joints, openings, friction, strict=True):
-            gap = joint.interface.gap
-            if self.choice.slip == "coulomb":
-                out.append(Microslip.coulomb(joint.law, -opening, friction=mu, gap=gap))
-            else:
-                out.append(Microslip.cut(joint.law, -opening, friction=mu, springs=springs, gap=gap))
-        return out
+        structure, preload = self.case.structure, self.basis.preload
+        if self.choice.slip != "coulomb":
+            return cut_laws(structure, preload, friction, springs)
+        return [
+            Microslip.coulomb(joint.law, -opening, friction=mu, gap=joint.interface.gap)
+            for joint, opening, mu in zip(structure.joints, preload.openings, friction, strict=True)
+        ]
 
     def train(self, friction: Sequence[float], progress: _Progress) -> None:
         """Make the basis fit the curve."""

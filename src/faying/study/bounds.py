@@ -1,5 +1,7 @@
 """The frequencies of a structure with the faces of its joints apart, and with them bonded: its joints lie between."""
 
+from typing import Any
+
 import numpy as np
 
 from faying.fe.by_parts import PartByPart
@@ -34,8 +36,9 @@ def _elastic(case: Case) -> slice:
 
 def _bonded(case: Case) -> tuple[Array, list[Note]]:
     structure = case.structure
-    apart = [joint.name for joint in structure.joints if bond(structure.mesh, [joint.faces]) is None]
-    if apart:
+    merge = structure.bonded()
+    if merge is None:
+        apart = [joint.name for joint in structure.joints if bond(structure.mesh, [joint.faces]) is None]
         text = (
             f"the faces of {', '.join(apart)} do not match node for node: the bonded modes use springs a thousand "
             "times as stiff as the parts in place of bonded faces"
@@ -43,14 +46,12 @@ def _bonded(case: Case) -> tuple[Array, list[Note]]:
         return _by_springs(case, 1.0), [Note(code="bonded-by-springs", text=text)]
     if len(structure.fixed) or isinstance(structure.solver(case.study.modes.solver), PartByPart):
         return _extrapolated(case), []
-    return _merged(case), []
+    return _merged(case, merge), []
 
 
-def _merged(case: Case) -> Array:
-    """The unknowns of both faces of every joint are one."""
+def _merged(case: Case, merge: Any) -> Array:
+    """The unknowns of both faces of every joint are one; merge: as `Structure.bonded` gives it."""
     structure = case.structure
-    merge = structure.bonded()
-    assert merge is not None
     K, M = (merged(matrix, merge) for matrix in structure.vibrating)
     share = np.asarray(merge.sum(axis=0)).ravel()
     rigid = (merge.T @ structure.rigid) / share[:, None]

@@ -7,7 +7,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.joint.equilibrium import PreloadState
-from faying.joint.levels import AtLevels, LevelModel, level_model
+from faying.joint.levels import AtLevels, LevelModel, cut_laws, level_model
 from faying.joint.state import Vibration
 from faying.notes import Note
 from faying.study.case import Case
@@ -84,12 +84,11 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration, basis: Ar
 
 def _with_friction(model: LevelModel, case: Case, preload: PreloadState, friction: float) -> AtLevels:
     """The same with another friction at the joints of which nothing is said, and laws cut into fewer springs."""
-    joints = []
-    for joint, slip, opening in zip(case.structure.joints, model.slip.joints, preload.openings, strict=True):
-        mu = friction if joint.friction is None else joint.friction
-        law = slip.law.cut(joint.law, -opening, friction=mu, springs=FEW_SPRINGS, gap=joint.interface.gap)
-        joints.append(replace(slip, law=law))
-    changed = replace(model, slip=replace(model.slip, joints=tuple(joints)))
+    structure = case.structure
+    given = [friction if joint.friction is None else joint.friction for joint in structure.joints]
+    laws = cut_laws(structure, preload, given, FEW_SPRINGS)
+    joints = tuple(replace(joint, law=law) for joint, law in zip(model.slip.joints, laws, strict=True))
+    changed = replace(model, slip=replace(model.slip, joints=joints))
     return changed.at(case.study.modes.levels, case.study.modes.count)
 
 
