@@ -1,7 +1,7 @@
 """The loading curve of the default law, its hardness over the size of spots, and what a scan resolves."""
 
 import os
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from faying.contact.half_space import HalfSpace
 from faying.errors import InputError
 from faying.halfspace import solve_half_space
 from faying.halfspace.solve import halved_map, refined_map
-from faying.halfspace.spots import Spots
+from faying.halfspace.spots import Spots, solve_with_size
 from faying.hardness import VickersHardness
 from faying.joint.joint_law import JointLaw
 from faying.study import template
@@ -54,23 +54,23 @@ def scan_named(name: str, folder: Path) -> Scan:
     return faying.read_scan(file) if name == "ski" else faying.read_scan(file, xy_unit="mm", z_unit="um")
 
 
-# Between solved pressures the loading curve is a monotone cubic. On maps of which the coarser ones carry its shape it
-# is right to 1 %. Elsewhere it jumps where few spots merge; 8 % with 10 spots and more, and where fewer touch the law
-# says that it is not valid.
+# Between solved pressures the loading curve is a monotone cubic, with pressures added until it is right to 1 % of what
+# a threefold pressure closes. Where fewer than 10 spots touch it jumps as they merge, and the law says that it is not
+# valid.
 @pytest.mark.parametrize(
-    ("name", "tolerance"),
+    "name",
     [
-        ("init", 0.08),
-        pytest.param("Hurst 0.5", 0.08, marks=pytest.mark.slow),
-        ("Hurst 0.8", 0.08),
-        ("test1", 0.08),
-        ("test2", 0.08),
-        pytest.param("test4", 0.08, marks=pytest.mark.slow),
-        pytest.param("milled", 0.01, marks=pytest.mark.slow),
-        pytest.param("ski", 0.01, marks=pytest.mark.slow),
+        "init",
+        pytest.param("Hurst 0.5", marks=pytest.mark.slow),
+        pytest.param("Hurst 0.8", marks=pytest.mark.slow),
+        pytest.param("test1", marks=pytest.mark.slow),
+        "test2",
+        pytest.param("test4", marks=pytest.mark.slow),
+        pytest.param("milled", marks=pytest.mark.slow),
+        pytest.param("ski", marks=pytest.mark.slow),
     ],
 )
-def test_the_loading_stiffness_is_the_slope_of_the_solved_approach(name, tolerance, tmp_path):
+def test_the_loading_stiffness_is_the_slope_of_the_solved_approach(name, tmp_path):
     law = Mates(scan_named(name, tmp_path), materials="45 steel").law("half-space")
     assert isinstance(law, HalfSpace)
     contact, approach, spots = None, [], []
@@ -85,7 +85,7 @@ def test_the_loading_stiffness_is_the_slope_of_the_solved_approach(name, toleran
             continue
         p = np.geomspace(first, last, 2000)
         closed = np.trapezoid(p / law.at_pressure(p).k_load, np.log(p))
-        assert closed == pytest.approx(approach[i + 1] - approach[i], rel=tolerance)
+        assert closed == pytest.approx(approach[i + 1] - approach[i], rel=0.01)
         assert closed == pytest.approx(float(law.closing(last) - law.closing(first)), rel=5e-3)
         compared += 1
     assert compared >= 1
@@ -141,6 +141,37 @@ def test_every_spot_has_the_hardness_of_its_size():
     # from another start the same
     again = law.contact_at(20e6, start=law.contact_at(35e6))
     assert again.normal_stiffness(loading=False) == pytest.approx(contact.normal_stiffness(loading=False), rel=0.02)
+
+
+@dataclass
+class Pressed:
+    """What a size of spots is asked of: points that all carry their hardness."""
+
+    traction: np.ndarray
+    spots: Spots
+
+    @property
+    def at_hardness(self) -> np.ndarray:
+        return self.traction > 0
+
+
+def test_a_hardness_that_would_alternate_settles_at_its_lower_value():
+    size = PAIR.vickers
+    # two spots of three points, which a bridge joins to one of seven under their hardness, and leaves under its own
+    three, seven = (float(size.at(np.sqrt(2 * n * 1e-12))) for n in (3, 7))
+    asked = []
+
+    def solve(hardness, start):
+        asked.append(float(hardness[0, 1]))
+        touching = np.ones((1, 9), dtype=bool)
+        touching[0, [0, 8]] = False
+        touching[0, 4] = hardness[0, 1] > (three + seven) / 2
+        return Pressed(hardness * touching, Spots.of(touching, (1e-6, 1e-6), periodic=False))
+
+    contact = solve_with_size(solve, (1, 9), (1e-6, 1e-6), size, None)
+    assert {three, seven} <= set(asked)
+    assert asked[-1] == seven
+    assert contact.spots.count == 2
 
 
 def test_a_map_of_hardness_bounds_each_point():

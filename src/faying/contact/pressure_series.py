@@ -22,18 +22,18 @@ from faying.halfspace.solve import halved_map
 from faying.typing import Array
 
 STRIDE = 4  # a large map itself is solved at every fourth pressure first
-CLOSE = 0.015  # miss of a predicted closing, over what a threefold pressure closes, at which no pressure is added
+CLOSE = 0.01  # miss of a predicted closing, over what a threefold pressure closes, at which no pressure is added
 SHAPE = 600  # points a side from which on the map on a quarter of them carries the shape of the curves
 FINEST = 1.08  # least factor between two pressures
 COLUMNS = 8, 60  # pressures at which the map itself may be solved: at least and at most, and between them
-MAX_POINTS = 3e6  # as many as make this number of points together
+MAX_POINTS = 1e7  # as many as make this number of points together
 EDGES = 6  # the quarters of the window are solved at every sixth pressure
 GROWTH = 2.5  # four times the points each way are two doublings; a quarter on top of what the last ones changed
 MOST = log(1e3)  # a range wider than this says no more: next to full contact the stiffness of a map has no limit
 ALIKE = 0.75  # correlation; an odd number of rows leaves half of what the next row differs by
 FEWEST_CELLS = 16  # on the side of a quarter of the window
 HARDNESS_DOUBT = 1.35  # factor either way: scatter of Brinell hardness of one steel, and of small indentations
-STORED = 5  # version of what the cache holds
+STORED = 6  # version of what the cache holds
 
 
 class Solve(Protocol):

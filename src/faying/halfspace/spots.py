@@ -14,7 +14,8 @@ from faying.typing import Array, Index, Mask
 if TYPE_CHECKING:
     from faying.halfspace.solution import HalfSpaceContact
 
-MAX_PASSES = 12
+FULL_PASSES = 6  # after these the hardness of a point only falls
+MAX_PASSES = 20
 SETTLED = 1e-2  # change of ln H, weighted by the load, below which it is that of the spots
 
 
@@ -123,9 +124,11 @@ def solve_with_size(
 
         hardness = spread_map(start.spots.hardness(law), shape)
     contact, change = start, np.inf
-    for _ in range(MAX_PASSES):
+    for number in range(MAX_PASSES):
         contact = solve(hardness, contact)
         found = contact.spots.hardness(law)
+        if number >= FULL_PASSES:  # spots that join under one hardness and part under the next one alternate
+            found = np.minimum(hardness, found)
         # where the contact is elastic its hardness does not matter
         plastic = contact.at_hardness | (contact.traction > found)
         load = contact.traction.sum(dtype=float)
