@@ -22,11 +22,12 @@ from faying.halfspace.solve import halved_map
 from faying.typing import Array
 
 STRIDE = 4  # a large map itself is solved at every fourth pressure first
-CLOSE = 0.01  # miss of a predicted closing, over what a threefold pressure closes, at which no pressure is added
+CLOSE = 0.015  # miss of a predicted closing, over what a threefold pressure closes, at which no pressure is added
+CLOSE_ALONE = 0.005  # the same of a small map, whose curve no coarser map carries
 SHAPE = 600  # points a side from which on the map on a quarter of them carries the shape of the curves
 FINEST = 1.08  # least factor between two pressures
 COLUMNS = 8, 60  # pressures at which the map itself may be solved: at least and at most, and between them
-MAX_POINTS = 1e7  # as many as make this number of points together
+MAX_POINTS = 3e6  # as many as make this number of points together
 EDGES = 6  # the quarters of the window are solved at every sixth pressure
 GROWTH = 2.5  # four times the points each way are two doublings; a quarter on top of what the last ones changed
 MOST = log(1e3)  # a range wider than this says no more: next to full contact the stiffness of a map has no limit
@@ -213,12 +214,14 @@ class _Levels:
     def refine(self) -> None:
         """Solve more pressures where the closing between solved ones is not predicted well, the worst first."""
         top = self.top()
-        most = min(max(int(MAX_POINTS / self.heights.size), COLUMNS[0]), COLUMNS[1])
+        many, few = COLUMNS[1], COLUMNS[0]
+        most = many if self.alone else min(max(int(MAX_POINTS / self.heights.size), few), many)
+        close = CLOSE_ALONE if self.alone else CLOSE
         waiting: list[tuple[float, float, float]] = []
         seen: set[tuple[float, float]] = set()
 
         def split(a: float, b: float, miss: float) -> None:
-            if miss > CLOSE and b / a > FINEST**2 and (a, b) not in seen:
+            if miss > close and b / a > FINEST**2 and (a, b) not in seen:
                 seen.add((a, b))
                 heappush(waiting, (-miss, a, b))
 
