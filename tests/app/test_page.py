@@ -99,7 +99,7 @@ def test_from_a_step_file_without_names_and_a_scan_to_a_result(browser, server, 
         assert "joint" in page.inner_text("#findings")
         page.click("#start")
         page.wait_for_selector("#report:not([hidden])", timeout=5 * WAIT)
-        page.frame_locator("#report").get_by_role("heading", name="Modes", exact=True).wait_for()
+        page.frame_locator("#report").get_by_role("heading", name="Modes at every preload", exact=True).wait_for()
         links = page.locator("#links a").all_inner_texts()
         assert {"result.nc", "modes.csv", "report.html"} <= set(links)
     assert (tmp_path / "results" / "result.nc").is_file()

@@ -91,9 +91,11 @@ def test_draws_of_waves_hold_the_change_of_mode_1(outcome, tmp_path):
     assert slopes.min() < test < slopes.max()
 
 
-def test_a_study_that_gives_its_waves_has_one_draw_and_says_so(outcome):
-    """The note names the size, the draw, and what shows how far draws differ."""
-    assert outcome[0].get("wave_frequencies") is None
+def test_a_study_that_gives_its_waves_is_answered_by_one_draw_and_says_so(outcome):
+    """The note names the size, the draw, and what shows how far draws differ; its draw is one of four."""
+    drawn = np.array(outcome[0]["wave_frequencies"]["values"])
+    assert drawn.shape[0] == 4
+    assert drawn[0] == pytest.approx(np.array(outcome[0]["frequencies"]["values"]), rel=1e-12)
     (text,) = [note["text"] for note in outcome[0]["notes"] if note["code"] == "waves"]
     assert "rms 1.156 um on each face" in text
     assert "draw 0; another draw is another joint" in text

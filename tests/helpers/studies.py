@@ -28,13 +28,14 @@ counterbody = "part"
 def write(study: Path, *, force: bool = False, flat: bool = True) -> list[Path]:
     """Write that study, with the geometry that `faying init` gives it.
 
-    Damping at levels of acceleration is left out. flat: its faces are flat; else nothing is said of them, and a run has
-    the band of waves, which doubles its time.
+    Damping at levels of acceleration is left out. flat: its faces are flat, and intervals are left out; else nothing is
+    said of them, and a run has intervals and draws of waves, which double its time.
     """
     made = template.write(study, force=force)
     text = TEXT.format(name=study.name, step="two-blocks.step")
     text = text.replace("[modes]\n", "[modes]\nlevels = []\n")
     if flat:
+        text = text.replace("levels = []\n", "levels = []\nintervals = false\n")
         text = text.replace("\n[[bolt]]", "\n[joint.form]\nflat = true\n\n[[bolt]]", 1)
     study.write_text(text, encoding="utf-8")
     return made

@@ -82,10 +82,24 @@ def test_shares_of_stiff_modes_are_those_of_the_parts(found):
 
 
 def test_quantiles_are_those_of_the_samples(found):
-    q = found.quantiles((0.25, 0.75))
+    bare = replace(found, discrepancy=0.0)
+    q = bare.quantiles((0.25, 0.75))
     assert q.frequencies.shape == (2, len(found.loads), 5)
     below = (found.frequencies < q.frequencies[1]).mean(axis=0)
     assert below == pytest.approx(0.75, abs=0.01)
+
+
+def test_the_discrepancy_is_in_every_interval(found):
+    """1 % of each mode, normal in ln f; that of the structure is in the samples, as E scatters."""
+    assert found.discrepancy == pytest.approx(0.01)
+    alone = replace(found, frequencies=np.full(found.frequencies.shape, 100.0), paired=None, test=None)
+    low, middle, high = alone.quantiles().frequencies
+    assert middle == pytest.approx(100.0, rel=1e-6)
+    # 25 equal shares of the probability stand for the normal one
+    assert np.log(high / low) == pytest.approx(2 * 1.6449 * found.discrepancy, rel=0.06)
+
+
+def test_levels_of_quantiles_are_shares(found):
     with pytest.raises(InputError, match="shares from 0 to 1"):
         found.quantiles((5, 95))
 
@@ -184,7 +198,6 @@ def test_a_cluster_gives_the_same_when_a_worker_dies_half_way(plan, tmp_path, mo
 @pytest.mark.parametrize(
     ("more", "words"),
     [
-        ("", "nothing in the study scatters"),
         ('[uncertain]\nfrictoin = "0.1 to 0.6"', "frictoin is nothing that can scatter"),
         ('[uncertain]\nE = "200 to 210"', "has no unit"),
         ('[uncertain]\nfriction = "-3 to 0.1"', "lies for 97% outside"),

@@ -7,7 +7,7 @@ import pytest
 
 import faying
 from faying.output import table
-from faying.study import Study, run
+from faying.study import Study, run, universal
 from faying.study.level_damping import FRICTION, REST
 from tests.helpers import studies
 
@@ -64,6 +64,17 @@ def test_the_table_has_a_row_for_each_mode(found):
     rows = table.damping(found)
     assert [len(row) for row in rows] == [5] * 5
     assert rows[1][1].count(" .. ") == 2
+
+
+def test_csv_and_universal_file_have_the_damping(found, tmp_path):
+    heads, first = (line.split(",") for line in found.csv_text().splitlines()[:2])
+    assert heads[-3:] == [f"damping ratio at {level} m/s2 [-]" for level in ("0.1", "1", "10")]
+    assert [float(value) for value in first[-3:]] == pytest.approx(found.level_damping[0, :, 0], rel=1e-7)
+    # where no law has a loss, the modes of data set 55 have that of the middle level
+    lossless = replace(found, loss_factors=np.full(found.loss_factors.shape, np.nan))
+    universal.write(lossless, tmp_path)
+    modes = faying.read_uff(tmp_path / "modes.uff").modes()
+    assert modes.loss_factors == pytest.approx(2 * found.level_damping[-1, 1], rel=1e-4)
 
 
 def test_no_levels_no_damping(study):

@@ -1,6 +1,7 @@
 """From a study whose numbers scatter to the quantiles of its frequencies."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +18,11 @@ from faying.misuse import checked_call
 from faying.notes import Note
 from faying.progress import Report
 from faying.study.case import mates_notes
+from faying.study.keys.uncertain import UncertainChoice
 from faying.study.parallel import Rows
 from faying.study.part_folder import fingerprint
 from faying.study.provenance import provenance
+from faying.study.scatter import assumed, discrepancy
 from faying.study.study import Study
 from faying.typing import Array
 
@@ -67,6 +70,8 @@ def predict(
         Sobol's sequence: Joe and Kuo 2008, doi:10.1137/070709359, as SciPy has it.
     """
     study = Study.read(study)
+    if study.uncertain is None:
+        study = replace(study, uncertain=assumed(study))
     check(study, samples, seed)
     choice = choice_of(study, samples, backbones) if backbones else None
     ensemble = Ensemble.of(study, samples, seed)
@@ -124,6 +129,7 @@ def predicted(study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, se
         open_share=rows["open_share"],
         beyond_share=rows["beyond_share"],
         reasons=dict(by_reason(reasons)),
+        discrepancy=discrepancy(study.uncertain or UncertainChoice()),
         provenance=provenance(study),
         **tested,
     )
@@ -158,7 +164,10 @@ def _notes(study: Study, found: Prediction) -> list[Note]:
             )
             out.append(Note(code="test-modes", text=text))
     if study.uncertain is not None and not study.uncertain.models:
-        text = "the interval holds what [uncertain] lists and nothing else: not the errors of the mesh or of the law"
+        text = (
+            f"the intervals hold what [uncertain] lists, and {found.discrepancy:.2%} of each frequency for what it "
+            "does not (discrepancy, and E of the parts where that does not scatter); not the error of the mesh"
+        )
         out.append(Note(code="interval", text=text))
     return out
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from statistics import NormalDist
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 LEVELS = (0.05, 0.5, 0.95)
+# normal scores in the middle of equal shares of the probability, scaled to a variance of 1
+_MIDDLES = [NormalDist().inv_cdf((k + 0.5) / 25) for k in range(25)]
+SCORES = tuple(float(z / np.std(_MIDDLES)) for z in _MIDDLES)
 MOST_MODES = 5  # that a summary has a line for
 POINTS = 4096  # at which the shares of variance are taken
 
@@ -65,6 +69,7 @@ class Prediction(Recorded):
         tolerance: Relative error of a frequency that the bases were made for.
         basis: Sizes of the bases for equilibrium and vibration.
         reasons: Why samples have no answer, and how many.
+        discrepancy: Standard deviation of ln f that the samples lack: of each mode, and of parts that do not scatter.
         backbones: Of the first samples; None where they were not asked for.
         notes: What there is to say.
         frequencies_of_test, test_source: The test, where the study has one.
@@ -137,6 +142,7 @@ class Prediction(Recorded):
     )
     test_source: str = ""
     reasons: dict[str, int] = field(default_factory=dict)
+    discrepancy: float = 0.0
     backbones: Backbones | None = None
     notes: tuple[Note, ...] = ()
     provenance: Provenance | None = None
@@ -148,7 +154,7 @@ class Prediction(Recorded):
         if not self.answered:
             return head, rows | {"why": shortened("; ".join(self.reasons))}
         values, test = self.observed
-        low, middle, high = _levels(values[self.sound][:, -1], LEVELS)
+        low, middle, high = _levels(self._with_discrepancy(values[self.sound][:, -1]), LEVELS)
         rows["frequencies"] = f"5 % | 50 % | 95 % at {load_labels(self.loads)[-1]}"
         shown = min(len(middle), MOST_MODES)
         for k in range(shown):
@@ -210,15 +216,21 @@ class Prediction(Recorded):
         frequencies, damping = self.backbones.quantiles(levels)
         return replace(found, backbone_frequencies=frequencies, backbone_damping=damping)
 
+    def _with_discrepancy(self, values: Array) -> Array:
+        """Frequencies (n, ...) with those that the discrepancy makes of each, in equal shares (n * NODES, ...)."""
+        if not self.discrepancy:
+            return values
+        return np.concatenate([values * np.exp(self.discrepancy * score) for score in SCORES])
+
     def _quantiles(self, levels: tuple[float, ...], which: Any) -> Quantiles:
         if not np.any(which):
             raise InputError(f"no sample has an answer: {'; '.join(self.reasons)}")
         paired = None
         if self.paired is not None:
-            paired = _levels(self.paired[which], levels)
+            paired = _levels(self._with_discrepancy(self.paired[which]), levels)
         return Quantiles(
             levels=levels,
-            frequencies=_levels(self.frequencies[which], levels),
+            frequencies=_levels(self._with_discrepancy(self.frequencies[which]), levels),
             loss_factors=_levels(self.loss_factors[which], levels),
             slopes=_levels(self.slopes[which], levels),
             paired=paired,

@@ -16,6 +16,7 @@ class ModesChoice:
     """How many elastic modes, which kind of loss, which factorisation, which shift [Hz] (None: chosen).
 
     levels: accelerations [m/s2] of the point that moves most, at which damping is found; none where empty.
+    intervals: whether a run finds the interval of every frequency, and draws waves where faces have them.
     """
 
     count: int = 10
@@ -23,6 +24,7 @@ class ModesChoice:
     solver: str | None = None
     shift_frequency: float | None = None
     levels: tuple[float, ...] = (0.1, 1.0, 10.0)
+    intervals: bool = True
 
 
 @dataclass(frozen=True, kw_only=True)

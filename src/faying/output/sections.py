@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from faying.output import table
+from faying.output import answer, table
 from faying.output.table import Rows
 from faying.result import Result
 
@@ -34,12 +34,37 @@ class Section:
 
 def sections(result: Result) -> list[Section]:
     """Return the tables that a result has."""
-    every = (*_modes(result), *_joints(result), *_backbones(result), *_tests(result))
+    every = (*_answer(result), *_modes(result), *_joints(result), *_backbones(result), *_tests(result))
     return [section for section in every if section.rows]
 
 
 def _last(result: Result) -> str:
     return f"at {result.loads[-1] / 1e3:g} kN"
+
+
+def _answer(result: Result) -> tuple[Section, ...]:
+    """Each mode with its interval, and what makes it."""
+    return (
+        Section(
+            name="answer",
+            rows=answer.answer(result),
+            title=f"Modes {_last(result)}",
+            below="5 to 95 % hold all that is not known and listed below. Damping: low, median, high, at the stated "
+            "acceleration of the point that moves most.",
+        ),
+        Section(
+            name="shares",
+            rows=answer.shares(result),
+            title=f"What makes the intervals {_last(result)}, in %",
+            below="Width from 5 to 95 % over the frequency, and share of each thing that is not known in its square.",
+        ),
+        Section(
+            name="narrowing",
+            rows=answer.narrowing(result),
+            title="What would narrow the intervals",
+            below="How much narrower an interval gets: the median mode, and the one that gains most.",
+        ),
+    )
 
 
 def _modes(result: Result) -> tuple[Section, ...]:
@@ -50,7 +75,7 @@ def _modes(result: Result) -> tuple[Section, ...]:
         Section(
             name="modes",
             rows=table.modes(result),
-            title="Modes",
+            title="Modes at every preload",
             below=f"Loss factors come from complex modes with {result.damping} loss in the joints. Free: faces apart. "
             f"Bonded: faces grown together.{rigid}",
         ),
@@ -166,6 +191,12 @@ def _tests(result: Result) -> tuple[Section, ...]:
     """What was measured, or somebody else's model, beside the study."""
     c, hammer = result.comparison, result.hammer
     return (
+        Section(
+            name="score",
+            rows=answer.score(result),
+            title="Error against the test, and of guesses that need no joint model",
+            below=answer.score_line(result),
+        ),
         Section(
             name="comparison",
             rows=table.comparison(result),

@@ -66,10 +66,10 @@ def frequency_axes(result: Result, modes: int, ax: Any = None) -> "list[Axes]":
     axes = axes_of(ax, modes, width=3.4, height=2.7, columns=3)
     load = result.loads * 1e-3
     for mode, one in enumerate(axes):
-        _band(one, load, result.low, result.high, mode, "C0", "range of the law")
-        waves = result.wave_frequencies
-        if waves is not None:
-            _band(one, load, waves.min(axis=0), waves.max(axis=0), mode, "C2", f"{len(waves)} draws of waves")
+        if result.interval_low is not None:
+            _band(one, load, result.interval_low, result.interval_high, mode, "C0", "5 to 95 %")
+        else:
+            _band(one, load, result.low, result.high, mode, "C0", "range of the law")
         one.plot(load, result.frequencies[:, mode], "o-", color="C0", ms=4, lw=1.4, label="Faying")
         for k, name in enumerate(result.beside):
             if result.beside_frequencies is not None:

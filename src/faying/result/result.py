@@ -19,6 +19,7 @@ from faying.notes import Note, grouped
 from faying.result.backbone import Backbone
 from faying.result.bolts import BoltNumbers
 from faying.result.fields import Recorded, in_units, load_labels, variable
+from faying.result.interval import Interval
 from faying.result.provenance import Provenance
 from faying.text import listed
 from faying.typing import Array, Complex, Index
@@ -317,6 +318,32 @@ class Result(Recorded):
         group="modes",
         name="frequency_high",
     )
+    interval_low: Array | None = variable(
+        "load",
+        "mode",
+        unit="Hz",
+        long_name="5 % of the frequency, of all that is not known",
+        default=None,
+        group="modes",
+    )
+    interval_high: Array | None = variable(
+        "load",
+        "mode",
+        unit="Hz",
+        long_name="95 % of the frequency, of all that is not known",
+        default=None,
+        group="modes",
+    )
+    interval_offsets: Array | None = variable(
+        "source",
+        "end",
+        "load",
+        "mode",
+        unit="1",
+        long_name="change of ln f at 5 and at 95 % of one thing that is not known",
+        default=None,
+        group="modes",
+    )
     levels: Array | None = variable(
         "level",
         unit="m/s2",
@@ -489,6 +516,7 @@ class Result(Recorded):
         default=None,
         group="joints",
     )
+    interval_sources: tuple[str, ...] = ()
     beside: tuple[str, ...] = ()
     joints: tuple[str, ...]
     bolts: tuple[str, ...]
@@ -613,7 +641,7 @@ class Result(Recorded):
         out |= in_units(self, without=MAPS)
         out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
         out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
-        out["beside"] = list(self.beside)
+        out["interval_sources"], out["beside"] = list(self.interval_sources), list(self.beside)
         out["parts"] = list(self.parts)
         out |= {"joints": list(self.joints), "bolts": list(self.bolts), "tightening": list(self.tightening)}
         out |= {"damping": self.damping, "surfaces": list(self.surfaces), "laws": list(self.laws)}
@@ -636,7 +664,15 @@ class Result(Recorded):
         out: dict[str, Any] = {"load": load_labels(self.loads), "mode": np.arange(1, len(self.free) + 1)}
         out |= {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
         out |= {"part": self.parts} if self.parts else {}
+        out |= {"source": self.interval_sources} if self.interval_sources else {}
         return out | ({"law": self.beside} if self.beside else {})
+
+    @property
+    def interval(self) -> Interval | None:
+        """What makes the interval of each frequency; None in a result without one."""
+        if self.interval_offsets is None:
+            return None
+        return Interval(sources=self.interval_sources, offsets=self.interval_offsets)
 
     def to_csv(self, path: str | Path) -> Path:
         """Write one row for each load and mode, units in the heading; the file appears complete or not at all."""
@@ -652,9 +688,14 @@ class Result(Recorded):
             ("free", np.broadcast_to(self.free, self.frequencies.shape)),
             ("bonded", np.broadcast_to(self.bonded, self.frequencies.shape)),
             *(("low", self.low), ("high", self.high)),
+            *(("5 %", self.interval_low), ("95 %", self.interval_high)),
         ]
         kept = [(name, values) for name, values in columns if values is not None]
         heads = [f"{name} [{'-' if name == 'loss factor' else 'Hz'}]" for name, _ in kept]
+        if self.levels is not None and self.level_damping is not None:
+            at = [(level, self.level_damping[:, k]) for k, level in enumerate(self.levels)]
+            heads += [f"damping ratio at {level:g} m/s2 [-]" for level, _ in at]
+            kept += [("", values) for _, values in at]
         rows.writerow(["preload [N]", "mode", *heads])
         for i, load in enumerate(self.loads):
             for j in range(len(self.bonded)):

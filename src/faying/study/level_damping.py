@@ -70,14 +70,15 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration, basis: Ar
     ends = [middle, middle]
     if any(mu is None for mu in given):
         ends = [_with_friction(model, case, preload, mu) for mu in (FRICTION[2], FRICTION[0])]
-    slip = [one.damping for one in (ends[0], middle, ends[1])]
-    low, high = np.minimum(*slip[::2]), np.maximum(*slip[::2])
+    slip = middle.damping
+    least, most = (choose(slip, choose(*(one.damping for one in ends))) for choose in (np.minimum, np.maximum))
+    # friction and rest are independent: the squares of their distances add, apart for each side
     return LevelDamping(
         frequencies=middle.frequencies * moved,
-        damping=slip[1] + rest[1],
-        low=np.minimum(low, slip[1]) + rest[0],
-        high=np.maximum(high, slip[1]) + rest[2],
-        slip=slip[1],
+        damping=slip + rest[1],
+        low=slip + rest[1] - np.hypot(slip - least, rest[1] - rest[0]),
+        high=slip + rest[1] + np.hypot(most - slip, rest[2] - rest[1]),
+        slip=slip,
         error=middle.error,
     )
 

@@ -24,12 +24,12 @@ from faying.study.bounds import bounds
 from faying.study.case import Case, Progress
 from faying.study.engine import engine_of
 from faying.study.findings import against_exact_contact, falling
+from faying.study.interval import intervals
 from faying.study.level_damping import level_notes
 from faying.study.provenance import provenance
 from faying.study.solve import LoadedCase, solve
 from faying.study.study import Study
 from faying.study.tracks import compared, encounters, macs, shapes_of
-from faying.study.wave_band import wave_band
 from faying.typing import Array
 
 LEVEL_FIELDS = ("frequencies", "damping", "low", "high", "slip", "error")
@@ -65,10 +65,19 @@ def run(study: Study | str | Path, *, report: Report | None = None, engine: str 
     besides = [solve_beside(case, choice, solver, progress) for choice in study.beside]
     progress.begin("modes free and bonded")
     free, bonded, notes = bounds(case)
-    band, more = wave_band(case, states)
+    band, interval, more = intervals(case, states)
     result = collect(case, states, (free, bonded), [*notes, *findings(case, states), *more], besides)
     if band is not None:
         result = replace(result, **band.fields(case.loads))
+    if interval is not None:
+        low, high = interval.ends(result.frequencies)
+        result = replace(
+            result,
+            interval_sources=interval.sources,
+            interval_low=low,
+            interval_high=high,
+            interval_offsets=interval.offsets,
+        )
     if study.backbone is None:
         return result
     progress.begin(f"mode {study.backbone.mode} over amplitude")

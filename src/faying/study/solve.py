@@ -1,8 +1,7 @@
 """One load of a case: the preload of its joints, their springs, the modes and the response."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Literal
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from faying.fe.damped import DampedModes
 from faying.fe.interface import Interface
@@ -15,6 +14,7 @@ from faying.measured.model import FullResponse
 from faying.notes import Note
 from faying.study.beyond import Beyond, bonded_beyond
 from faying.study.case import Case, Progress
+from faying.study.ends import Pair, ends_of
 from faying.study.engine import Engine
 from faying.study.level_damping import LevelDamping, level_damping
 from faying.study.response import LoadedStructure, ResponseAtLoad
@@ -34,6 +34,7 @@ class LoadedCase:
         response: what [response] asks for; test_response: that at the points of a hammer test.
         beyond: what bonding the points beyond the end of their law makes of the modes; None where there are none.
         notes: where a law leaves its validity range, and the like.
+        ends: frequencies [Hz] at 5 and 95 % of each doubt of the joints, by its name; None where none are asked for.
         levels: damping at levels of acceleration; None where none is asked for, or no joint can slip.
         outside_share, beyond_share: of the area of all joints [-], where their law is outside its validity range and
             where the pressure exceeds its end.
@@ -53,6 +54,7 @@ class LoadedCase:
     outside_share: float
     beyond_share: float
     levels: LevelDamping | None = None
+    ends: Mapping[str, Pair] | None = None
 
     @property
     def bonded_frequencies(self) -> Array:
@@ -85,8 +87,8 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
     )
     response, test_response, notes = _responses(case, number, loaded, progress)
     beyond = bonded_beyond(case, load, springs, damped)
-    low = _at_end("low", case, preload, engine) if ranges else None
-    high = _at_end("high", case, preload, engine) if ranges else None
+    ends = ends_of(case, preload, engine) if ranges else None
+    low, high = (ends or {}).get("scan", (None, None))
     return LoadedCase(
         load=load,
         levels=level_damping(case, preload, found, engine.basis()) if ranges else None,
@@ -96,6 +98,7 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
         damped=damped,
         low=low,
         high=high,
+        ends=ends,
         response=response,
         test_response=test_response,
         beyond=beyond,
@@ -134,12 +137,3 @@ def _share(springs: Sequence[Springs[Interface]], masks: Sequence[Mask]) -> floa
     """Share of the area of all joints where a mask of its points holds [-]."""
     held = sum(float(s.interface.weights @ mask) for s, mask in zip(springs, masks, strict=True))
     return held / sum(s.interface.area for s in springs)
-
-
-def _at_end(end: Literal["low", "high"], case: Case, preload: PreloadState, engine: Engine) -> Array | None:
-    """Frequencies [Hz] with every law that states a range at one end of it, under the same pressures."""
-    structure = case.structure
-    if not any(joint.law.has_range for joint in structure.joints):
-        return None
-    joints = [replace(j, law=replace(j.law, end=end)) if j.law.has_range else j for j in structure.joints]
-    return engine.frequencies(replace(structure, joints=tuple(joints)).springs(preload.pressures))

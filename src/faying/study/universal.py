@@ -41,9 +41,7 @@ def write(result: Result, folder: Path) -> list[Path]:
     positions = {k + 1: tuple(float(v) for v in result.outline[node]) for k, node in enumerate(nodes)}
     positions |= {k: p for p, k in labels.items()}
     title = f"{result.title}, {result.loads[-1] / 1e3:g} kN"
-    modes = _modes(
-        result.frequencies[-1], result.loss_factors[-1], result.shapes[-1][:, nodes].astype(float), positions
-    )
+    modes = _modes(result.frequencies[-1], _losses(result), result.shapes[-1][:, nodes].astype(float), positions)
     made = [write_uff(folder / "modes.uff", modes, title=title)]
     if response is not None:
         made.append(write_uff(folder / "frf.uff", _frf(response, labels), title=title))
@@ -81,6 +79,15 @@ def _at_test(result: Result, folder: Path) -> list[Path]:
             )
             made.append(write_uff(folder / TEST_FILES[1], of_model, title=title))
     return made
+
+
+def _losses(result: Result) -> Array:
+    """Loss factors at the greatest preload; where the laws give none, twice the damping at the middle level."""
+    losses: Array = result.loss_factors[-1]
+    if result.level_damping is None:
+        return losses
+    middle = result.level_damping.shape[1] // 2
+    return np.asarray(np.where(np.isnan(losses), 2 * result.level_damping[-1, middle], losses))
 
 
 def _modes(frequencies: Array, losses: Array, shapes: Array, positions: Mapping[int, tuple[float, ...]]) -> ModeSet:

@@ -6,13 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from faying.errors import FayingError
 from faying.joint.face_axes import FaceAxes
 from faying.joint.form import Form
 from faying.joint.machining import ASSUMED, ASSUMED_GAP
-from faying.joint.reduce import Reduction
 from faying.joint.solid_bolt import SolidBolt
-from faying.joint.together import Gapped, evaluate, train_together
 from faying.joint.waviness import LaidWaves
 from faying.notes import Note
 from faying.result.result import preload_slope
@@ -22,7 +19,6 @@ from faying.typing import Array
 from faying.units import show
 
 DRAWS = 4
-TOLERANCE = 2e-4  # of a frequency, where draws differ by a thousandth and more
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,64 +50,82 @@ class WaveBand:
 
 @dataclass(frozen=True, kw_only=True)
 class _Wavy:
-    """A joint on which waves are drawn: its gap without waves (q,) [m], and the waves, whose seed varies."""
+    """A joint on which waves are drawn: its gap without waves (q,) [m], and the waves, whose seed varies.
+
+    own: the seed of the draw that the case has; -2 where it has none.
+    """
 
     positions: Array
     weights: Array
     base: Array
     axes: FaceAxes
     laid: LaidWaves
+    own: int
 
     def gap(self, seed: int) -> Array:
         waves = replace(self.laid, waves=replace(self.laid.waves, seed=seed))
         return self.base + waves.gap(self.positions, self.axes, self.weights)
 
 
-def wave_band(case: Case, states: Sequence[LoadedCase]) -> tuple[WaveBand | None, list[Note]]:
-    """Take the frequencies with a few draws of waves on the faces, at no full solution.
+@dataclass(frozen=True, kw_only=True)
+class Draws:
+    """The draws of waves on the joints of a case; nothing on a joint that stays as it is.
 
-    Where a joint says nothing of its form, the waves are those that are assumed of machined faces. A form that is given
-    stays as it is, its waves with the draw that its seed names; so do the seats of solid bolts, and faces that are
-    curved or have no room for waves. Nothing where no joint has waves, or where a sweep has no answer either: bolts
-    tightened in order, viscous dampers, springs per node.
+    Where a joint says nothing of its form, the waves are those that are assumed of machined faces; where it gives
+    waves, other draws of them. A form without waves stays as it is; so do the seats of solid bolts, and faces that are
+    curved or have no room for waves.
     """
-    study, structure = case.study, case.structure
-    apart = study.order is not None or study.modes.damping == "viscous" or any(j.per_node for j in structure.joints)
-    wavy = [] if apart else _wavy(case)
-    if not any(wavy):
-        return None, []
-    seeds = range(DRAWS)
-    last = states[-1]
-    reduction = Reduction.about(
-        structure,
-        factor=last.modes.factorisation,
-        reference=(last.modes.factorised + last.modes.shift * structure.vibrating[1]).tocsr(),
-        state=last.preload.displacement,
-        shapes=last.modes.shapes[:, case.rigid_count :],
-        count=study.modes.count,
-    )
-    try:
-        rows = _frequencies(case, reduction, wavy, seeds)
-    except FayingError as fault:
-        return None, [Note(code="wave-band", text=f"no answer with waves on the faces: {fault}")]
-    notes = _notes(case, wavy)
-    ends = [
-        (np.nan, np.nan) if w is None else (max(w.laid.waves.shortest, w.laid.carried), w.laid.waves.longest)
-        for w in wavy
-    ]
-    rms = [np.nan if w is None else w.laid.waves.Wq for w in wavy]
-    return WaveBand(seeds=tuple(seeds), frequencies=np.stack(rows), rms=np.array(rms), ends=np.array(ends)), notes
 
+    wavy: Sequence[_Wavy | None]
+    seeds: tuple[int, ...] = tuple(range(DRAWS))
 
-def _notes(case: Case, wavy: list["_Wavy | None"]) -> list[Note]:
-    """What is assumed of the faces that the study says nothing of."""
-    silent = [joint.name for joint, waves in zip(case.study.joints, wavy, strict=True) if waves is not None]
-    text = (
-        f"{', '.join(silent)}: the study gives no form of the faces. The table of modes has them as meshed; machined "
-        f"faces have waves, and {DRAWS} draws of waves with a gap of {show(ASSUMED_GAP, 'm')} rms say how far that "
-        "moves each frequency. Give [joint.form] a measured map, waviness, or flat = true"
-    )
-    return [Note(code="waves-assumed", text=text)]
+    @classmethod
+    def of(cls, case: Case) -> "Draws":
+        """The draws of a case."""
+        return cls(wavy=_wavy(case))
+
+    @property
+    def drawn(self) -> tuple[int, ...]:
+        """The seeds of the draws that the case itself does not have."""
+        if not any(self.wavy):
+            return ()
+        own = {waves.own for waves in self.wavy if waves is not None}
+        return tuple(seed for seed in self.seeds if own != {seed})
+
+    def gaps(self, case: Case, seed: int) -> list[Array]:
+        """Gap of each joint [m] (q,) in one draw."""
+        joints = case.structure.joints
+        return [
+            joint.interface.gap if waves is None else waves.gap(seed)
+            for joint, waves in zip(joints, self.wavy, strict=True)
+        ]
+
+    def band(self, states: Sequence[LoadedCase], found: Sequence[Array]) -> WaveBand | None:
+        """The frequencies of all draws, from those of `drawn` [Hz] (loads, m); None where nothing is drawn."""
+        if not any(self.wavy):
+            return None
+        solved = np.stack([state.damped.frequencies for state in states])
+        by_seed = dict(zip(self.drawn, found, strict=True))
+        ends = [
+            (np.nan, np.nan) if w is None else (max(w.laid.waves.shortest, w.laid.carried), w.laid.waves.longest)
+            for w in self.wavy
+        ]
+        rms = [np.nan if w is None else w.laid.waves.Wq for w in self.wavy]
+        rows = np.stack([by_seed.get(seed, solved) for seed in self.seeds])
+        return WaveBand(seeds=self.seeds, frequencies=rows, rms=np.array(rms), ends=np.array(ends))
+
+    def notes(self, case: Case) -> list[Note]:
+        """What is assumed of the faces that the study says nothing of."""
+        named = zip(case.study.joints, self.wavy, strict=True)
+        silent = [joint.name for joint, waves in named if waves is not None and joint.form is None]
+        if not silent:
+            return []
+        text = (
+            f"{', '.join(silent)}: the study gives no form of the faces. The table of modes has them as meshed; "
+            f"machined faces have waves, and {DRAWS} draws of waves with a gap of {show(ASSUMED_GAP, 'm')} rms say how "
+            "far that moves each frequency. Give [joint.form] a measured map, waviness, or flat = true"
+        )
+        return [Note(code="waves-assumed", text=text)]
 
 
 def _wavy(case: Case) -> list[_Wavy | None]:
@@ -120,38 +134,25 @@ def _wavy(case: Case) -> list[_Wavy | None]:
     bolts = {bolt.part for bolt in structure.bolts if isinstance(bolt, SolidBolt)}
     out: list[_Wavy | None] = []
     for joint, choice, surface in zip(structure.joints, case.study.joints, case.surfaces, strict=True):
-        interface = joint.interface
-        seat = any(mesh.face_part[face] in bolts for face in joint.faces)
-        axes = None if choice.form is not None or seat else FaceAxes.of(mesh, joint.faces, interface, Form().along)
-        waviness = replace(ASSUMED, scan=surface.waves)
-        if axes is None or not waviness.fits(axes):
+        interface, form = joint.interface, (choice.form or Form(waviness=ASSUMED)).with_scan(surface.waves)
+        if form.waviness is None or any(mesh.face_part[face] in bolts for face in joint.faces):
             out.append(None)
             continue
-        laid = LaidWaves.of(waviness, axes)
-        if laid.waves.longest < laid.carried:
+        axes = FaceAxes.of(mesh, joint.faces, interface, form.along)
+        laid = LaidWaves.of(form.waviness, axes) if form.waviness.fits(axes) else None
+        if laid is None or laid.waves.longest < laid.carried:
             out.append(None)
             continue
+        silent = choice.form is None
+        given = 0.0 if silent else laid.gap(interface.positions, axes, interface.weights)
         out.append(
-            _Wavy(positions=interface.positions, weights=interface.weights, base=interface.gap, axes=axes, laid=laid)
+            _Wavy(
+                positions=interface.positions,
+                weights=interface.weights,
+                base=interface.gap - given,
+                axes=axes,
+                laid=laid,
+                own=-2 if silent else laid.waves.seed,
+            )
         )
     return out
-
-
-def _frequencies(case: Case, reduction: Reduction, wavy: list[_Wavy | None], seeds: Sequence[int]) -> list[Array]:
-    """Frequencies [Hz] (loads, m) of each draw; the basis is made for the first and the last load of all of them."""
-    joints = case.structure.joints
-    forces = [np.array(case.study.forces(k)) for k in range(len(case.loads))]
-    draws = []
-    for seed in seeds:
-        gaps = [
-            joint.interface.gap if waves is None else waves.gap(seed) for joint, waves in zip(joints, wavy, strict=True)
-        ]
-        laws, friction = [joint.law for joint in joints], [joint.friction for joint in joints]
-        draws.append([Gapped(laws=laws, forces=force, friction=friction, gaps=gaps) for force in forces])
-    ends = [draw[k] for draw in draws for k in sorted({0, len(forces) - 1})]
-    each = len(ends) // len(draws)
-    starts = train_together(reduction, ends, TOLERANCE)
-    return [
-        np.stack([evaluate(reduction, one, starts[each * number]).frequencies for one in draw])
-        for number, draw in enumerate(draws)
-    ]

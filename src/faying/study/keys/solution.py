@@ -23,6 +23,7 @@ def read_modes(table: Table | None) -> ModesChoice:
         solver=table.text("solver", None, SOLVERS),
         shift_frequency=table.quantity("shift_frequency", "Hz", None),
         levels=table.take("levels", _levels, ModesChoice.levels),
+        intervals=table.truth("intervals", True),
     )
     table.close()
     return choice

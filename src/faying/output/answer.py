@@ -1,0 +1,120 @@
+"""The tables that answer first: each mode with its interval, what makes the intervals, what narrows them, the test."""
+
+import numpy as np
+
+from faying.output.table import Rows
+from faying.result import Result
+from faying.result.result import preload_slope
+from faying.result.score import Score
+from faying.study.scatter import SCATTER
+from faying.typing import Array
+
+BOTH = 0.6  # of the greater motion that the other parts must have for "all"
+
+
+def answer(result: Result) -> Rows:
+    """One row per mode at the greatest preload: its motion, frequency with interval, change with preload, damping."""
+    if result.interval_low is None or result.interval_high is None:
+        return []
+    several, levels = len(result.loads) > 1, result.levels
+    heads = ["mode", "moves most", f"{result.loads[-1] / 1e3:g} kN [Hz]", "5 to 95 %"]
+    heads += ["Hz/kN"] * several
+    heads += [] if levels is None else [f"damping, {levels[len(levels) // 2]:g} m/s2 [%]"]
+    rows: Rows = [heads]
+    slopes = 1e3 * preload_slope(result.frequencies, result.loads) if several else np.zeros(len(result.bonded))
+    for j in range(len(result.bonded)):
+        cells = [str(j + 1), moves(result, j), f"{result.frequencies[-1, j]:.2f}"]
+        cells.append(_interval(float(result.interval_low[-1, j]), float(result.interval_high[-1, j])))
+        cells += [f"{slopes[j]:+.2g}"] * several
+        cells += _damping(result, j)
+        rows.append(cells)
+    return rows
+
+
+def _interval(low: float, high: float) -> str:
+    """Both ends to a tenth of their distance or so."""
+    digits = max(0, 1 - int(np.floor(np.log10(max(high - low, 1e-9)))))
+    return f"{low:.{digits}f} .. {high:.{digits}f}"
+
+
+def _damping(result: Result, mode: int) -> list[str]:
+    if result.levels is None or result.level_low is None or result.level_high is None or result.level_damping is None:
+        return []
+    k = len(result.levels) // 2
+    ends = (result.level_low[-1, k, mode], result.level_damping[-1, k, mode], result.level_high[-1, k, mode])
+    return [" .. ".join(f"{100 * one:.2g}" for one in ends)]
+
+
+def moves(result: Result, mode: int) -> str:
+    """Which part moves most at the greatest preload, and along which axis."""
+    shape = result.shapes[-1, mode].astype(float)
+    part_of_node = np.zeros(len(shape), dtype=int)
+    if result.part_of_triangle is not None:
+        part_of_node[result.triangles.ravel()] = np.repeat(result.part_of_triangle, 3)
+    parts = [np.sqrt(np.mean(shape[part_of_node == k] ** 2, axis=0)) for k in range(len(result.parts))]
+    sizes = np.array([np.linalg.norm(one) for one in parts])
+    axis = "xyz"[int(np.argmax(np.sum(np.square(parts), axis=0)))] if parts else ""
+    if len(parts) < 2 or np.sort(sizes)[0] > BOTH * sizes.max():
+        return f"{'all' if len(parts) != 2 else 'both'}, {axis}" if len(parts) > 1 else axis
+    return f"{result.parts[int(np.argmax(sizes))]}, {axis}"
+
+
+def shares(result: Result) -> Rows:
+    """One row per mode at the greatest preload: width of its interval, and the share of each source in its square."""
+    interval = result.interval
+    if interval is None:
+        return []
+    rows: Rows = [["mode", "width", *interval.sources]]
+    for j, width in enumerate(interval.width[-1]):
+        cells = [f"{100 * share:.0f}" for share in interval.shares[:, -1, j]]
+        rows.append([str(j + 1), f"{100 * width:.2g}", *cells])
+    return rows
+
+
+def narrowing(result: Result) -> Rows:
+    """One row per source that can be known better, the best first: what to do, and how much narrower the intervals get.
+
+    Of the median mode, and of the mode that gains most, at the greatest preload.
+    """
+    interval = result.interval
+    if interval is None:
+        return []
+    found: list[tuple[float, list[str]]] = []
+    for name in interval.sources:
+        known = SCATTER[name]
+        if not known.remedy:
+            continue
+        less: Array = 1 - interval.narrowed({name: known.left}).width[-1] / interval.width[-1]
+        best = int(np.argmax(less))
+        cells = [name, known.remedy, f"{100 * float(np.median(less)):.0f}", f"{100 * less[best]:.0f} (mode {best + 1})"]
+        found.append((float(np.mean(less)), cells))
+    found.sort(key=lambda one: -one[0])
+    return [["not known", "what would narrow it", "median [%]", "most [%]"], *(cells for _, cells in found)]
+
+
+def score(result: Result) -> Rows:
+    """One row per guess of the measured frequencies: rms error at each load, Faying first."""
+    found = Score.of(result)
+    if found is None:
+        return []
+    rows: Rows = [["rms error [%]", *(f"{load / 1e3:g} kN" for load in found.loads)]]
+    for name in found.guesses:
+        rows.append([name, *("-" if np.isnan(e) else f"{100 * e:.2f}" for e in found.errors(name))])
+    return rows
+
+
+def score_line(result: Result) -> str:
+    """What the score comes to, in a sentence or two; empty where there is none."""
+    found = Score.of(result)
+    if found is None:
+        return ""
+    words = []
+    if found.inside is not None:
+        words.append(f"{int(found.inside.sum())} of {found.measured} measured frequencies lie within 5 to 95 %.")
+    if np.isfinite(found.gain):
+        adds = "adds to" if found.gain < 1 else "adds nothing to"
+        words.append(
+            f"The joint model {adds} what the test at the load before tells: carried on by it, the error is "
+            f"{found.gain:.2f} of what it is without."
+        )
+    return " ".join(words)

@@ -1,0 +1,89 @@
+"""The interval of a frequency from what is not known, and the score against a test."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from faying.result.interval import Interval
+from faying.result.result import Comparison
+from faying.result.score import Score
+
+SCORE = 1.6448536
+
+
+def interval(*sources: tuple[float, float]) -> Interval:
+    """One load, one mode; each source by its mean and standard deviation of ln f."""
+    offsets = np.array([[m - SCORE * sd, m + SCORE * sd] for m, sd in sources])
+    return Interval(sources=tuple(f"source {k}" for k in range(len(sources))), offsets=offsets[:, :, None, None])
+
+
+def test_independent_normal_sources_have_the_quantiles_of_their_sum():
+    rng = np.random.default_rng(0)
+    sources = (0.0, 0.01), (-0.02, 0.03), (0.004, 0.002)
+    drawn = 100.0 * np.exp(sum(rng.normal(m, sd, 400_000) for m, sd in sources))
+    low, high = interval(*sources).ends(np.array([[100.0]]))
+    # the quantiles of 400,000 samples scatter by sqrt(0.05 * 0.95/400,000)/density = 0.33 % of the standard deviation
+    assert [low[0, 0], high[0, 0]] == pytest.approx(np.quantile(drawn, [0.05, 0.95]), abs=100 * 0.0318 * 0.015)
+
+
+def test_shares_are_those_of_the_variance_and_sum_to_one():
+    found = interval((0.0, 0.01), (0.01, 0.03))
+    assert found.shares[:, 0, 0] == pytest.approx([0.1, 0.9])
+    assert found.width[0, 0] == pytest.approx(2 * SCORE * np.hypot(0.01, 0.03))
+
+
+def test_what_is_known_better_narrows_by_its_share_alone():
+    found = interval((0.0, 0.01), (0.01, 0.03))
+    less = found.narrowed({"source 1": 0.5})
+    assert less.width[0, 0] == pytest.approx(2 * SCORE * np.hypot(0.01, 0.015))
+    # the middle stays where it was
+    assert np.sqrt(np.prod(less.ends(np.array([[50.0]])))) == pytest.approx(50 * np.exp(0.01))
+    assert found.narrowed({"another": 0.1}).width == found.width
+
+
+def result(test, predicted, low=None, high=None, modes=None):
+    """What a score reads of a result."""
+    test, predicted = np.asarray(test, dtype=float), np.asarray(predicted, dtype=float)
+    modes = np.tile(np.arange(test.shape[1]), (len(test), 1)) if modes is None else np.asarray(modes)
+    return SimpleNamespace(
+        comparison=Comparison(source="made up", frequencies=test, predicted=predicted, modes=modes),
+        loads=np.arange(1, len(test) + 1) * 1e3,
+        bonded=np.full(test.shape[1], 200.0),
+        free=np.full(test.shape[1], 50.0),
+        interval_low=low,
+        interval_high=high,
+    )
+
+
+def test_a_model_with_the_right_change_and_the_wrong_level_adds_to_the_test():
+    """The true change is 2 %; the model has it, 5 % too high throughout."""
+    score = Score.of(result([[100.0, 150.0], [102.0, 153.0]], [[105.0, 157.5], [107.1, 160.65]]))
+    assert score.errors("Faying") == pytest.approx([0.05, 0.05])
+    assert score.errors("test at the load before")[1] == pytest.approx(1 - 1 / 1.02)
+    assert np.isnan(score.errors("test at the load before")[0])
+    assert score.errors("that times Faying's ratio")[1] == pytest.approx(0.0, abs=1e-12)
+    assert score.gain == pytest.approx(0.0, abs=1e-9)
+    assert score.errors("faces bonded")[0] == pytest.approx(np.sqrt((1.0**2 + (1 / 3) ** 2) / 2))
+
+
+def test_a_model_whose_change_is_twice_too_large_adds_nothing():
+    score = Score.of(result([[100.0], [102.0]], [[100.0], [104.04]]))
+    assert score.gain == pytest.approx(1.02)
+
+
+def test_modes_without_partner_do_not_count():
+    modes = [[0, -1], [0, -1]]
+    predicted = [[100.0, np.nan], [101.0, np.nan]]
+    low, high = np.full((2, 2), 99.5), np.full((2, 2), 100.5)
+    score = Score.of(result([[100.0, 70.0], [101.0, 71.0]], predicted, low, high, modes))
+    assert score.measured == 2
+    assert score.errors("Faying") == pytest.approx([0.0, 0.0])
+    assert score.inside.tolist() == [[True, False], [False, False]]
+
+
+def test_no_score_without_a_test():
+    nothing = result([[100.0]], [[100.0]], modes=[[-1]])
+    assert Score.of(nothing) is None
+    nothing.comparison = None
+    assert Score.of(nothing) is None
