@@ -33,7 +33,6 @@ LIMITS = frozenset(
     {
         "outside-validity",
         "beyond-law",
-        "no-loss",
         "level-damping",
         "window",
         "falls",

@@ -79,7 +79,7 @@ def command(
 def text(result: Any) -> str:
     """The tables and notes of a result for the terminal."""
     from faying.notes import FIRST_NOTES, TITLES, by_severity, grave
-    from faying.output import table
+    from faying.output import answer, table
     from faying.output.sections import sections
 
     head = (
@@ -88,7 +88,8 @@ def text(result: Any) -> str:
     )
     first, *others = (f"{section.above}\n{table.text(section.rows)}\n" for section in sections(result))
     before = grave(result.notes)
-    lines = [line for note in before[:FIRST_NOTES] for line in _item(note.text)]
+    lines = [*_wrapped(answer.limit(result)), *_wrapped(answer.score_line(result))]
+    lines += [line for note in before[:FIRST_NOTES] for line in _item(note.text)]
     more = len(before) - FIRST_NOTES
     lines += [f"  {more} more at the end"] if more > 0 else []
     notes = [
@@ -98,6 +99,13 @@ def text(result: Any) -> str:
     ]
     hammer = [] if result.hammer is None else [line for text in result.hammer.notes for line in _item(text)]
     return "\n".join([head, first, *([*lines, ""] if lines else []), *others, *notes, *hammer])
+
+
+def _wrapped(text: str) -> list[str]:
+    """A sentence, 80 columns wide."""
+    from textwrap import wrap
+
+    return wrap(text, 80, break_long_words=False, break_on_hyphens=False)
 
 
 def _item(text: str) -> list[str]:

@@ -216,7 +216,7 @@ class FittedJoint:
             out.append(Note(code="assumed", text=text))
         out += [Note(code="assumed", text=f"{law.model.name}: {text}") for text in law.model.assumptions]
         if not law.predicts_loss:
-            text = f"{self.name}: {law.model.name} predicts no loss at rest; measured damping stands for it"
+            text = f"{self.name}: {law.model.name} gives no damping at rest; that of measured structures is assumed"
             out.append(Note(code="no-loss", joint=self.name, text=text))
         return tuple(out)
 

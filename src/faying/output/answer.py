@@ -59,6 +59,21 @@ def moves(result: Result, mode: int) -> str:
     return f"{result.parts[int(np.argmax(sizes))]}, {axis}"
 
 
+def limit(result: Result) -> str:
+    """What limits the answer, in a sentence: the widest interval, what makes it, what would narrow it; "" without."""
+    interval = result.interval
+    if interval is None:
+        return ""
+    mode = int(np.argmax(interval.width[-1]))
+    most = interval.sources[int(np.argmax(interval.shares[:, -1, mode]))]
+    text = f"Widest is mode {mode + 1}, {100 * interval.width[-1, mode]:.2g} % from 5 to 95 %, most of it by {most}."
+    known = SCATTER[most]
+    if known.remedy:
+        less = 1 - interval.narrowed({most: known.left}).width[-1, mode] / interval.width[-1, mode]
+        text += f" Known better ({known.remedy}), it would be {100 * less:.0f} % narrower."
+    return text
+
+
 def shares(result: Result) -> Rows:
     """One row per mode at the greatest preload: width of its interval, and the share of each source in its square."""
     interval = result.interval

@@ -49,8 +49,8 @@ def _answer(result: Result) -> tuple[Section, ...]:
             name="answer",
             rows=answer.answer(result),
             title=f"Modes {_last(result)}",
-            below="5 to 95 % hold all that is not known and listed below. Damping: low, median, high, at the stated "
-            "acceleration of the point that moves most.",
+            below=f"{answer.limit(result)} 5 to 95 % hold all that is not known and listed below. Damping: low, "
+            "median, high, at the stated acceleration of the point that moves most.",
         ),
         Section(
             name="shares",
