@@ -13,7 +13,7 @@ ORDER = [
     {"errors"},
     {"units", "files", "memory", "typing", "notes", "progress"},
     {"checks"},
-    {"hardness", "misuse", "text"},
+    {"hardness", "misuse", "text", "heading"},
     {"materials", "netcdf", "columns", "distribution", "cache", "style"},
     {"surface", "fe", "halfspace"},
     {"contact", "asperity_fe"},

@@ -2,7 +2,7 @@
 
 import csv
 import warnings
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
@@ -12,6 +12,7 @@ import numpy as np
 
 from faying.errors import InputError, ReadError
 from faying.files import refuse_decimal_comma
+from faying.heading import Cell, cell, mark_of, row_of_units, split_heading, states_unit
 from faying.memory import require
 from faying.typing import Array
 from faying.units import scale
@@ -37,18 +38,18 @@ def read_columns(
     path: Path,
     known: Mapping[str, str],
     *,
-    needed: str,
+    needed: str | tuple[str, ...],
     form: str,
     examples: Mapping[str, str] | None = None,
     passed_over: Collection[str] = (),
 ) -> Columns:
-    """Read the columns of a CSV file with a head such as `pressure [MPa],k_n [MPa/um]`.
+    """Read the columns of a CSV file with a head such as `pressure [MPa],k_n [MPa/um]`; names in any order and case.
 
     Args:
         path: the file; lines from # on are comments.
         known: SI unit by the name of each column that may stand in it; "" for a plain number, "1" for one that may
             be given in percent.
-        needed: the column without which there is no table.
+        needed: the column, or columns, without which there is no table.
         form: what the file should look like, for messages.
         examples: a unit that a user would write, by SI unit.
         passed_over: names of columns that are not read.
@@ -65,28 +66,29 @@ def read_columns(
     if not lines:
         raise ReadError(f"{path}: the head is empty; {form}")
     (first, head), *body = lines
-    if "," not in head and (";" in head or "\t" in head):
-        mark = "semicolons" if ";" in head else "tabs"
-        raise ReadError(
-            f"{path}, line {first}: {mark} between the columns; put commas there, and points in decimal numbers"
-        )
-    if _is_number(_cells(head)[0]):
+    mark = mark_of(head) or ","
+    if mark != ",":
+        for number, line in lines:
+            refuse_decimal_comma(line, f"{path}, line {number}")
+    if _is_number(_cells(head, mark)[0]):
         raise ReadError(f"{path}, line {first}: no head with the names of the columns; {form}")
     reader = _Head(known, form, examples or {}, passed_over, f"{path}, line {first}")
-    columns = [reader.column(cell) for cell in _cells(head)]
+    columns = [reader.column(one) for one in _cells(head, mark)]
     names = [name for name, _ in columns]
     for name in names:
         if names.count(name) > 1:
             raise ReadError(f'{path}, line {first}: {names.count(name)} columns are called "{name}"; leave one')
-    if needed not in names:
-        raise ReadError(f'{path}, line {first}: no column "{needed} [unit]"; the head is {head}')
+    for name in (needed,) if isinstance(needed, str) else needed:
+        if name not in names:
+            shown = f"{name} [unit]" if known[name] else name
+            raise ReadError(f'{path}, line {first}: no column "{shown}"; the head is {head}')
     quick = None
     if body and not set(names) & set(passed_over):
-        quick = table_in_one_go(path, len(names), delimiter=",", skip=first, comments="#")
+        quick = table_in_one_go(path, len(names), delimiter=mark, skip=first, comments="#")
     if quick is not None and len(quick) == len(body):
         values = dict(zip(names, quick.T, strict=True))
     else:
-        rows = [_row(line, names, passed_over, f"{path}, line {number}", form) for number, line in body]
+        rows = [_row(_cells(line, mark), names, passed_over, f"{path}, line {number}", form) for number, line in body]
         values = {name: np.array([row[name] for row in rows]) for name in names if name in known}
     found = {name: factor * values[name] for name, factor in columns if name in known}
     return Columns(values=found, head=first, lines=[number for number, _ in body], factors=dict(columns))
@@ -103,38 +105,39 @@ class _Head:
         passed_over: Collection[str],
         where: str,
     ) -> None:
-        self.known, self.form, self.examples, self.passed_over = known, form, examples, passed_over
+        self.known, self.form, self.examples = known, form, examples
         self.where = where
+        self.names = {name.lower().replace("_", " "): name for name in (*known, *passed_over)}
 
-    def column(self, cell: str) -> tuple[str, float]:
+    def column(self, text: str) -> tuple[str, float]:
         """Name and factor to SI of one cell."""
-        name, _, unit = cell.partition("[")
-        name, unit = name.strip(), unit.rstrip("] ").strip()
-        if name in self.passed_over:
-            return name, 1.0
-        if name not in self.known:
+        part = cell(text)
+        name, unit = self.names.get(part.name), part.unit
+        if name is None:
             raise ReadError(
-                f'{self.where}: the column "{cell}" is unknown; known are {", ".join(self.known)}; {self.form}'
+                f'{self.where}: the column "{text}" is unknown; known are {", ".join(self.known)}; {self.form}'
             )
+        if name not in self.known:
+            return name, 1.0
         wanted = self.known[name]
         if wanted in ("", "1") and unit in ("", "-", "1"):
             return name, 1.0
         if not wanted:
-            raise ReadError(f'{self.where}: the column "{cell}" has no unit; give plain numbers under "{name}"')
+            raise ReadError(f'{self.where}: the column "{text}" has no unit; give plain numbers under "{name}"')
         example = f'write for example "{name} [{self.examples.get(wanted, wanted)}]"'
         if not unit:
-            raise ReadError(f'{self.where}: the column "{cell}" lacks its unit; {example}')
+            raise ReadError(f'{self.where}: the column "{text}" lacks its unit; {example}')
         try:
             return name, scale(unit, wanted)
         except InputError:
             raise ReadError(
-                f'{self.where}: "{unit}" of the column "{cell}" is not a unit like {wanted}; {example}'
+                f'{self.where}: "{unit}" of the column "{text}" is not a unit like {wanted}; {example}'
             ) from None
 
 
-def _cells(line: str) -> list[str]:
+def _cells(line: str, mark: str) -> list[str]:
     """The cells of one line, without blanks and quotation marks around them."""
-    return [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))]
+    return [word.strip() for word in next(csv.reader([line], delimiter=mark, skipinitialspace=True))]
 
 
 def _is_number(cell: str) -> bool:
@@ -145,24 +148,23 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def _row(line: str, names: list[str], passed_over: Collection[str], where: str, form: str) -> dict[str, float]:
+def _row(cells: list[str], names: list[str], passed_over: Collection[str], where: str, form: str) -> dict[str, float]:
     """The numbers of one line by the names of their columns."""
-    cells = _cells(line)
     if len(cells) > len(names):
         raise ReadError(f"{where}: {len(cells)} values under the {len(names)} columns of the head; {form}")
     row = {}
     for i, name in enumerate(names):
         if name in passed_over:
             continue
-        cell = cells[i] if i < len(cells) else ""
-        if not cell:
+        word = cells[i] if i < len(cells) else ""
+        if not word:
             raise ReadError(f'{where}: no value in the column "{name}"; give one, or leave the row out')
         try:
-            value = row[name] = float(cell)
+            value = row[name] = float(word)
         except ValueError:
-            raise ReadError(f'{where}: "{cell}" in the column "{name}" is not a number') from None
+            raise ReadError(f'{where}: "{word}" in the column "{name}" is not a number') from None
         if not isfinite(value):
-            raise ReadError(f'{where}: "{cell}" in the column "{name}" is not a finite number; leave the row out')
+            raise ReadError(f'{where}: "{word}" in the column "{name}" is not a finite number; leave the row out')
     return row
 
 
@@ -215,6 +217,132 @@ def _numbers(text: str) -> list[float]:
         return [float(word) for word in text.replace(",", " ").replace(";", " ").split()]
     except ValueError:
         return []
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wanted:
+    """A column of a list of numbers: its names in a heading (the first is the usual one), its SI unit ("" for plain
+    numbers), the unit that the caller gives (text, or None), and how the caller gives it, for messages."""
+
+    names: tuple[str, ...]
+    unit: str
+    given: str | None
+    key: str
+
+    def factor(self, cell: Cell | None, where: str) -> float:
+        """SI units in one of the column's. InputError where nothing states the unit, or two state different ones."""
+        name = self.names[0]
+        if not self.unit:
+            return 1.0
+        own = None if self.given is None else scale(self.given, self.unit, name=self.key)
+        if cell is None or not cell.unit:
+            if own is None:
+                raise InputError(
+                    f'{where} states no unit of {name}; give {self.key}, or write it in a heading: "{name} [um]"'
+                )
+            return own
+        try:
+            stated = scale(cell.unit, self.unit)
+        except InputError:
+            raise ReadError(
+                f'{where}: the column "{cell.text}" is not in a unit like {self.unit}; write for example "{name} [um]"'
+            ) from None
+        if own is not None and abs(own / stated - 1) > 1e-9:
+            raise InputError(
+                f'{where}: the heading says "{cell.text}" and {self.key} = "{self.given}"; '
+                f"leave out {self.key}, or correct the heading"
+            )
+        return stated
+
+
+def read_list(path: Path, wanted: Sequence[Wanted], form: str) -> Any:
+    """Read a list of numbers, as many in a row as there are wanted columns, in the order of its heading.
+
+    A heading names the columns, in any order, and may state their units; it stands on the last line above the numbers,
+    maybe as a comment, maybe with the units on a line of their own. Without one the columns have the wanted order.
+
+    Args:
+        path: the file; numbers stand between commas, semicolons, tabs or blanks, comments begin with #.
+        wanted: the columns.
+        form: what the file should look like, for messages.
+
+    Returns:
+        Array (rows, len(wanted)) in SI units, in the wanted order.
+
+    Raises:
+        ReadError: for a heading with other columns, words about units that are not read, or rows that are no numbers.
+        InputError: where a unit is stated by nobody, or differently by the heading and by the caller.
+    """
+    heading, where = _heading(path, wanted, form)
+    table = read_numbers(path, len(wanted), form)
+    columns = []
+    for k, column in enumerate(wanted):
+        place = k if heading is None else next(i for i, one in enumerate(heading) if one.name in column.names)
+        columns.append(table[:, place] * column.factor(None if heading is None else heading[place], where))
+    return np.stack(columns, axis=1)
+
+
+def _heading(path: Path, wanted: Sequence[Wanted], form: str) -> tuple[tuple[Cell, ...] | None, str]:
+    """The heading of a list and where it stands; None and the file's name where there is none."""
+    above = _above(path)
+    units = [column.unit for column in wanted]
+    plain = [k for k, (_, line) in enumerate(above) if not line.startswith("#")]
+    heading, where, taken = None, path.name, set()
+    if plain:
+        number, line = above[plain[-1]]
+        cells, where = split_heading(line), f"{path.name}, line {number}"
+        own = row_of_units(cells, units) if len(plain) > 1 else None
+        taken = {number}
+        if own is not None:
+            number, line = above[plain[-2]]
+            cells = tuple(
+                Cell(text=f"{one.text} [{unit}]", name=one.name, unit=unit)
+                for one, unit in zip(split_heading(line), own, strict=False)
+            )
+            taken.add(number)
+        known = {name for column in wanted for name in column.names}
+        if own or len(cells) == len(wanted) or mark_of(line) or known & {one.name for one in cells}:
+            heading = _matched(cells, wanted, where, form)
+    else:
+        for number, line in reversed(above):
+            cells = split_heading(line.lstrip("# "))
+            if all(sum(one.name in column.names for one in cells) == 1 for column in wanted):
+                where, taken = f"{path.name}, line {number}", {number}
+                heading = _matched(cells, wanted, where, form)
+                break
+    for number, line in above:
+        if number not in taken and heading is None and states_unit(line, {unit for unit in units if unit}):
+            raise ReadError(
+                f'{path.name}, line {number}: "{line.strip()[:80]}" speaks of units in words that Faying does not '
+                f"read; write one heading with names and units above the numbers, or take the line out; {form}"
+            )
+    return heading, where if heading is not None else path.name
+
+
+def _above(path: Path) -> list[tuple[int, str]]:
+    """The lines above the first row of numbers, with their numbers; blank ones left out."""
+    out = []
+    with path.open(encoding="utf-8-sig", errors="replace") as handle:
+        for number, line in enumerate(handle, start=1):
+            if len(_numbers(line.split("#")[0])) > 1:
+                return out
+            if line.strip(" \t\r\n#,;"):
+                out.append((number, line.strip()))
+    return []  # no numbers at all, which `read_numbers` says
+
+
+def _matched(cells: Sequence[Cell], wanted: Sequence[Wanted], where: str, form: str) -> tuple[Cell, ...]:
+    """The cells where each is one wanted column. ReadError otherwise."""
+    names = [next((column.names[0] for column in wanted if one.name in column.names), None) for one in cells]
+    if None in names or len(set(names)) < len(wanted) or len(names) != len(wanted):
+        odd = next((one.text for one, name in zip(cells, names, strict=True) if name is None), None)
+        shown = ", ".join(f'"{one.text}"' for one in cells)[:120]
+        raise ReadError(
+            f"{where}: the heading has the columns {shown}"
+            + (f', of which "{odd}" is unknown' if odd is not None else "")
+            + f"; give {', '.join(column.names[0] for column in wanted)}, or write # before a line of words; {form}"
+        )
+    return tuple(cells)
 
 
 def read_numbers(path: Path, columns: int, form: str) -> Any:

@@ -203,7 +203,7 @@ def test_messages(tmp_path):
         minimum_zone(np.outer(np.arange(5.0), [1, 2]), np.zeros(5))
     file = tmp_path / "a.csv"
     file.write_text("0,0,1\n")
-    with pytest.raises(faying.InputError, match="without units; give xy_unit"):
+    with pytest.raises(faying.InputError, match="states no unit of x; give xy_unit"):
         read_heights(file, z_unit="um")
     assert minimum_zone(np.random.default_rng(0).uniform(0, 1, (9, 2)), np.full(9, 3.0)).flatness == 0
     assert isinstance(GapMap(places=np.eye(2)[[0, 1, 0, 1]] * [[1], [1], [2], [3]], gaps=np.zeros(4)), GapMap)

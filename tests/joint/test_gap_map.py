@@ -11,8 +11,8 @@ from tests.helpers.plates import plates, stacked
 
 GRID = np.stack(np.meshgrid(np.linspace(0, 0.08, 9), np.linspace(0, 0.04, 5), indexing="ij"), -1).reshape(-1, 2)
 ARGUMENTS = {
-    "xy_unit": 1e-3,
-    "gap_unit": 1e-6,
+    "xy_unit": "mm",
+    "gap_unit": "um",
     "origin": (0.0, 0.0, 0.0),
     "x_axis": (1.0, 0.0, 0.0),
     "y_axis": (0.0, 1.0, 0.0),

@@ -93,12 +93,15 @@ def test_a_table_of_points(tmp_path):
 @pytest.mark.parametrize(
     ("text", "match"),
     [
-        ("", "states no unit"),
-        ("1,2,3,4\n", "states no unit"),
-        ("point,x [mm],y [m],z [mm]\n1,2,3,4\n", "states no unit"),
+        ("", "the head is empty"),
+        ("1,2,3,4\n", "no head with the names"),
+        ("point,x [mm],y,z [mm]\n1,2,3,4\n", 'the column "y" lacks its unit'),
+        ("point,x [mm],y [s],z [mm]\n1,2,3,4\n", '"s" of the column .* is not a unit like m'),
+        ("point,x [mm],y [mm],height [mm]\n1,2,3,4\n", 'the column "height .mm." is unknown'),
+        ("point,x [mm],y [mm],z [mm]\n1.5,2,3,4\n", "line 2: 1.5 is no number of a point"),
         ("point,x [mm],y [mm],z [mm]\n", "no points under its heading"),
-        ("point,x [mm],y [mm],z [mm]\n1,2,3\n", "1,2,3 is not a point number"),
-        ("point,x [mm],y [mm],z [mm]\n1,2,3,four\n", "is not a point number"),
+        ("point,x [mm],y [mm],z [mm]\n1,2,3\n", 'line 2: no value in the column "z"'),
+        ("point,x [mm],y [mm],z [mm]\n1,2,3,four\n", 'line 2: "four" in the column "z" is not a number'),
         ("point,x [mm],y [mm],z [mm]\n1,2,3,4\n1,2,3,4\n", "stands twice"),
     ],
 )
@@ -114,10 +117,10 @@ def test_tables_that_are_none(tmp_path, text, match):
 @pytest.mark.parametrize(
     ("row", "match"),
     [
-        ("1,nan,0,0", "not finite"),
-        ("1,1,inf,0", "not finite"),
-        ("1;0,5;0;0", "decimal commas"),
-        ("1\t0,5\t0\t0", "decimal commas"),
+        ("1,nan,0,0", "not a finite number"),
+        ("1,1,inf,0", "not a finite number"),
+        ("1;0.5;0;0", "not a number"),
+        ("1,0.5 0 0", '"0.5 0 0" in'),
     ],
 )
 def test_coordinates_that_cannot_be(tmp_path, row, match):
@@ -125,6 +128,22 @@ def test_coordinates_that_cannot_be(tmp_path, row, match):
     path.write_text(f"point,x [mm],y [mm],z [mm]\n{row}\n")
     with pytest.raises(ReadError, match=match):
         read_points(path)
+
+
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_decimal_commas_of_points_are_refused(tmp_path, mark):
+    path = tmp_path / "points.csv"
+    path.write_text(
+        mark.join(["point", "x [mm]", "y [mm]", "z [mm]"]) + "\n" + mark.join(["1", "0,5", "0", "0"]) + "\n"
+    )
+    with pytest.raises(ReadError, match="line 2.*decimal commas"):
+        read_points(path)
+
+
+def test_points_are_read_by_the_names_and_units_of_their_columns(tmp_path):
+    path = tmp_path / "points.csv"
+    path.write_text("z (um);Point;y [cm];x [m]\n5;3;2;0.1\n")
+    assert read_points(path) == {3: pytest.approx((0.1, 0.02, 5e-6))}
 
 
 SQUARE = np.array([[0.0, 0, 0], [0.01, 0, 0], [0.01, 0.01, 0], [0, 0.01, 0]])

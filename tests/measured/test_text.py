@@ -68,3 +68,75 @@ def test_decimal_commas_are_refused(tmp_path, line):
     path.write_text(f"{line}\n" * 4)
     with pytest.raises(ReadError, match="decimal commas; write decimal points"):
         read_frf_text([path], quantity="accelerance")
+
+
+LINES = np.array([1.0, 2.5, 40.0, 95.0])
+TRUE = np.array([1 + 2j, -3e-4 + 1e-3j, 2 - 7.5j, -0.25 - 1e-6j])  # m/s^2/N
+PHASE = np.degrees(np.angle(TRUE))
+G = 9.80665
+
+
+@pytest.mark.parametrize(
+    ("head", "columns"),
+    [
+        ("Frequency (Hz),Magnitude (m/s^2/N),Phase (deg)", (LINES, abs(TRUE), PHASE)),
+        ("Frequency [Hz];Phase [rad];Amplitude [g/N]", (LINES, np.angle(TRUE), abs(TRUE) / G)),
+        ("f/kHz,|H| mag/dB,phase/°", (LINES / 1e3, 20 * np.log10(abs(TRUE)), PHASE)),
+        ("Freq [Hz],Mag [dB re 1 g/N],Phase [deg]", (LINES, 20 * np.log10(abs(TRUE) / G), PHASE)),
+        ("omega [rad/s]\tRe [mm/s^2/N]\tIm [mm/s^2/N]", (2 * np.pi * LINES, 1e3 * TRUE.real, 1e3 * TRUE.imag)),
+        ("imag [m/(N*s^2)],real [m/(N*s^2)],frequency [rpm]", (TRUE.imag, TRUE.real, 60 * LINES)),
+        ("# Frequency [kHz], H_re [m/s^2/kN], H_im [m/s^2/kN]", (LINES / 1e3, 1e3 * TRUE.real, 1e3 * TRUE.imag)),
+        ("title of a test\nfrequency [Hz],re,im", (LINES, TRUE.real, TRUE.imag)),
+        ("", (LINES, TRUE.real, TRUE.imag)),
+    ],
+)
+def test_a_heading_says_how_frfs_are_written(tmp_path, head, columns):
+    mark = next((m for m in ";\t" if m in head), ",")
+    rows = [mark.join(repr(float(v)) for v in row) for row in zip(*columns, strict=True)]
+    path = tmp_path / "frf.csv"
+    path.write_text("\n".join([head, *rows, ""]))
+    found = read_frf_text([path], quantity="accelerance")
+    np.testing.assert_allclose(found.frequency, LINES, rtol=1e-12)
+    np.testing.assert_allclose(found.values[0, 0], TRUE, rtol=1e-9, atol=1e-12)
+
+
+def test_what_a_heading_leaves_open_is_noted(tmp_path):
+    path = tmp_path / "frf.csv"
+    path.write_text("frequency [Hz],mag [dB],phase [deg]\n1,0,90\n2,20,-90\n")
+    found = read_frf_text([path], quantity="mobility")
+    np.testing.assert_allclose(found.values[0, 0], [1j, -10j], atol=1e-14)
+    assert ['"mag [dB]" states no reference; 0 dB is taken as 1 m/(N*s)' in w for w in found.warnings] == [True]
+    path.write_text("frequency,re,im\n1,0,90\n2,20,-90\n")
+    assert any('"re" states no unit; m/N is taken' in w for w in read_frf_text([path], quantity="receptance").warnings)
+
+
+@pytest.mark.parametrize(
+    ("head", "match"),
+    [
+        ("frequency [Hz],real [m/s/N],imag [m/s/N]", 'line 1: "m/s/N" of the column .* unit of mobility, give that'),
+        ("frequency [Hz],real [mV/N],imag [mV/N]", '"mV/N" of the column "real .mV/N." is no unit of accelerance'),
+        ("frequency [Hz],real [g/N],imag", "only one of .* states a unit"),
+        ("frequency [Hz],magnitude,phase", '"phase" states no unit of angle'),
+        ("frequency [Hz],mag [dB re 20 uPa],phase [deg]", '"20 uPa" is not a reference'),
+        ("frequency [Hz],real,magnitude", 'real" and "magnitude" of the heading make no FRF'),
+        ("frequency [Hz],real,imag,coherence", 'the column "coherence" is unknown'),
+        ("time [s],real,imag", 'the column "time .s." is unknown'),
+        ("omega,real,imag", '"omega" states no unit'),
+        ("frequency [m],real,imag", '"frequency .m." states no unit'),
+        ("real,imag", "0 columns of frequency"),
+        ("# frequency [kHz], response, g", "speaks of units"),
+        ("units: g/N\nfrequency [Hz],real,imag", 'line 1: "units: g/N" speaks of units'),
+    ],
+)
+def test_headings_that_are_not_read_are_refused(tmp_path, head, match):
+    path = tmp_path / "frf.csv"
+    path.write_text(f"{head}\n1,2,3\n2,3,4\n3,4,5\n")
+    with pytest.raises(ReadError, match=match):
+        read_frf_text([path], quantity="accelerance")
+
+
+def test_units_above_complex_numbers_are_refused(tmp_path):
+    path = tmp_path / "frf.txt"
+    path.write_text("FRF [g/N]\n(1+2j)\n(3+4j)\n")
+    with pytest.raises(ReadError, match=r'line 1: "FRF \[g/N\]" speaks of units'):
+        read_frf_text([path], quantity="accelerance", frequency_step=1.0)

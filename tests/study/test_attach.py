@@ -324,8 +324,10 @@ def test_faults_of_pressures(tmp_path):
     fault(tmp_path, "no file .*none.csv; --pressure takes a CSV file", pressure=str(tmp_path / "none.csv"))
     path = csv(tmp_path, mesh, head="n,p")
     fault(tmp_path, "should begin with the heading", pressure=path)
-    fault(tmp_path, "should begin with the heading", pressure=csv(tmp_path, mesh, head="node,pressure"))
-    fault(tmp_path, "unit of pressure", pressure=csv(tmp_path, mesh, head="node,pressure [mm]"))
+    fault(tmp_path, 'the column "pressure" lacks its unit', pressure=csv(tmp_path, mesh, head="node,pressure"))
+    fault(
+        tmp_path, '"mm" of the column .* is not a unit like Pa', pressure=csv(tmp_path, mesh, head="node,pressure [mm]")
+    )
     fault(
         tmp_path,
         "9 pressures are negative; .* change the sign",
@@ -338,7 +340,7 @@ def test_faults_of_pressures(tmp_path):
     path.write_text("\n".join([*lines, lines[-1]]))
     fault(tmp_path, "gives some nodes twice", pressure=path)
     path.write_text("\n".join([*lines, "five,6"]))
-    fault(tmp_path, 'row 11: "five,6" is not a node and a pressure', pressure=path)
+    fault(tmp_path, 'line 12: "five" in the column "node" is not a number', pressure=path)
     path.write_text("node,pressure [MPa]\n")
     fault(tmp_path, "holds no pressures", pressure=path)
 

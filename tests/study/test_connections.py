@@ -328,7 +328,7 @@ GAP = {"file": "gap.csv", "xy_unit": "mm", "gap_unit": "um"}
     ("more", "text"),
     [
         ({"form": {"gap": {"file": "none.csv", "xy_unit": "mm", "gap_unit": "um"}}}, "gap.file: no file"),
-        ({"form": {"gap": {"file": "gap.csv", "gap_unit": "um"}}}, "gap.xy_unit is missing"),
+        ({"form": {"gap": {"file": "gap.csv", "gap_unit": "um"}}}, "states no unit of x; give xy_unit"),
         (
             {"form": {"gap": {"file": "gap.csv", "xy_unit": "mm", "gap_unit": "um", "x_axis": [0, 0, 0]}}},
             "has no length",

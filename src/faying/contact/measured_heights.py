@@ -9,14 +9,13 @@ from typing import Any, ClassVar, Self, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.columns import read_numbers
+from faying.columns import Wanted, read_list
 from faying.contact.asperity.base import AsperityModel, summed_model
 from faying.contact.law import ContactLaw, Response, checked, require
 from faying.contact.parameter import FILE, TABLE, TEXT, Parameter
 from faying.errors import InputError
 from faying.materials import ContactPair
 from faying.typing import Array
-from faying.units import scale
 
 FIRST, REACH = 1e-3, 2.0  # closures covered, in spans of the gaps from the first touch
 KNOTS, HINGES = 2000, 5000  # closures at which the sum is taken; pieces of the asperity's curve
@@ -73,9 +72,11 @@ class MeasuredHeights(ContactLaw):
         """Read the file of gaps, then make the law."""
         own: dict[str, Any] = {name: value for name, value in given.items() if name not in ("gaps", "gaps_unit")}
         form = "measured heights have the columns gap and probability density"
-        table = read_numbers(Path(str(given["gaps"])), 2, form)
-        unit = scale(str(given["gaps_unit"]), "m", name="gaps_unit")
-        return cls(gaps=table[:, 0] * unit, probability=table[:, 1], pair=pair, **own)
+        unit = given.get("gaps_unit")
+        gaps = Wanted(names=("gap", "gaps"), unit="m", given=None if unit is None else str(unit), key="gaps_unit")
+        density = Wanted(names=("probability", "probability density", "density"), unit="", given=None, key="")
+        table = read_list(Path(str(given["gaps"])), (gaps, density), form)
+        return cls(gaps=table[:, 0], probability=table[:, 1], pair=pair, **own)
 
     def __post_init__(self) -> None:
         super().__post_init__()

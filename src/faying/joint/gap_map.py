@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from faying.columns import read_numbers
+from faying.columns import Wanted, read_list
 from faying.errors import InputError
 from faying.joint.face_axes import FaceAxes
 from faying.joint.flatness import minimum_zone
+from faying.joint.lonely import refuse_lonely
 from faying.misuse import checked_call, numbers
 from faying.typing import Array
 
@@ -125,41 +126,47 @@ def _three(vector: Array) -> tuple[float, float, float]:
 def read_gap_map(
     path: Path,
     *,
-    xy_unit: float,
-    gap_unit: float,
+    xy_unit: str | None,
+    gap_unit: str | None,
     origin: tuple[float, float, float],
     x_axis: tuple[float, float, float],
     y_axis: tuple[float, float, float],
 ) -> GapMap:
-    """Read three columns x, y, gap (commas or blanks between, lines of text skipped); units: size of one in metres."""
-    table = read_numbers(path, 3, "a gap map has the columns x, y, gap")
-    return GapMap(
-        places=table[:, :2] * xy_unit, gaps=table[:, 2] * gap_unit, origin=origin, x_axis=x_axis, y_axis=y_axis
+    """Read three columns x, y, gap; a heading may name them in any order and state units, else both are given."""
+    wanted = (*_xy(xy_unit), Wanted(names=("gap",), unit="m", given=gap_unit, key="gap_unit"))
+    table = read_list(path, wanted, "a gap map has the columns x, y, gap")
+    refuse_lonely(table[:, :2], table[:, 2], path.name)
+    return GapMap(places=table[:, :2], gaps=table[:, 2], origin=origin, x_axis=x_axis, y_axis=y_axis)
+
+
+def _xy(unit: str | None) -> tuple[Wanted, Wanted]:
+    return (
+        Wanted(names=("x",), unit="m", given=unit, key="xy_unit"),
+        Wanted(names=("y",), unit="m", given=unit, key="xy_unit"),
     )
 
 
 def read_heights(path: Path, *, xy_unit: str | None = None, z_unit: str | None = None) -> tuple[Array, Array]:
-    """Read measured form: places (n, 2) [m] and heights (n,) [m].
+    """Read measured form: places (n, 2) [m] and heights, or gaps, (n,) [m].
 
-    A file that ends in one of `LISTS` holds three columns x, y, z, anywhere, whose units must be given. Any other is a
-    scan, which is averaged over cells to at most `MOST` places along each side; units are given where it states none.
-    Raises InputError and ReadError.
+    A file that ends in one of `LISTS` holds three columns x, y, z, anywhere; a heading may name them in any order and
+    state their units, else both are given. Any other is a scan, whose spikes are left out and which is averaged over
+    cells to at most `MOST` places along each side; units are given where it states none. Raises InputError and
+    ReadError.
     """
-    from faying import units
-
     if path.suffix.lower() in LISTS:
-        for name, text in (("xy_unit", xy_unit), ("z_unit", z_unit)):
-            if text is None:
-                raise InputError(f'{path.name} is a list of points without units; give {name}, for example "mm"')
-        table = read_numbers(path, 3, "a list of measured points has the columns x, y, z")
-        scales = units.scale(xy_unit or "", "m", name="xy_unit"), units.scale(z_unit or "", "m", name="z_unit")
-        return table[:, :2] * scales[0], table[:, 2] * scales[1]
+        z = Wanted(names=("z", "height", "heights", "gap"), unit="m", given=z_unit, key="z_unit")
+        table = read_list(path, (*_xy(xy_unit), z), "a list of measured points has the columns x, y, z")
+        refuse_lonely(table[:, :2], table[:, 2], path.name)
+        return table[:, :2], table[:, 2]
+    from faying.surface.form import find_spikes, levelled
     from faying.surface.read import read_scan
 
     scan: Any = read_scan(path, xy_unit=xy_unit, z_unit=z_unit)
     if scan.heights.ndim != 2:
         raise InputError(f"{path.name} is a profile; the form of a face takes an areal scan or a list of points")
-    return _averaged(scan)
+    spikes = find_spikes(levelled(scan))
+    return _averaged(scan.with_heights(np.where(spikes, np.nan, scan.heights), "spikes left out"))
 
 
 def _averaged(scan: Any) -> tuple[Array, Array]:

@@ -1,21 +1,16 @@
 """Points of a test on a model: a rigid transformation, given or fitted, and the nearest place."""
 
-import csv
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from faying.columns import hold_table
+from faying.columns import read_columns
 from faying.errors import InputError, ReadError
-from faying.files import refuse_decimal_comma
 from faying.measured.frf import Position
 from faying.typing import Array, Index
-from faying.units import scale
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -198,35 +193,26 @@ def _barycentric(point: Array, abc: Array) -> Array:
     return out
 
 
+POINTS = "give a CSV table point,x [mm],y [mm],z [mm]"
+
+
 def read_points(path: str | Path) -> dict[int, Position]:
-    """Read a table of points with a heading that states the unit: point,x [mm],y [mm],z [mm]. Positions in [m].
+    """Read a table of points with a heading that states the units: point,x [mm],y [mm],z [mm]. Positions in [m].
 
     Raises ReadError where the file is no such table or a point stands twice.
     """
     file = Path(path)
-    try:
-        hold_table(file)
-        text = file.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as fault:
-        raise ReadError(f"{file}: cannot be read ({fault}); give a CSV table point,x [mm],y [mm],z [mm]") from None
-    for number, line in enumerate(text.splitlines(), 1):
-        refuse_decimal_comma(line, f"{file}, line {number}")
-    rows = [[c.strip() for c in row] for row in csv.reader(text.splitlines()) if any(row)]
-    units = re.findall(r"\[([^\]]+)\]", ",".join(rows[0])) if rows else []
-    if len(units) != 3 or len(set(units)) > 1:
-        raise ReadError(f"{file}: its first line states no unit of length; begin with: point,x [mm],y [mm],z [mm]")
-    metre = scale(units[0], "m", name=f"{file}, heading")
+    table = read_columns(
+        file, {"point": "", **dict.fromkeys("xyz", "m")}, needed=("point", *"xyz"), form=POINTS, examples={"m": "mm"}
+    )
+    if not table.lines:
+        raise ReadError(f"{file}: no points under its heading; {POINTS}")
     out: dict[int, Position] = {}
-    for row in rows[1:]:
-        try:
-            label, x, y, z = int(row[0]), *(float(c) * metre for c in row[1:])
-        except ValueError:
-            raise ReadError(f"{file}: {','.join(row)} is not a point number and three lengths: point,x,y,z") from None
-        if not all(isfinite(v) for v in (x, y, z)):
-            raise ReadError(f"{file}: {','.join(row)} has a coordinate that is not finite; measure that point again")
-        if label in out:
-            raise ReadError(f"{file}: point {label} stands twice; give each point once")
-        out[label] = (x, y, z)
-    if not out:
-        raise ReadError(f"{file}: no points under its heading; give a CSV table point,x [mm],y [mm],z [mm]")
+    for k, (label, *place) in enumerate(zip(*(table.values[name] for name in ("point", *"xyz")), strict=True)):
+        if label != int(label) or abs(label) > 2**53:
+            raise ReadError(f"{file}, line {table.lines[k]}: {label:g} is no number of a point, a whole one; {POINTS}")
+        if int(label) in out:
+            raise ReadError(f"{file}: point {int(label)} stands twice; give each point once")
+        x, y, z = (float(v) for v in place)
+        out[int(label)] = (x, y, z)
     return out

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,10 @@ import numpy as np
 
 from faying.errors import InputError, ReadError
 from faying.files import end_of, refuse_decimal_comma
+from faying.heading import split_heading, states_unit
 from faying.measured.frf import FRF, Dof
+from faying.measured.frf_table import FORM, Layout, plain_layout, read_layout
+from faying.measured.uff_units import DIMENSIONS
 from faying.typing import Array, Complex
 
 
@@ -19,17 +23,21 @@ def read_frf_text(
     """Read one FRF from each file; the outputs are points 1, 2, ... in the order of the files, all in SI.
 
     A file holds either one complex number on each line, as "(-0.07+2.6e-08j)", with spectral lines `frequency_step`
-    [Hz] apart from 0 Hz on, or columns: frequency [Hz], then real and imaginary part of one FRF or more, split by
-    commas, semicolons or blanks, with or without a line of names. Raises ReadError where a line is neither, InputError
-    where files do not fit together or the step is missing.
+    [Hz] apart from 0 Hz on, or columns split by commas, semicolons or blanks. Their heading, the last line above the
+    numbers, names them in any order, with units: frequency (Hz, kHz, rad/s, rpm), and for each FRF real and imaginary
+    part, or magnitude (or dB) and phase (deg or rad). Without a heading they are frequency [Hz], real, imaginary in SI.
+
+    Raises:
+        ReadError: where a line is neither, or the heading names what is not read.
+        InputError: where files do not fit together or the step is missing.
     """
     frequency: Array | None = None
     notes: list[str] = []
     rows: list[Complex] = []
     for name in files:
         path = Path(name)
-        own, values = _read(path, frequency_step)
-        notes += end_of(path)
+        own, values, said = _read(path, frequency_step, quantity)
+        notes += [*said, *end_of(path)]
         if frequency is not None and (own.shape != frequency.shape or not np.allclose(own, frequency, rtol=1e-6)):
             raise InputError(f"{path}: its frequencies are not those of {files[0]}; give files of one test")
         frequency = own
@@ -47,35 +55,67 @@ def read_frf_text(
     )
 
 
-def _read(path: Path, step: float | None) -> tuple[Array, Complex]:
-    """Frequencies, and values (functions, frequencies)."""
+def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex, tuple[str, ...]]:
+    """Frequencies, values (functions, frequencies), and sentences for the reader."""
     try:
         text = path.read_text(encoding="utf-8-sig", errors="replace")
     except OSError as fault:
         raise ReadError(f"{path}: cannot be read ({fault.strerror or fault})") from None
-    lines = [line.strip() for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
-    if lines and not re.match(r"[-+(.\d]", lines[0]):
-        lines = lines[1:]  # names of the columns
+    numbered = [(number, line.strip()) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
+    start = next((k for k, (_, line) in enumerate(numbered) if re.match(r"\(?[-+]?\.?\d", line)), len(numbered))
+    above = [(number, line) for number, line in numbered[:start] if line.strip("# ,;")]
+    lines = [line for _, line in numbered[start:] if not line.startswith("#")]
     if len(lines) < 2:
         raise ReadError(f"{path}: no FRF in it; expected a complex number on each line, or frequency, real, imaginary")
     if "j" in lines[0] or "i" in lines[0]:
+        _refuse_units(above, path)
         if step is None or not step > 0:
             raise InputError(
                 f"{path}: the file states no frequencies; give their step, for example frequency_step=1.0 [Hz] or "
                 '--frequency-step "1 Hz"'
             )
         values = [_number(complex, path, line.replace("i", "j").replace(" ", "").strip("()")) for line in lines]
-        return np.arange(len(values), dtype=float) * step, np.array([values], dtype=np.complex128)
+        return np.arange(len(values), dtype=float) * step, np.array([values], dtype=np.complex128), ()
     for line in lines:
         refuse_decimal_comma(line, str(path))
-    table = [[_number(float, path, cell) for cell in re.split(r"[,;\s]+", line)] for line in lines]
-    widths = {len(row) for row in table}
-    if len(widths) > 1 or (width := widths.pop()) < 3 or width % 2 == 0:
+    table = [[_number(float, path, cell) for cell in re.split(r"[,;\s]+", line.rstrip(",; \t"))] for line in lines]
+    layout = _layout(above, len(table[0]), quantity, path)
+    width = 1 + 2 * len(layout.pairs)
+    if not layout.pairs or {len(row) for row in table} != {width}:
+        odd = next((len(row) for row in table if len(row) != width), len(table[0]))
         raise ReadError(
-            f"{path}: lines of {len(table[0])} numbers; expected frequency, then real and imaginary part of each FRF"
+            f"{path}: lines of {odd} numbers; expected frequency, then real and imaginary part of each FRF"
+            + (f", {width} numbers as in the heading" if layout.named else "")
         )
     data = np.array(table)
-    return data[:, 0], (data[:, 1::2] + 1j * data[:, 2::2]).T
+    values = np.array([pair.values(data) for pair in layout.pairs])
+    return layout.hertz * data[:, layout.frequency], values, layout.notes
+
+
+def _layout(above: list[tuple[int, str]], width: int, quantity: str, path: Path) -> Layout:
+    """The layout that the heading states: the last line above the numbers, or a comment that reads as one."""
+    plain = [(number, line) for number, line in above if not line.startswith("#")]
+    if plain:
+        found = read_layout(plain[-1][1], quantity, f"{path}, line {plain[-1][0]}")
+        _refuse_units([entry for entry in above if entry != plain[-1]], path)
+        return found
+    for number, line in reversed(above):
+        with suppress(ReadError):
+            named = len(split_heading(line.lstrip("# "))) == width
+            if named:
+                return read_layout(line.lstrip("# "), quantity, f"{path}, line {number}")
+    _refuse_units(above, path)
+    return plain_layout(width)
+
+
+def _refuse_units(above: list[tuple[int, str]], path: Path) -> None:
+    """Raise ReadError where words above the numbers speak of units, which nobody reads."""
+    for number, line in above:
+        if states_unit(line, ("Hz", *(f"{unit}/N" for unit in DIMENSIONS.values()), *DIMENSIONS.values())):
+            raise ReadError(
+                f'{path}, line {number}: "{line[:80]}" speaks of units in words that Faying does not read; take the '
+                f"line out and write a heading: {FORM}"
+            )
 
 
 def _number(kind: Any, path: Path, text: str) -> Any:

@@ -44,7 +44,7 @@ def _clean(label: str) -> str:
     return text
 
 
-def _factor(label: str, unit: str) -> float | None:
+def unit_factor(label: str, unit: str) -> float | None:
     """How many SI `unit` one of the label is, or None."""
     text = _clean(label)
     if unit.startswith("m/s^2") and text.split("/")[0].lower() in ("g", "gn"):
@@ -71,12 +71,12 @@ def frf_scale(
             'leave it out, or say what it is, for example quantity="accelerance"'
         )
     for name in [named] if named else list(DIMENSIONS):
-        whole = _factor(top, DIMENSIONS[name] + "/N")
+        whole = unit_factor(top, DIMENSIONS[name] + "/N")
         if whole is not None:
             return name, whole, ""
-        motion = _factor(top, DIMENSIONS[name])
+        motion = unit_factor(top, DIMENSIONS[name])
         if motion is not None and top.strip().upper() not in NONE:
-            force = _factor(bottom, "N")
+            force = unit_factor(bottom, "N")
             if force is None and units is not None:
                 force = 1 / units.force
             return (

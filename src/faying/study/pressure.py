@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from faying import units
-from faying.columns import hold_table
+from faying.columns import read_columns
 from faying.errors import InputError, ReadError
 from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
@@ -47,34 +47,20 @@ def read_pressure(given: str | Path, mesh: Mesh, faces: tuple[str, str], interfa
 
 
 def _table(file: Path) -> tuple[Index, Array]:
-    try:
-        hold_table(file)
-        lines = [line.strip() for line in file.read_text(encoding="utf-8").splitlines()]
-    except (OSError, UnicodeDecodeError) as fault:
-        raise ReadError(f"cannot read {file}: {fault}") from None
-    lines = [line for line in lines if line and not line.startswith("#")]
-    mark = next((c for c in ",;\t" if lines and c in lines[0]), ",")
-    head = [word.strip() for word in lines[0].split(mark)] if lines else []
-    names = [word.split("[")[0].strip().lower() for word in head]
-    if "node" not in names or "pressure" not in names or "[" not in head[names.index("pressure")]:
-        raise ReadError(f'{file} should begin with the heading "{HEAD}", the unit of your pressures in the brackets')
-    node, column = names.index("node"), names.index("pressure")
-    scale = units.scale(head[column].split("[")[1].strip(" ]"), "Pa", name=f"{file.name}: unit of pressure")
-    numbers, values = [], []
-    for k, line in enumerate(lines[1:], 2):
-        words = line.split(mark)
-        try:
-            numbers.append(int(float(words[node])))
-            values.append(float(words[column]) * scale)
-        except (ValueError, IndexError, OverflowError):
-            raise ReadError(f'{file}, row {k}: "{line}" is not a node and a pressure') from None
-    if not numbers or not np.all(np.isfinite(values)):
-        raise ReadError(f"{file} holds no pressures, or some that are not numbers")
+    known = {"node": "", "pressure": "Pa"}
+    form = f'it should begin with the heading "{HEAD}", the unit of your pressures in the brackets'
+    table = read_columns(file, known, needed=("node", "pressure"), form=form, examples={"Pa": "MPa"})
+    numbers, values = table.values["node"], table.values["pressure"]
+    if not table.lines:
+        raise ReadError(f"{file} holds no pressures; {form}")
+    odd = np.flatnonzero((numbers != np.rint(numbers)) | (np.abs(numbers) > 2**53))
+    if len(odd):
+        raise ReadError(f"{file}, line {table.lines[odd[0]]}: {numbers[odd[0]]:g} is no number of a node, a whole one")
     if min(values) < -1e-9 * max(map(abs, values)):
         raise InputError(
             f"{file}: {sum(v < 0 for v in values)} pressures are negative; pressure presses the faces together and "
             "counts as positive: change the sign of the column, and write 0 where the joint is open"
         )
-    if len(set(numbers)) < len(numbers):
+    if len(np.unique(numbers)) < len(numbers):
         raise InputError(f"{file} gives some nodes twice; give each once")
-    return np.array(numbers), np.maximum(values, 0.0)
+    return numbers.astype(np.int64), np.maximum(values, 0.0)

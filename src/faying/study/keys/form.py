@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from faying import units
 from faying.joint.form import PARAMETERS, Form
 from faying.joint.gap_map import FaceMap, GapMap, read_gap_map, read_heights
 from faying.study.keys.reader import Table, direction, point
@@ -38,23 +37,14 @@ def _note_flat(table: Table) -> None:
 def _gap(table: Table) -> GapMap | None:
     """Read the map of a gap: CSV or text of x, y, gap, with the units of the columns and the place of their axes."""
     file = table.file("file")
-    xy, gap = table.text("xy_unit"), table.text("gap_unit")
+    xy, gap = table.text("xy_unit", None), table.text("gap_unit", None)
     origin = table.take("origin", point, (0.0, 0.0, 0.0))
     x_axis = table.take("x_axis", direction, (1.0, 0.0, 0.0))
     y_axis = table.take("y_axis", direction, (0.0, 1.0, 0.0))
     table.close()
-    if file is None or xy is None or gap is None:
+    if file is None:
         return None
-    return table.made(
-        lambda: read_gap_map(
-            file,
-            xy_unit=units.scale(xy, "m", name="xy_unit"),
-            gap_unit=units.scale(gap, "m", name="gap_unit"),
-            origin=origin,
-            x_axis=x_axis,
-            y_axis=y_axis,
-        )
-    )
+    return table.made(lambda: read_gap_map(file, xy_unit=xy, gap_unit=gap, origin=origin, x_axis=x_axis, y_axis=y_axis))
 
 
 def _face(table: Table) -> FaceMap | None:
