@@ -237,7 +237,7 @@ def test_positions_in_the_units_of_the_file(tmp_path):
 
 
 def test_coordinate_systems(tmp_path):
-    """Point 1 lies at (1, 2, 3) of a system turned by 90 degrees and shifted by 10 in x; its x is the file's y."""
+    """Point 1 moves in a system turned by 90 degrees: its x is the file's y. The format gives its place in the part."""
     system = {
         "type": 2420,
         "Part_UID": 1,
@@ -252,7 +252,8 @@ def test_coordinate_systems(tmp_path):
     four = np.array([4, 0])
     path = raw(tmp_path / "a.uff", units(), system, nodes(def_cs=four, disp_cs=four), shape(), function(rsp_dir=1))
     file = read_uff(path)
-    assert file.positions[1] == pytest.approx((10 - 2.0, 1.0, 3.0))
+    assert file.positions[1] == pytest.approx((1.0, 2.0, 3.0))
+    assert any("name the export system 4" in note for note in file.warnings)
     assert file.positions[2] == pytest.approx((100, 200, 300))
     assert file.modes().at((Dof(1, "y"), Dof(2, "x"))) == pytest.approx(np.array([[1.0, 0.5]]))
     assert file.frf().outputs == (Dof(1, "y"),)
@@ -260,7 +261,7 @@ def test_coordinate_systems(tmp_path):
     with pytest.raises(ReadError, match="turned against the axes"):
         read_uff(raw(tmp_path / "b.uff", units(), slanted, nodes(disp_cs=four), function(rsp_dir=1))).frf()
     with pytest.raises(ReadError, match="cylindrical"):
-        read_uff(raw(tmp_path / "c.uff", units(), system | {"CS_types": [1]}, nodes(def_cs=four)))
+        read_uff(raw(tmp_path / "c.uff", units(), system | {"CS_types": [1]}, nodes(disp_cs=four)))
 
 
 def test_lines_to_draw(tmp_path):

@@ -46,14 +46,29 @@ def read(path: Path) -> RawMesh:
     shells: dict[int, list[int]] = {}
     extra: list[int] = []
     groups: dict[str, tuple[list[int], list[int]]] = {}
-    for number, lines in _datasets(path):
-        if number in _NODES:
+    notes: list[str] = []
+    exported: set[int] = set()
+    datasets = _datasets(path)
+    moved = {label for number, lines in datasets if number == "2420" for label in _moved(lines)}
+    for number, lines in datasets:
+        if number == "164":
+            notes.append(
+                f"the file states its units, {lines[0].strip()!r}, in data set 164; they are not read, the unit is the "
+                "one that the study gives"
+            )
+        elif number in _NODES:
             for head, place in zip(lines[::2], lines[1::2], strict=True):
+                exported |= {int(head.split()[1])} & moved
                 points[int(head.split()[0])] = [float(word.replace("D", "E")) for word in place.split()]
         elif number in _ELEMENTS:
             extra += _elements(path, lines, solids, shells)
         elif number in _GROUPS:
             groups |= _groups(path, lines)
+    if exported:
+        notes.append(
+            f"nodes of data set 2411 name the export system {', '.join(map(str, sorted(exported)))}; the format gives "
+            "their places in the axes of the part, and so they are taken; check the shape"
+        )
     faces: dict[str, list[list[int]]] = {}
     for name, (elements, _) in groups.items():
         on = [shells[e] for e in elements if e in shells]
@@ -71,7 +86,18 @@ def read(path: Path) -> RawMesh:
         node_sets={name: index(nodes) for name, (_, nodes) in groups.items() if nodes},
         face_elements={name: face_blocks(some) for name, some in faces.items()},
         extra=index([*extra, *(n for nodes in shells.values() for n in nodes)]),
+        notes=tuple(notes),
     )
+
+
+def _moved(lines: list[str]) -> list[int]:
+    """Numbers of the coordinate systems of data set 2420 that are not the axes of the part."""
+    out = []
+    for k in range(2, len(lines) - 5, 6):
+        rows = np.array([[float(w.replace("D", "E")) for w in line.split()] for line in lines[k + 2 : k + 6]])
+        if not np.allclose(rows, np.eye(4, 3), atol=1e-9):
+            out.append(int(lines[k].split()[0]))
+    return out
 
 
 def _elements(
@@ -111,6 +137,9 @@ def _groups(path: Path, lines: list[str]) -> dict[str, tuple[list[int], list[int
     out: dict[str, tuple[list[int], list[int]]] = {}
     k = 0
     while k + 1 < len(lines):
+        if not lines[k].strip():  # SALOME writes an empty line after a group of no members
+            k += 1
+            continue
         count, name = int(lines[k].split()[-1]), lines[k + 1].strip()
         words: list[int] = []
         k += 2

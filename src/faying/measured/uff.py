@@ -1,4 +1,6 @@
-"""Universal files (UFF, UNV) of modal tests, through pyuff: data sets 15, 55, 58, 58b, 82, 151, 164, 2411, 2412, 2420.
+"""Universal files (UFF, UNV) of modal tests: data sets 15, 18, 55, 58, 58b, 82, 151, 164, 2411, 2412, 2414, 2420.
+
+Most are read through pyuff; 18 and 2414 are read here.
 
 The formats: University of Cincinnati, Structural Dynamics Research Lab, https://www.ceas3.uc.edu/sdrluff.
 """
@@ -14,6 +16,7 @@ import numpy as np
 
 from faying.errors import InputError, ReadError
 from faying.measured.frf import Dof, Position
+from faying.measured.uff_systems import NodalShape, System, export_note, shapes_2414, systems
 from faying.measured.uff_units import FileUnits
 from faying.measured.universal import Function, UniversalFile
 from faying.misuse import checked_call
@@ -36,6 +39,8 @@ KINDS = {
     13: "cumulative distribution",
     22: "impulse response",
 }
+LINE = 6  # numbers in a line of data set 58
+OWN = (18, 2414)  # data sets that Faying reads itself
 DIRECTION_CODES = {0: "", 1: "x", 2: "y", 3: "z", 4: "rx", 5: "ry", 6: "rz"}
 
 
@@ -65,20 +70,15 @@ def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFi
             f"{file}: the file states its units ({units.words.strip() or 'data set 164'}); leave out length_unit"
         )
     metre = scale(length_unit, "m", name="length_unit") if length_unit else 1 / units.length if units else 1.0
-    systems = {
-        label: np.asarray(matrix)
-        for s in sets
-        if s["type"] == 2420
-        for label, matrix in zip(s["CS_sys_labels"], s["CS_matrices"], strict=True)
-    }
-    kinds = {
-        label: kind
-        for s in sets
-        if s["type"] == 2420
-        for label, kind in zip(s["CS_sys_labels"], s["CS_types"], strict=True)
-    }
-    positions, rotations = _points(file, sets, systems, kinds, metre)
+    positions, rotations, about_places = _points(file, sets, systems(file, sets), metre)
     shapes = [_shape(s, f"{file}, data set {s['number']}") for s in sets if s["type"] == 55]
+    nodal, about_results = shapes_2414(file)
+    if shapes and nodal:
+        about_results.append(
+            f"{file}: its mode shapes are taken from data sets 55; {len(nodal)} of data sets 2414 are left out"
+        )
+    elif nodal:
+        shapes = [_nodal_shape(s, file) for s in nodal]
     return UniversalFile(
         source=str(file),
         title=next((s["model_name"] for s in sets if s["type"] == 151), ""),
@@ -90,6 +90,8 @@ def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFi
         lines=_lines(sets),
         kinds=tuple(s["type"] for s in sets),
         warnings=(
+            *about_places,
+            *about_results,
             *_about_rigid_modes(file, sum(s["frequency"] == 0 for s in shapes)),
             *_about_lengths(file, positions, stated=units is not None or length_unit is not None),
         ),
@@ -138,6 +140,9 @@ def _sets(file: Path) -> list[dict[str, Any]]:
         )
     out = []
     for number, kind in enumerate(kinds):
+        if kind in OWN:
+            out.append({"type": kind, "number": number + 1})
+            continue
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
@@ -159,6 +164,9 @@ def _dof(point: int, code: int) -> Dof:
 def _function(data: dict[str, Any], where: str) -> Function:
     x, values = np.asarray(data["x"], float), np.asarray(data["data"])
     count = data["num_pts"]
+    padded = len(x) == len(values) > count > 0 and len(values) - count < LINE and not values[count:].any()
+    if padded and (data["abscissa_spacing"] or not x[count:].any()):  # the last line is filled up with zeros
+        x, values = x[:count], values[:count]
     if len(values) != count or len(x) != count:
         raise ReadError(
             f"{where}: {len(values)} values where its header announces {count}; the file is damaged or was cut short, "
@@ -193,22 +201,36 @@ def _shape(data: dict[str, Any], where: str) -> dict[str, Any]:
     if kind == 2:
         frequency, loss = data["freq"], 2 * data["modal_damp_vis"] or data["modal_damp_his"]
     else:
-        pole = data["eig"]
-        frequency, loss = abs(pole) / (2 * np.pi), -2 * pole.real / abs(pole) if abs(pole) else 0.0
-    if not (0 <= frequency < np.inf and np.isfinite(loss) and all(np.all(np.isfinite(p)) for p in parts)):
+        frequency, loss = _of_pole(data["eig"])
+    spans = {key: re.fullmatch(r"95 % of [a-z ]+: (\S+) \.\. (\S+)", data[key].strip()) for key in ("id2", "id3")}
+    return {
+        **_mode(float(frequency), float(loss), points, np.stack(parts, axis=1), where),
+        "frequency_interval": _span(spans["id2"]),
+        "loss_interval": _span(spans["id3"]),
+    }
+
+
+def _nodal_shape(found: NodalShape, file: Path) -> dict[str, Any]:
+    """The same of a mode of data set 2414."""
+    frequency, loss = found.frequency, 2 * found.viscous or found.hysteretic
+    if found.analysis != 2 and found.pole:
+        frequency, loss = _of_pole(found.pole)
+    mode = _mode(frequency, loss, _whole(found.points, str(file)), found.values, f"{file}, data set 2414")
+    return {**mode, "frequency_interval": (np.nan, np.nan), "loss_interval": (np.nan, np.nan)}
+
+
+def _of_pole(pole: complex) -> tuple[float, float]:
+    """Frequency [Hz] and loss factor of a pole [1/s]."""
+    return abs(pole) / (2 * np.pi), -2 * pole.real / abs(pole) if abs(pole) else 0.0
+
+
+def _mode(frequency: float, loss: float, points: Index, values: Array, where: str) -> dict[str, Any]:
+    if not (0 <= frequency < np.inf and np.isfinite(loss) and np.all(np.isfinite(values))):
         raise ReadError(
             f"{where}: a mode of {frequency:g} Hz, loss factor {loss:g}, with NaN or infinite motion or a negative "
             "frequency; export it again"
         )
-    spans = {key: re.fullmatch(r"95 % of [a-z ]+: (\S+) \.\. (\S+)", data[key].strip()) for key in ("id2", "id3")}
-    return {
-        "frequency_interval": _span(spans["id2"]),
-        "loss_interval": _span(spans["id3"]),
-        "frequency": float(frequency),
-        "loss": float(loss),
-        "points": points,
-        "values": np.stack(parts, axis=1),
-    }
+    return {"frequency": frequency, "loss": loss, "points": points, "values": values}
 
 
 def _span(found: re.Match[str] | None) -> tuple[float, float]:
@@ -219,11 +241,16 @@ def _span(found: re.Match[str] | None) -> tuple[float, float]:
 
 
 def _points(
-    file: Path, sets: list[dict[str, Any]], systems: dict[int, Array], kinds: dict[int, int], metre: float
-) -> tuple[dict[int, Position], dict[int, Array]]:
-    """Positions [m] by point, and for points whose directions are turned the rows of their axes."""
+    file: Path, sets: list[dict[str, Any]], known: Mapping[int, System], metre: float
+) -> tuple[dict[int, Position], dict[int, Array], list[str]]:
+    """Positions [m] by point, for points whose directions are turned the rows of their axes, and notes.
+
+    Data set 15 gives places in the system that it names, data set 2411 in that of the part, whatever export system it
+    names; both give motion in the displacement system.
+    """
     positions: dict[int, Position] = {}
     rotations: dict[int, Array] = {}
+    exported: set[int] = set()
     for s in sets:
         if s["type"] not in (15, 2411):
             continue
@@ -231,20 +258,21 @@ def _points(
         numbers = [_whole(s[name], where) for name in ("node_nums", "def_cs", "disp_cs")]
         places = np.stack(_like(numbers, [s[name] for name in "xyz"], where), axis=1)
         for label, own, motion, place in zip(*(n.tolist() for n in numbers), places, strict=True):
-            if any(kinds.get(c, 0) != 0 for c in (own, motion)):
+            moved = known.get(own) if s["type"] == 15 else None
+            if any(system is not None and system.kind != 0 for system in (moved, known.get(motion))):
                 raise ReadError(
                     f"{file}: point {label} is given in a cylindrical or spherical system; export it in Cartesian ones"
                 )
-            xyz = place
-            if own in systems:  # rows 1 to 3: the axes, row 4: the origin
-                xyz = xyz @ systems[own][:3] + systems[own][3]
+            if s["type"] == 2411 and own in known and (known[own].turned or known[own].origin.any()):
+                exported.add(own)
+            xyz = place if moved is None else moved.place(place)
             position: Any = tuple(float(v) * metre for v in xyz)
             if positions.get(label, position) != position:
                 raise ReadError(f"{where}: point {label} stands twice, at two places; export the points once")
             positions[label] = position
-            if motion in systems and not np.allclose(systems[motion][:3], np.eye(3), atol=1e-9):
-                rotations[label] = systems[motion][:3]
-    return positions, rotations
+            if motion in known and known[motion].turned:
+                rotations[label] = known[motion].axes
+    return positions, rotations, [export_note(file, exported)] if exported else []
 
 
 def _whole(values: Any, where: str) -> Index:

@@ -1,17 +1,21 @@
 """Which quantity and unit a function of a universal file is in: type codes, axis labels, data set 164."""
 
+import re
+from contextlib import suppress
 from dataclasses import dataclass
-from math import inf
+from math import inf, pi
 from typing import Any
 
 from faying.errors import InputError, ReadError
+from faying.heading import plain_unit
 from faying.units import scale
 
 # specific data types of data set 58 that concern FRFs
 MOTION = {8: "receptance", 11: "mobility", 12: "accelerance"}
 FORCE = 13
 DIMENSIONS = {"receptance": "m", "mobility": "m/s", "accelerance": "m/s^2"}
-NONE = ("", "NONE", "-", "1")
+FREQUENCY = 18
+NONE = ("", "NONE", "-", "1", "UNKNOWN", "UNDEFINED", "N/A")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,21 +42,56 @@ class FileUnits:
 
 
 def _clean(label: str) -> str:
-    text = label.strip().replace("²", "^2").replace("\ufffd", "^2").replace("**", "^").replace("·", "*")
-    for wrong, right in (("s2", "s^2"), ("sec", "s"), ("µ", "u"), ("μ", "u")):
-        text = text.replace(wrong, right)
-    return text
+    text = plain_unit(label).replace("μ", "u")
+    text = re.sub(r"\b(s|sec)\s?(2)\b", r"s^2", text, flags=re.IGNORECASE)
+    text = re.sub(r"\bsec\b", "s", text, flags=re.IGNORECASE)
+    return re.sub(r"\bnewtons?\b", "N", text, flags=re.IGNORECASE)
 
 
 def unit_factor(label: str, unit: str) -> float | None:
-    """How many SI `unit` one of the label is, or None."""
+    """How many SI `unit` one of the label is, or None; capitals are read as small letters where they mean nothing."""
     text = _clean(label)
-    if unit.startswith("m/s^2") and text.split("/")[0].lower() in ("g", "gn"):
-        text = "g_0" + text[len(text.split("/")[0]) :]
-    try:
-        return scale(text, unit)
-    except InputError:
-        return None
+    if unit.startswith("m/s^2"):
+        text = re.sub(r"^\(?g('s|s|n|rms)?\)?(?=$|/)", "g_0", text, flags=re.IGNORECASE)
+    for spelling in (text, re.sub(r"\bn\b", "N", text.lower())):
+        with suppress(InputError):
+            return scale(spelling, unit)
+    return None
+
+
+def states_nothing(label: str) -> bool:
+    """Whether a label is one of those that programs write where they know no unit."""
+    return label.strip().upper() in NONE
+
+
+def hertz(data: dict[str, Any], where: str) -> float:
+    """Hz in one unit of the abscissa of an FRF, from its type code and label. ReadError where they are no frequency."""
+    label = data["abscissa_axis_units_lab"]
+    kind = data["abscissa_spec_data_type"]
+    if kind not in (0, 1, FREQUENCY):
+        raise ReadError(
+            f'{where}: an FRF over an abscissa of type {kind} ("{label.strip()}"), which is no frequency (type 18); '
+            "export it over frequency"
+        )
+    text = label.strip().lower().replace(" ", "")
+    if states_nothing(label) or text in ("hz", "hertz", "cps", "c/s"):
+        return 1.0
+    if text in ("rad/s", "rad/sec", "rads/s", "rad/second"):
+        return 1 / (2 * pi)
+    if text in ("rpm", "cpm", "1/min"):
+        return 1 / 60
+    if text in ("khz", "mhz"):
+        return 1e3 if text == "khz" else _megahertz(label, where)
+    raise ReadError(
+        f'{where}: the unit "{label.strip()}" of its abscissa is no unit of frequency that Faying reads (Hz, kHz, '
+        "rad/s, rpm); export it over Hz"
+    )
+
+
+def _megahertz(label: str, where: str) -> float:
+    if label.strip() == "MHz":
+        return 1e6
+    raise ReadError(f'{where}: the unit "{label.strip()}" of its abscissa may be MHz or mHz; export it over Hz')
 
 
 def frf_scale(
@@ -75,8 +114,10 @@ def frf_scale(
         if whole is not None:
             return name, whole, ""
         motion = unit_factor(top, DIMENSIONS[name])
-        if motion is not None and top.strip().upper() not in NONE:
+        if motion is not None and not states_nothing(top):
             force = unit_factor(bottom, "N")
+            if force is None and not states_nothing(bottom):
+                raise ReadError(_unknown(bottom, "force, such as N", where))
             if force is None and units is not None:
                 force = 1 / units.force
             return (
@@ -89,6 +130,17 @@ def frf_scale(
             f'{where}: neither its type code nor its unit "{top}" says what was measured; say it, for example '
             'quantity="accelerance", or on the command line --quantity accelerance'
         )
+    if not states_nothing(top):
+        raise ReadError(_unknown(top, f"{named}, such as {DIMENSIONS[named]} over N", where))
+    if not states_nothing(bottom) and unit_factor(bottom, "N") != 1.0:
+        raise ReadError(_unknown(bottom, "force in newtons, where the motion states no unit", where))
     if units is not None:
         return named, units.force / units.length, ""
     return named, 1.0, f"{where}: the file states no unit; SI ({DIMENSIONS[named]}/N) is assumed"
+
+
+def _unknown(label: str, wanted: str, where: str) -> str:
+    return (
+        f'{where}: the unit "{label.strip()}" of its ordinate is no unit of {wanted}; export it in such a unit, or '
+        "correct the label in the file (NONE where the values are SI)"
+    )

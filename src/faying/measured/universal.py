@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from faying.errors import ReadError
 from faying.measured.frf import FRF, Dof, Position
 from faying.measured.modes import ModeSet
-from faying.measured.uff_units import FileUnits, frf_scale
+from faying.measured.uff_units import FileUnits, frf_scale, hertz
 from faying.typing import Array
 
 
@@ -61,12 +61,15 @@ class UniversalFile:
         if nameless:
             notes.append(f"{self.source}: the FRFs name no points; they are numbered in their order")
         pairs: dict[tuple[Dof, Dof], tuple[str, NDArray[Any]]] = {}
+        lines: Array | None = None
         for n, f in enumerate(found):
             kind, factor, note = frf_scale(dict(f.header), self.units, quantity, f.where)
+            x = f.x * hertz(dict(f.header), f.where)
             if note and note.partition(": ")[2] not in {w.partition(": ")[2] for w in notes}:
                 notes.append(note)
             pair = (Dof(n + 1, f.output.direction) if nameless else self._straight(f.output), self._straight(f.input))
-            if not np.array_equal(f.x, found[0].x):
+            lines = x if lines is None else lines
+            if not np.array_equal(x, lines):
                 raise ReadError(
                     f"{f.where}: its spectral lines are not those of the first FRF; split the file into tests of one "
                     "set of lines"
@@ -85,8 +88,9 @@ class UniversalFile:
         values = np.full((len(outputs), len(inputs), len(found[0].x)), np.nan + 0j)
         for (o, i), (_, data) in pairs.items():
             values[outputs.index(o), inputs.index(i)] = data
+        assert lines is not None
         return FRF(
-            frequency=found[0].x,
+            frequency=lines,
             values=values,
             outputs=outputs,
             inputs=inputs,
@@ -113,7 +117,7 @@ class UniversalFile:
         if np.abs(axis).max() < 1 - 1e-6:
             raise ReadError(
                 f"{self.source}: the directions of point {dof.point} are turned against the axes of the file "
-                "(data set 2420); export the FRFs in global directions"
+                "(data sets 18 and 2420); export the FRFs in global directions"
             )
         k = int(np.abs(axis).argmax())
         return Dof(dof.point, ("-" if axis[k] < 0 else "") + "xyz"[k])
@@ -127,7 +131,8 @@ class UniversalFile:
         """
         if not self.shapes:
             raise ReadError(
-                f"{self.source}: no mode shape (data set 55) in it; identify the modes first: faying test {self.source}"
+                f"{self.source}: no mode shape (data set 55 or 2414) in it; identify the modes first: "
+                f"faying test {self.source}"
             )
         shapes = sorted(self.shapes, key=lambda s: float(s["frequency"]))
         points = shapes[0]["points"]
