@@ -13,6 +13,7 @@ from faying.errors import FayingError, InputError, ReadError
 from faying.surface.scan import Instrument, Profile, Scan, check_points
 from faying.units import scale
 
+ROUNDED = 0.1  # of a step: how far the positions of a line may be off an even grid
 _BROKEN = (
     "SurfaceTopography, which reads formats of instruments, is installed but does not start ({fault}); install a "
     "version that goes with the numpy that is here"
@@ -159,6 +160,7 @@ def _scan(file: Path, content: _Content, xy: float, z: float) -> Scan | Profile:
         nx, ny = heights.shape
         spacing = (sizes[0] * xy / nx, sizes[1] * xy / ny)
         return Scan(heights=heights.T * z, spacing=spacing, source=str(file), instrument=instrument)
+    notes: tuple[str, ...] = ()
     if positions is None:
         step = sizes[0] / len(heights)
     else:
@@ -166,11 +168,15 @@ def _scan(file: Path, content: _Content, xy: float, z: float) -> Scan | Profile:
         step = float(np.ptp(positions)) / (len(positions) - 1)
         if gaps.min() <= 0:
             raise ReadError(f"{file}: the positions of the line scan do not increase")
-        # positions rounded in the file differ a little from an even grid; larger gaps are interpolated
+        # positions rounded in the file differ a little from an even grid; heights between larger gaps are interpolated
         even = positions[0] + step * np.arange(len(positions))
-        if np.abs(positions - even).max() > 0.51 * step:
+        if np.abs(positions - even).max() > ROUNDED * step:
             heights = np.interp(even, positions, heights)
-    return Profile(heights=heights * z, spacing=step * xy, source=str(file), instrument=instrument)
+            notes = (
+                f"{file}: the steps of the line are {gaps.min() * xy:.3g} to {gaps.max() * xy:.3g} m; heights are "
+                f"interpolated at even steps of {step * xy:.3g} m",
+            )
+    return Profile(heights=heights * z, spacing=step * xy, source=str(file), instrument=instrument, notes=notes)
 
 
 def _instrument(info: dict[str, Any]) -> Instrument:

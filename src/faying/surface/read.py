@@ -97,7 +97,7 @@ def read_scan(
         raise ReadError(f"{file}: not an X3P (zip) archive; the file is cut off or damaged, export it again")
     else:
         scan = _text_or_other(file, xy_unit, z_unit, lateral)
-    scan = _resized(scan, lateral)
+    scan = without_sentinels(_resized(scan, lateral))
     plausible(scan)
     return replace(scan, notes=(*scan.notes, *end_of(file)))
 
@@ -123,7 +123,7 @@ def _is_x3p(file: Path) -> bool:
         return True
     try:
         with zipfile.ZipFile(file) as archive:
-            return "main.xml" in archive.namelist()
+            return any(name.rpartition("/")[2] == "main.xml" for name in archive.namelist())
     except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError):
         return False
 
@@ -189,6 +189,36 @@ def _resized(scan: Scan | Profile, lateral: Lateral) -> Scan | Profile:
     if isinstance(scan, Scan):
         return replace(scan, spacing=steps, notes=notes)
     return replace(scan, spacing=steps[0], notes=notes)
+
+
+FEWEST_ALIKE = 3  # heights that are exactly alike, below which they are spikes
+
+
+def without_sentinels(scan: Scan | Profile) -> Scan | Profile:
+    """The scan with heights missing that stand for "no data": one value, many times, far from all others.
+
+    The least, or the greatest, height of a scan is such a value where it stands three times or more, its distance to
+    the next one is more than the range of all others, and it has at most half of the points. A note says it.
+    """
+    known = scan.heights[np.isfinite(scan.heights)]
+    if not known.size:
+        return scan
+    ends = [end for end in (float(known.min()), float(known.max())) if np.sum(known == end) >= FEWEST_ALIKE]
+    for some in (ends, *([end] for end in ends)):
+        rest = known[~np.isin(known, some)]
+        if not some or 2 * rest.size < known.size:
+            continue
+        span = float(np.ptp(rest))
+        gaps = [float(np.abs(rest - end).min()) for end in some]
+        if span > 0 and min(gaps) > span:
+            heights = np.where(np.isin(scan.heights, some), np.nan, scan.heights)
+            notes = (
+                f"{np.sum(known == end)} points are exactly {end:.6g} m high, {gap:.3g} m from all others, which lie "
+                f"within {span:.3g} m: they are taken as missing"
+                for end, gap in zip(some, gaps, strict=True)
+            )
+            return replace(scan, heights=heights, notes=(*scan.notes, *notes))
+    return scan
 
 
 def _believable(sizes: tuple[float, ...], spacing: tuple[float, ...]) -> bool:

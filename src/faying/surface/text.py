@@ -10,12 +10,12 @@ import numpy as np
 from faying.columns import line_count, table_in_one_go
 from faying.errors import ReadError
 from faying.files import refuse_decimal_comma
+from faying.heading import split_heading
 from faying.surface.scan import BYTES, Profile, Scan, check_points
 from faying.typing import Array
 from faying.units import scale
 
 Steps = Callable[[int, int], tuple[float, float]]
-_COLUMN = re.compile(r"([xyzXYZ])\s*[\[(]\s*([^\])]+?)\s*[\])]")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$")
 _SIZE = re.compile(r"#\s*(?:Width|Breite|Height|Höhe):\s*(\S+)\s*(\S+)\s*$")
 _HEIGHTS = re.compile(r"#\s*Value units:\s*(\S+)\s*$")
@@ -29,10 +29,10 @@ def _value(word: str) -> float | None:
     return float(word) if _NUMBER.match(word) else None
 
 
-def _row(line: str) -> list[float] | None:
-    """Numbers of a line, or None where it is a heading."""
+def _row(line: str, columns: int = 2) -> list[float] | None:
+    """Numbers of a line, or None where it is a heading; empty ends beyond so many columns are no missing numbers."""
     words = line.split(";") if ";" in line else line.split(",") if "," in line else line.split()
-    while len(words) > 2 and not words[-1].strip():
+    while len(words) > columns and not words[-1].strip():
         words.pop()
     values = [_value(w) for w in words]
     return None if len(values) < 2 or any(v is None for v in values) else [v for v in values if v is not None]
@@ -41,11 +41,13 @@ def _row(line: str) -> list[float] | None:
 @dataclass(frozen=True, kw_only=True)
 class Layout:
     """How a text file is laid out: numbers in a row (2: x,z; 3: x,y,z; more: a matrix of heights), lines of heading,
-    and metres per unit of x, y and z where the heading states them; size (x, y) [m] of a matrix that states it."""
+    metres per unit of x, y, z where the heading states them, places of x, y, z (or x, z) in a row; size (x, y) [m] of
+    a matrix that states it."""
 
     columns: int
     heading: int
     units: tuple[float, float, float] | None = None
+    order: tuple[int, ...] | None = None
     size: tuple[float, float] | None = None
 
     @property
@@ -67,24 +69,46 @@ def layout(path: Path) -> Layout | None:
     lines = [line for line in head.decode("utf-8-sig", "replace").splitlines() if line.strip()]
     stated = _comments([line for line in lines if line.lstrip().startswith("#")], path)
     lines = [line for line in lines if not line.lstrip().startswith("#")]
-    units = _heading(lines[0], path) if lines else None
-    rows = lines[1:] if units else lines
+    heading = _heading(lines[0], path) if lines else None
+    rows = lines[1:] if heading else lines
     for line in rows[:1]:
         refuse_decimal_comma(line, str(path))
     found = [_row(line) for line in (rows[:-1] or rows)[:31]]
     if not found or found[0] is None:
         return None
+    columns = _columns(rows[:-1] or rows, len(found[0]))
     if stated is not None:
         size, unit = stated
         return Layout(columns=len(found[0]), heading=0, units=(1.0, 1.0, unit), size=size)
-    if units is not None:
-        return Layout(columns=len(found[0]), heading=1, units=units)
+    if heading is not None:
+        units, order = heading
+        return Layout(columns=max(columns, len(order)), heading=1, units=units, order=order)
     if any(row is not None and len(row) in (2, 3) for row in found):
-        return Layout(columns=len(found[0]), heading=0) if len(found[0]) in (2, 3) else None
+        return Layout(columns=columns, heading=0) if columns in (2, 3) else None
     alike = sum(row is not None and len(row) == len(found[0]) for row in found)
-    if len(rows) > 2 and len(found[0]) > 3 and alike > len(found) / 2:
-        return Layout(columns=len(found[0]), heading=0)
+    if len(rows) > 2 and columns > 3 and alike > len(found) / 2:
+        _refuse_more(path, [row for row in found if row is not None and len(row) == columns], columns)
+        return Layout(columns=columns, heading=0)
     return None
+
+
+def _refuse_more(path: Path, rows: list[list[float]], columns: int) -> None:
+    """Raise ReadError where rows are x, y, z and more: one of the first two numbers runs on while the other stays."""
+    first, second = np.array(rows)[:, :2].T
+    stays = [int(np.argmax(np.append(values != values[0], True))) for values in (first, second)]
+    if columns <= 6 and (_even(first[: stays[1]]) or _even(second[: stays[0]])):
+        raise ReadError(
+            f"{path}: rows of {columns} numbers, of which the first two run over a grid: x, y, z and {columns - 3} "
+            f"column{'s' * (columns > 4)} more; leave only x, y, z in the file"
+        )
+
+
+def _columns(rows: list[str], first: int) -> int:
+    """How many numbers a row has, where the last one of the first rows may be empty, a missing height."""
+    if not rows or rows[0].strip()[-1:] not in (",", ";"):
+        return first
+    found = [_row(line) for line in rows]
+    return max((len(row) for row in found if row is not None and len(row) <= first + 1), default=first)
 
 
 def _comments(lines: list[str], path: Path) -> tuple[tuple[float, float], float] | None:
@@ -103,16 +127,36 @@ def _comments(lines: list[str], path: Path) -> tuple[tuple[float, float], float]
     return (metres(sizes[0][1], sizes[0][2]), metres(sizes[1][1], sizes[1][2])), metres("1", heights[0][1])
 
 
-def _heading(line: str, path: Path) -> tuple[float, float, float] | None:
-    """Metres per unit of x, y and z from "x [mm],y [mm],z [um]" (or x, z), None where the line is no such heading."""
-    cells = [_COLUMN.fullmatch(cell.strip()) for cell in re.split(r"[,;\t]", line.strip())]
-    names = [cell[1].lower() for cell in cells if cell]
-    if len(names) != len(cells) or names not in (["x", "y", "z"], ["x", "z"]):
+Heading = tuple[tuple[float, float, float] | None, tuple[int, ...]]
+
+
+def _heading(line: str, path: Path) -> Heading | None:
+    """Metres per unit of x, y, z, None where none is stated, and their places in a row; None where it is no heading.
+
+    Raises ReadError where columns beyond x, y, z stand in it, or only some state a unit.
+    """
+    if any(value is not None for value in map(_value, re.split(r"[,;\s]+", line.strip()))):
         return None
-    factors = [
-        scale(cell[2].replace("µ", "u").replace("μ", "u"), "m", name=f"{path}, heading") for cell in cells if cell
-    ]
-    return factors[0], factors[-2], factors[-1]
+    cells = split_heading(line)
+    names = ["z" if one.name in ("height", "h") else one.name for one in cells]
+    wanted = "xyz" if {"x", "y", "z"} <= set(names) else "xz"
+    if not set(wanted) <= set(names):
+        return None
+    if sorted(names) != sorted(wanted):
+        odd = next(one.text for one, name in zip(cells, names, strict=True) if names.count(name) > (name in wanted))
+        raise ReadError(
+            f'{path}: the heading "{line.strip()[:80]}" has the column "{odd}", which is not read; leave only x, y, z '
+            "(or x, z) in the file"
+        )
+    order = tuple(names.index(name) for name in wanted)
+    stated = [cells[k].unit for k in order]
+    if not any(stated):
+        return None, order
+    for k, unit in zip(order, stated, strict=True):
+        if not unit:
+            raise ReadError(f'{path}: the column "{cells[k].text}" of the heading states no unit; the others do')
+    factors = [scale(unit, "m", name=f"{path}, heading") for unit in stated]
+    return (factors[0], factors[-2], factors[-1]), order
 
 
 def read(path: Path, how: Layout, scales: tuple[float, float, float], steps: Steps) -> Scan | Profile:
@@ -124,8 +168,12 @@ def read(path: Path, how: Layout, scales: tuple[float, float, float], steps: Ste
     x, y, z = scales
     if how.matrix:
         ny, nx = data.shape
+        if how.size is None:
+            _refuse_positions(path, data)
         spacing = steps(nx, ny) if how.size is None else (how.size[0] / nx, how.size[1] / ny)
         return Scan(heights=data * z, spacing=spacing, source=str(path))
+    if how.order is not None:
+        data = data[:, list(how.order)]
     return _line(path, data, x, z) if how.columns == 2 else _grid(path, data, x, y, z)
 
 
@@ -163,7 +211,7 @@ def _line_by_line(path: Path, how: Layout) -> Array:
         if skip:
             skip -= 1
             continue
-        values = _row(line)
+        values = _row(line, how.columns)
         if values is None or len(values) != how.columns:
             refuse_decimal_comma(line, f"{path}, line {number}")
             shown = line.strip()[:40]
@@ -172,6 +220,26 @@ def _line_by_line(path: Path, how: Layout) -> Array:
     if len(rows) < (2 if how.matrix else 4):
         raise ReadError(f"{path}: {len(rows)} points; a scan needs at least 2 x 2, the file is empty or cut off")
     return np.array(rows)
+
+
+def _refuse_positions(path: Path, data: Array) -> None:
+    """Raise ReadError where a matrix of heights holds positions or numbers of rows."""
+    row, column = _even(data[0, 1:]) and not _even(data[1, 1:]), _even(data[1:, 0]) and not _even(data[1:, 1])
+    if row or column:
+        which = " and ".join(["the first row"] * row + ["the first column"] * column)
+        raise ReadError(
+            f"{path}: {which} of the matrix rise{'s' * (row != column)} evenly, as positions or numbers of rows do and "
+            "heights do not; take them out, so that only heights stand in the file"
+        )
+
+
+def _even(values: Array) -> bool:
+    """Whether four numbers or more rise or fall in equal steps."""
+    if len(values) < 4 or not np.isfinite(values).all():
+        return False
+    steps = np.diff(values)
+    mean = float(steps.mean())
+    return abs(mean) > 0 and bool(np.abs(steps - mean).max() < 1e-3 * abs(mean))
 
 
 def _axis(values: Array, path: Path, name: str) -> tuple[Array, float]:
@@ -205,9 +273,13 @@ def _grid(path: Path, data: Array, x: float, y: float, z: float) -> Scan:
         raise ReadError(
             f"{path}: {len(data)} points do not fill a grid of {nx} x {ny} once each; the file is cut off or damaged"
         )
-    row, length = (iy, nx) if iy[0] == iy[1] else (ix, ny)  # in the order of the file, whichever way it runs
-    ends = ((row, row[0], row[-1], length), (iy, 0, ny - 1, nx))
-    if any(np.sum(of == last) < full <= np.sum(of == first) for of, first, last, full in ends):
+    # in the order of the file, whichever way it runs: a file that was cut lacks the end of its last row
+    row, along, length = (iy, ix, nx) if iy[0] == iy[1] else (ix, iy, ny)
+    last = along[row == row[-1]]
+    rises = last[-1] > last[0] if len(last) > 1 else along[1] > along[0]
+    short = last[-1] != (length - 1 if rises else 0) and len(last) < length <= np.sum(row == row[0])
+    top = ix[iy == ny - 1]
+    if short or (len(top) < nx <= np.sum(iy == 0) and np.ptp(top) < nx - 1):
         raise ReadError(f"{path}: the last row holds fewer points than the others; the file is cut off")
     heights = np.full(nx * ny, np.nan)
     heights[cells] = data[:, 2]

@@ -58,15 +58,21 @@ xsi:schemaLocation="{namespace} {namespace}/ISO5436_2.xsd">
 """
 
 
+def folder_of(names: list[str]) -> str:
+    """The folder of an archive in which its main.xml stands, "" at the top: some programs zip the folder."""
+    places = [name for name in names if name.rpartition("/")[2] == "main.xml" and not name.startswith("__MACOSX/")]
+    return min(places, key=len, default="main.xml").removesuffix("main.xml")
+
+
 def _member(archive: zipfile.ZipFile, name: str, limit: int, path: Path) -> bytes:
     try:
-        info = archive.getinfo(name)
+        info = archive.getinfo(folder_of(archive.namelist()) + name)
     except KeyError:
         raise ReadError(f"{path}: the X3P archive holds no {name}; the file is incomplete, export it again") from None
     if info.file_size > limit:
         raise ReadError(f"{path}: {name} claims {info.file_size} bytes, more than the {limit} that are believable")
     try:
-        return archive.read(name)
+        return archive.read(info)
     except Exception as fault:  # a damaged archive fails in zlib, struct, or zipfile as it likes
         raise ReadError(f"{path}: {name} inside the X3P archive is damaged ({fault}); export the file again") from fault
 

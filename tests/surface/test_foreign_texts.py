@@ -1,0 +1,179 @@
+"""Texts and archives as instruments and people write them: positions in matrices, more columns, missing heights."""
+
+import io
+import zipfile
+
+import numpy as np
+import pytest
+
+from faying import ReadError, read_scan
+from faying.surface.scan import Scan
+from faying.surface.write import write_scan
+
+RNG = np.random.default_rng(8)
+NY, NX = 24, 32
+WAVES = np.sin(np.arange(NX) / 2.0) + 0.4 * np.cos(np.arange(NY)[:, None] / 3) + 0.1 * RNG.normal(size=(NY, NX))  # um
+STEP = 1.5  # um
+
+
+def rows(heights=WAVES, order=("y", "x"), skip=()):
+    """Lines x, y, z, the inner index last in `order`."""
+    ny, nx = heights.shape
+    cells = [(i, j) for j in range(ny) for i in range(nx)]
+    if order == ("x", "y"):
+        cells = [(i, j) for i in range(nx) for j in range(ny)]
+    return [(STEP * i, STEP * j, heights[j, i]) for i, j in cells if (i, j) not in skip]
+
+
+def text(lines, mark=","):
+    return "\n".join(mark.join("" if np.isnan(v) else f"{v:.9g}" for v in row) for row in lines) + "\n"
+
+
+def read(path, content, **given):
+    path.write_text(content)
+    return read_scan(path, **({"xy_unit": "um", "z_unit": "um"} | given))
+
+
+def matrix(path, table):
+    return read(path, text(table), xy_unit=None, size=(NX * STEP * 1e-6, NY * STEP * 1e-6))
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "match"),
+    [
+        (STEP * np.arange(NX), STEP * np.arange(NY), "the first row and the first column of the matrix rise evenly"),
+        (None, 1 + np.arange(NY), "the first column of the matrix rises evenly"),
+        (None, -0.37 * np.arange(NY), "the first column of the matrix rises evenly"),
+        (100 + 0.25 * np.arange(NX), None, "the first row of the matrix rises evenly"),
+    ],
+)
+def test_positions_in_a_matrix_are_refused(tmp_path, x, y, match):
+    table = WAVES if y is None else np.column_stack([y, WAVES])
+    if x is not None:
+        table = np.vstack([x if y is None else np.append(0.0, x), table])
+    with pytest.raises(ReadError, match=match):
+        matrix(tmp_path / "m.csv", table)
+
+
+def test_matrices_of_heights_alone_are_read(tmp_path):
+    tilted = WAVES + 0.3 * np.arange(NX) - 0.2 * np.arange(NY)[:, None]
+    plane = np.add.outer(0.2 * np.arange(NY), 0.1 * np.arange(NX))
+    for table in (WAVES, tilted, plane):
+        np.testing.assert_allclose(matrix(tmp_path / "m.csv", table).heights, 1e-6 * table, rtol=1e-7, atol=1e-15)
+
+
+@pytest.mark.parametrize("order", [("y", "x"), ("x", "y")])
+@pytest.mark.parametrize("more", [1, 2, 3])
+def test_columns_beyond_x_y_z_are_refused(tmp_path, order, more):
+    lines = [(*row, *([7.0 + k] * more)) for k, row in enumerate(rows(order=order))]
+    with pytest.raises(ReadError, match=f"rows of {3 + more} numbers, .* x, y, z and {more} column"):
+        read(tmp_path / "a.csv", text(lines))
+    with pytest.raises(ReadError, match="the column .intensity. *.*which is not read"):
+        read(tmp_path / "a.csv", "x (um),y (um),z (um),intensity\n" + text(lines), xy_unit=None, z_unit=None)
+
+
+@pytest.mark.parametrize(
+    ("head", "order", "factors", "given"),
+    [
+        ("z [nm],y [mm],x [um]\n", (2, 1, 0), (1, 1e-3, 1e3), {"xy_unit": None, "z_unit": None}),
+        ("Y,X,Z\n", (1, 0, 2), (1, 1, 1), {}),
+        ("x/um,y/um,Height/um\n", (0, 1, 2), (1, 1, 1), {"xy_unit": None, "z_unit": None}),
+    ],
+)
+def test_points_are_read_by_the_names_of_their_heading(tmp_path, head, order, factors, given):
+    lines = [tuple(row[k] * factors[k] for k in order) for row in rows()]
+    scan = read(tmp_path / "a.csv", head + text(lines), **given)
+    np.testing.assert_allclose(scan.heights, 1e-6 * WAVES, rtol=1e-7)
+    assert scan.spacing == pytest.approx((1e-6 * STEP, 1e-6 * STEP))
+
+
+def test_a_unit_for_some_columns_only_is_refused(tmp_path):
+    with pytest.raises(ReadError, match='the column "y" of the heading states no unit'):
+        read(tmp_path / "a.csv", "x [um],y,z [um]\n" + text(rows()), xy_unit=None, z_unit=None)
+
+
+@pytest.mark.parametrize("missing", [1, 20, 40])
+def test_heights_that_are_blank_from_the_first_line_on(tmp_path, missing):
+    table = WAVES.copy()
+    table.ravel()[:missing] = np.nan
+    scan = read(tmp_path / "a.csv", text(rows(table)))
+    np.testing.assert_array_equal(np.isnan(scan.heights), np.isnan(table))
+    np.testing.assert_allclose(scan.heights[~np.isnan(table)], 1e-6 * table[~np.isnan(table)], rtol=1e-7)
+
+
+def test_a_comma_at_the_end_of_each_line_is_no_column(tmp_path):
+    scan = read(tmp_path / "a.csv", text(rows()).replace("\n", ",\n"))
+    np.testing.assert_allclose(scan.heights, 1e-6 * WAVES, rtol=1e-7)
+
+
+@pytest.mark.parametrize("order", [("y", "x"), ("x", "y")])
+def test_holes_of_the_last_row_are_no_cut(tmp_path, order):
+    hole = {(NX - 1, NY - 5)} if order == ("x", "y") else {(5, NY - 1), (6, NY - 1)}
+    scan = read(tmp_path / "a.csv", text(rows(order=order, skip=hole)))
+    assert scan.heights.shape == (NY, NX)
+    assert {(int(i), int(j)) for j, i in np.argwhere(np.isnan(scan.heights))} == hole
+    lines = rows(order=order)
+    for lost in (1, 7):
+        with pytest.raises(ReadError, match="the file is cut off"):
+            read(tmp_path / "a.csv", text(lines[:-lost]))
+
+
+@pytest.mark.parametrize("value", [-9999.0, 0.0, 1e4, -79.5])
+@pytest.mark.parametrize("where", ["patch", "row"])
+def test_one_value_far_from_all_others_is_missing(tmp_path, value, where):
+    true = 79.0 + WAVES
+    gone = np.zeros(WAVES.shape, bool)
+    gone[(slice(3, 9), slice(10, 20)) if where == "patch" else 0] = True
+    scan = read(tmp_path / "a.csv", text(rows(np.where(gone, value, true))))
+    np.testing.assert_array_equal(np.isnan(scan.heights), gone)
+    assert f"{gone.sum()} points are exactly" in scan.notes[0]
+    assert "taken as missing" in scan.notes[0]
+
+
+def test_values_on_both_ends_are_missing(tmp_path):
+    table = WAVES.copy()
+    table[2, 3:8], table[10, 3:8] = -1e3, 1e3
+    scan = read(tmp_path / "a.csv", text(rows(table)))
+    assert np.isnan(scan.heights).sum() == 10
+
+
+@pytest.mark.parametrize(
+    "heights",
+    [
+        np.maximum(WAVES, -0.8),  # clipped valleys
+        np.where(np.arange(NX) % 8 < 3, 0.0, 1.0) + 0 * WAVES,  # a grating without noise
+        WAVES + np.where((np.arange(NX) == 4) & (np.arange(NY)[:, None] == 7), 500.0, 0),  # one spike
+        WAVES + 30.0 * (np.arange(NX) > 20),  # a step with its roughness
+    ],
+)
+def test_other_heights_stay(tmp_path, heights):
+    scan = read(tmp_path / "a.csv", text(rows(heights)))
+    assert not np.isnan(scan.heights).any()
+    assert not scan.notes
+
+
+@pytest.mark.parametrize("prefix", ["sample/", "./", "a/b/", ""])
+def test_x3p_archives_in_a_folder(tmp_path, prefix):
+    plain = tmp_path / "plain.x3p"
+    write_scan(Scan(heights=1e-6 * WAVES, spacing=(1e-6, 2e-6)), plain)
+    path = tmp_path / "made.x3p"
+    with zipfile.ZipFile(plain) as old, zipfile.ZipFile(path, "w") as new:
+        for name in old.namelist():
+            new.writestr(prefix + name, old.read(name))
+        if prefix:
+            new.writestr(f"__MACOSX/{prefix}main.xml", b"resource fork")
+    np.testing.assert_array_equal(read_scan(path).heights, read_scan(plain).heights)
+    path.rename(tmp_path / "made.zip")
+    np.testing.assert_array_equal(read_scan(tmp_path / "made.zip").heights, read_scan(plain).heights)
+
+
+def test_uneven_steps_of_a_line_are_interpolated(tmp_path):
+    pytest.importorskip("SurfaceTopography", reason="reads such lines")
+    x = np.cumsum(np.tile([0.55, 1.45], 100))
+    path = tmp_path / "line.csv"
+    buffer = io.StringIO("X_(microns),y1\n")
+    path.write_text(buffer.getvalue() + text(np.column_stack([x - x[0], 0.05 * (x - x[0])])))
+    line = read_scan(path, xy_unit="um", z_unit="um")
+    straight = np.polyval(np.polyfit(np.arange(200), line.heights, 1), np.arange(200))
+    assert np.abs(line.heights - straight).max() < 1e-15
+    assert "the steps of the line are 5.5e-07 to 1.45e-06 m" in line.notes[0]
