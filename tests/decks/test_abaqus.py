@@ -201,7 +201,8 @@ def test_reference_points_are_left_out_by_name(tmp_path, blocks):
     assert any("1 elements MASS are left out" in note.text for note in mesh.notes)
     without = more[: more.index("*Element")] + more[more.index("*Coupling") :]
     mesh = faying.read_mesh(written(tmp_path, text[:at] + without + text[at:], "m.inp"), unit="mm")
-    assert [note.code for note in mesh.notes] == ["reference-points"]
+    assert [note.code for note in mesh.notes] == ["reference-points", "file"]
+    assert "*COUPLING (1), *KINEMATIC (1): couplings and constraints are left out" in mesh.notes[1].text
     assert "1 reference points are left out, with the couplings that name them: 1" in mesh.notes[0].text
 
 

@@ -18,7 +18,8 @@ import numpy as np
 from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real
 from faying.decks.keywords import DATA, Block, blocks, elements, orientations, table
 from faying.decks.raw import RawMesh, index, read_text
-from faying.decks.scope import Items, Scope, placed, take
+from faying.decks.scope import Items, Scope, Span, placed, take
+from faying.decks.vocabulary import left_out
 from faying.errors import ReadError
 from faying.typing import Array, Index
 
@@ -43,12 +44,13 @@ def read(path: Path) -> RawMesh:
             opened = ""
         elif block.keyword == "INSTANCE" and assembled:
             name, part = options.get("NAME", ""), options.get("PART", "")
-            if part not in parts:
+            same = next((one for one in parts if one.upper() == part.upper()), None)
+            if same is None:
                 raise ReadError(
                     f"{block.where}: instance {name!r} of the part {part!r}, which the file does not hold; "
                     f"it holds {', '.join(parts) or 'none'}"
                 )
-            scope, opened = placed(parts[part], block), block.keyword
+            scope, opened = placed(parts[same], block), block.keyword
             instances[name] = scope
         else:
             take(block, scope)
@@ -65,17 +67,27 @@ def read(path: Path) -> RawMesh:
 def _merged(path: Path, top: Scope, instances: dict[str, Scope]) -> RawMesh:
     """Put instances into one numbering; where numbers clash, those of the later ones are raised."""
     shifts: dict[str, tuple[int, int]] = {"": (0, 0)}
+    own = {"": (index(top.nodes), _element_numbers(top, everything=True))}
+    _as_node_sets(top)
     for name, one in instances.items():
+        _as_node_sets(one)
         have = _element_numbers(top)
         raised = int(have.max(initial=0)) if np.intersect1d(_element_numbers(one), have).size else 0
         shift = 0 if set(one.nodes).isdisjoint(top.nodes) else max(top.nodes)
         shifts[name] = shift, raised
+        own[name] = index(one.nodes) + shift, _element_numbers(one, everything=True) + raised
         top.nodes.update({n + shift: x for n, x in one.nodes.items()})
         for kind, rows in one.elements.items():
             top.elements.setdefault(kind, []).extend((n + raised, nodes + shift) for n, nodes in rows)
         for label, sheets in one.sheets.items():
             top.sheets.setdefault(f"{name}.{label}", []).extend(nodes + shift for nodes in sheets)
         top.extra.extend(nodes + shift for nodes in one.extra)
+        top.others.extend(numbers + raised for numbers in one.others)
+        top.made += [f"{name}.{label}" for label in one.made]
+        top.bolts += [f"{name}.{label}" for label in one.bolts]
+        top.unknown += one.unknown
+        for kind, words in one.left_out.items():
+            top.left_out.setdefault(kind, []).extend(words)
         for mine, sets in ((one.element_sets, top.element_sets), (one.node_sets, top.node_sets)):
             for label, items in mine.items():
                 sets[f"{name}.{label}"] = [(name, what) for _, what in items]
@@ -94,16 +106,44 @@ def _merged(path: Path, top: Scope, instances: dict[str, Scope]) -> RawMesh:
             f"{path} holds {len(top.nodes)} nodes and {len(top.elements)} kinds of solid elements; write nodes "
             "and elements of the model into it"
         )
-    node_sets = _resolved(top.node_sets, {name: shift for name, (shift, _) in shifts.items()})
-    return _raw(path, top, node_sets, _resolved(top.element_sets, {name: shift for name, (_, shift) in shifts.items()}))
+    node_sets, element_sets = (
+        _resolved(sets, {name: (shifts[name][k], own[name][k]) for name in shifts}, top.notes)
+        for k, sets in enumerate((top.node_sets, top.element_sets))
+    )
+    return _raw(path, top, node_sets, element_sets, {name: raised for name, (_, raised) in shifts.items()})
 
 
-def _element_numbers(scope: Scope) -> Index:
-    return np.concatenate([index([]), *(numbers for rows in scope.elements.values() for numbers, _ in rows)])
+def _element_numbers(scope: Scope, *, everything: bool = False) -> Index:
+    """Numbers of the solids, or of all elements."""
+    solids = [numbers for rows in scope.elements.values() for numbers, _ in rows]
+    return np.concatenate([index([]), *solids, *(scope.others if everything else [])])
 
 
-def _resolved(sets: Mapping[str, Items], shifts: Mapping[str, int]) -> dict[str, Index]:
-    """Numbers of every set: those of instances shifted, those of sets it names filled in."""
+def _as_node_sets(scope: Scope) -> None:
+    """Take surfaces of nodes as sets of nodes; the two have names of their own in CalculiX and Abaqus."""
+    taken = {name.upper() for name in scope.node_sets}
+    for name, items in scope.node_surfaces.items():
+        if all(isinstance(what, str) and what.upper() == name.upper() for _, what in items):
+            continue  # the set of this name
+        scope.node_sets[f"{name}_SURFACE" if name.upper() in taken else name] = items
+
+
+def _numbered(what: str, shifts: Mapping[str, int]) -> int | None:
+    """A node or element as Instance.number, in the numbers of the whole; None for other words."""
+    instance, _, number = what.rpartition(".")
+    same = next((name for name in shifts if name and name.upper() == instance.upper()), None)
+    return int(number) + shifts[same] if same is not None and number.isdecimal() else None
+
+
+def _resolved(
+    sets: Mapping[str, Items], instances: Mapping[str, tuple[int, Index]], notes: list[str]
+) -> dict[str, Index]:
+    """Numbers of every set: those of instances shifted, those of sets it names filled in.
+
+    instances: what is added to the numbers of each, and the numbers that it has then, "" for those outside.
+    """
+    shifts = {name: shift for name, (shift, _) in instances.items()}
+    as_written = {name.upper(): name for name in instances}
     upper = {name.upper(): items for name, items in sets.items()}
     done: dict[str, Index] = {}
 
@@ -113,11 +153,24 @@ def _resolved(sets: Mapping[str, Items], shifts: Mapping[str, int]) -> dict[str,
         if name in done:
             return done[name]
         found = [index([])]
-        for instance, what in upper[name]:
-            if instance not in shifts:
-                raise ReadError(f"set {written[name]!r} is of the instance {instance!r}, which the file does not hold")
-            if isinstance(what, str):
+        for given, what in upper[name]:
+            instance = as_written.get(given.upper())
+            if instance is None:
+                raise ReadError(f"set {written[name]!r} is of the instance {given!r}, which the file does not hold")
+            if isinstance(what, Span):
+                there = np.intersect1d(what.numbers + shifts[instance], instances[instance][1])
+                found.append(there)
+                if what.numbers[-1] + shifts[instance] > instances[instance][1].max(initial=0):
+                    notes.append(
+                        f"the set {written[name]!r} is generated up to {what.numbers[-1]}, past the last number of the "
+                        f"file; it holds the {len(there)} that there are"
+                    )
+            elif isinstance(what, str):
                 label = (f"{instance}.{what}" if instance else what).upper()
+                one = None if label in upper else _numbered(what, shifts)
+                if one is not None:
+                    found.append(index([one]))
+                    continue
                 if label not in upper or label in (*seen, name):
                     raise ReadError(
                         f"set {written[name]!r} names the set {what!r}, which the file does not hold or is part of it"
@@ -131,22 +184,48 @@ def _resolved(sets: Mapping[str, Items], shifts: Mapping[str, int]) -> dict[str,
     return {name: numbers(name.upper(), ()) for name in sets}
 
 
-def _raw(path: Path, top: Scope, node_sets: dict[str, Index], element_sets: dict[str, Index]) -> RawMesh:
-    upper = {name.upper(): numbers for name, numbers in element_sets.items()}
-    nodes = {name.upper(): numbers for name, numbers in node_sets.items()}
+def _surfaces(path: Path, top: Scope, upper: dict[str, Index], raised: Mapping[str, int]) -> dict[str, Index]:
+    """Rows of (element, side) of every surface on solids; those of shells and beams are left out with a note."""
+    others = np.concatenate([index([]), *top.others])
+    bolts = {name.upper() for name in top.bolts}
     side_sets: dict[str, Index] = {}
     for name, rows in top.surfaces.items():
+        if name.upper() in bolts:
+            continue
         pairs: list[Index] = []
+        lost = 0
         for what, side in rows:
-            numbers = index([what]) if what.isdigit() else upper.get(what.upper())
+            one = int(what) if what.isdigit() else None if what.upper() in upper else _numbered(what, raised)
+            numbers = upper.get(what.upper()) if one is None else index([one])
             if numbers is None:
                 raise ReadError(f"surface {name!r} names the element set {what!r}, which {path.name} does not hold")
+            if not len(numbers) or np.isin(numbers, others).all():
+                lost += 1
+                continue
+            numbers = numbers[~np.isin(numbers, others)]
             if side and not re.fullmatch(r"S[1-6]", side):
                 raise ReadError(f"surface {name!r} names the side {side!r}; the sides of solids are S1 to S6")
             pairs.append(np.column_stack([numbers, np.full(len(numbers), int(side[1:]) - 1 if side else -1)]))
-        side_sets[name] = np.concatenate(pairs or [np.zeros((0, 2), dtype=np.int64)])
+        if lost:
+            top.notes.append(
+                f"the surface {name!r} lies on elements that are no solids in {lost} lines, which are left out"
+            )
+        if pairs or not lost:
+            side_sets[name] = np.concatenate(pairs or [np.zeros((0, 2), dtype=np.int64)])
+    return side_sets
+
+
+def _raw(
+    path: Path, top: Scope, node_sets: dict[str, Index], element_sets: dict[str, Index], raised: Mapping[str, int]
+) -> RawMesh:
+    upper = {name.upper(): numbers for name, numbers in element_sets.items()}
+    nodes = {name.upper(): numbers for name, numbers in node_sets.items()}
+    side_sets = _surfaces(path, top, upper, raised)
     references = [index([r]) if r.isdigit() else nodes.get(r.upper(), index([])) for r in top.references]
-    helpers = {what.upper() for rows in top.surfaces.values() for what, _ in rows}
+    helpers = {what.upper() for rows in top.surfaces.values() for what, _ in rows} - {n.upper() for n in top.made}
+    unknown = ", ".join(f"*{word}" for word in dict.fromkeys(top.unknown))
+    notes = [*top.notes, *left_out(top.left_out)]
+    notes += [f"{unknown}: not known, and passed over"] if unknown else []
     return RawMesh(
         numbers=index(top.nodes),
         points=np.array(list(top.nodes.values())),
@@ -154,15 +233,15 @@ def _raw(path: Path, top: Scope, node_sets: dict[str, Index], element_sets: dict
             kind: (np.concatenate([n for n, _ in rows]), np.concatenate([c for _, c in rows]))
             for kind, rows in top.elements.items()
         },
-        bodies={name: upper[name.upper()] for name in dict.fromkeys(top.sections) if name.upper() in upper},
-        element_sets={name: some for name, some in element_sets.items() if name.upper() not in helpers},
+        bodies={name: upper[name.upper()] for name in dict.fromkeys(top.sections) if len(upper.get(name.upper(), ()))},
+        element_sets={name: some for name, some in element_sets.items() if len(some) and name.upper() not in helpers},
         node_sets=node_sets,
         side_sets=side_sets,
         face_elements={name: tuple(rows) for name, rows in top.sheets.items()},
         extra=np.concatenate([index([]), *top.extra]),
         turned=np.concatenate([index([]), *(nodes.get(name.upper(), index([])) for name in top.turned)]),
         references=np.unique(np.concatenate([index([]), *references])),
-        notes=tuple(top.notes),
+        notes=tuple(notes),
     )
 
 

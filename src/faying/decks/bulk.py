@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from faying.decks.raw import read_text
+from faying.decks.vocabulary import nastran_kind
 from faying.errors import ReadError
 from faying.fe.elements import SOLIDS
 from faying.typing import Array
@@ -21,19 +22,39 @@ COUNTS = {"CTETRA": (4, 10), "CHEXA": (8, 20), "CPENTA": (6, 15)}
 _SKINS = {"CTRIA3": (3, 3), "CTRIAR": (3, 3), "CTRIA6": (3, 6), "CQUAD4": (4, 4), "CQUADR": (4, 4), "CQUAD8": (4, 8)}
 # what is left out, by the places of the grids it names
 _LEFT_OUT = {
-    "CBAR": (2, 3),
-    "CBEAM": (2, 3),
+    "CBAR": (2, 3, 4),  # the third orients it, where it is a grid and no real number
+    "CBEAM": (2, 3, 4),
+    "CBEAM3": (2, 3, 4, 5),
+    "CBEND": (2, 3, 4),
     "CROD": (2, 3),
+    "CTUBE": (2, 3),
+    "CVISC": (2, 3),
+    "CGAP": (2, 3, 4),
+    "CBUSH1D": (2, 3),
+    "CBUSH2D": (2, 3),
+    "CFAST": (),
+    "CWELD": (),
+    "CSEAM": (),
     "CONROD": (1, 2),
     "PLOTEL": (1, 2),
     "CONM1": (1,),
     "CONM2": (1,),
     "CELAS1": (2, 4),
     "CELAS2": (2, 4),
-    "CBUSH": (2, 3),
+    "CBUSH": (2, 3, 4),
     "CDAMP1": (2, 4),
     "CDAMP2": (2, 4),
+    "CMASS1": (2, 4),
     "CMASS2": (2, 4),
+    "CELAS3": (2, 3),
+    "CELAS4": (2, 3),
+    "CDAMP3": (2, 3),
+    "CDAMP4": (2, 3),
+    "CMASS3": (2, 3),
+    "CMASS4": (2, 3),
+    "RBE1": (1, 3, 5),
+    "RBAR1": (1, 2),
+    "RSPLINE": (2,),
     "RBE2": (1,),
     "RBE3": (2,),
     "RBAR": (1, 2),
@@ -116,6 +137,7 @@ class Bulk:
     sets: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
     left_out: dict[str, int] = field(default_factory=dict)
     references: list[int] = field(default_factory=list)
+    constraints: dict[str, list[str]] = field(default_factory=dict)  # cards of contact, bolts, constraints
     ended: bool = False
 
     def take(self, name: str, fields: list[str], where: str) -> None:
@@ -149,6 +171,8 @@ class Bulk:
             self.references += [int(fields[k]) for k in _LEFT_OUT[name] if k < len(fields) and fields[k].isdigit()]
         elif name == "ENDDATA":
             self.ended = True
+        elif kind := nastran_kind(name):
+            self.constraints.setdefault(kind, []).append(name)
         elif name.startswith("C") and not name.startswith(("CSET", "CEND")):
             raise ReadError(f"{where}: elements {name} are not known; known are {', '.join(COUNTS)}")
 

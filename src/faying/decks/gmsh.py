@@ -141,7 +141,7 @@ def read(path: Path) -> RawMesh:
     try:
         if version == "2.2":
             numbers, points = _nodes_22(nodes)
-            rows = _elements_22(elements)
+            rows = _once(_elements_22(elements))
         else:
             groups = _entities(sections.get("Entities"))
             numbers, points = _nodes_41(nodes)
@@ -164,16 +164,52 @@ def read(path: Path) -> RawMesh:
             extra += corners
             for tag in tags if code in _FACES else ():
                 faces.setdefault(names.get((2, tag), f"face{tag}"), []).append(corners)
+    own, same = _distinct(bodies)
     if not solids:
         raise ReadError(f"{path} holds no solid elements; mesh the volumes (gmsh -3) and save them all")
     return RawMesh(
         numbers=numbers,
         points=points,
         elements=gathered(solids),
-        bodies={name: index(dict.fromkeys(some)) for name, some in bodies.items()},
+        bodies={name: index(some) for name, some in own.items()},
         face_elements={name: face_blocks(some) for name, some in faces.items()},
         extra=index(extra),
+        notes=tuple(
+            f"the physical volumes {other!r} and {name!r} hold the same elements; the part is called {name!r}"
+            for other, name in same.items()
+        ),
     )
+
+
+def _distinct(bodies: dict[str, list[int]]) -> tuple[dict[str, list[int]], dict[str, str]]:
+    """Bodies of different elements, and the name of the first one by that of each later one with the same elements."""
+    own: dict[str, list[int]] = {}
+    same: dict[str, str] = {}
+    first: dict[frozenset[int], str] = {}
+    for name, some in bodies.items():
+        key = frozenset(some)
+        if key in first:
+            same[name] = first[key]
+        else:
+            first[key] = name
+            own[name] = list(dict.fromkeys(some))
+    return own, same
+
+
+Rows = list[tuple[int, int, list[int], list[int]]]
+
+
+def _once(rows: Rows) -> Rows:
+    """Elements that stand once for each of their physical groups, as Gmsh 2.2 writes them, as one with all groups."""
+    out: Rows = []
+    place: dict[tuple[int, tuple[int, ...]], int] = {}
+    for number, code, tags, corners in rows:
+        at = place.setdefault((code, tuple(corners)), len(out))
+        if at < len(out) and not set(tags) <= set(out[at][2]):
+            out[at][2].extend(tags)
+        else:
+            out.append((number, code, list(tags), corners))
+    return out
 
 
 def _nodes_22(words: _Words | _Bytes) -> tuple[Index, Array]:
@@ -232,9 +268,9 @@ def _count(code: int) -> int:
     )
 
 
-def _elements_22(words: _Words | _Bytes) -> list[tuple[int, int, list[int], list[int]]]:
+def _elements_22(words: _Words | _Bytes) -> Rows:
     count = words.count()
-    out: list[tuple[int, int, list[int], list[int]]] = []
+    out: Rows = []
     while len(out) < count:
         number, code, tags = words.ints(3)
         if isinstance(words, _Bytes):  # a head for several: kind, how many, tags

@@ -15,13 +15,14 @@ import numpy as np
 
 from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real
 from faying.decks.raw import RawMesh, gathered, index, ranged, undoubled
+from faying.decks.vocabulary import ANSYS_LEFT_OUT, ANSYS_SURFACES, BOLT, CONSTRAINT, left_out
 from faying.errors import ReadError
 from faying.typing import Array, Index
 
 _SOLIDS = {"185": 8, "186": 20, "187": 10, "285": 4, "45": 8, "95": 20, "92": 10}
-_SURFACE = ("152", "154", "169", "170", "171", "172", "173", "174", "175", "200")
-# left out with their stiffness and mass: point masses, springs, beams, links, rigid spiders, matrices
-_LEFT_OUT = ("14", "21", "27", "180", "184", "188", "189", "214", "250")
+_SURFACE = frozenset(map(str, ANSYS_SURFACES))
+_LEFT_OUT = {str(number): what for number, what in ANSYS_LEFT_OUT.items()}
+_CONSTRAINTS = ("CE", "CP", "CERIG", "RBE3", "CEINTF", "CPINTF", "PSMESH", "SLOAD")
 
 
 def read(path: Path) -> RawMesh:
@@ -34,20 +35,24 @@ def read(path: Path) -> RawMesh:
     sets: dict[str, dict[str, np.ndarray]] = {"NODE": {}, "ELEM": {}}
     extra: list[int] = []
     turned: list[int] = []
-    left_out: list[str] = []
+    dropped: list[str] = []
+    commands: list[str] = []
     k = 0
     try:
         while k < len(lines):
             words = [word.strip() for word in lines[k].split(",")]
             name = words[0].upper()
-            if name == "ET" and len(words) > 2:
-                kinds[int(words[1])] = re.sub(r"\D", "", words[2])
-            elif name == "NBLOCK":
+            if name in ("ET", "ETBLOCK"):
+                k = _types(lines, k, words, kinds)
+                continue
+            if name == "NBLOCK":
                 k = _nodes(lines, k, words, numbers, points, turned)
                 continue
-            elif name == "EBLOCK":
-                k = _elements(lines, k, words, kinds, rows, extra, left_out)
+            if name == "EBLOCK":
+                k = _elements(lines, k, words, kinds, rows, extra, dropped)
                 continue
+            if name in _CONSTRAINTS:
+                commands.append(name)
             elif name == "CMBLOCK":
                 width = _widths(lines[k + 1])[0]
                 count = int(words[3].split("!")[0])
@@ -75,11 +80,38 @@ def read(path: Path) -> RawMesh:
         node_sets=sets["NODE"],
         extra=index(extra),
         turned=index(turned),
-        notes=tuple(
-            f"{left_out.count(kind)} elements of type {kind} are left out, with their stiffness and mass"
-            for kind in dict.fromkeys(left_out)
-        ),
+        notes=tuple(_left_out(dropped, commands)),
     )
+
+
+def _left_out(elements: list[str], commands: list[str]) -> list[str]:
+    """Sentences on elements and commands that were left out."""
+    notes = [
+        f"{elements.count(kind)} elements of type {kind} ({_LEFT_OUT[kind]}) are left out, with their stiffness and "
+        "mass" + ("; give the bolts in [[bolt]] of the study" if kind == "179" else "")
+        for kind in dict.fromkeys(elements)
+    ]
+    bolts = [name for name in commands if name in ("PSMESH", "SLOAD")]
+    return notes + left_out({BOLT: bolts, CONSTRAINT: [name for name in commands if name not in bolts]}, "")
+
+
+def _types(lines: list[str], k: int, words: list[str], kinds: dict[int, str]) -> int:
+    """Element types of an ET command or of an ETBLOCK: number and name of each, then key options."""
+    if words[0].upper() == "ET":
+        if len(words) > 2:
+            kinds[int(words[1])] = re.sub(r"\D", "", words[2])
+        return k + 1
+    width = _widths(lines[k + 1])[0]
+    wide = re.search(r",\s*\d*a(\d+)", lines[k + 1].lower())
+    start, k = k, k + 2
+    while int(lines[k][:width]) != -1:
+        line = lines[k]
+        name = line[width : 2 * width] if wide is None or line[width : 2 * width].strip().isdigit() else line.split()[1]
+        kinds[int(line[:width])] = re.sub(r"\D", "", name)
+        k += 1
+    if words[1].isdigit() and int(words[1]) != k - start - 2:
+        raise ReadError(f"line {start + 1}: ETBLOCK says {words[1]} types and holds {k - start - 2}; is it whole?")
+    return k + 1
 
 
 def _widths(form: str) -> tuple[int, int, int]:
@@ -129,7 +161,7 @@ def _elements(
     kinds: dict[int, str],
     rows: dict[str, list[tuple[int, list[int]]]],
     extra: list[int],
-    left_out: list[str],
+    dropped: list[str],
 ) -> int:
     if len(words) < 3 or words[2].upper() != "SOLID":
         raise ReadError(f"line {k + 1}: EBLOCK without the key SOLID is not known; write the archive with CDWRITE,DB")
@@ -150,7 +182,7 @@ def _elements(
         which = kinds[head[1]]
         if which in _SURFACE or which in _LEFT_OUT:
             extra += nodes
-            left_out += [which] if which in _LEFT_OUT else []
+            dropped += [which] if which in _LEFT_OUT else []
             continue
         if which not in _SOLIDS:
             raise ReadError(f"element {number} is of type {which}; known are SOLID185, 186, 187 and 285")

@@ -20,6 +20,7 @@ from faying.typing import Array, Index
 
 STEP = (".step", ".stp")
 SMALLEST, LARGEST = 1e-3, 100.0  # sizes of a bolted structure [m] beyond which the unit is doubted
+FEW_NODES, MOST_LOST = 10, 0.1  # nodes of no element, and their share, beyond which a file may be cut short
 CLOSE = 1e-7  # of the part's size: nodes nearer than this coincide
 
 
@@ -47,7 +48,8 @@ def read_mesh(
         size: Largest edge of an element of a STEP file [m], or text with a unit such as "10 mm".
         face_size: Name of a face of a STEP file -> largest edge there.
         unit: Length unit of the coordinates, such as "mm"; no format says it.
-        parts: Names of the element sets that are the parts, or part -> element set. Where None: the bodies that the
+        parts: Names of the element sets that are the parts, or part -> element set, or several as "one + other".
+            Where None: the bodies that the
             file names, else its element sets if they divide the elements, else the pieces that share no node.
         cache: Folder that keeps the mesh of a STEP file for the next call; None keeps nothing.
 
@@ -199,19 +201,18 @@ class _Builder:
             [self.raw.references, *(some for some in self.raw.node_sets.values() if len(some) == 1)]
         )
         lost = loose[~np.isin(loose, points_of_reference)]
-        if len(lost):
+        if len(lost) > max(FEW_NODES, MOST_LOST * len(points)):
             raise InputError(
-                f"{self.name}: {len(lost)} nodes belong to no element: {_some(lost)}; delete them, or is the file cut "
-                "short?"
+                f"{self.name}: {len(lost)} of {len(points)} nodes belong to no element: {_some(lost)}; delete them, or "
+                "is the file cut short?"
             )
-        if len(loose):
-            self.notes.append(
-                Note(
-                    code="reference-points",
-                    text=f"{len(loose)} reference points are left out, with the couplings that name them: "
-                    f"{_some(loose)}",
-                )
-            )
+        if len(loose) > len(lost):
+            text = f"{len(loose) - len(lost)} reference points are left out, with the couplings that name them: "
+            text += _some(loose[np.isin(loose, points_of_reference)])
+            self.notes.append(Note(code="reference-points", text=text))
+        if len(lost):
+            text = f"{len(lost)} nodes belong to no element and are left out: {_some(lost)}"
+            self.notes.append(Note(code="left-out", text=text))
 
     def _parts(
         self, numbers: Index, cells: list[Index], wanted: Mapping[str, str] | Sequence[str] | None
@@ -219,17 +220,23 @@ class _Builder:
         """Names of the parts and the part of every element."""
         sets = {**self.raw.element_sets, **self.raw.bodies}
         if wanted is not None:
-            chosen = dict(wanted) if isinstance(wanted, Mapping) else {name: name for name in wanted}
-            for part, name in chosen.items():
-                if name not in sets:
-                    raise InputError(
-                        f"{self.name}: part {part!r} names the element set {name!r}; the file holds "
-                        f"{', '.join(map(repr, sets)) or 'none'}"
-                    )
-            divided = _dividing(numbers, {part: sets[name] for part, name in chosen.items()})
+            given = dict(wanted) if isinstance(wanted, Mapping) else {name: name for name in wanted}
+            chosen = {part: name if name in sets else _several(name) for part, name in given.items()}
+            for part, some in chosen.items():
+                for name in [some] if isinstance(some, str) else some:
+                    if name not in sets:
+                        raise InputError(
+                            f"{self.name}: part {part!r} names the element set {name!r}; the file holds "
+                            f"{', '.join(map(repr, sets)) or 'none'}"
+                        )
+            united = {
+                part: sets[some] if isinstance(some, str) else np.unique(np.concatenate([sets[name] for name in some]))
+                for part, some in chosen.items()
+            }
+            divided = _dividing(numbers, united)
             if divided is None:
                 raise InputError(
-                    f"{self.name}: the element sets {', '.join(chosen.values())} do not divide the elements; each "
+                    f"{self.name}: the element sets {', '.join(given.values())} do not divide the elements; each "
                     "must belong to one of them"
                 )
             return list(chosen), divided
@@ -274,10 +281,11 @@ class _Builder:
         n = len(self.raw.numbers)
         skins = {part: skin(some, n) for part, some in blocks.items()}
         found: dict[str, dict[str, Blocks]] = {}
+        used = np.unique(np.concatenate([block.ravel() for block in cells]))
         for label, some in self.raw.node_sets.items():
             inside = np.zeros(n, dtype=bool)
             inside[self._index(some, f"the set {label!r}")] = True
-            if inside.all():
+            if inside[used].all():
                 continue
             for part, outer in skins.items():
                 here = _on(outer, inside)
@@ -347,7 +355,14 @@ class _Builder:
             if here:
                 found.setdefault(label, {})[part] = here
                 hit |= np.isin(key, np.concatenate([side_key(faces, n) for faces in here]))
-        if not hit.all():
+        if not hit.any():
+            text = (
+                f"the surface {label!r} lies inside its part, on {len(key)} element faces that are no outer side of a "
+                "solid, and is left out; where it is a joint, put the elements on each side into an element set of "
+                "their own, which is then a part with its own face"
+            )
+            self.notes.append(Note(code="left-out", text=text))
+        elif not hit.all():
             raise InputError(
                 f"{self.name}: {np.count_nonzero(~hit)} of the {len(key)} element faces of {label!r} are no outer "
                 "side of a solid; where elements of one part share the nodes there, put those on each side into an "
@@ -372,7 +387,7 @@ class _Builder:
                 raise InputError(
                     f"{self.name}: part {near!r} shares {len(loose)} nodes with other parts outside of any named face "
                     f"(node {self.raw.numbers[loose[0] % n]} is one); name the faces of the joint on both sides, or "
-                    "make one part of them"
+                    f'make one part of them, of one material: sets = {{ {near} = "{" + ".join(list(blocks)[:2])}" }}'
                 )
         old = key % n
         old_numbers = self.raw.numbers[old]
@@ -413,6 +428,12 @@ class _Builder:
                 f"{self.name}: {len(pairs)} pairs of nodes of part {part!r} coincide ({a} and {b}, for one), so that "
                 "its elements do not hang together there; merge the nodes, or make two parts and a joint"
             )
+
+
+def _several(name: str) -> str | list[str]:
+    """The sets that a name such as "steel + alu" joins; the name where there is no plus sign."""
+    some = [one.strip() for one in name.split("+")]
+    return some if len(some) > 1 and all(some) else name
 
 
 def _some(numbers: Index) -> str:

@@ -17,16 +17,34 @@ import numpy as np
 from faying.decks.bulk import Bulk, cards, listed, number
 from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real, springs_of
 from faying.decks.raw import Matrices, RawMesh, both_triangles, face_blocks, gathered, index, once, read_text
+from faying.decks.vocabulary import left_out
 from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS
 from faying.typing import Array, Index
 
+# commands of the case control whose sets are of elements
+OF_ELEMENTS = (
+    "STRE",
+    "ELST",
+    "STRA",
+    "FORCE",
+    "ELFO",
+    "ESE",
+    "EKE",
+    "EDE",
+    "GPSTRESS",
+    "STRFIELD",
+    "VOLUME",
+    "SURFACE",
+)
+OF_ELEMENTS += ("ELSDCON", "GPSTRAIN", "THERMALSTR", "FLUX", "NLSTRESS", "CRSHRF", "EPLAS", "BOUTPUT")
 Field = int | float | str
 
 
 def read(path: Path) -> RawMesh:
     """Read a bulk data file. Raises ReadError for what it cannot read, naming line and card."""
-    bulk = Bulk(sets=_case_sets(path))
+    case, notes = _case_sets(path)
+    bulk = Bulk()
     for name, fields, where in cards(path):
         try:
             bulk.take(name, fields, where)
@@ -38,9 +56,17 @@ def read(path: Path) -> RawMesh:
         raise ReadError(
             f"{path} holds {len(bulk.grids)} GRID cards and {len(bulk.solid)} solid elements; write both into it"
         )
-    notes = [
+    notes += [
         f"{count} cards {name} are left out, with their stiffness and mass" for name, count in bulk.left_out.items()
     ]
+    notes += left_out(bulk.constraints, "")
+    grids = np.sort(index(bulk.grids))
+    for name, some in case.items():
+        single = index(first for first, last in some if first == last)
+        if len(np.setdiff1d(single, grids)):
+            notes.append(f"{name} of the case control names what is no grid, and is left out")
+        else:
+            bulk.sets.setdefault(name, some)
     if not bulk.ended:
         text = read_text(path, "bulk data")
         if re.search(r"^\s*BEGIN\s+BULK", text, re.I | re.M):
@@ -73,24 +99,38 @@ def _within(ranges: list[tuple[int, int]], numbers: Index) -> Index:
     return np.unique(np.concatenate([index([]), *found]))
 
 
-def _case_sets(path: Path) -> dict[str, list[tuple[int, int]]]:
-    """SET n = ... of the case control."""
+def _case_sets(path: Path) -> tuple[dict[str, list[tuple[int, int]]], list[str]]:
+    """SET n = ... of the case control that no command takes as elements, and notes on those that one does."""
     head = re.split(r"BEGIN\s+BULK", read_text(path, "bulk data"), maxsplit=1, flags=re.I)
     if len(head) < 2:
-        return {}
+        return {}, []
+    used = re.finditer(r"^\s*([A-Z0-9]+)\s*(?:\([^)]*\))?\s*=\s*(\d+)\s*(?:\$.*)?$", head[0], re.I | re.M)
+    by_elements = {f"SET{one[2]}": one[1].upper() for one in used if one[1].upper().startswith(OF_ELEMENTS)}
     found = re.finditer(r"^\s*SET\s+(\d+)\s*=\s*((?:[^,\n]+,\s*)*[^,\n]+)$", head[0], re.I | re.M)
     sets = {}
     for one in found:
         words = re.sub(r",", " ", one.group(2)).split()
         if words[0].isdigit() and words[-1].isdigit() and all(w.isdigit() or w.upper() == "THRU" for w in words):
             sets[f"SET{one.group(1)}"] = listed(words)
-    return sets
+    notes = [
+        f"{name} of the case control holds elements, as {command} = {name[3:]} says, and is left out"
+        for name, command in by_elements.items()
+        if sets.pop(name, None) is not None
+    ]
+    return sets, notes
 
 
 def _loaded(loads: list[tuple[list[str], str]], where_of: dict[int, tuple[str, list[int]]]) -> dict[str, Index]:
     """Element faces that PLOAD4 cards name, by load set."""
     out: dict[str, list[tuple[int, int]]] = {}
     for fields, where in loads:
+        if fields[6].upper() == "THRU" and fields[1].isdigit() and fields[7].isdigit():
+            solid = next((e for e in where_of if int(fields[1]) <= e <= int(fields[7])), None)
+            if solid is None:
+                continue  # a load on shells
+            raise ReadError(
+                f"{where}: PLOAD4 with THRU, which is for shells, names the solid {solid}; write a card with G1 for it"
+            )
         if not all(word.isdigit() for word in (fields[1], *filter(None, fields[6:8]))):
             raise ReadError(f"{where}: PLOAD4 names {', '.join(fields[1:8:3])}, which are no elements and nodes")
         element = int(fields[1])

@@ -9,6 +9,7 @@ import numpy as np
 
 from faying.decks.keywords import DATA, Block
 from faying.decks.raw import index, ranged
+from faying.decks.vocabulary import abaqus_kind
 from faying.errors import ReadError
 from faying.typing import Array, Index
 
@@ -22,7 +23,15 @@ _LINE = re.compile(
 _MAKERS = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "IMPORT", "SYMMETRIC MODEL GENERATION")
 _REFERENCES = {"COUPLING", "RIGID BODY", "KINEMATIC COUPLING", "DISTRIBUTING COUPLING", "PRE-TENSION SECTION"}
 
-Items = list[tuple[str, "Index | str"]]
+
+@dataclass(frozen=True)
+class Span:
+    """Numbers of GENERATE: those that there are among them."""
+
+    numbers: Index
+
+
+Items = list[tuple[str, "Index | str | Span"]]
 
 
 @dataclass
@@ -35,7 +44,13 @@ class Scope:
     extra: list[Index] = field(default_factory=list)
     element_sets: dict[str, Items] = field(default_factory=dict)
     node_sets: dict[str, Items] = field(default_factory=dict)
+    node_surfaces: dict[str, Items] = field(default_factory=dict)
     surfaces: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
+    others: list[Index] = field(default_factory=list)  # numbers of elements that are no solids
+    made: list[str] = field(default_factory=list)  # element sets that *ELEMENT itself names
+    bolts: list[str] = field(default_factory=list)  # surfaces of pre-tension sections
+    left_out: dict[str, list[str]] = field(default_factory=dict)  # keywords by their kind
+    unknown: list[str] = field(default_factory=list)
     sections: list[str] = field(default_factory=list)
     references: list[str] = field(default_factory=list)
     turned: list[str] = field(default_factory=list)
@@ -46,6 +61,11 @@ class Scope:
 def take(block: Block, scope: Scope) -> None:
     """Note what a keyword and its lines say. Raises ReadError, naming both, where they cannot be read."""
     options, keyword = block.options, block.keyword
+    kind = abaqus_kind(keyword)
+    if kind:
+        scope.left_out.setdefault(kind, []).append(keyword)
+    elif kind is None and keyword not in _MAKERS:
+        scope.unknown.append(keyword)
     if keyword in DATA and not block.words():
         scope.notes.append(f"{block.where}: *{keyword} has no data lines: the file may be cut short")
     try:
@@ -66,7 +86,9 @@ def take(block: Block, scope: Scope) -> None:
                 f"{block.where}: *{keyword} makes nodes or elements, which is not done here; write them out"
             )
         elif keyword in _REFERENCES:
-            scope.references.extend(options[key] for key in ("REF NODE", "NODE") if key in options)
+            scope.references.extend(options[key] for key in ("REF NODE", "ROT NODE", "NODE") if key in options)
+            if keyword == "PRE-TENSION SECTION":
+                _bolt(block, scope)
         elif keyword == "TRANSFORM":
             scope.turned.append(options.get("NSET", ""))
     except ReadError:
@@ -139,7 +161,7 @@ def _key(sets: Mapping[str, object], name: str) -> str:
     return next((key for key in sets if key.upper() == name.upper()), name)
 
 
-def _add(sets: dict[str, Items], name: str, instance: str, what: Index | str) -> None:
+def _add(sets: dict[str, Items], name: str, instance: str, what: Index | str | Span) -> None:
     sets.setdefault(_key(sets, name), []).append((instance, what))
 
 
@@ -149,6 +171,7 @@ def _elements(block: Block, scope: Scope) -> None:
     sheet = _SHEET.match(kind)
     if _LINE.match(kind):
         scope.extra.extend(index(word for word in row[1:] if word) for row in block.rows())
+        _other(block, scope, index(row[0] for row in block.rows()))
         scope.notes.append(
             f"{block.where}: {len(block.lines)} elements {kind} are left out, with their stiffness and mass"
         )
@@ -173,9 +196,30 @@ def _elements(block: Block, scope: Scope) -> None:
         scope.elements.setdefault(_SOLID[base.group()], []).append((numbers, nodes))
     else:
         scope.extra.append(nodes.ravel())
+        _other(block, scope, numbers)
         scope.sheets.setdefault(block.options.get("ELSET", "faces"), []).append(nodes)
     if "ELSET" in block.options and base:
+        scope.made.append(block.options["ELSET"])
         _add(scope.element_sets, block.options["ELSET"], "", numbers)
+
+
+def _other(block: Block, scope: Scope, numbers: Index) -> None:
+    """Note elements that are no solids: their numbers, and the set that they are put into, which others may name."""
+    scope.others.append(numbers)
+    if "ELSET" in block.options:
+        _add(scope.element_sets, block.options["ELSET"], "", index([]))
+
+
+def _bolt(block: Block, scope: Scope) -> None:
+    """Note a pre-tension section with its words: its surface is a cut inside the bolt, or it is a beam."""
+    surface = block.options.get("SURFACE", "")
+    scope.bolts.append(surface)
+    said = ", ".join(f"{key}={value}" for key, value in block.options.items())
+    axis = f", direction {block.lines[0].strip()}" if block.lines else ""
+    scope.notes.append(
+        f"{block.where}: *PRE-TENSION SECTION, {said}{axis}: the preload of this bolt is left out, with the surface "
+        "inside it; give the bolt in [[bolt]] of the study"
+    )
 
 
 def _set(block: Block, sets: dict[str, Items], name: str | None) -> None:
@@ -185,7 +229,7 @@ def _set(block: Block, sets: dict[str, Items], name: str | None) -> None:
     if "GENERATE" in block.options:
         for row in block.rows():
             first, last, *step = (int(word) for word in row if word)
-            _add(sets, name, instance, ranged(first, last, step[0] if step else 1, block.where))
+            _add(sets, name, instance, Span(ranged(first, last, step[0] if step else 1, block.where)))
         return
     numbers = []
     for word in block.words():
@@ -201,7 +245,8 @@ def _surface(block: Block, scope: Scope) -> None:
     name, kind = block.options.get("NAME", ""), block.options.get("TYPE", "ELEMENT").upper()
     if kind == "NODE":
         words = [row[0] for row in block.rows()]
-        _set(Block("NSET", {"INSTANCE": block.options.get("INSTANCE", "")}, words, block.where), scope.node_sets, name)
+        options = {"INSTANCE": block.options.get("INSTANCE", "")}
+        _set(Block("NSET", options, words, block.where), scope.node_surfaces, name)
         return
     if kind != "ELEMENT" or "COMBINE" in block.options:
         raise ReadError(f"{block.where}: *SURFACE of this type is not known; write one of TYPE=ELEMENT or NODE")

@@ -119,7 +119,7 @@ def attach(
         mesh = mesh_of(geometry)
     interface = _interface(mesh, faces, tolerance, any_size, unit)
     materials = _materials(study, mesh, faces)
-    notes = _apart(mesh, faces, interface)
+    notes = [*(note.text for note in mesh.notes), *_apart(mesh, faces, interface)]
     if solving:
         law, at_points, said = _solved(moved, mesh, faces, preload)
     else:
