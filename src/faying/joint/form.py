@@ -33,6 +33,7 @@ PARAMETERS = {
 }
 VARIED = PARAMETERS | OF_WAVINESS  # what sweeps and predictions know of a form
 TOLERANCE_SHARE = 2 / 3, 1 / 6  # mean and sd of the flatness drawn over the tolerance, a normal cut off at 2 sd
+STEEPEST = 0.1  # of the side of the face, that a shape may have as height
 DEGREES = 2, 3, 4  # total degrees of the polynomials of a random form: crowns and twist, and two orders above
 GRID = 33  # points along each side of the rectangle at which the flatness of a random form is taken
 
@@ -110,6 +111,7 @@ class Form:
         for name in ("crown_along", "crown_across", "twist", "wave", "flatness"):
             if getattr(self, name):
                 axes.check(name)
+        self._check_heights(axes)
         place = 2 * axes.local(positions) / np.array(axes.lengths)
         x, y = place.T
         for c, s in ((self.crown_along, x), (self.crown_across, y)):
@@ -130,6 +132,18 @@ class Form:
             if face is not None:
                 gap += face.placed(axes, outward).at(positions)
         return gap
+
+    def _check_heights(self, axes: FaceAxes) -> None:
+        """Raise InputError where a shape is as high as the face is long, as with a wrong unit."""
+        long, short = axes.lengths
+        sides = {"crown_along": long, "crown_across": short, "twist": short, "wave": long, "flatness": long}
+        for name, side in sides.items():
+            value = abs(getattr(self, name))
+            if value > STEEPEST * side:
+                raise InputError(
+                    f"{name} = {1e3 * value:.4g} mm on a face that is {1e3 * side:.4g} mm long there; it is at most "
+                    f"{STEEPEST:.0%} of that: check its unit"
+                )
 
     def on(self, interface: Interface, mesh: Mesh, faces: tuple[str, str]) -> Interface:
         """Return a joint of two named faces with this form added to the gap of its geometry."""

@@ -219,14 +219,17 @@ def materials_of(study: Study, mesh: Mesh) -> dict[str, Material]:
 def checked_mesh(study: Study) -> Mesh:
     """Return the mesh of a study; every name that does not fit the geometry is reported at once."""
     mesh = mesh_of(study.geometry)
-    faults = [fault for _, fault in name_faults(study, list(mesh.parts), list(mesh.faces))]
+    faults = [fault for _, fault in name_faults(study, list(mesh.parts), mesh.face_part)]
     if faults:
         raise InputError("the study does not fit its geometry:\n" + "\n".join(f"  - {line}" for line in faults))
     return mesh
 
 
-def name_faults(study: Study, parts: Sequence[str], faces: Sequence[str]) -> list[tuple[str, str]]:
-    """Names of a study that its geometry does not hold: the key of each, and what is wrong."""
+def name_faults(study: Study, parts: Sequence[str], faces: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Names of a study that its geometry does not hold, and parts that nothing holds: key of each, and what is wrong.
+
+    faces: the part of each.
+    """
     file = study.geometry.file.name
     held = ", ".join(parts)
     unsaid = [name for name in parts if name not in study.parts]
@@ -244,7 +247,34 @@ def name_faults(study: Study, parts: Sequence[str], faces: Sequence[str]) -> lis
         for key, what, name, face in named_faces(study)
         if face not in faces
     ]
-    return faults
+    return faults or [*_loose_parts(study, parts, faces), *_idle_bolts(study)]
+
+
+def _loose_parts(study: Study, parts: Sequence[str], faces: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Parts that no joint and no support holds, which a structure refuses."""
+    held = {faces[face] for joint in study.joints for face in joint.faces} | {
+        faces[support.face] for support in study.supports
+    }
+    return [
+        (f"part.{name}", f"part {name!r} has no joint; add a [[joint]] of one of its faces, or leave it out")
+        for name in parts
+        if name not in held and len(parts) > 1
+    ]
+
+
+def _idle_bolts(study: Study) -> list[tuple[str, str]]:
+    """Bolts that pull on two faces that do not move, so that no joint gets anything of their preload."""
+    firm = [one for one in study.supports if one.stiffness is None and set(one.directions) == {"x", "y", "z"}]
+    fixed = {one.face for one in firm}
+    return [
+        (
+            f"bolt[{k}].faces",
+            f"bolt {bolt.name!r} pulls the faces {' and '.join(map(repr, bolt.faces))}, and a [[support]] holds each "
+            "of them: its preload goes into the supports and presses no joint; support other faces",
+        )
+        for k, bolt in enumerate(study.bolts, 1)
+        if bolt.part is None and fixed.issuperset(bolt.faces)
+    ]
 
 
 def named_faces(study: Study) -> list[tuple[str, str, str, str]]:

@@ -153,6 +153,7 @@ def _rising(value: Any, name: str, unit: str, example: str) -> tuple[float, ...]
     for text, load in zip(items, loads, strict=True):
         if load <= 0:
             raise InputError(f'{name} = "{text}": a preload pulls the joint together and must be positive')
+        quantity(text, unit, name)  # refuses what no bolt can have
     if any(b <= a or isclose(a, b) for a, b in pairwise(loads)):
         raise InputError(
             f"{name} = {value!r}: preloads must rise, since the law is one of loading; the joint remembers the "

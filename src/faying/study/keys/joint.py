@@ -9,7 +9,7 @@ from faying.joint.form import Form
 from faying.study.keys.face import face_names
 from faying.study.keys.form import read_form
 from faying.study.keys.law import LawChoice
-from faying.study.keys.reader import Table
+from faying.study.keys.reader import MOST_FRICTION, Table
 from faying.study.keys.surface import SurfaceChoice
 
 TANGENTIAL = Parameter("", "tangential over normal stiffness, k_t/k_n", 0, 2, "(]")
@@ -58,7 +58,7 @@ class JointChoice:
             faces=face_names(table, "faces", name),
             springs=table.text("springs", "per-area", ("per-area", "per-node")),
             tangential=table.take("tangential", _tangential, None),
-            friction=table.number("friction", None),
+            friction=table.within("friction", 0, MOST_FRICTION, None),
             search_distance=table.quantity("search_distance", "m", None),
             surface=None if surface is None else SurfaceChoice.of(surface),
             law=None if law is None else LawChoice.of(law),

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from faying.errors import InputError
 from faying.materials import CATALOGUE, STIFFEST, Material
-from faying.study.keys.reader import Table
+from faying.study.keys.reader import MOST_FRICTION, Table
 
 
 def read_materials(top: Table) -> dict[str, Material]:
@@ -18,7 +18,7 @@ def read_materials(top: Table) -> dict[str, Material]:
             "yield_strength": table.quantity("yield_strength", "Pa", None),
             "hardness": table.quantity("hardness", "Pa", None),
             "brinell": table.quantity("brinell", "Pa", None),
-            "friction": table.number("friction", None),
+            "friction": table.within("friction", 0, MOST_FRICTION, None),
             "conductivity": table.quantity("conductivity", "W/(m*K)", None),
             "resistivity": table.quantity("resistivity", "ohm*m", None),
             "bearing_limit": table.quantity("bearing_limit", "Pa", None),
@@ -49,6 +49,7 @@ def read_parts(top: Table, materials: Mapping[str, Material]) -> dict[str, str]:
                 f'part.{name}: material "{material}" has nu = {nu:g}, and solid elements lock near 0.5; give at most '
                 f"{STIFFEST:g}"
             )
-        parts[name] = material
+        if material is not None:  # else a fault is noted, and nothing may stand in its place
+            parts[name] = material
         table.close()
     return parts

@@ -12,6 +12,21 @@ from faying.errors import InputError
 from faying.fe.selectors import Selector
 
 MOST = 1_000_000  # of what is counted, where a key says no less
+MOST_FRICTION, MOST_LOSS = 10.0, 2.0  # coefficient of friction, loss factor [-]
+# least and greatest size that a number of a unit has in any bolted structure: beyond them a unit or a power is wrong
+RANGES = {
+    "m": (1e-12, 1e4),
+    "m^2": (1e-24, 1e6),
+    "N": (1e-6, 1e10),
+    "Pa": (1e-3, 1e14),
+    "Pa/m": (1.0, 1e20),
+    "Hz": (1e-6, 1e10),
+    "kg": (1e-12, 1e9),
+    "kg/m^3": (1e-3, 1e6),
+    "m/s^2": (1e-9, 1e9),
+    "N*m": (1e-9, 1e9),
+    "W/(m*K)": (1e-6, 1e6),
+}
 
 
 class StudyFaults(InputError):
@@ -87,6 +102,17 @@ class Table:
     def number(self, key: str, default: Any = MISSING) -> Any:
         """Take a plain number (of a quantity without dimension)."""
         return self.take(key, number, default)
+
+    def within(self, key: str, least: float, greatest: float, default: Any = MISSING) -> Any:
+        """Take a plain number from `least` to `greatest`."""
+
+        def checked(value: Any, name: str) -> float:
+            found = number(value, name)
+            if not least <= found <= greatest:
+                raise InputError(f"{name} = {found:g} should be a plain number from {least:g} to {greatest:g}")
+            return found
+
+        return self.take(key, checked, default)
 
     def count(self, key: str, default: Any = MISSING, *, most: int = MOST) -> Any:
         """Take a whole number from 1 to `most`."""
@@ -183,6 +209,10 @@ def quantity(value: Any, unit: str, name: str, *, positive: bool = True) -> floa
     number = units.parse(value, unit, name=name)
     if positive and number <= 0:
         raise InputError(f'{name} = "{value}" must be positive')
+    least, greatest = RANGES.get(unit, (0.0, float("inf")))
+    if (number and not (least <= abs(number) or not positive)) or abs(number) > greatest:
+        low, high = (units.show(end, unit) for end in (least, greatest))
+        raise InputError(f'{name} = "{value}" is beyond what a bolted structure has, {low} to {high}; check its unit')
     return number
 
 
@@ -199,8 +229,11 @@ def direction(value: Any, name: str) -> tuple[float, float, float]:
     if not isinstance(value, list) or len(value) != 3:
         raise InputError(f"{name} = {value!r} should be three numbers, for example [1, 0, 0]")
     x, y, z = (number(v, name) for v in value)
-    if x == y == z == 0:
+    size = max(abs(x), abs(y), abs(z))
+    if size == 0:
         raise InputError(f"{name} = {value!r} has no length")
+    if not 1e-9 < size < 1e9:  # whose square is 0 or infinite at the end
+        raise InputError(f"{name} = {value!r} is only a direction; write numbers about 1, for example [1, 0, 0]")
     return x, y, z
 
 

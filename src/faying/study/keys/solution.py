@@ -7,7 +7,7 @@ from typing import Any
 
 from faying.errors import InputError
 from faying.joint.modal import MOST_MODES, SOLVERS, ModesChoice
-from faying.study.keys.reader import Table, direction, point, quantity
+from faying.study.keys.reader import MOST_LOSS, Table, direction, point, quantity
 
 MOST_POINTS, MOST_PASSES = 1_000_000, 100
 Point = tuple[float, float, float]
@@ -71,7 +71,7 @@ class ResponseChoice:
             first=first,
             last=last,
             points=table.count("points", 1000, most=MOST_POINTS),
-            structural_loss=table.number("structural_loss", 0.0),
+            structural_loss=table.within("structural_loss", 0, MOST_LOSS, 0.0),
         )
         table.close()
         return choice

@@ -189,7 +189,7 @@ def _flat(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any
     for name, value in table.items():
         key = f"{before}{name}"
         whole = {"distribution", "tightening", "scatter"}
-        if isinstance(value, Mapping) and not whole & set(value) and key != "law.model":
+        if isinstance(value, Mapping) and value and not whole & set(value) and key != "law.model":
             yield from _flat(value, f"{key}.")
         else:
             yield key, value
@@ -243,7 +243,7 @@ class _Reader:
                 "joint.NAME.tangential, joint.NAME.form.SHAPE, surface.D, surface.G, law.NAME"
             )
         self._check(key, where)
-        if not isinstance(value, str | Mapping):
+        if not isinstance(value, str | Mapping) or not value:
             raise InputError(f'{where} = {value!r} is no distribution; write for example "0.1 to 0.6" or "2 +- 0.1"')
         self._add(key, Distribution.read(value, parameter.unit, where), parameter, where, within)
 
