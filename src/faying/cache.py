@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.files import write_arrays
+from faying.files import is_sealed, write_arrays
 
 FOLDER = ".faying"  # beside a scan it keeps solved contacts, beside a STEP file meshes; it can be deleted at any time
 
@@ -47,13 +47,11 @@ def kept(
 
 
 def _read(file: Path) -> dict[str, Any] | None:
-    """The arrays of a file; None where there is none or it is damaged."""
+    """The arrays of a file; None where there is none, or it is not as it was written."""
     try:
+        if not is_sealed(file):
+            return None
         with file.open("rb") as stream, np.load(stream, allow_pickle=False) as data:
             return dict(data.items())
     except (OSError, ValueError, KeyError, EOFError):
         return None
-    except Exception as fault:  # zipfile.BadZipFile, zlib.error: what a cut file raises
-        if type(fault).__module__ in ("zipfile", "zlib"):
-            return None
-        raise

@@ -321,7 +321,7 @@ def _heading(path: Path, wanted: Sequence[Wanted], form: str) -> tuple[tuple[Cel
 
 def _above(path: Path) -> list[tuple[int, str]]:
     """The lines above the first row of numbers, with their numbers; blank ones left out."""
-    out = []
+    out: list[tuple[int, str]] = []
     with path.open(encoding="utf-8-sig", errors="replace") as handle:
         for number, line in enumerate(handle, start=1):
             if len(_numbers(line.split("#")[0])) > 1:

@@ -1,11 +1,12 @@
 """Files that appear whole or not at all, and rows of numbers read from text."""
 
+import hashlib
 import os
 import re
 import shutil
 import signal
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -34,8 +35,35 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
     return path
 
 
-def write_arrays(path: Path, arrays: Mapping[str, Any]) -> Path:
-    """Write arrays in the form of `numpy.savez`, whole or not at all."""
+SEAL = b"FAYING-SHA256 "  # behind the bytes that it is the checksum of, with 64 digits
+
+
+def seal_of(data: bytes) -> bytes:
+    """The checksum that stands behind some bytes in a file; readers of HDF5 and zip pass it over."""
+    return SEAL + hashlib.sha256(data).hexdigest().encode()
+
+
+def is_sealed(path: Path) -> bool | None:
+    """Whether a file is as it was written; None where it bears no checksum. Raises OSError where it cannot be read."""
+    length = len(SEAL) + 64
+    size = path.stat().st_size - length
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        if size < 0:
+            return None
+        file.seek(size)
+        seal = file.read()
+        if not seal.startswith(SEAL):
+            return None
+        file.seek(0)
+        while size > 0 and (block := file.read(min(size, 1 << 20))):
+            digest.update(block)
+            size -= len(block)
+    return bool(seal == SEAL + digest.hexdigest().encode())
+
+
+def write_arrays(path: Path, arrays: Mapping[str, Any], *, seal: bool = True) -> Path:
+    """Write arrays in the form of `numpy.savez`, whole or not at all; seal: whether a checksum stands behind them."""
     import numpy as np
 
     def fill(temporary: Path) -> None:
@@ -44,6 +72,12 @@ def write_arrays(path: Path, arrays: Mapping[str, Any]) -> Path:
             for name, array in arrays.items():
                 with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
                     np.lib.format.write_array(file, np.asanyarray(array), allow_pickle=False)
+        if seal:
+            digest = hashlib.sha256()
+            with temporary.open("rb+") as file:
+                while block := file.read(1 << 20):
+                    digest.update(block)
+                file.write(SEAL + digest.hexdigest().encode())
 
     return write_atomically(path, fill)
 
@@ -83,16 +117,28 @@ def new_folder(folder: Path, remedy: str) -> Iterator[Path]:
 
 
 @contextmanager
-def together(folder: Path, remedy: str) -> Iterator[Path]:
+def together(folder: Path, remedy: str, kept: Sequence[str] = ()) -> Iterator[Path]:
     """Give a hidden folder to write in, whose files appear in `folder` together, or not at all after any fault.
 
     The hidden folder stands in `folder` where that exists, so that both are on one disk, else beside it. Made before
     the work, it shows in time where nothing can be written. Files of other names in `folder` stay as they are.
 
+    Two processes do not write to one folder at once: the second is refused before its work. What processes that are no
+    more have left hidden is taken away.
+
+    Args:
+        folder: where the files appear.
+        remedy: what to do where it cannot be made.
+        kept: names of files that appear even where a fault stops the writing of others.
+
     Raises:
-        InputError: the folder cannot be made; faults of writing inside it name the file's final place.
+        InputError: the folder cannot be made, or another process writes to it; faults of writing inside it name the
+            file's final place.
     """
     name = f".{folder.name}.{os.getpid()}.part"
+    if folder.is_symlink() and not folder.exists():
+        raise InputError(f"{folder} is a link that leads nowhere; remove it, or {remedy}")
+    _refuse_company(folder, remedy)
     with new_folder(folder.parent, remedy):
         hidden = folder / name if folder.is_dir() else folder.with_name(name)
         if folder.exists() and not folder.is_dir():
@@ -105,15 +151,57 @@ def together(folder: Path, remedy: str) -> Iterator[Path]:
             try:
                 yield hidden
             except InputError as fault:
-                raise InputError(str(fault).replace(str(hidden), str(folder))) from None
+                whole = [hidden / one for one in kept if (hidden / one).is_file()]
+                with uninterrupted():
+                    _appear(hidden, folder, whole)
+                more = f"; {', '.join(one.name for one in whole)} was written" if whole else ""
+                raise InputError(str(fault).replace(str(hidden), str(folder)) + more) from None
             with uninterrupted():
-                if hidden.parent != folder:
-                    hidden.rename(folder)
-                else:
-                    for file in sorted(hidden.iterdir()):
-                        os.replace(file, folder / file.name)
+                _appear(hidden, folder, sorted(hidden.iterdir()))
         finally:
             shutil.rmtree(hidden, ignore_errors=True)
+
+
+def _appear(hidden: Path, folder: Path, files: Sequence[Path]) -> None:
+    """Move files from the hidden folder to their place."""
+    if not files:
+        return
+    try:
+        folder.mkdir(exist_ok=True)
+        for file in files:
+            os.replace(file, folder / file.name)
+    except OSError as fault:
+        raise InputError(f"cannot write in {folder}: {fault.strerror or fault}") from None
+
+
+def _refuse_company(folder: Path, remedy: str) -> None:
+    """Raise InputError where a process that lives writes to the folder; take away what dead ones have left."""
+    mark = re.compile(rf"\.{re.escape(folder.name)}\.(\d+)\.part")
+    for place in (folder, folder.parent):
+        with suppress(OSError):
+            for one in [path for path in place.iterdir() if path.is_dir()]:
+                found = mark.fullmatch(one.name)
+                if found is None or int(found[1]) == os.getpid():
+                    continue
+                if alive(int(found[1])):
+                    raise InputError(
+                        f"process {found[1]} writes to {folder} already; wait for it, or {remedy} (or remove {one} "
+                        "where no such process is Faying's)"
+                    )
+                shutil.rmtree(one, ignore_errors=True)
+
+
+def alive(process: int) -> bool:
+    """Whether a process of this number lives on this machine; True where that cannot be known."""
+    if os.name != "posix":
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        return True
+    return True
 
 
 @contextmanager

@@ -1,5 +1,9 @@
 """Trees of named arrays as NetCDF-4 files: the one writer and the one reader."""
 
+import os
+import pickle
+import subprocess
+import sys
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -11,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faying.errors import ReadError
-from faying.files import write_atomically
+from faying.files import is_sealed, seal_of, write_atomically
 
 Attribute = str | int | float
 PARTS = ("_real", "_imaginary")  # NetCDF has no complex numbers: two variables stand for one
@@ -55,7 +59,8 @@ def write(path: Path, root: Group) -> Path:
     buffer = BytesIO()  # HDF5 itself cannot be stopped tidily where a disk is full
     with h5netcdf.File(buffer, "w") as file:
         _fill(file, root, {})
-    return write_atomically(path, lambda temporary: temporary.write_bytes(buffer.getvalue()))
+    data = buffer.getvalue()
+    return write_atomically(path, lambda temporary: temporary.write_bytes(data + seal_of(data)))
 
 
 def _fill(target: Any, group: Group, known: Mapping[str, int]) -> None:
@@ -98,9 +103,65 @@ def _plain(variables: Mapping[str, Variable]) -> dict[str, Variable]:
 
 
 def read(path: Path) -> Group:
-    """Read a tree that `write` wrote. Raises ReadError where the file is missing, damaged or no NetCDF-4 file."""
+    """Read a tree of a NetCDF-4 file.
+
+    What `write` wrote bears a checksum, which is compared before HDF5 sees the file. HDF5 may never return from a
+    damaged file, so that a file without a checksum is read by a process of its own, which has `seconds_for` it.
+
+    Raises:
+        ReadError: the file is missing, damaged or no NetCDF-4 file.
+    """
     if not path.is_file():
         raise ReadError(f"{path}: no such file")
+    try:
+        sealed = is_sealed(path)
+    except OSError as fault:
+        raise ReadError(f"{path} cannot be read ({fault.strerror or fault})") from None
+    if sealed is False:
+        raise ReadError(f"{path} is damaged: its checksum does not fit its bytes; copy it again, or make it anew")
+    return read_here(path) if sealed or not sys.executable else _read_apart(path)
+
+
+def seconds_for(size: int) -> float:
+    """How long a file of so many bytes may take to read."""
+    return 30.0 + size / 5e6
+
+
+def _read_apart(path: Path) -> Group:
+    """Read a file in a process of its own."""
+    code = "import sys, pickle, faying.netcdf as n; n.answer(sys.argv[1])"
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
+    limit = seconds_for(path.stat().st_size)
+    try:
+        done = subprocess.run(
+            [sys.executable, "-c", code, str(path)], capture_output=True, timeout=limit, env=environment, check=False
+        )
+    except subprocess.TimeoutExpired:
+        raise ReadError(
+            f"{path} is damaged: HDF5 does not come to an end with it within {limit:.0f} s; make it anew"
+        ) from None
+    except OSError:  # no process can be started here
+        return read_here(path)
+    if done.returncode:
+        raise ReadError(f"{path} is damaged: HDF5 ended with {done.returncode} while it was read; make it anew")
+    found: Group | str = pickle.loads(done.stdout)
+    if isinstance(found, str):
+        raise ReadError(found)
+    return found
+
+
+def answer(path: str) -> None:
+    """Write the tree of a file, or why it cannot be read, to standard output, for the process that asked."""
+    found: Group | str
+    try:
+        found = read_here(Path(path))
+    except ReadError as fault:
+        found = str(fault)
+    sys.stdout.buffer.write(pickle.dumps(found))
+
+
+def read_here(path: Path) -> Group:
+    """Read a tree in this process. Raises ReadError where the file is damaged or no NetCDF-4 file."""
     import h5netcdf
 
     try:

@@ -7,6 +7,7 @@ from urllib.parse import quote
 
 import pytest
 
+from faying.app import routes
 from faying.app.project import LARGEST, Project, checked_name
 from faying.app.server import Server
 from faying.errors import InputError
@@ -121,6 +122,30 @@ def test_a_length_that_is_no_number_is_refused(server, length):
         head = f"POST /{server.token}/api/file?name=scan.x3p HTTP/1.1\r\nHost: 127.0.0.1:{server.server_port}\r\n"
         line.sendall(f"{head}Content-Length: {length}\r\n\r\n".encode())
         assert line.makefile("rb").read().startswith(b"HTTP/1.1 400")
+
+
+def test_a_length_of_5_000_digits_is_refused(server):
+    with socket.create_connection(("127.0.0.1", server.server_port), timeout=10) as line:
+        head = f"POST /{server.token}/api/file?name=scan.x3p HTTP/1.1\r\nHost: 127.0.0.1:{server.server_port}\r\n"
+        line.sendall(f"{head}Content-Length: {'9' * 5000}\r\n\r\n".encode())
+        assert line.makefile("rb").read().startswith(b"HTTP/1.1 413")
+
+
+def test_json_nested_without_end_is_refused(server):
+    body = "[" * 50_000 + "]" * 50_000
+    assert "is no JSON" in json.loads(ask(server, "api/study", "PUT", body)[1])["fault"]
+
+
+def test_a_fault_of_ours_is_an_answer(server, monkeypatch):
+    def broken(session, request):
+        raise TypeError("a number is None")
+
+    monkeypatch.setitem(routes.ROUTES, ("GET", "check"), broken)
+    answer, text = ask(server, "api/check")
+    assert answer.status == 200
+    assert json.loads(text)["fault"].startswith("a fault inside Faying (TypeError: a number is None) in GET check")
+    monkeypatch.setitem(routes.ROUTES, ("GET", "check"), lambda session, request: {"k": float("nan")})
+    assert "ValueError" in json.loads(ask(server, "api/check")[1])["fault"]
 
 
 def test_an_upload_that_breaks_off_leaves_nothing(server, tmp_path):

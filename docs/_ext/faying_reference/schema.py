@@ -18,7 +18,7 @@ KEYS = ROOT / "docs" / "reference" / "keys.toml"
 
 NUMERAL = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 SCATTERS = r".*(?: to |\+-|\+/-|±).*"  # a number that scatters: "0.1 to 0.6", "200 GPa +- 4 GPa"
-QUANTITY = {"type": "string", "pattern": rf"^\s*{NUMERAL}\s*[^0-9\s.]"}
+QUANTITY = {"type": "string", "pattern": rf"^\s*{NUMERAL}\s*([^0-9\s.]|1\s*/)"}
 NUMBER = {"anyOf": [{"type": "number"}, {"type": "string", "pattern": rf"^\s*{NUMERAL}{SCATTERS}$"}]}
 TEXT = {"type": "string"}
 WHOLE = {"type": "integer", "minimum": 1, "maximum": 1_000_000}

@@ -14,6 +14,7 @@ from faying import __version__
 from faying.app.commands import Job, answer
 from faying.app.project import Project, checked_name
 from faying.errors import FayingError, InputError
+from faying.files import make_folder
 
 # what may run, with the pictures that it draws for the page
 JOBS = {
@@ -42,7 +43,7 @@ class Request:
         """The body as JSON. Raises InputError where it is none."""
         try:
             found = json.loads(self.body.read(self.size))
-        except ValueError:
+        except (ValueError, RecursionError):
             raise InputError("the request is no JSON") from None
         if not isinstance(found, dict):
             raise InputError("the request is no table of JSON")
@@ -121,6 +122,8 @@ class Session:
                 raise InputError(f"{self.job.command} still runs; cancel it or wait")
             if self.project.text() is None:
                 raise InputError("there is no study yet")
+            if any("results/" in word for word in JOBS[what]):
+                make_folder(self.project.folder / "results", "free the name results in the folder")
             self.job = Job([what, self.project.study_name, *JOBS[what]], self.project.folder)
         return self.job.state()
 
@@ -184,6 +187,11 @@ def answered(session: Session, method: str, path: str, request: Request) -> byte
         return None
     try:
         found = route(session, request)
+        return (found if isinstance(found, str) else json.dumps(found, allow_nan=False)).encode()
     except FayingError as fault:  # an answer like others: what the user should read
         return json.dumps({"fault": str(fault)}).encode()
-    return (found if isinstance(found, str) else json.dumps(found, allow_nan=False)).encode()
+    except ConnectionError:  # the page was closed
+        raise
+    except Exception as fault:  # a fault of ours is an answer, too: the page goes on
+        words = f"a fault inside Faying ({type(fault).__name__}: {fault}) in {method} {path}; please report it"
+        return json.dumps({"fault": words}).encode()

@@ -31,6 +31,7 @@ TYPES = {
     ".png": "image/png",
     ".csv": "text/csv; charset=utf-8",
 }
+DIGITS = 18  # of the length of a request, beyond which it is no size
 PAGE = Path(__file__).parent / "page"
 # the page's files by their name in the address, "" for the page itself
 ASSETS = {"": PAGE / "index.html", "app.js": PAGE / "app.js", "app.css": PAGE / "app.css", **VIEWER}
@@ -135,7 +136,7 @@ class _Handler(BaseHTTPRequestHandler):
         length = self.headers.get("Content-Length", "0")
         if not (length.isascii() and length.isdigit()):
             return 400, "the Content-Length is no number"
-        if int(length) > LARGEST:
+        if len(length) > DIGITS or int(length) > LARGEST:
             return 413, f"a file may have {LARGEST >> 30} GB at most; put larger ones into the folder yourself"
         return None
 
@@ -149,7 +150,12 @@ class _Handler(BaseHTTPRequestHandler):
         except InputError as fault:
             self._refuse(404, str(fault))
             return
-        self._send(200, TYPES.get(path.suffix, "application/octet-stream"), path.read_bytes(), RESULT_POLICY)
+        try:
+            data = path.read_bytes()
+        except OSError as fault:  # it went away, or was never to be read
+            self._refuse(404, f"{path.name} cannot be read ({fault.strerror})")
+            return
+        self._send(200, TYPES.get(path.suffix, "application/octet-stream"), data, RESULT_POLICY)
 
     def _send_asset(self, name: str) -> None:
         if name not in ASSETS:

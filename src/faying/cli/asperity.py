@@ -1,12 +1,12 @@
 """`faying asperity`: press one asperity, or a table of them, by finite elements."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 import click
 
 from faying.cli.progress import Shown
+from faying.text import json_text
 
 COLUMNS = {
     "R": "m",
@@ -92,7 +92,7 @@ def command(
 
         save(overview(cases[0], first), plot)
     document = [described(case, result) for case, result in zip(cases, results, strict=True)]
-    click.echo(json.dumps(document, indent=2) if as_json else table(document))
+    click.echo(json_text(document) if as_json else table(document))
     failed = sum("error" in entry for entry in document)
     if failed:
         raise FayingError(f"{failed} of {len(cases)} cases failed; their messages stand above")

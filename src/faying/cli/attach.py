@@ -1,12 +1,12 @@
 """faying attach MODEL: the joint into a deck of another solver, or into matrices that one has assembled."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 import click
 
 from faying.decks.programs import SOLVERS
+from faying.text import json_text
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -147,7 +147,7 @@ def command(
         files = write(made.deck, solver, out or model.parent / "joint")
         document["files"] = [str(file) for file in files]
     if as_json:
-        click.echo(json.dumps(document, indent=2, allow_nan=False))
+        click.echo(json_text(document))
         return
     lines += [f"note: {note}" for note in made.notes]
     lines += [f"written: {file}" for file in files]

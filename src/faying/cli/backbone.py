@@ -1,12 +1,12 @@
 """faying backbone STUDY.toml --friction 0.2"""
 
-import json
 from pathlib import Path
 from typing import Any
 
 import click
 
 from faying.cli.progress import Shown, progress_options
+from faying.text import json_text
 
 
 @click.command()
@@ -68,7 +68,7 @@ def command(study: Path, **options: Any) -> None:
     if plot:
         files.append(save(drawing.figure(curves, measured), plot))
     if options["as_json"]:
-        click.echo(json.dumps({"curves": [c.to_dict() for c in curves], "files": [str(f) for f in files]}, indent=2))
+        click.echo(json_text({"curves": [c.to_dict() for c in curves], "files": [str(f) for f in files]}))
         return
     for curve in curves:
         click.echo(text(curve))

@@ -1,12 +1,13 @@
 """faying check STUDY.toml"""
 
-import json
 import textwrap
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import click
+
+from faying.text import json_text
 
 COLUMNS = 80
 
@@ -20,7 +21,7 @@ def command(study: Path, as_json: bool) -> int:
 
     found = check(study)
     if as_json:
-        click.echo(json.dumps(to_dict(found), indent=2))
+        click.echo(json_text(to_dict(found)))
     else:
         lines = [line for one in by_level(found) for line in _lines(one)]
         if found.expected is not None:

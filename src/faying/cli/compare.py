@@ -1,9 +1,10 @@
 """`faying compare RESULT.nc TEST.uff`: a hammer test beside the result of a study."""
 
-import json
 from pathlib import Path
 
 import click
+
+from faying.text import json_text
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -93,7 +94,7 @@ def command(
     for line in tested.notes:
         click.echo(f"note: {line}", err=True)
     if as_json:
-        click.echo(json.dumps(comparison.to_dict() | {"files": [str(f) for f in files]}, indent=2, allow_nan=False))
+        click.echo(json_text(comparison.to_dict() | {"files": [str(f) for f in files]}))
         return
     click.echo(
         f"{model.title} at {model.load / 1e3:g} kN; {len(comparison.point_map.nodes)} points of the test found a node\n"

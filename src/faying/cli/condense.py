@@ -1,6 +1,5 @@
 """faying condense STUDY.toml: one joint as a 6 x 6 stiffness and loss between two points."""
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +7,7 @@ import click
 
 from faying.cli.progress import Form, Shown, progress_options
 from faying.decks.programs import CONDENSED
+from faying.text import json_text
 
 WORDS = ("x", "y", "z", "turn x", "turn y", "turn z")
 
@@ -69,7 +69,7 @@ def command(
         deck = found.deck(unit=unit or "", force_unit=force_unit, nodes=(node_a, node_b), element=element)
         files = write_condensed(deck, solver, out or plan.folder / "joint")
     if as_json:
-        click.echo(json.dumps(found.to_dict() | {"files": [str(f) for f in files]}, indent=2, allow_nan=False))
+        click.echo(json_text(found.to_dict() | {"files": [str(f) for f in files]}))
         return
     place = ", ".join(f"{x:.4g}" for x in (1e3 * found.joint.point).round(6) + 0.0)
     lines = [

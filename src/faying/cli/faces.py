@@ -1,11 +1,12 @@
 """faying faces FILE"""
 
-import json
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import click
+
+from faying.text import json_text
 
 WIDE = 18  # letters of a face's name in the table
 
@@ -23,7 +24,7 @@ def command(geometry: Path, part: str | None, unit: str | None, as_json: bool) -
     if part is not None and part not in facts.by_part:
         raise InputError(f"no part is called {part!r}; the parts are {', '.join(map(repr, facts.by_part))}")
     if as_json:
-        click.echo(json.dumps(to_dict(facts, part), indent=2))
+        click.echo(json_text(to_dict(facts, part)))
         return
     click.echo(text(facts, part))
 

@@ -1,10 +1,11 @@
 """`faying form FILE`: a measured form of a face, or of a gap: map, flatness, crowns and twist."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 import click
+
+from faying.text import json_text
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -32,7 +33,7 @@ def command(
     if plot:
         save(drawing.figure(fit, file.name), plot)
     if as_json:
-        click.echo(json.dumps({"file": str(file), **fit.to_dict()}, indent=2))
+        click.echo(json_text({"file": str(file), **fit.to_dict()}))
         return
     click.echo(text(file.name, fit))
     if plot:

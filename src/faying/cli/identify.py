@@ -1,12 +1,12 @@
 """faying identify STUDY.toml"""
 
-import json
 import os
 from pathlib import Path
 
 import click
 
 from faying.cli.progress import Form, Shown, progress_options
+from faying.text import json_text
 
 
 @click.command()
@@ -68,7 +68,7 @@ def command(
     if html:
         files.append(write_text(html, identified(found, plan.title, plan.test.source if plan.test else "")))
     if as_json:
-        click.echo(json.dumps(found.to_dict() | {"files": [str(file) for file in files]}, indent=2))
+        click.echo(json_text(found.to_dict() | {"files": [str(file) for file in files]}))
         return
     click.echo(f"{plan.title}: {plan.test.source if plan.test else ''}\n\n{found.table()}")
     click.echo(f"\nwritten to {', '.join(map(str, files))}")

@@ -1,12 +1,12 @@
 """`faying law`: the curves of one contact law, or of several on one scan, as tables, JSON, CSV and figures."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 import click
 
 from faying.cli.options import quantity
+from faying.text import json_text
 
 # what the table shows: heading and factor from SI
 SHOWN = {
@@ -148,7 +148,7 @@ def command(
     if as_json:
         about = {"reason": choice.reason, "mates": choice.mates} | ({"surface": facts_of(mates)} if on_scan else {})
         about |= {} if h is None else {"h": quantity(h.tolist(), HEAT)}
-        click.echo(json.dumps(document(law, response) | about, indent=2, allow_nan=False))
+        click.echo(json_text(document(law, response) | about))
         return
     click.echo("\n".join([*heading(choice, mates), table(law, response, h)]))
 

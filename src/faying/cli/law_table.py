@@ -1,6 +1,5 @@
 """`faying law --models`: several laws of one scan in one table and on one plot, with the factor between them."""
 
-import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -11,6 +10,7 @@ import click
 
 from faying.cli.options import quantity
 from faying.cli.progress import Shown
+from faying.text import json_text
 
 SURFACE_UNITS = {"G": "m", "scan_area": "m^2", "m0": "m^2", "m4": "1/m^2", "h_rms": "m", "shortest": "m"}
 
@@ -47,7 +47,7 @@ def show(mates: Any, names: list[str] | None, pressures: Any, output: Output) ->
         save(curves(comparison.responses), output.plot)
     if output.as_json:
         tree = {"mates": mates.line} | document(inputs, comparison, heat)
-        click.echo(json.dumps(tree, indent=2, allow_nan=False))
+        click.echo(json_text(tree))
         return
     click.echo(f"mates: {mates.line}\n{table(inputs, comparison, heat)}")
 
@@ -101,7 +101,7 @@ def stability(mates: Any, names: list[str], given: Any, pressure: float, as_json
             for one in found
         }
         tree = {"mates": mates.line, "pressure": quantity(pressure, "Pa"), "laws": rows, "left out": without}
-        return json.dumps(tree, indent=2)
+        return json_text(tree)
     lines = [f"mates: {mates.line}", ""]
     lines += [f"k_n at {pressure * 1e-6:.4g} MPa, and what multiplies it on parts of the scan", ""]
     lines.append(f"{'law':<12}{'k_n [MPa/um]':>13}" + "".join(f"{name:>17}" for name in CASES[1:]))

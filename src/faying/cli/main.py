@@ -1,9 +1,11 @@
 """The group of commands. A command's module is imported only when the command is called for."""
 
+import errno
 import os
 import signal
 import sys
 import threading
+from contextlib import suppress
 from importlib import import_module
 from typing import Any
 
@@ -60,6 +62,15 @@ def cli() -> None:
     """From a measured rough surface and a bolt preload to the vibration modes of the bolted structure."""
 
 
+FULL = (errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EFBIG)  # the output goes where nothing fits
+
+
+def _drop_output() -> None:
+    """Let what cannot be written go, so that the interpreter does not try it again at its end."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def _stop(*_: object) -> None:
     raise KeyboardInterrupt
 
@@ -81,10 +92,21 @@ def main(argv: list[str] | None = None) -> None:
     _share_cores()
     # kill, and a batch system's time limit, clear up as Ctrl-C does
     alone = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+    hung_up = getattr(signal, "SIGHUP", None)
     if alone:
         signal.signal(signal.SIGTERM, _stop)
+        if hung_up is not None and signal.getsignal(hung_up) is signal.SIG_DFL:  # nohup leaves it ignored
+            signal.signal(hung_up, _stop)
     try:
         code: Any = cli.main(args=argv, prog_name="faying", standalone_mode=False)
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except OSError as fault:
+        if fault.errno not in FULL:
+            raise
+        _drop_output()
+        click.echo(f"faying: cannot write the output: {fault.strerror}", err=True)
+        sys.exit(1)
     except FayingError as fault:
         click.echo(f"faying: {fault}", err=True)
         sys.exit(1)

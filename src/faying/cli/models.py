@@ -1,9 +1,10 @@
 """`faying models`: every contact model with its source, inputs and ranges."""
 
-import json
 from typing import Any
 
 import click
+
+from faying.text import json_text
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -17,7 +18,7 @@ def command(name: str | None, as_json: bool) -> None:
     entries = [describe(cls) for cls in ([find(name).law] if name else laws().values())]
     singles = [] if name else [single(cls) for cls in asperity.models().values()]
     if as_json:
-        click.echo(json.dumps({"laws": entries, "asperities": singles}, indent=2))
+        click.echo(json_text({"laws": entries, "asperities": singles}))
         return
     lines = ["Laws of rough surfaces, faying.contact", ""] if not name else []
     for entry in entries:

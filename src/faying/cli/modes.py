@@ -1,10 +1,11 @@
 """faying modes [STUDY.toml] --stiffness FILE --mass FILE"""
 
-import json
 from pathlib import Path
 from typing import Any
 
 import click
+
+from faying.text import json_text
 
 
 @click.command()
@@ -75,7 +76,7 @@ def command(
     frequency = units.parse(shift, "Hz", name="--shift") if shift else given.shift_frequency
     found = _here(given, count, frequency) if mpi is None else _over_mpi(given, count, frequency, mpi)
     if as_json:
-        click.echo(json.dumps(found, indent=2))
+        click.echo(json_text(found))
         return
     click.echo(f"{found['source']}: {found['unknowns']:,} unknowns, {found['solver']}")
     if mpi is not None:

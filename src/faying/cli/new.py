@@ -1,11 +1,12 @@
 """faying new PART.step"""
 
-import json
 import sys
 from pathlib import Path
 from typing import Any
 
 import click
+
+from faying.text import json_text
 
 
 @click.command()
@@ -27,7 +28,7 @@ def command(step: Path, scan: Path | None, out: Path, yes: bool, force: bool, as
     answers = new.Answers(scan=scan) if silent else asked(proposal, scan)
     written = new.write(proposal, step, out, answers, force=force)
     if as_json:
-        click.echo(json.dumps(to_dict(written), indent=2))
+        click.echo(json_text(to_dict(written)))
         return
     click.echo("\n".join(new.summary(written, out)))
 

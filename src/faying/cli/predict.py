@@ -1,12 +1,12 @@
 """faying predict STUDY.toml"""
 
-import json
 import os
 from pathlib import Path
 
 import click
 
 from faying.cli.progress import Form, Shown, progress_options
+from faying.text import json_text
 
 
 @click.command()
@@ -96,7 +96,7 @@ def command(
     if html:
         files.append(write_text(html, predicted(found)))
     if as_json:
-        click.echo(json.dumps(found.to_dict() | {"files": [str(file) for file in files]}, indent=2))
+        click.echo(json_text(found.to_dict() | {"files": [str(file) for file in files]}))
         return
     click.echo(text(found))
     click.echo(f"\nwritten to {', '.join(map(str, files))}")

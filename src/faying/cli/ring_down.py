@@ -1,12 +1,12 @@
 """`faying ring-down RECORD --band LOW:HIGH`: the measured backbone of a mode from a free decay."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 import click
 
 from faying.cli.options import frequency_band, quantity
+from faying.text import json_text
 
 
 @click.command()
@@ -43,7 +43,7 @@ def command(record: Path, **options: Any) -> None:
     if options["as_json"]:
         units = {"acceleration": "m/s2", "frequency": "Hz", "damping": "1", "time": "s"}
         units |= {"frequency_error": "Hz", "damping_error": "1"}
-        click.echo(json.dumps({n: quantity(getattr(found, n).tolist(), u) for n, u in units.items()}, indent=2))
+        click.echo(json_text({n: quantity(getattr(found, n).tolist(), u) for n, u in units.items()}))
         return
     click.echo(text(measured_backbone(found)))
 

@@ -1,6 +1,5 @@
 """faying run STUDY.toml"""
 
-import json
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import Any
 import click
 
 from faying.cli.progress import Form, Shown, progress_options
+from faying.text import json_text
 
 
 @click.command()
@@ -60,7 +60,7 @@ def command(
     folder = out or plan.folder / "results"
     every = [*stages(plan), *([] if no_files else ["report"])]
     bar = Shown("study", progress, every)
-    with nullcontext() if no_files else together(folder, "give another with --out") as hidden, bar:
+    with nullcontext() if no_files else together(folder, "give another with --out", [RESULT]) as hidden, bar:
         result = run(plan, report=lambda stage, done, _: bar(stage, done, len(every)), engine=engine)
         files = []
         if hidden is not None:
@@ -69,11 +69,14 @@ def command(
             files += universal.write(result, hidden) if uff else []
             files = [folder / file.name for file in files]
     if as_json:
-        click.echo(json.dumps(result.to_dict() | {"files": [str(f) for f in files]}, indent=2))
+        click.echo(json_text(result.to_dict() | {"files": [str(f) for f in files]}))
         return
     click.echo(text(result))
     if files:
         click.echo(f"\nwritten to {folder}: {', '.join(f.name for f in files)}")
+
+
+RESULT = "result.nc"  # is kept where the report does not fit
 
 
 def text(result: Any) -> str:

@@ -1,11 +1,11 @@
 """`faying surface FILE`: roughness, D and G of a scan, on the terminal, as JSON, and as a figure."""
 
-import json
 from typing import Any
 
 import click
 
 from faying.surface.estimators.table import METHODS
+from faying.text import json_text
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -62,7 +62,7 @@ def command(
         from faying.surface.figure import overview
 
         overview(scan, ready, fits, plot)
-    click.echo(json.dumps(document, indent=2, allow_nan=False) if as_json else table(document))
+    click.echo(json_text(document) if as_json else table(document))
 
 
 def describe(scan: Any, ready: Any, rough: Any, fits: Any) -> dict[str, Any]:

@@ -1,11 +1,11 @@
 """faying sweep STUDY.toml --set KEY=FIRST:LAST:COUNT"""
 
-import json
 from pathlib import Path
 
 import click
 
 from faying.cli.progress import Form, Shown, progress_options
+from faying.text import json_text
 
 
 @click.command()
@@ -61,7 +61,7 @@ def command(
     if plot:
         summary["plot"] = str(save(drawing.figure(done), plot))
     if as_json:
-        click.echo(json.dumps(summary, indent=2))
+        click.echo(json_text(summary))
         return
     if done.found:
         click.echo(f"{done.found} of {summary['points']} points were done before, by a sweep that was interrupted")

@@ -1,12 +1,12 @@
 """`faying test FILE...`: modes of a hammer test out of its FRFs."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 import click
 
 from faying.cli.options import frequency_band
+from faying.text import json_text
 
 TEXT = (".txt", ".csv", ".dat", ".asc")
 
@@ -78,7 +78,7 @@ def command(
         write_uff(out, found.modes, frf)
     for line in frf.warnings:
         click.echo(f"note: {line}", err=True)
-    click.echo(json.dumps(document(found), indent=2, allow_nan=False) if as_json else table(found))
+    click.echo(json_text(document(found)) if as_json else table(found))
 
 
 def read_frf(

@@ -220,23 +220,23 @@ class _Builder:
         """Names of the parts and the part of every element."""
         sets = {**self.raw.element_sets, **self.raw.bodies}
         if wanted is not None:
-            given = dict(wanted) if isinstance(wanted, Mapping) else {name: name for name in wanted}
-            chosen = {part: name if name in sets else _several(name) for part, name in given.items()}
-            for part, some in chosen.items():
-                for name in [some] if isinstance(some, str) else some:
+            wished = dict(wanted) if isinstance(wanted, Mapping) else {name: name for name in wanted}
+            chosen = {part: name if name in sets else _several(name) for part, name in wished.items()}
+            for part, joined in chosen.items():
+                for name in [joined] if isinstance(joined, str) else joined:
                     if name not in sets:
                         raise InputError(
                             f"{self.name}: part {part!r} names the element set {name!r}; the file holds "
                             f"{', '.join(map(repr, sets)) or 'none'}"
                         )
             united = {
-                part: sets[some] if isinstance(some, str) else np.unique(np.concatenate([sets[name] for name in some]))
-                for part, some in chosen.items()
+                part: np.unique(np.concatenate([sets[name] for name in ([one] if isinstance(one, str) else one)]))
+                for part, one in chosen.items()
             }
             divided = _dividing(numbers, united)
             if divided is None:
                 raise InputError(
-                    f"{self.name}: the element sets {', '.join(given.values())} do not divide the elements; each "
+                    f"{self.name}: the element sets {', '.join(wished.values())} do not divide the elements; each "
                     "must belong to one of them"
                 )
             return list(chosen), divided

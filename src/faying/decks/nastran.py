@@ -24,20 +24,9 @@ from faying.typing import Array, Index
 
 # commands of the case control whose sets are of elements
 OF_ELEMENTS = (
-    "STRE",
-    "ELST",
-    "STRA",
-    "FORCE",
-    "ELFO",
-    "ESE",
-    "EKE",
-    "EDE",
-    "GPSTRESS",
-    "STRFIELD",
-    "VOLUME",
-    "SURFACE",
+    *("STRE", "ELST", "STRA", "FORCE", "ELFO", "ESE", "EKE", "EDE", "GPSTRESS", "STRFIELD", "VOLUME", "SURFACE"),
+    *("ELSDCON", "GPSTRAIN", "THERMALSTR", "FLUX", "NLSTRESS", "CRSHRF", "EPLAS", "BOUTPUT"),
 )
-OF_ELEMENTS += ("ELSDCON", "GPSTRAIN", "THERMALSTR", "FLUX", "NLSTRESS", "CRSHRF", "EPLAS", "BOUTPUT")
 Field = int | float | str
 
 

@@ -34,6 +34,16 @@ def load() -> tuple[Any, Any]:
     return PETSc, SLEPc
 
 
+def peak_memory() -> float:
+    """Most memory [B] that this process has held; NaN where the system does not say it."""
+    try:
+        import resource
+    except ImportError:
+        return float("nan")
+    unit = 1.0 if sys.platform == "darwin" else 1024.0
+    return unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+
 def check_size(world: Any, processes: int) -> None:
     """Raise RuntimeError where petsc4py sees other processes than mpiexec has started."""
     if world.getSize() != processes:

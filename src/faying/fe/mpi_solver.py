@@ -15,7 +15,6 @@ one line of its output, which begins with `ANSWER`.
 """
 
 import json
-import resource
 import sys
 import time
 from pathlib import Path
@@ -24,9 +23,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from faying.fe.mpi_petsc import ANSWER, check_size, guarded, load, multigrid, read_matrix, rigid_motions
+    from faying.fe.mpi_petsc import (
+        ANSWER,
+        check_size,
+        guarded,
+        load,
+        multigrid,
+        peak_memory,
+        read_matrix,
+        rigid_motions,
+    )
 else:  # beside this file, which is run as a script
-    from mpi_petsc import ANSWER, check_size, guarded, load, multigrid, read_matrix, rigid_motions
+    from mpi_petsc import ANSWER, check_size, guarded, load, multigrid, peak_memory, read_matrix, rigid_motions
 
 MOST_STEPS = 1000
 SOON, LATER, SLOWER = 2e-4, 1e-2, 1.3  # s between two looks for an order: at first, at most, and the growth between
@@ -108,8 +116,7 @@ class Solver:
 
     def _everyones(self) -> Any:
         """CPU time [s] and peak memory [B] of every process (processes, 2)."""
-        peak = 1024.0 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-        self._costs.setArray(np.array([time.process_time(), peak]))
+        self._costs.setArray(np.array([time.process_time(), peak_memory()]))
         self._gather.scatter(self._costs, self._everybody)
         return self._everybody.getArray().copy().reshape(-1, 2)
 

@@ -12,7 +12,6 @@ with the rigid motions as near null space (PETSc's GAMG); elsewhere by Krylov-Sc
 """
 
 import json
-import resource
 import sys
 import time
 from pathlib import Path
@@ -22,10 +21,10 @@ import numpy as np
 
 if TYPE_CHECKING:
     from faying.fe.lobpcg import Lobpcg
-    from faying.fe.mpi_petsc import check_size, guarded, load, multigrid, read_matrix, rigid_motions
+    from faying.fe.mpi_petsc import check_size, guarded, load, multigrid, peak_memory, read_matrix, rigid_motions
 else:  # beside this file, which is run as a script
     from lobpcg import Lobpcg
-    from mpi_petsc import check_size, guarded, load, multigrid, read_matrix, rigid_motions
+    from mpi_petsc import check_size, guarded, load, multigrid, peak_memory, read_matrix, rigid_motions
 
 GUARDS = 8  # vectors of the block beyond the modes that are wanted, 6 or more
 SEED = 20240611
@@ -179,8 +178,7 @@ def work(folder: Path) -> None:
         if isinstance(fault, worker.PETSc.Error):  # may have met this process alone
             raise
         answer = {"fault": str(fault)}
-    use = resource.getrusage(resource.RUSAGE_SELF)
-    cost = {"cpu": time.process_time(), "peak": 1024.0 * use.ru_maxrss}
+    cost = {"cpu": time.process_time(), "peak": peak_memory()}
     (worker.place / "cost.json").write_text(json.dumps(cost), encoding="utf-8")
     if worker.world.getRank() == 0:
         (folder / "answer.json").write_text(json.dumps(answer), encoding="utf-8")

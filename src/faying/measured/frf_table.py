@@ -89,7 +89,7 @@ def read_layout(line: str, quantity: str, where: str) -> Layout:
     pairs = []
     for a, b in zip(rest[::2], [*rest[1::2], None], strict=False):
         names = roles[a], None if b is None else roles[b]
-        kind = PAIRS.get(names) or PAIRS.get(names[::-1])  # type: ignore[arg-type,call-overload]
+        kind = PAIRS.get(names) or PAIRS.get(names[::-1])  # type: ignore[arg-type]
         if kind is None or b is None:
             shown = f'"{cells[a].text}"' + ("" if b is None else f' and "{cells[b].text}"')
             raise ReadError(f"{where}: {shown} of the heading make no FRF; {FORM}")

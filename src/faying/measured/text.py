@@ -88,8 +88,8 @@ def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex
             + (f", {width} numbers as in the heading" if layout.named else "")
         )
     data = np.array(table)
-    values = np.array([pair.values(data) for pair in layout.pairs])
-    return layout.hertz * data[:, layout.frequency], values, layout.notes
+    functions = np.array([pair.values(data) for pair in layout.pairs])
+    return layout.hertz * data[:, layout.frequency], functions, layout.notes
 
 
 def _layout(above: list[tuple[int, str]], width: int, quantity: str, path: Path) -> Layout:

@@ -116,6 +116,9 @@ class Recorded(Summary):
         """Return what a tree was made of. Raises ReadError that names what it lacks."""
         return from_group(cls, tree)
 
+    def refuse_strays(self) -> None:
+        """Raise ReadError where a number of it points to what it does not hold."""
+
     @checked_call
     def save(self, path: str | Path) -> Path:
         """Write everything as NetCDF-4 that xarray opens; the file appears complete or not at all.
@@ -156,7 +159,9 @@ class Recorded(Summary):
         if found != cls.KIND:
             raise ReadError(f"{path} holds a {found} and no {cls.KIND}; read it with faying.load")
         try:
-            return cls.of_tree(tree)
+            made = cls.of_tree(tree)
+            made.refuse_strays()
+            return made
         except (ReadError, InputError, TypeError, KeyError, ValueError, AttributeError, IndexError) as fault:
             raise ReadError(f"{path}: no {cls.KIND} of Faying, or damaged ({fault}){command}") from None
 

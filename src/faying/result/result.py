@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from faying.errors import InputError
+from faying.errors import InputError, ReadError
 from faying.files import write_text
 from faying.joint.attachments import PointMass, Support
 from faying.joint.loads import preload_index
@@ -610,6 +610,16 @@ class Result(Recorded):
         )
 
     @checked_call
+    def refuse_strays(self) -> None:
+        """Raise ReadError where triangles name nodes, parts or faces that there are not, as in a damaged file."""
+        for name, indices, count in (
+            ("triangles", self.triangles, len(self.outline)),
+            ("part_of_triangle", self.part_of_triangle, np.inf),
+            ("face_of_triangle", self.face_of_triangle, np.inf),
+        ):
+            if indices is not None and indices.size and not (indices.min() >= -1 and indices.max() < count):
+                raise ReadError(f"its {name} run from {indices.min()} to {indices.max()}, past what the file holds")
+
     def modes_at(self, load: float | None = None, source: str = "this study") -> ModelModes:
         """The modes at a preload [N], by default the greatest, for a comparison with a test.
 

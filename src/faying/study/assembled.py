@@ -78,7 +78,7 @@ class Assembled:
                 csr = csr_matrix(matrix)
                 arrays = {"format": b"csr", "shape": csr.shape}  # as scipy.sparse.save_npz has them
                 arrays |= {part: getattr(csr, part) for part in ("indices", "indptr", "data")}
-                out.append(write_arrays(hidden / f"{name}.npz", arrays))
+                out.append(write_arrays(hidden / f"{name}.npz", arrays, seal=False))
             text = "\n".join(f"{node}.{axis}" for node, axis in self.dofs) + "\n"
             out.append(write_text(hidden / "dofs.txt", text))
             if self.points is not None:

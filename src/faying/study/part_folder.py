@@ -3,16 +3,14 @@
 import hashlib
 import json
 import shutil
-import zlib
 from pathlib import Path
 from typing import IO, Any, Self
-from zipfile import BadZipFile
 
 import numpy as np
 
 from faying import __version__
 from faying.errors import FayingError, InputError
-from faying.files import write_text
+from faying.files import is_sealed, write_text
 from faying.study.study import Study
 
 
@@ -107,7 +105,8 @@ class Kept:
 
 def fingerprint(study: Study, *facts: object) -> str:
     """What tells one piece of work from another: Faying's version, the study, the bytes of its files, and facts."""
-    digest = hashlib.sha256(f"{__version__} {study!r} {facts!r}".encode())
+    words = f"{study!r} {facts!r}".replace(str(study.folder), "")  # a folder that was moved holds the same study
+    digest = hashlib.sha256(f"{__version__} {words}".encode())
     for file in study.files:
         digest.update(hashlib.sha256(file.read_bytes()).digest())
     return digest.hexdigest()
@@ -116,18 +115,14 @@ def fingerprint(study: Study, *facts: object) -> str:
 def locked(folder: Path, what: str) -> IO[str]:
     """Hold a lock on a folder until the file returned is closed or the process ends.
 
-    Raises InputError where another process holds it. Windows has no such lock: there it holds nothing.
+    Raises InputError where another process holds it. A system without such locks holds nothing.
     """
     try:
         file = (folder / "lock").open("w", encoding="utf-8")
     except OSError as fault:
         raise InputError(f"cannot write in {folder}: {fault.strerror}; choose another output with --out") from None
     try:
-        import fcntl
-    except ImportError:
-        return file
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        _lock(file)
     except OSError:
         file.close()
         raise InputError(
@@ -136,10 +131,30 @@ def locked(folder: Path, what: str) -> IO[str]:
     return file
 
 
-def load_arrays(file: Path) -> dict[str, Any] | None:
-    """The arrays of a file, None where it is missing or damaged."""
+def _lock(file: IO[str]) -> None:
+    """Lock an open file, with what the system has. Raises OSError where another process holds it."""
     try:
-        with file.open("rb") as opened, np.load(opened) as data:
+        import fcntl
+    except ImportError:
+        pass
+    else:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return
+    try:
+        import msvcrt
+    except ImportError:
+        return
+    lock: Any = getattr(msvcrt, "locking", None)
+    if lock is not None:
+        lock(file.fileno(), getattr(msvcrt, "LK_NBLCK", 2), 1)
+
+
+def load_arrays(file: Path) -> dict[str, Any] | None:
+    """The arrays of a file, None where it is missing or not as it was written."""
+    try:
+        if not is_sealed(file):
+            return None
+        with file.open("rb") as opened, np.load(opened, allow_pickle=False) as data:
             return {name: data[name] for name in data.files}
-    except (OSError, ValueError, EOFError, KeyError, BadZipFile, zlib.error):
+    except (OSError, ValueError, EOFError, KeyError):
         return None

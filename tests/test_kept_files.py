@@ -1,0 +1,274 @@
+"""Files that Faying keeps: whole, as they were written, or not used; foreign ones cannot hang or kill it."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import h5netcdf
+import numpy as np
+import pytest
+
+import faying
+from faying import cache, files, netcdf
+from faying.cli.main import main
+from faying.identify import points
+from faying.study import part_folder
+from faying.text import json_text
+
+ROOT = Path(__file__).parent.parent
+BLOCKS = ROOT / "examples" / "two-blocks"
+ARRAYS = {"a": np.arange(200.0), "b": np.eye(3), "words": np.array(["one", "two"])}
+
+
+def damaged(data, rng):
+    """One bit flipped, a stretch of zeros, or an end that is cut."""
+    out = bytearray(data)
+    kind = rng.integers(3)
+    if kind == 0:
+        out[rng.integers(len(out))] ^= 1 << rng.integers(8)
+    elif kind == 1:
+        at = rng.integers(len(out))
+        out[at : at + 64] = bytes(len(out[at : at + 64]))
+    else:
+        del out[rng.integers(1, len(out)) :]
+    return bytes(out)
+
+
+def read_kept(file):
+    return part_folder.load_arrays(file)
+
+
+def read_cached(file):
+    return cache._read(file)
+
+
+@pytest.mark.parametrize("read", [read_kept, read_cached])
+def test_damaged_arrays_are_never_used(tmp_path, read):
+    file = files.write_arrays(tmp_path / "a.npz", ARRAYS)
+    whole = file.read_bytes()
+    for name, array in read(file).items():
+        np.testing.assert_array_equal(array, ARRAYS[name])
+    rng = np.random.default_rng(4)
+    for _ in range(400):
+        bad = damaged(whole, rng)
+        file.write_bytes(bad)
+        assert bad == whole or read(file) is None
+    file.write_bytes(whole[:-78])  # an archive of an older version, without a checksum
+    assert read(file) is None
+    assert set(np.load(tmp_path / files.write_arrays(tmp_path / "b.npz", ARRAYS, seal=False)).files) == set(ARRAYS)
+
+
+def tree():
+    values = np.random.default_rng(1).normal(size=(40, 30))
+    variable = netcdf.Variable(dims=("row", "column"), values=values, unit="m")
+    return netcdf.Group(variables={"heights": variable}, attributes={"kind": "test"})
+
+
+def test_damaged_netcdf_files_of_our_own_are_refused_before_hdf5(tmp_path, monkeypatch):
+    path = netcdf.write(tmp_path / "a.nc", tree())
+    whole = path.read_bytes()
+    np.testing.assert_array_equal(netcdf.read(path).variables["heights"].values, tree().variables["heights"].values)
+    with h5netcdf.File(path, "r") as file:  # other programs read it as it is
+        assert file.variables["heights"].shape == (40, 30)
+    apart = []
+    monkeypatch.setattr(netcdf, "_read_apart", lambda path: apart.append(path))
+    rng = np.random.default_rng(2)
+    for _ in range(200):
+        bad = damaged(whole, rng)
+        if bad == whole:
+            continue
+        path.write_bytes(bad)
+        before = len(apart)
+        if files.is_sealed(path) is None:  # its checksum itself is gone: a process of its own reads it
+            netcdf.read(path)
+            assert len(apart) == before + 1
+        else:
+            with pytest.raises(faying.ReadError, match="its checksum does not fit"):
+                netcdf.read(path)
+
+
+def test_foreign_netcdf_files_are_read_by_a_process_of_their_own(tmp_path, monkeypatch):
+    path = netcdf.write(tmp_path / "a.nc", tree())
+    path.write_bytes(path.read_bytes()[:-78])
+    found = netcdf.read(path)
+    np.testing.assert_array_equal(found.variables["heights"].values, tree().variables["heights"].values)
+    path.write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(500))
+    with pytest.raises(faying.ReadError, match="no NetCDF-4 file, or is damaged"):
+        netcdf.read(path)
+    monkeypatch.setattr(netcdf, "seconds_for", lambda size: 0.05)
+    with pytest.raises(faying.ReadError, match="HDF5 does not come to an end with it"):
+        netcdf.read(path)
+
+
+def test_a_result_whose_triangles_name_no_nodes_is_refused(tmp_path):
+    from tests.helpers.results import small_result
+
+    result = small_result()
+    strays = result.triangles.copy()
+    strays[0, 0] = 2**37
+    object.__setattr__(result, "triangles", strays)
+    path = netcdf.write(tmp_path / "result.nc", result.tree())
+    with pytest.raises(faying.ReadError, match="its triangles run from . to 137438953472"):
+        type(result).load(path)
+
+
+def test_json_never_holds_what_it_does_not_know():
+    tree = {"a": [1.0, float("nan"), np.float64("inf")], "b": ("x", {"c": -np.inf}), "d": None, "e": 3}
+    assert json.loads(json_text(tree)) == {"a": [1.0, None, None], "b": ["x", {"c": None}], "d": None, "e": 3}
+
+
+def test_a_law_on_a_smooth_scan_is_json(tmp_path, capsys):
+    """A sine has no fractal part, so that some numbers of the surface are not known."""
+    path = tmp_path / "scan.csv"
+    wave = 1e-3 * np.sin(np.arange(48) / 3)[None, :] * np.cos(np.arange(48) / 5)[:, None]
+    np.savetxt(path, wave, delimiter=",")
+    given = ["--z-unit", "um", "--size", "0.2 mm", "--material", "45 steel", "--model", "gw-ke", "--json"]
+    with pytest.raises(SystemExit) as stop:
+        main(["law", "--scan", str(path), *given])
+    assert stop.value.code == 0
+    assert json.loads(capsys.readouterr().out)["law"]
+
+
+def test_numbers_of_sobol_are_loaded_while_signals_wait(monkeypatch):
+    """A Ctrl-C inside SciPy's loading is swallowed there: its points are all alike then, which must not go on."""
+    script = (
+        "import signal, os, numpy as np\n"
+        "orig = np.lib.npyio.NpzFile.__getitem__\n"
+        "def get(self, key):\n"
+        "    os.kill(os.getpid(), signal.SIGINT)\n"
+        "    return orig(self, key)\n"
+        "np.lib.npyio.NpzFile.__getitem__ = get\n"
+        "from faying.identify.points import sobol\n"
+        "try:\n"
+        "    sobol(4, 64, 0)\n"
+        "except KeyboardInterrupt:\n"
+        "    print('interrupted')\n"
+        "print(len(np.unique(sobol(4, 64, 0), axis=0)))\n"
+    )
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, env=environment, check=False)
+    assert done.stdout.split() == ["interrupted", "64"], done.stderr
+    monkeypatch.setattr(points, "load_direction_numbers", lambda: None)
+    with pytest.raises(faying.InputError, match="all alike: SciPy was interrupted"):
+        points.refuse_alike(np.full((8, 3), 0.5))
+
+
+def test_shares_that_no_sampling_gives_are_refused():
+    from faying.distribution import Distribution
+    from faying.identify.shares import shares
+
+    priors = [Distribution.read("0 to 1", ""), Distribution.read("0 to 1", "")]
+    calls = []
+
+    def broken(x):  # the third call has the points of both samples mixed
+        calls.append(len(x))
+        return (100.0 if len(calls) > 2 else 1.0) * (x[:, :1] + x[:, 1:])
+
+    with pytest.raises(faying.InputError, match=r"a share of \d+% of the variance came out"):
+        shares(broken, priors, count=64)
+
+
+# folders
+
+
+def test_a_second_process_at_one_folder_is_refused(tmp_path):
+    sleeper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
+    try:
+        (tmp_path / f".results.{sleeper.pid}.part").mkdir()
+        words = f"process {sleeper.pid} writes to .*results already; wait for it"
+        with pytest.raises(faying.InputError, match=words), files.together(tmp_path / "results", "give another"):
+            pass
+    finally:
+        sleeper.kill()
+        sleeper.wait()
+    with files.together(tmp_path / "results", "give another") as hidden:  # what the dead one has left is gone
+        (hidden / "a.txt").write_text("a")
+    assert [one.name for one in tmp_path.iterdir()] == ["results"]
+
+
+def test_a_folder_that_appears_meanwhile_takes_the_files_in(tmp_path):
+    folder = tmp_path / "results"
+    with files.together(folder, "give another") as hidden:
+        (hidden / "a.txt").write_text("mine")
+        folder.mkdir()
+        (folder / "b.txt").write_text("another's")
+    assert {one.name: one.read_text() for one in folder.iterdir()} == {"a.txt": "mine", "b.txt": "another's"}
+
+
+def test_what_was_solved_stays_where_the_rest_does_not_fit(tmp_path):
+    folder = tmp_path / "results"
+
+    def write():
+        with files.together(folder, "give another", ["result.nc", "other.nc"]) as hidden:
+            (hidden / "result.nc").write_text("solved")
+            (hidden / "half.html").write_text("<")
+            raise faying.InputError(f"cannot write {hidden / 'report.html'}: No space left on device")
+
+    with pytest.raises(faying.InputError, match=r"No space left on device; result.nc was written"):
+        write()
+    assert [one.name for one in folder.iterdir()] == ["result.nc"]
+
+
+def test_a_link_that_leads_nowhere(tmp_path):
+    (tmp_path / "results").symlink_to(tmp_path / "gone")
+    words = "is a link that leads nowhere; remove it"
+    with pytest.raises(faying.InputError, match=words), files.together(tmp_path / "results", "give another"):
+        pass
+
+
+def test_a_moved_project_goes_on(tmp_path):
+    from faying.study import Study
+
+    prints = []
+    for name in ("here", "there"):
+        folder = tmp_path / name
+        folder.mkdir()
+        for file in ("study.toml", "model.inp"):
+            (folder / file).write_bytes((BLOCKS / file).read_bytes())
+        prints.append(part_folder.fingerprint(Study.read(folder / "study.toml"), 3))
+    assert prints[0] == prints[1]
+
+
+@pytest.mark.parametrize("hidden", [["fcntl"], ["fcntl", "msvcrt"]])
+def test_locks_without_the_modules_of_one_system(tmp_path, monkeypatch, hidden):
+    for name in hidden:
+        monkeypatch.setitem(sys.modules, name, None)
+    part_folder.locked(tmp_path, "sweep").close()
+
+
+# the command
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no /dev/full")
+def test_an_output_that_is_full(tmp_path):
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "faying", "models"],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            env=environment,
+            check=False,
+        )
+    assert done.returncode == 1
+    assert done.stderr.decode() == "faying: cannot write the output: No space left on device\n"
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="the system has no SIGHUP")
+def test_a_terminal_that_is_closed_stops_a_command_tidily(tmp_path):
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "FAYING_CACHE": "off"}
+    for file in ("study.toml", "model.inp"):
+        (tmp_path / file).write_bytes((BLOCKS / file).read_bytes())
+    run = [sys.executable, "-m", "faying", "run", str(tmp_path / "study.toml")]
+    process = subprocess.Popen(run, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment)
+    deadline = time.monotonic() + 60
+    while not any(one.name.endswith(".part") for one in tmp_path.iterdir()) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    process.send_signal(signal.SIGHUP)
+    _, err = process.communicate(timeout=60)
+    assert (process.returncode, b"Traceback" in err) in ((1, False), (0, False))
+    assert not [one.name for one in tmp_path.iterdir() if one.name.endswith(".part")]
