@@ -269,3 +269,15 @@ def test_a_folder_that_cannot_be_written(here, tmp_path, monkeypatch, capsys, co
     assert ".part" not in said.replace("sweep.nc.part", "")
     kept = {"sweep.nc.part"} if full and command == "sweep" else set()  # from which it goes on
     assert {path.name for path in there.iterdir()} == {"mine.txt"} | kept
+
+
+def test_a_figure_makes_the_folder_that_it_goes_into(tmp_path):
+    from matplotlib.figure import Figure
+
+    from faying.style import save
+
+    file = save(Figure(), tmp_path / "results" / "x.svg")
+    assert file.read_text().lstrip().startswith("<")
+    (tmp_path / "taken").write_text("a file")
+    with pytest.raises(faying.InputError, match="cannot make the folder .*taken: .*another place"):
+        save(Figure(), tmp_path / "taken" / "x.svg")

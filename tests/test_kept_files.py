@@ -122,15 +122,17 @@ def test_json_never_holds_what_it_does_not_know():
 
 
 def test_a_law_on_a_smooth_scan_is_json(tmp_path, capsys):
-    """A sine has no fractal part, so that some numbers of the surface are not known."""
+    """A sine has no fractal part, so that the height that its fit implies is not known."""
     path = tmp_path / "scan.csv"
-    wave = 1e-3 * np.sin(np.arange(48) / 3)[None, :] * np.cos(np.arange(48) / 5)[:, None]
-    np.savetxt(path, wave, delimiter=",")
-    given = ["--z-unit", "um", "--size", "0.2 mm", "--material", "45 steel", "--model", "gw-ke", "--json"]
+    x, y = np.meshgrid(np.arange(64.0), np.arange(64.0))
+    np.savetxt(path, np.column_stack([x.ravel(), y.ravel(), np.sin(np.pi * x.ravel() / 8)]), delimiter=",")
+    given = ["--xy-unit", "um", "--z-unit", "um", "--material", "45 steel", "--model", "gw-ke", "--json"]
     with pytest.raises(SystemExit) as stop:
         main(["law", "--scan", str(path), *given])
     assert stop.value.code == 0
-    assert json.loads(capsys.readouterr().out)["law"]
+    out = capsys.readouterr().out
+    assert json.loads(out)["law"]
+    assert "null" in out
 
 
 def test_numbers_of_sobol_are_loaded_while_signals_wait(monkeypatch):

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from faying.errors import InputError
-from faying.files import write_atomically
+from faying.files import make_folder, write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -155,10 +155,13 @@ def check_figure(path: str | Path) -> None:
 def save(figure: Any, path: str | Path) -> Path:
     """Write a figure in the format of the ending of `path`; the file appears complete or not at all.
 
+    A folder that is not there is made.
+
     Raises InputError for other endings and where the file cannot be written.
     """
     file = Path(path)
     check_ending(file)
+    make_folder(file.parent, "give another place for the figure")
     kind = file.suffix[1:].lower()
     if kind in ("png", "svg"):
         return write_atomically(file, lambda temporary: temporary.write_bytes(drawn(figure, kind)))

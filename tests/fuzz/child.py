@@ -51,6 +51,34 @@ def numbers(path):
     return len(read_numbers(Path(path), 2, "p, k"))
 
 
+def record(path):
+    from faying.measured.ring_down import read_record
+
+    return len(read_record(path)[0])
+
+
+def form(path):
+    from faying.joint.gap_map import read_heights
+
+    return len(read_heights(Path(path))[1])
+
+
+def tree(path):
+    from faying import netcdf
+
+    return len(netcdf.read(Path(path)).variables)
+
+
+def arrays(path):
+    from faying import ReadError
+    from faying.study.part_folder import load_arrays
+
+    found = load_arrays(Path(path))
+    if found is None:
+        raise ReadError(f"{path}: is not as it was written")
+    return len(found)
+
+
 def mesh(path):
     from faying import read_mesh
 
@@ -83,6 +111,10 @@ READERS = {
     "points": points,
     "numbers": numbers,
     "mesh": mesh,
+    "record": record,
+    "form": form,
+    "netcdf": tree,
+    "arrays": arrays,
     "mtx": lambda path: matrices(path, mass=beside(path, "m.mtx"), dofs=beside(path, "dofs.txt")),
     "sti": matrices,
     "study": study,

@@ -35,6 +35,43 @@ direction = [0, 0, 1]
 )
 
 
+SYSTEMS = (
+    "    -1\n    18\n         1         0         0         8         1\nSENSOR\n"
+    + "".join(f"{v:13.5e}" for v in (0, 0, 0, 0, 1, 0))
+    + "\n"
+    + "".join(f"{v:13.5e}" for v in (0, 1, 1))
+    + "\n    -1\n    -1\n    15\n"
+    + "".join(f"{n:10d}{n - 1:10d}{1:10d}{8:10d}{n / 10:13.5e}{0:13.5e}{0:13.5e}\n" for n in (1, 2))
+    + "    -1\n    -1\n  2414\n         1\nMode 1\n         1\nNONE\nNONE\nNONE\nNONE\nNONE\n"
+    + "         1         2         2         8         2         3\n"
+    + "         0" * 8
+    + "\n         0         0\n"
+    + "".join(f"{v:13.5e}" for v in (0, 100, 0, 1, 0.01, 0))
+    + "\n"
+    + "".join(f"{0:13.5e}" for _ in range(6))
+    + "\n         1\n"
+    + "".join(f"{v:13.5e}" for v in (0, 0, 1))
+    + "\n         2\n"
+    + "".join(f"{v:13.5e}" for v in (0, 0, -1))
+    + "\n    -1\n"
+)
+# what stands beside the geometry in the decks of bolted joints
+MORE = """*SURFACE, NAME=nodes, TYPE=NODE
+NALL
+*NSET, NSET=far, GENERATE
+1, 5000
+*EQUATION
+2
+1, 1, 1., 2, 1, -1.
+*SURFACE, NAME=cut
+5, S2
+*PRE-TENSION SECTION, SURFACE=cut, NODE=1
+0., 0., 1.
+*TIE, NAME=t
+cut, cut
+"""
+
+
 def scans(folder):
     scan = spectral((20, 24), spacing=(2e-6, 3e-6), D=2.4, Rq=1e-6, seed=1)
     for precision in "FI":
@@ -86,6 +123,18 @@ def tests_of_hammers(folder):
         "point,x [mm],y [mm],z [mm]\n" + "\n".join(f"{k},{k}.5,{2 * k},0" for k in range(1, 9))
     )
     yield "points", folder / "points.csv"
+    polar = np.column_stack([frf.frequency / 1e3, np.abs(table[:, 1] + 1j * table[:, 2]), 0 * frf.frequency + 30])
+    head = "frequency [kHz],magnitude [dB re 1 g/N],phase [deg]"
+    np.savetxt(folder / "polar.csv", polar, fmt="%.8g", delimiter=",", header=head, comments="")
+    yield "frf text", folder / "polar.csv"
+    lines = [f"{k / 1000},{np.sin(k):.6f}" for k in range(40)]
+    (folder / "decay.csv").write_text("\n".join(["time [ms],acceleration [m/s^2]", *lines, ""]))
+    yield "record", folder / "decay.csv"
+    grid = [f"{x},{y},{np.sin(x) + y:.5f}" for x in range(6) for y in range(5)]
+    (folder / "form.csv").write_text("\n".join(["x [mm],y [mm],z [um]", *grid, ""]))
+    yield "form", folder / "form.csv"
+    (folder / "systems.uff").write_text(SYSTEMS)
+    yield "uff", folder / "systems.uff"
     (folder / "table.csv").write_text(
         "pressure,stiffness\n" + "\n".join(f"{k}e6, {k**0.5:.5f}e13" for k in range(1, 12))
     )
@@ -96,6 +145,7 @@ def meshes(folder):
     mesh = row([0.05, 0.04], [2, 1], kinds=("hex8", "tet10"), sections=((2, 1), (2, 1)), width=0.02, height=0.01)
     for name, text in {
         "flat.inp": meshfiles.abaqus(mesh),
+        "bolted.inp": meshfiles.abaqus(mesh) + MORE,
         "assembly.inp": meshfiles.assembly(mesh),
         "small.bdf": meshfiles.nastran(mesh),
         "two.msh": meshfiles.gmsh(mesh),
@@ -141,6 +191,17 @@ def studies(folder):
     yield "study", folder / "study.toml"
 
 
+def records(folder):
+    from faying import files, netcdf
+
+    tree = netcdf.Group(
+        variables={"a": netcdf.Variable(dims=("n", "k"), values=np.arange(60.0).reshape(20, 3))},
+        groups={"g": netcdf.Group(variables={"b": netcdf.Variable(dims=("n",), values=np.arange(20))})},
+    )
+    yield "netcdf", netcdf.write(folder / "tree.nc", tree)
+    yield "arrays", files.write_arrays(folder / "a.npz", {"a": np.arange(50.0), "b": np.eye(4)})
+
+
 def written(folder):
     """(reader, path) of every seed."""
     return [
@@ -149,4 +210,5 @@ def written(folder):
         *meshes(folder),
         *matrices(folder),
         *studies(folder),
+        *records(folder),
     ]

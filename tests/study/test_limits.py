@@ -79,6 +79,13 @@ def test_supports_that_leave_the_bolt_its_pull(tmp_path, more):
     assert not faults(tmp_path, TEXT + more)
 
 
+@pytest.mark.parametrize(("value", "words"), [("1 m", "crown_along = 1000 mm on a face that is"), ("5 um", "")])
+def test_check_says_that_a_crown_is_too_high(tmp_path, value, words):
+    found = faults(tmp_path, changed(FACES, FACES + f'[joint.form]\ncrown_along = "{value}"\n'))
+    assert found.startswith(f"joint 'joint': {words}" if words else "")
+    assert bool(found) == bool(words)
+
+
 def test_check_names_a_part_without_a_joint(tmp_path):
     places = [(x, y, z) for z in (0, 10) for x, y in ((0, 0), (20, 0), (20, 20), (0, 20))]
     deck = "*NODE\n" + "".join(

@@ -111,7 +111,7 @@ class Form:
         for name in ("crown_along", "crown_across", "twist", "wave", "flatness"):
             if getattr(self, name):
                 axes.check(name)
-        self._check_heights(axes)
+        self.check_heights(*axes.lengths)
         place = 2 * axes.local(positions) / np.array(axes.lengths)
         x, y = place.T
         for c, s in ((self.crown_along, x), (self.crown_across, y)):
@@ -133,9 +133,8 @@ class Form:
                 gap += face.placed(axes, outward).at(positions)
         return gap
 
-    def _check_heights(self, axes: FaceAxes) -> None:
-        """Raise InputError where a shape is as high as the face is long, as with a wrong unit."""
-        long, short = axes.lengths
+    def check_heights(self, long: float, short: float) -> None:
+        """Raise InputError where a shape is too high for a face of these sides [m], as with a wrong unit."""
         sides = {"crown_along": long, "crown_across": short, "twist": short, "wave": long, "flatness": long}
         for name, side in sides.items():
             value = abs(getattr(self, name))

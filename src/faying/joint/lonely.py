@@ -32,7 +32,8 @@ def refuse_lonely(places: Array, heights: Array, name: str) -> None:
     low, high = np.quantile(z, [0.05, 0.95])
     inner = (z >= low) & (z <= high)
     level = z - base @ np.linalg.lstsq(base[inner], z[inner], rcond=None)[0]
-    around = level[cKDTree(xy).query(xy, k=NEIGHBOURS + 1)[1][:, 1:]]
+    unit = xy / max(float(np.abs(xy).max()), 1e-300)  # whose distances have a square
+    around = level[cKDTree(unit).query(unit, k=NEIGHBOURS + 1)[1][:, 1:]]
     away = np.abs(level - np.median(around, axis=1))
     middle = np.sort(around, axis=1)[:, 1:-1]  # so that one lonely point does not hide another
     steps = np.diff(np.unique(z))

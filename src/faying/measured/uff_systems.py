@@ -160,14 +160,14 @@ def shapes_2414(file: Path) -> tuple[list[NodalShape], list[str]]:
     for k, lines in enumerate(blocks(file, 2414)):
         try:
             head = [int(word) for word in lines[8].split()]
-            location = int(lines[2])
+            location, title, _ = int(lines[2]), lines[1].strip(), head[5]
         except (ValueError, IndexError):
             raise ReadError(
                 f"{file}: data set 2414 (the {k + 1}. of them) has no head in numbers; export it again"
             ) from None
         if location != 1 or head[1] not in MODES or head[3] != DISPLACEMENT:
             notes.append(
-                f'{file}: the data set 2414 "{lines[1].strip()}" holds results of analysis type {head[1]}, result type '
+                f'{file}: the data set 2414 "{title}" holds results of analysis type {head[1]}, result type '
                 f"{head[3]}, at location {location}, which are no mode shapes; it is left out"
             )
             continue
@@ -175,7 +175,7 @@ def shapes_2414(file: Path) -> tuple[list[NodalShape], list[str]]:
             found.append(_shape(lines, head))
         except (ValueError, IndexError):
             raise ReadError(
-                f'{file}: the mode "{lines[1].strip()}" of data set 2414 has not {head[5]} numbers at each point; the '
+                f'{file}: the mode "{title}" of data set 2414 has not {head[5]} numbers at each point; the '
                 "file is damaged, export it again"
             ) from None
     return found, notes

@@ -10,7 +10,7 @@ from faying.contact.build import AUTO
 from faying.contact.half_space import HalfSpace
 from faying.contact.law import ContactLaw
 from faying.contact.mates import line_of
-from faying.errors import FayingError
+from faying.errors import FayingError, InputError
 from faying.joint.bolt import BoltPlace
 from faying.joint.clamping import BESIDE, seat_ring
 from faying.joint.joint_law import JointLaw
@@ -52,6 +52,19 @@ def law_findings(sketch: Sketch) -> Iterator[Line]:
             pair = study.law_of(joint).pair(rough, other)
             yield "ok", "mates", f"joint {joint.name!r}: {line_of(surface.faces, pair)}", at
         yield from _beside(sketch, k, joint, reach, name, law)
+        yield from _form(sketch, k, joint)
+
+
+def _form(sketch: Sketch, k: int, joint: JointChoice) -> Iterator[Line]:
+    """A form that is too high for any rectangle on the face, which a run refuses with the face's own sides."""
+    if joint.form is None:
+        return
+    corners = sketch.mesh.points[np.unique(sketch.mesh.triangles[joint.faces[0]])]
+    longest = float(np.linalg.norm(np.ptp(corners, axis=0)))
+    try:
+        joint.form.check_heights(longest, longest)
+    except InputError as fault:
+        yield "fault", "form", f"joint {joint.name!r}: {fault}", f"joint[{k}].form"
 
 
 def law_reach(
