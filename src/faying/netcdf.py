@@ -119,7 +119,8 @@ def read(path: Path) -> Group:
         raise ReadError(f"{path} cannot be read ({fault.strerror or fault})") from None
     if sealed is False:
         raise ReadError(f"{path} is damaged: its checksum does not fit its bytes; copy it again, or make it anew")
-    return read_here(path) if sealed or not sys.executable else _read_apart(path)
+    python = "python" in Path(sys.executable or "").name.lower()  # another program may have Python inside
+    return _read_apart(path) if python and not sealed else read_here(path)
 
 
 def seconds_for(size: int) -> float:
