@@ -27,6 +27,14 @@ def test_independent_normal_sources_have_the_quantiles_of_their_sum():
     assert [low[0, 0], high[0, 0]] == pytest.approx(np.quantile(drawn, [0.05, 0.95]), abs=100 * 0.0318 * 0.015)
 
 
+def test_no_stiffness_of_a_joint_passes_free_and_bonded_faces():
+    found = Interval(sources=("law", "mode"), offsets=np.array([[[-0.9, 0.3]], [[-0.02, 0.02]]]).reshape(2, 2, 1, 1))
+    low, high = found.ends(np.array([[100.0]]), free=[60.0], bonded=[105.0])
+    # what is not known of the parts moves the bounds as well
+    assert low[0, 0] == pytest.approx(60 * np.exp(-0.02))
+    assert high[0, 0] == pytest.approx(105 * np.exp(0.02))
+
+
 def test_shares_are_those_of_the_variance_and_sum_to_one():
     found = interval((0.0, 0.01), (0.01, 0.03))
     assert found.shares[:, 0, 0] == pytest.approx([0.1, 0.9])

@@ -5,9 +5,11 @@ from dataclasses import dataclass
 from typing import final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from faying.typing import Array
 
+OF_PARTS = ("structure", "mode")  # sources that no stiffness of a joint bounds
 LEAST_SQUARE = 1e-300  # where nothing moves a frequency
 
 
@@ -31,15 +33,22 @@ class Interval:
     sources: tuple[str, ...]
     offsets: Array
 
-    def ends(self, frequencies: Array) -> tuple[Array, Array]:
-        """5 and 95 % [Hz] of frequencies [Hz] (loads, modes)."""
+    def ends(self, frequencies: Array, free: ArrayLike = 0.0, bonded: ArrayLike = np.inf) -> tuple[Array, Array]:
+        """5 and 95 % [Hz] of frequencies [Hz] (loads, modes).
+
+        free, bonded: frequencies [Hz] (modes,) with the faces apart and bonded, which no stiffness of a joint passes;
+        what is not known of the parts does.
+        """
         middle = self.offsets.mean(axis=1).sum(axis=0)
-        return frequencies * np.exp(middle - self.width / 2), frequencies * np.exp(middle + self.width / 2)
+        of_parts = [k for k, name in enumerate(self.sources) if name in OF_PARTS]
+        room = np.exp(np.sqrt(self._squares[of_parts].sum(axis=0)) / 2)
+        low = np.maximum(frequencies * np.exp(middle - self.width / 2), np.asarray(free) / room)
+        return low, np.minimum(frequencies * np.exp(middle + self.width / 2), np.asarray(bonded) * room)
 
     @property
     def _squares(self) -> Array:
         """Squares of the distance of both ends (s, loads, modes)."""
-        return (self.offsets[:, 1] - self.offsets[:, 0]) ** 2
+        return np.asarray((self.offsets[:, 1] - self.offsets[:, 0]) ** 2)
 
     @property
     def width(self) -> Array:

@@ -70,7 +70,7 @@ def run(study: Study | str | Path, *, report: Report | None = None, engine: str 
     if band is not None:
         result = replace(result, **band.fields(case.loads))
     if interval is not None:
-        low, high = interval.ends(result.frequencies)
+        low, high = interval.ends(result.frequencies, free, bonded)
         result = replace(
             result,
             interval_sources=interval.sources,
