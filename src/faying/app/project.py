@@ -8,6 +8,7 @@ from typing import Any, final
 
 from faying.errors import InputError
 from faying.files import write_atomically, write_text
+from faying.study.results_folder import results_folder
 
 # what a suffix tells of a file; the readers tell the rest
 KINDS = {
@@ -56,7 +57,12 @@ class Project:
     @property
     def results(self) -> Path:
         """Where results lie, which may not exist yet."""
-        return self.folder / "results"
+        return results_folder(self.folder, Path(self.study_name).stem)
+
+    @property
+    def results_name(self) -> str:
+        """The same as it is called from the folder."""
+        return self.results.relative_to(self.folder).as_posix()
 
     def file(self, name: str) -> Path:
         """The path of a file that lies in the folder itself. Raises InputError for names that lead elsewhere."""

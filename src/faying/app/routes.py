@@ -17,11 +17,11 @@ from faying.errors import FayingError, InputError
 from faying.files import make_folder
 
 # what may run, with the pictures that it draws for the page
-JOBS = {
-    "run": (),
-    "predict": ("--plot=results/prediction.svg", "--tornado=results/tornado.svg"),
-    "identify": ("--plot=results/identification.svg",),
-    "backbone": ("--plot=results/backbone.svg",),
+JOBS: dict[str, dict[str, str]] = {
+    "run": {},
+    "predict": {"--plot": "prediction.svg", "--tornado": "tornado.svg"},
+    "identify": {"--plot": "identification.svg"},
+    "backbone": {"--plot": "backbone.svg"},
 }
 
 
@@ -122,9 +122,10 @@ class Session:
                 raise InputError(f"{self.job.command} still runs; cancel it or wait")
             if self.project.text() is None:
                 raise InputError("there is no study yet")
-            if any("results/" in word for word in JOBS[what]):
-                make_folder(self.project.folder / "results", "free the name results in the folder")
-            self.job = Job([what, self.project.study_name, *JOBS[what]], self.project.folder)
+            if JOBS[what]:
+                make_folder(self.project.folder / self.project.results_name, "free its name in the folder")
+            pictures = [f"{option}={self.project.results_name}/{file}" for option, file in JOBS[what].items()]
+            self.job = Job([what, self.project.study_name, *pictures], self.project.folder)
         return self.job.state()
 
     def progress(self, request: Request) -> dict[str, Any]:

@@ -30,7 +30,9 @@ from faying.text import json_text
 @click.option("--coulomb", is_flag=True, help="One slider at each point in place of the law's own curve.")
 @click.option("--measured", multiple=True, type=click.Path(path_type=Path), help="CSV of measured points to draw.")
 @click.option(
-    "--out", type=click.Path(path_type=Path), help="NetCDF file (default: results/backbone.nc beside the study)."
+    "--out",
+    type=click.Path(path_type=Path),
+    help="NetCDF file (default: backbone.nc in the folder that run writes to).",
 )
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw the curves (svg, png, pdf).")
 @click.option("--json", "as_json", is_flag=True, help="Print the curves as JSON.")
@@ -54,7 +56,7 @@ def command(study: Path, **options: Any) -> None:
     measured = [MeasuredBackbone.read(path) for path in options["measured"]]
     plan = Study.read(study)
     choice, loads = asked(plan, options)
-    out = out or plan.folder / "results" / "backbone.nc"
+    out = out or plan.results / "backbone.nc"
     progress = Shown("backbone", options["progress"])
     with new_folder(out.parent, "give another file with --out"), progress as report:
         curves = backbones(

@@ -19,7 +19,9 @@ from faying.text import json_text
 @click.option("--jobs", type=click.IntRange(1, 1024), help="Processes on this machine [one for each core].")
 @click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
 @click.option(
-    "--out", type=click.Path(path_type=Path), help="NetCDF file (default: results/identification.nc beside the study)."
+    "--out",
+    type=click.Path(path_type=Path),
+    help="NetCDF file (default: identification.nc in the folder that run writes to).",
 )
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw priors, posteriors, frequencies.")
 @click.option("--html", type=click.Path(dir_okay=False, path_type=Path), help="Write table and figure as one page.")
@@ -52,7 +54,7 @@ def command(
     if plot:
         check_figure(plot)
     plan = Study.read(study)
-    out = out or plan.folder / "results" / "identification.nc"
+    out = out or plan.results / "identification.nc"
     with new_folder(out.parent, "give another file with --out"), Shown("identify", progress) as report:
         found = identify(
             plan,

@@ -18,7 +18,9 @@ from faying.text import json_text
 @click.option("--jobs", type=click.IntRange(1, 1024), help="Processes on this machine [one for each core].")
 @click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
 @click.option(
-    "--out", type=click.Path(path_type=Path), help="NetCDF file (default: results/prediction.nc beside the study)."
+    "--out",
+    type=click.Path(path_type=Path),
+    help="NetCDF file (default: prediction.nc in the folder that run writes to).",
 )
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw the intervals (svg, png, pdf).")
 @click.option("--tornado", type=click.Path(dir_okay=False, path_type=Path), help="Draw the shares of the variance.")
@@ -80,7 +82,7 @@ def command(
     check(plan, samples, seed)
     if backbones:
         choice_of(plan, samples, backbones)
-    out = out or plan.folder / "results" / "prediction.nc"
+    out = out or plan.results / "prediction.nc"
     with new_folder(out.parent, "give another file with --out"), Shown("predict", progress) as report:
         found = predict(
             plan,

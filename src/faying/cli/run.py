@@ -14,7 +14,9 @@ from faying.text import json_text
 @click.command()
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option(
-    "--out", type=click.Path(path_type=Path), help="Folder for the results (default: results/ beside the study)."
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder for the results (default: results/ beside study.toml, results/NAME/ beside NAME.toml).",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--no-files", is_flag=True, help="Write no files, only print.")
@@ -57,7 +59,7 @@ def command(
         raise InputError("--uff writes files and --no-files forbids them; leave one out")
     if uff:
         universal.check(plan.response)
-    folder = out or plan.folder / "results"
+    folder = out or plan.results
     every = [*stages(plan), *([] if no_files else ["report"])]
     bar = Shown("study", progress, every)
     with nullcontext() if no_files else together(folder, "give another with --out", [RESULT]) as hidden, bar:

@@ -20,7 +20,9 @@ from faying.text import json_text
     "law.model=jk,gw. Several give all combinations.",
 )
 @click.option(
-    "--out", type=click.Path(path_type=Path), help="NetCDF file (default: results/sweep.nc beside the study)."
+    "--out",
+    type=click.Path(path_type=Path),
+    help="NetCDF file (default: sweep.nc in the folder that run writes to).",
 )
 @click.option("--tolerance", type=float, default=4e-6, show_default=True, help="Relative error of a frequency.")
 @click.option("--jobs", type=click.IntRange(1, 1024), default=1, show_default=True, help="Processes on this machine.")
@@ -54,7 +56,7 @@ def command(
     if plot:
         drawing.check(plot, len(axes))
     plan = Study.read(study)
-    out = out or plan.folder / "results" / "sweep.nc"
+    out = out or plan.results / "sweep.nc"
     with new_folder(out.parent, "give another file with --out"), Shown("sweep", progress) as report:
         done = sweep(plan, axes, out, tolerance=tolerance, jobs=jobs, dask=dask, report=report)
     summary = done.to_dict()

@@ -25,6 +25,7 @@ from faying.study.keys.support import read_mass, read_support
 from faying.study.keys.surface import SurfaceChoice
 from faying.study.keys.test import HammerChoice, TestChoice, read_test
 from faying.study.keys.uncertain import Known, UncertainChoice, lifted, read_uncertain
+from faying.study.results_folder import PLAIN, results_folder
 
 
 @checked_call
@@ -34,6 +35,7 @@ class Study:
 
     Args:
         title, folder: what it is called; where file names start from.
+        name: of the study file, without its suffix.
         text: the study file as it was read; files: all files that it names, so that a result depends on them.
         materials, parts: materials by name; name of the material of each part.
         geometry, surface, law, joints, bolts, supports, masses, modes, response, test, hammer: the tables of the file.
@@ -62,8 +64,14 @@ class Study:
     backbone: BackboneChoice | None = None
     beside: tuple[BesideChoice, ...] = ()
     uncertain: UncertainChoice | None = None
+    name: str = PLAIN
     text: str = field(default="", repr=False)
     files: tuple[Path, ...] = ()
+
+    @property
+    def results(self) -> Path:
+        """The folder of its results: `results` beside study.toml, `results/NAME` beside NAME.toml."""
+        return results_folder(self.folder, self.name)
 
     @property
     def loads(self) -> tuple[float, ...]:
@@ -97,7 +105,8 @@ class Study:
         except ValueError as fault:  # of TOML, of UTF-8, or of an integer of thousands of digits
             text = str(fault).partition("; use sys.")[0]
             raise ReadError(f"{file} is not TOML: {text}") from None
-        return cls.from_dict(data, folder=file.resolve().parent, where=str(file), text=text)
+        study = cls.from_dict(data, folder=file.resolve().parent, where=str(file), text=text)
+        return replace(study, name=file.stem)
 
     @classmethod
     def from_dict(cls, data: dict[str, Any], *, folder: Path, where: str = "study", text: str = "") -> Self:
