@@ -1,6 +1,5 @@
 """Ordinary bolted joints, from STEP files without names to a result."""
 
-import re
 from dataclasses import replace
 from math import pi
 
@@ -14,17 +13,7 @@ from faying.fe.selectors import Selector
 from faying.joint.bolt import FittedBolt
 from faying.study import Study, build, run
 from tests.helpers.assemblies import bracket, flanges
-
-
-def proposed(path, size):
-    """The study that `faying new` writes, coarse, with the JK law and flat faces."""
-    out = path.with_suffix(".toml")
-    done = CliRunner().invoke(cli, ["new", str(path), "--yes", "--out", str(out)], standalone_mode=False)
-    assert done.exception is None, done.output
-    text = re.sub(r'^size = "[^"]*"', f'size = "{size}"', out.read_text(), flags=re.M)
-    text = text.replace('model = "auto"', 'model = "jk"').replace("count = 10 ", "levels = []\ncount = 4 ")
-    out.write_text(re.sub(r"(\[\[joint\]\]\n(?:.+\n)+)", r"\1[joint.form]\nflat = true\n\n", text))
-    return out
+from tests.helpers.proposed import proposed
 
 
 @pytest.fixture(scope="module")

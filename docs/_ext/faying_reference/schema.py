@@ -39,6 +39,7 @@ OWN: dict[str, dict[str, Any]] = {
         "anyOf": [{"enum": ["+x", "-x", "+y", "-y", "+z", "-z"]}, DIRECTION],
     },
     "geometry.face.NAME.number": {"anyOf": [WHOLE, listed(WHOLE, 1)]},
+    "geometry.leave_out": listed(TEXT, 0),
     "joint.faces": listed(FACE, 2, 2),
     "bolt.faces": listed(FACE, 2, 2),
     "support.face": FACE,

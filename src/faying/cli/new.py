@@ -41,8 +41,13 @@ def asked(proposal: Any, scan: Path | None) -> Any:
 
     facts = proposal.facts
     click.echo(f"{facts.file}: {len(facts.parts)} parts, {len(proposal.joints)} joints, {len(proposal.bolts)} bolts")
+    alike: dict[str, list[str]] = {}
     for bolt in proposal.bolts:
-        click.echo(f"  {bolt.name}: {bolt.remark}")
+        alike.setdefault(bolt.remark, []).append(bolt.name)
+    for remark, names in alike.items():
+        click.echo(f"  {new.grouped(names)}: {remark}")
+    for remark in proposal.remarks:
+        click.echo(f"  {remark}")
     choice = click.Choice(list(CATALOGUE))
     materials = {
         part.name: click.prompt(f"material of {part.name}", default=new.STEEL, type=choice) for part in facts.parts
@@ -68,6 +73,7 @@ def to_dict(written: Any) -> dict[str, Any]:
     return {
         "files": [str(file) for file in written.files],
         "parts": [part.name for part in found.facts.parts],
+        "left_out": list(found.left_out),
         "joints": [
             {"name": j.name, "faces": list(j.faces), "area": {"unit": "m^2", "values": j.area}} for j in found.joints
         ],

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
@@ -24,6 +25,8 @@ class Bore:
         point: on the axis (3,) [m].
         low, high: where it begins and ends, measured along the axis from the origin [m].
         faces: numbers of its faces.
+        slot: of a slotted hole, from the axis of one end to that of the other (3,) [m]; its radius is half its width,
+            and its point lies half-way.
     """
 
     part: str
@@ -33,6 +36,7 @@ class Bore:
     low: float
     high: float
     faces: tuple[int, ...]
+    slot: Array | None = None
 
     def at(self, depth: float) -> Array:
         """The point of the axis (3,) [m] at a depth [m]."""
@@ -57,15 +61,17 @@ class Stack:
 
     @property
     def middle(self) -> Array:
-        """The point of the axis (3,) [m] in the middle of the stack."""
-        return self.bores[0].at((self.bores[0].low + self.bores[-1].high) / 2)
+        """The point of the axis (3,) [m] in the middle of the stack: on the axis of a round hole, if there is one."""
+        round_ones = [bore for bore in self.bores if bore.slot is None]
+        return (round_ones or self.bores)[0].at((self.bores[0].low + self.bores[-1].high) / 2)
 
 
 def bores(facts: GeometryFacts) -> list[Bore]:
-    """The round holes of all parts; halves and quarters of one cylinder are put together."""
+    """The holes of all parts, round or slotted; halves and quarters of one cylinder are put together."""
     out = []
     for part in facts.parts:
         left = [face for face in facts.by_part[part.name] if face.hole]
+        halves: list[list[FaceFacts]] = []
         while left:
             first = left[0]
             same = [face for face in left if _one_cylinder(first, face)]
@@ -75,6 +81,7 @@ def bores(facts: GeometryFacts) -> list[Bore]:
             low, high = min(a for a, _ in ends), max(b for _, b in ends)
             turn = sum((face.turn or 0.0) * (b - a) for face, (a, b) in zip(same, ends, strict=True)) / (high - low)
             if turn < WHOLE or first.radius is None:
+                halves += [same] if abs(turn - 0.5) < 1 - WHOLE else []
                 continue
             out.append(
                 Bore(
@@ -87,11 +94,46 @@ def bores(facts: GeometryFacts) -> list[Bore]:
                     faces=tuple(face.number for face in same),
                 )
             )
+        out += _slots(facts, part.name, halves)
     return out
 
 
-def stacks(found: Sequence[Bore], *, reach: float) -> list[Stack]:
-    """Rows of bores on one axis through two parts or more.
+def _slots(facts: GeometryFacts, part: str, halves: Sequence[Sequence[FaceFacts]]) -> list[Bore]:
+    """Slotted holes: two half cylinders of one radius and one length, joined by two planes along their axes."""
+    out: list[Bore] = []
+    used: set[int] = set()
+    for first, second in combinations(halves, 2):
+        one, two = first[0], second[0]
+        if used & {one.number, two.number} or one.radius is None or two.radius is None:
+            continue
+        axis = np.array(one.axis)
+        ends = np.array([_ends(one, axis), _ends(two, axis)])
+        arm = np.array(two.start) - np.array(one.start)
+        arm = arm - (arm @ axis) * axis
+        alike = abs(axis @ np.array(two.axis)) >= FACING and abs(one.radius - two.radius) <= 1e-4 * one.radius
+        near = [{number for face in half for number in face.neighbours} for half in (first, second)]
+        both = [facts.face(part, number).normal for number in near[0] & near[1]]
+        sides = sum(normal is not None and abs(np.array(normal) @ axis) < 1e-3 for normal in both)
+        if not alike or np.abs(ends[0] - ends[1]).max() > LEVEL or sides < 2 or not np.any(arm):
+            continue
+        used |= {one.number, two.number}
+        out.append(
+            Bore(
+                part=part,
+                radius=one.radius,
+                axis=axis,
+                point=np.array(one.start) + arm / 2,
+                low=float(ends[0, 0]),
+                high=float(ends[0, 1]),
+                faces=tuple(face.number for face in (*first, *second)),
+                slot=arm,
+            )
+        )
+    return out
+
+
+def rows(found: Sequence[Bore], *, reach: float) -> list[Stack]:
+    """Rows of bores on one axis, those of a single part among them.
 
     Args:
         found: the bores of all parts.
@@ -99,7 +141,7 @@ def stacks(found: Sequence[Bore], *, reach: float) -> list[Stack]:
             diameters of the hole, if that is more, as across the gap between raised faces.
     """
     out = []
-    left = list(found)
+    left = sorted(found, key=lambda bore: bore.slot is not None)  # a slot belongs to the round hole in its reach
     while left:
         first = left[0]
         line = [bore for bore in left if _one_axis(first, bore)]
@@ -114,10 +156,10 @@ def stacks(found: Sequence[Bore], *, reach: float) -> list[Stack]:
             here = [one for one in line if one.part == bore.part]
             far = max(reach, 4 * bore.radius)
             if row and min(one.low for one in here) - max(one.high for one in before) > far:
-                out += [Stack(bores=tuple(row))] if len(row) > 1 else []
+                out.append(Stack(bores=tuple(row)))
                 row = []
             row.append(bore)
-        out += [Stack(bores=tuple(row))] if len(row) > 1 else []
+        out.append(Stack(bores=tuple(row)))
     return out
 
 
@@ -158,6 +200,9 @@ def room_around(facts: GeometryFacts, face: FaceFacts, bore: Bore) -> float:
     share = np.clip(np.einsum("ei,ei->e", point - start, along) / np.einsum("ei,ei->e", along, along), 0.0, 1.0)
     away = np.linalg.norm(start + share[:, None] * along - point, axis=1)
     ends = np.linalg.norm(rim - point, axis=2)
+    if bore.slot is not None:
+        shift = np.clip((rim - point) @ bore.slot / (bore.slot @ bore.slot), -0.5, 0.5)
+        ends = np.linalg.norm(rim - point - shift[..., None] * bore.slot, axis=2)
     own = np.all(ends < 1.001 * ends.min(), axis=1)  # the edge of the bore, or of its chamfer
     return float(away[~own].min()) if np.any(~own) else np.inf
 
@@ -183,5 +228,8 @@ def _ends(face: FaceFacts, axis: Array) -> tuple[float, float]:
 
 def _one_axis(one: Bore, two: Bore) -> bool:
     arm = two.point - one.point
+    for slot in (one.slot, two.slot):
+        if slot is not None:  # a bolt may stand anywhere between the ends of a slot
+            arm = arm - float(np.clip(arm @ slot / (slot @ slot), -0.5, 0.5)) * slot
     aside = float(np.linalg.norm(arm - (arm @ one.axis) * one.axis))
     return bool(abs(one.axis @ two.axis) >= FACING and aside <= BESIDE * min(one.radius, two.radius))

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -76,7 +76,7 @@ class CadParts:
     """The solids of a STEP file.
 
     Args:
-        shape: all of them, as the kernel read it [mm].
+        shape: all of the file, as the kernel read it [mm].
         solids: one by one, in the kernel's order; their faces count from 1 in the order of `solid.faces`.
         names: a name of its own for each.
         notes: where names are missing or given several times.
@@ -86,6 +86,19 @@ class CadParts:
     solids: list[Any]
     names: list[str]
     notes: tuple[Note, ...]
+
+    def without(self, parts: Sequence[str]) -> "CadParts":
+        """The same with some parts left out. Raises InputError where there is no such part, or none is left."""
+        missing = [part for part in parts if part not in self.names]
+        if missing:
+            raise InputError(
+                f"geometry.leave_out names the part {missing[0]!r}, which is not there; the parts are "
+                f"{', '.join(map(repr, self.names))}"
+            )
+        left = [k for k, name in enumerate(self.names) if name not in parts]
+        if not left:
+            raise InputError("geometry.leave_out leaves no part; take at least two out of it")
+        return replace(self, solids=[self.solids[k] for k in left], names=[self.names[k] for k in left])
 
 
 def read_parts(path: Path) -> CadParts:

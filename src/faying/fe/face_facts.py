@@ -1,7 +1,7 @@
 """What the faces of a geometry are: planes and cylinders, holes and shafts, neighbours, and where parts touch."""
 
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Container, Sequence
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from itertools import combinations, pairwise
 from pathlib import Path
@@ -138,6 +138,19 @@ class GeometryFacts:
         """Triangles (t, 3, 3) [m] of a face."""
         return np.asarray(self.corners[self.face_of == self.faces.index(face)])
 
+    def without(self, parts: Container[str]) -> "GeometryFacts":
+        """The same geometry with some parts left out."""
+        left = np.array([face.part not in parts for face in self.faces])
+        rows = left[self.face_of]
+        return replace(
+            self,
+            parts=tuple(part for part in self.parts if part.name not in parts),
+            faces=tuple(face for face in self.faces if face.part not in parts),
+            contacts=tuple(c for c in self.contacts if c.first[0] not in parts and c.second[0] not in parts),
+            corners=self.corners[rows],
+            face_of=(np.cumsum(left) - 1)[self.face_of[rows]],
+        )
+
 
 def read_facts(
     path: Path,
@@ -145,6 +158,7 @@ def read_facts(
     points: dict[str, tuple[str, Sequence[float]]] | None = None,
     overlaps: bool = False,
     touching: bool = True,
+    leave_out: Sequence[str] = (),
 ) -> GeometryFacts:
     """Read what the faces of a STEP file are, in a process of its own.
 
@@ -153,12 +167,15 @@ def read_facts(
         points: label -> (part, point [m]): the distance of each to the faces of its part is measured.
         overlaps: whether parts are searched for common volumes, which takes the kernel a while.
         touching: whether contacts are sought.
+        leave_out: names of parts that are not read.
 
     Raises:
         ReadError: the file cannot be read, or the kernel died on it.
+        InputError: there is no part to leave out, or none is left.
     """
     check_head(path)
     request = {"path": str(path.resolve()), "points": points or {}, "overlaps": overlaps, "touching": touching}
+    request["leave_out"] = list(leave_out)
     answer = ask(facts_answer, request, path=path)
     facts = answer.facts
     return GeometryFacts(
@@ -177,7 +194,7 @@ def read_facts(
 def facts_answer(request: dict[str, Any]) -> Answer:
     """Find what `read_facts` asks for; this runs in the process of its own."""
     path = Path(request["path"])
-    held = read_parts(path)
+    held = read_parts(path).without(request["leave_out"])
     found = facts_of(held.solids, held.names, path.name, request["points"], touching=request["touching"])
     facts: dict[str, Any] = {
         "parts": [asdict(part) for part in found.parts],

@@ -50,6 +50,7 @@ class _Request:
     local_size: Mapping[str, float]
     selectors: Mapping[str, Any]
     snap: float
+    leave_out: Sequence[str] = ()
 
 
 def mesh_step(
@@ -59,6 +60,7 @@ def mesh_step(
     local_size: Mapping[str, float] | None = None,
     faces: Mapping[str, Selector] | None = None,
     snap: float = 0.0,
+    leave_out: Sequence[str] = (),
     cache: Path | None = None,
 ) -> Mesh:
     """Mesh the solids of a STEP file with second-order tetrahedra, in a process of its own.
@@ -69,6 +71,7 @@ def mesh_step(
         local_size: face name -> largest edge there [m].
         faces: name to give -> which faces get it, beside the names of the file.
         snap: faces of two parts that lie no farther apart than this count as touching [m].
+        leave_out: names of parts that are not meshed.
         cache: folder that keeps the mesh for the next call; see `faying.cache.kept`.
 
     Faces that two parts share come out matched node for node, one copy per part.
@@ -84,6 +87,7 @@ def mesh_step(
         local_size=local_size or {},
         selectors={label: asdict(one) for label, one in (faces or {}).items()},
         snap=snap,
+        leave_out=list(leave_out),
     )
 
     def made() -> dict[str, Any]:
@@ -114,8 +118,8 @@ def _mesh_here(request: _Request) -> Answer:
     local_size = request.local_size
     occ = kernel()
     Glue = occ.Glue
-    held = read_parts(path)
-    shape, solids, names, notes = held.shape, held.solids, held.names, held.notes
+    held = read_parts(path).without(request.leave_out)
+    solids, names, notes = held.solids, held.names, held.notes
     for solid, name in zip(solids, names, strict=True):
         solid.name = name
     _check_size(sum(solid.mass for solid in solids), size, path.name)
@@ -123,7 +127,7 @@ def _mesh_here(request: _Request) -> Answer:
     # gluing merges touching faces and keeps one of their names: remember the geometry of every named face
     marks = [Mark(face.name, names[i], face) for i, solid in enumerate(solids) for face in solid.faces if face.name]
     marks += _selected(held, request, {mark.name for mark in marks})
-    glued = Glue(solids) if len(solids) > 1 else shape
+    glued = Glue(solids) if len(solids) > 1 else solids[0]
     parts = list(glued.solids)
     if len(parts) != len(solids):
         raise InputError(

@@ -48,6 +48,8 @@ CLEARANCE_HOLES = {
 # outer diameters [mm] of plain washers (ISO 7089) and of heads of cap screws (ISO 4762), by nominal diameter [mm]
 WASHERS = {3: 7, 4: 9, 5: 10, 6: 12, 8: 16, 10: 20, 12: 24, 14: 28, 16: 30, 18: 34, 20: 37, 22: 39, 24: 44}
 HEADS = {3: 5.5, 4: 7, 5: 8.5, 6: 10, 8: 13, 10: 16, 12: 18, 14: 21, 16: 24, 18: 27, 20: 30, 22: 33, 24: 36}
+# diameters [mm] of parallel pins (ISO 2338)
+PINS = (3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30)
 # stress under proof load [Pa] of each property class (ISO 898-1:2013, Table 3)
 PROOF = {
     "4.6": 225e6,

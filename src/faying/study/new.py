@@ -16,7 +16,7 @@ from faying.study.template import SCHEMA, surface
 from faying.units import show
 
 STEEL = "S355"
-SCAN = "milled-surface.x3p"
+MOST_NAMES = 2  # bolts that a line names one by one
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,7 +49,7 @@ def find(step: Path) -> Proposal:
 
 
 def write(proposal: Proposal, step: Path, out: Path, answers: Answers, *, force: bool = False) -> Written:
-    """Write the study beside which the synthetic scan lies where no scan is given; all files or none.
+    """Write the study, and the synthetic scan beside it where no scan is given; all files or none.
 
     Args:
         proposal: from `find`.
@@ -66,7 +66,7 @@ def write(proposal: Proposal, step: Path, out: Path, answers: Answers, *, force:
         raise InputError(f'material "{unknown[0]}" is not in the catalogue; there are {", ".join(CATALOGUE)}')
     if answers.scan is not None and not answers.scan.is_file():
         raise InputError(f"no scan {answers.scan}")
-    made = [out.name] if answers.scan is not None else [out.name, SCAN]
+    made = [out.name] if answers.scan is not None else [out.name, scan_name(out)]
     there = [out.parent / name for name in made if (out.parent / name).exists()]
     if there and not force:
         raise InputError(f"{there[0]} exists already; name another study with --out, or replace it with --force")
@@ -74,8 +74,13 @@ def write(proposal: Proposal, step: Path, out: Path, answers: Answers, *, force:
     with together(out.parent, "give another place with --out") as folder:
         write_text(folder / out.name, text)
         if answers.scan is None:
-            write_atomically(folder / SCAN, surface)
+            write_atomically(folder / scan_name(out), surface)
     return Written(files=tuple(out.parent / name for name in made), proposal=proposal, assumed=tuple(assumed))
+
+
+def scan_name(out: Path) -> str:
+    """The name of the synthetic scan of a study file."""
+    return f"{out.stem}-surface.x3p"
 
 
 def study_text(proposal: Proposal, step: Path, out: Path, answers: Answers) -> tuple[str, list[str]]:
@@ -87,11 +92,12 @@ def study_text(proposal: Proposal, step: Path, out: Path, answers: Answers) -> t
         _parts(proposal, answers, assumed),
         _surface(out, answers, assumed),
         _joints(proposal),
-        *(_bolt(bolt, answers, assumed) for bolt in proposal.bolts),
+        *(_bolt(bolt, answers) for bolt in proposal.bolts),
         "" if proposal.bolts else NO_BOLT,
         SUPPORT,
         "[modes]\ncount = 10                     # elastic modes\n",
     ]
+    assumed += _assumed_of_bolts(proposal.bolts, answers)
     assumed.append("no support: the structure is free")
     return "\n".join(block for block in blocks if block), [*assumed, *proposal.remarks]
 
@@ -133,6 +139,9 @@ def _geometry(proposal: Proposal, step: str) -> str:
     ]
     if proposal.snap:
         lines.append(f'snap = "{show(proposal.snap, "m")}"  # ASSUMED: gaps of the CAD model up to this are none')
+    if proposal.left_out:
+        listed = ", ".join(map(_quoted, proposal.left_out))
+        lines.append(f"leave_out = [{listed}]  # parts of the file that are not meshed")
     if proposal.faces:
         lines.append(f"[geometry.face]  # names for faces; `faying faces {_plain(step)}` lists all of them")
     lines += [f"{_quoted(name)} = {selector_text(one)}" for name, one in proposal.faces.items()]
@@ -168,8 +177,9 @@ def _parts(proposal: Proposal, answers: Answers, assumed: list[str]) -> str:
 
 def _surface(out: Path, answers: Answers, assumed: list[str]) -> str:
     if answers.scan is None:
-        assumed.append(f"the surface {SCAN}, a synthetic milled finish of 1 um rms height, on both faces: scan yours")
-        scan, mark = SCAN, "  # ASSUMED: synthetic, milled, 1 um rms height; put the scan of your face here"
+        scan = scan_name(out)
+        assumed.append(f"the surface {scan}, a synthetic milled finish of 1 um rms height, on both faces: scan yours")
+        mark = "  # ASSUMED: synthetic, milled, 1 um rms height; put the scan of your face here"
     else:
         scan, mark = _relative(answers.scan, out), ""
         assumed.append("the other face of each joint is alike but unrelated (surface.counter)")
@@ -199,7 +209,7 @@ def _joints(proposal: Proposal) -> str:
     return "\n".join(lines)
 
 
-def _bolt(bolt: BoltProposal, answers: Answers, assumed: list[str]) -> str:
+def _bolt(bolt: BoltProposal, answers: Answers) -> str:
     lines = [f"[[bolt]]  # {_plain(bolt.remark)}", f"name = {_quoted(bolt.name)}"]
     lines.append(f"faces = [{', '.join(map(_quoted, bolt.faces))}]")
     if bolt.part is not None:
@@ -216,17 +226,37 @@ def _bolt(bolt: BoltProposal, answers: Answers, assumed: list[str]) -> str:
             f"material = {_quoted(STEEL)}",
             f'grade = "{GRADE}"  # ASSUMED',
         ]
-    assumed.append(f"{bolt.name}: {bolt.remark}")
     if answers.preload is not None:
         lines.append(f'preload = "{show(answers.preload, "N", digits=6)}"')
     elif bolt.preload is not None:
-        force, share = show(bolt.preload, "N"), f"{SHARE:.0%} of the proof load of class {GRADE}, ISO 898-1"
-        lines.append(f'preload = "{force}"  # ASSUMED: {share}')
-        assumed.append(f"{bolt.name}: {force}, {share}")
+        lines.append(f'preload = "{show(bolt.preload, "N")}"  # ASSUMED: {_share()}')
     else:
         lines.append('# preload = "10 kN"  # give the force; its thread is not known')
-        assumed.append(f"{bolt.name}: no preload; its thread is not known: give one")
     return "\n".join([*lines, ""])
+
+
+def _share() -> str:
+    return f"{SHARE:.0%} of the proof load of class {GRADE}, ISO 898-1"
+
+
+def _assumed_of_bolts(bolts: Sequence[BoltProposal], answers: Answers) -> list[str]:
+    """What is assumed of the bolts; those that are alike have one line."""
+    groups: dict[str, list[str]] = {}
+    for bolt in bolts:
+        groups.setdefault(bolt.remark, []).append(bolt.name)
+    for bolt in bolts:
+        if answers.preload is None and bolt.preload is not None:
+            groups.setdefault(f"{show(bolt.preload, 'N')}, {_share()}", []).append(bolt.name)
+        elif answers.preload is None:
+            groups.setdefault("no preload; its thread is not known: give one", []).append(bolt.name)
+    return [f"{grouped(names)}: {words}" for words, names in groups.items()]
+
+
+def grouped(names: Sequence[str]) -> str:
+    """Names on one line: each of a few, else how many they are and the first and the last."""
+    if len(names) <= MOST_NAMES:
+        return ", ".join(names)
+    return f"{len(names)} bolts ({names[0]} to {names[-1]})"
 
 
 def _mm(length: float) -> str:
@@ -252,8 +282,10 @@ def summary(written: Written, study: Path) -> Sequence[str]:
     """What the terminal shows: what was found, what was assumed, and what to do next."""
     found = written.proposal
     plural = "s" * (len(found.bolts) != 1)
+    parts = f"{len(found.facts.parts)} parts"
+    parts += f" and {len(found.left_out)} more that are not meshed" if found.left_out else ""
     return [
-        f"found: {len(found.facts.parts)} parts, {len(found.joints)} joints, {len(found.bolts)} bolt{plural}",
+        f"found: {parts}, {len(found.joints)} joint{'s' * (len(found.joints) != 1)}, {len(found.bolts)} bolt{plural}",
         *(f"assumed: {line}" for line in written.assumed),
         f"written: {', '.join(str(file) for file in written.files)}",
         f"next: faying check {study}, then faying run {study}",

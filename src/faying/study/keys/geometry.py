@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from faying import cache
 from faying.decks.included import included
@@ -17,7 +18,8 @@ from faying.study.keys.reader import Faults, Table
 class GeometryChoice:
     """A STEP file and how finely to mesh it, lengths [m]; or a mesh file, its unit, and the element sets of the parts.
 
-    snap: faces of a joint nowhere farther apart than this [m] count as touching.
+    snap: faces of a joint nowhere farther apart than this [m] count as touching; leave_out: parts of the STEP file that
+    are not meshed, such as dowels and the bolts that beams stand for.
     """
 
     step: Path | None = None
@@ -28,6 +30,7 @@ class GeometryChoice:
     unit: str | None = None
     sets: dict[str, str] = field(default_factory=dict)
     snap: float = 0.0
+    leave_out: tuple[str, ...] = ()
 
     @property
     def file(self) -> Path:
@@ -51,8 +54,16 @@ def read_geometry(top: Table) -> GeometryChoice:
         sizes[name] = inner.quantity(name, "m") if inner else 0.0
     faces = _faces(table)
     snap = table.quantity("snap", "m", 0.0)
+    left = table.take("leave_out", _parts, ())
     table.close()
-    return GeometryChoice(step=step, size=size, face_size=sizes, face=faces, snap=snap)
+    return GeometryChoice(step=step, size=size, face_size=sizes, face=faces, snap=snap, leave_out=left)
+
+
+def _parts(value: Any, name: str) -> tuple[str, ...]:
+    """Names of parts. Raises InputError for any other value."""
+    if not isinstance(value, list) or not all(isinstance(one, str) for one in value):
+        raise InputError(f'{name} = {value!r} should be a list of parts, for example ["dowel 1", "dowel 2"]')
+    return tuple(value)
 
 
 def _faces(table: Table) -> dict[str, Selector]:
@@ -75,7 +86,7 @@ def _meshed(table: Table) -> GeometryChoice:
     if "unit" not in table.data:
         table.faults.add('geometry.unit is missing: a mesh file does not say its unit; write for example unit = "mm"')
     unit = table.text("unit", None)
-    for key in ("step", "size", "face_size"):
+    for key in ("step", "size", "face_size", "leave_out"):
         if key in table.data:
             table.faults.add(f"geometry.{key} goes with a STEP file; geometry.mesh names a mesh that is ready")
             table.data.pop(key)
@@ -101,6 +112,7 @@ def mesh_of(spec: GeometryChoice) -> Mesh:
         local_size=spec.face_size,
         faces=spec.face,
         snap=spec.snap,
+        leave_out=spec.leave_out,
         cache=spec.file.parent / cache.FOLDER,
     )
 
