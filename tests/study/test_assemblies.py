@@ -85,9 +85,9 @@ def test_new_finds_parts_joints_and_bolts(made, name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", KINDS)
 def test_check_finds_no_fault(made, name):
-    done = CliRunner().invoke(cli, ["check", str(made(name)[1]), "--json"])
+    done = CliRunner().invoke(cli, ["check", str(made(name)[1]), "--json"], standalone_mode=False)
     found = json.loads(done.output)
-    assert done.exit_code == 0, found
+    assert done.return_value == 0, found
     assert not [one for one in found["findings"] if one["level"] == "fault"]
 
 

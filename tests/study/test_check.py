@@ -31,10 +31,10 @@ def read_once(monkeypatch):
     """The facts of an unchanged file are those that were read."""
     kept = KEPT
 
-    def facts(path, *, points=None, overlaps=False):
-        key = path, path.stat().st_mtime_ns, str(points), overlaps
+    def facts(path, *, points=None, overlaps=False, leave_out=()):
+        key = path, path.stat().st_mtime_ns, str(points), overlaps, leave_out
         if key not in kept:
-            kept[key] = read_facts(path, points=points, overlaps=overlaps)
+            kept[key] = read_facts(path, points=points, overlaps=overlaps, leave_out=leave_out)
         return kept[key]
 
     monkeypatch.setattr("faying.study.check.read_facts", facts)

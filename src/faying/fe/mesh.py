@@ -1,6 +1,6 @@
 """A mesh of named parts with named faces: solid elements of any kind, nodes in metres."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 class Mesh(Summary):
     """Nodes, the solid elements of each part, and the faces of elements that make up each named face.
 
-    No node is shared by two parts: parts meet through joints alone.
+    No node is shared by two parts: parts meet through joints alone, unless they are bonded.
 
     Args:
         points: Nodes (n, 3) [m].
@@ -38,6 +38,7 @@ class Mesh(Summary):
         source: File that the mesh came from.
         node_numbers: Numbers (n,) of the nodes in that file; 1, 2, ... where None.
         turned: Whether each node's displacements are in directions of its own in the file (n,); None where none are.
+        bonded: Pairs of parts that share nodes, where they are welded or glued.
         notes: What the reader of the file left out.
 
     Raises:
@@ -51,6 +52,7 @@ class Mesh(Summary):
     source: str = field(default="")
     node_numbers: Index | None = None
     turned: Mask | None = None
+    bonded: tuple[tuple[str, str], ...] = ()
     notes: tuple[Note, ...] = ()
 
     def __post_init__(self) -> None:
@@ -69,11 +71,12 @@ class Mesh(Summary):
                 "node needs one of its own"
             )
         used = np.zeros(len(self.points), dtype=int)
+        body_of = {part: number for number, body in enumerate(self.bodies, 1) for part in body}
         for name, blocks in self.parts.items():
             here = nodes_of(blocks)
-            if np.any(used[here]):
+            if np.any((used[here] > 0) & (used[here] != body_of[name])):
                 raise InputError(f"part {name!r} shares nodes with another part; parts meet only through joints")
-            used[here] = 1
+            used[here] = body_of[name]
             wrong = sum(int(np.count_nonzero(least_jacobian(self.points, cells) <= 0)) for cells in blocks)
             if wrong:
                 raise InputError(
@@ -86,6 +89,15 @@ class Mesh(Summary):
     def unknowns(self) -> int:
         """Number of displacement unknowns [-]: three per node."""
         return 3 * len(self.points)
+
+    @cached_property
+    def bodies(self) -> tuple[tuple[str, ...], ...]:
+        """The parts that are one body, in their order: those that are bonded together, and each other one alone."""
+        return bodies_of(tuple(self.parts), self.bonded)
+
+    def body_nodes(self, body: Sequence[str]) -> Index:
+        """Nodes of the parts of a body, each once."""
+        return np.unique(np.concatenate([self.part_nodes(part) for part in body]))
 
     @cached_property
     def size(self) -> float:
@@ -157,6 +169,17 @@ class Mesh(Summary):
         if name not in self.parts:
             raise InputError(f"no part is called {name!r}; the parts are {', '.join(map(repr, self.parts))}")
         return nodes_of(self.parts[name])
+
+
+def bodies_of(parts: Sequence[str], bonded: Sequence[tuple[str, str]]) -> tuple[tuple[str, ...], ...]:
+    """Groups of parts that pairs bond together, in the order of the parts."""
+    groups = {part: [part] for part in parts}
+    for first, second in bonded:
+        if groups[first] is not groups[second]:
+            merged = groups[first] + groups[second]
+            groups |= dict.fromkeys(merged, merged)
+    found = {id(group): tuple(part for part in parts if part in group) for group in groups.values()}
+    return tuple(found.values())
 
 
 def _blocks(given: Index | Blocks, what: str, kinds: Mapping[int, object]) -> Blocks:

@@ -39,15 +39,18 @@ def outline(mesh: Mesh, first: Sequence[str] = ()) -> Outline:
     """
     outer = skin(mesh.blocks, len(mesh.points))
     nodes, triangles = np.unique(triangles_of(outer), return_inverse=True)
-    part_of_node = np.empty(len(mesh.points), dtype=np.int64)
+    corners = nodes[triangles.reshape(-1, 3)]
+    part_of_triangle = np.zeros(len(corners), dtype=np.int64)
     for number, name in enumerate(mesh.parts):
-        part_of_node[mesh.part_nodes(name)] = number
+        mine = np.zeros(len(mesh.points), dtype=bool)
+        mine[mesh.part_nodes(name)] = True
+        part_of_triangle[np.all(mine[corners], axis=1)] = number  # bonded parts share nodes at their rim
     faces = tuple(dict.fromkeys([*first, *mesh.faces]))
     triangles = triangles.reshape(-1, 3).astype(np.int64)
     return Outline(
         nodes=nodes,
         triangles=triangles,
-        part_of_triangle=part_of_node[nodes[triangles[:, 0]]],
+        part_of_triangle=part_of_triangle,
         faces=faces,
         face_of_triangle=_per_triangle(outer, [_named(mesh, sides, faces) for sides in outer]),
     )

@@ -135,7 +135,7 @@ class Frame:
         nodes = np.unique(np.concatenate([nodes_of(mesh.face(face)) for face in sorted(faces)]))
         pulled = np.flatnonzero(np.any(self.loads != 0, axis=1))
         touched = np.union1d(np.union1d(unknowns_of(nodes), pulled), self.fixed)
-        return PartByPart([unknowns_of(mesh.part_nodes(part)) for part in mesh.parts], touched, self._motions)
+        return PartByPart([unknowns_of(mesh.body_nodes(body)) for body in mesh.bodies], touched, self._motions)
 
     def over_mpi(self, name: str) -> OverMpi:
         """What solves with the matrices of the structure over processes, by a name as `processes_named` takes it.
@@ -153,11 +153,11 @@ class Frame:
         return {}
 
     def loose(self) -> Array:
-        """Motions (unknowns, r) of the parts, each rigid by itself, that nothing resists with all joints apart."""
+        """Motions (unknowns, r) of the bodies, each rigid by itself, that nothing resists with all joints apart."""
         mesh, (stiffness, _) = self.mesh, self.vibrating
-        motions = np.zeros((mesh.unknowns, 6 * len(mesh.parts)))
-        for number, part in enumerate(mesh.parts):
-            nodes = mesh.part_nodes(part)
+        motions = np.zeros((mesh.unknowns, 6 * len(mesh.bodies)))
+        for number, body in enumerate(mesh.bodies):
+            nodes = mesh.body_nodes(body)
             motions[unknowns_of(nodes), 6 * number : 6 * number + 6] = rigid_motions(mesh.points[nodes])
         motions = free_motions(motions, self.fixed)
         small = motions.T @ (stiffness @ motions)

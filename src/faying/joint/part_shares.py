@@ -7,9 +7,20 @@ from typing import Any, Self
 import numpy as np
 
 from faying.fe.constraint import constrain
+from faying.fe.elasticity import assemble
 from faying.joint.solid_bolt import FittedSolidBolt
 from faying.joint.structure import Structure
 from faying.typing import Array
+
+
+@dataclass(frozen=True)
+class Nothing:
+    """A material without stiffness and mass: what the other parts are made of while one is assembled alone."""
+
+    E: float = 0.0
+    nu: float = 0.0
+    density: float = 0.0
+
 
 Scales = Sequence[tuple[float, float]]  # of the stiffness and of the mass of each part
 
@@ -32,16 +43,22 @@ class PartShares:
 
     @classmethod
     def of(cls, structure: Structure, parts: Sequence[str]) -> Self:
-        """Cut the shares of some parts out of the matrices of a structure; parts share no node."""
+        """The shares of some parts in the matrices of a structure."""
         from scipy.sparse import diags_array
 
         K, M = structure.matrices
+        bonded = {part for pair in structure.mesh.bonded for part in pair}
         standing, stiffness, mass = [], [], []
         for part in parts:
-            here = np.zeros(structure.mesh.unknowns)
-            here[(3 * structure.mesh.part_nodes(part)[:, None] + np.arange(3)).ravel()] = 1.0
-            sieve = diags_array(here)
-            own = [constrain(sieve @ matrix, structure.fixed, 0.0) for matrix in (K, M)]
+            if part in bonded:  # it shares nodes with another
+                nothing = {other: Nothing() for other in structure.mesh.parts}
+                mine = assemble(structure.mesh, nothing | {part: structure.materials[part]})
+                own = [constrain(matrix, structure.fixed, 0.0) for matrix in mine]
+            else:
+                here = np.zeros(structure.mesh.unknowns)
+                here[(3 * structure.mesh.part_nodes(part)[:, None] + np.arange(3)).ravel()] = 1.0
+                sieve = diags_array(here)
+                own = [constrain(sieve @ matrix, structure.fixed, 0.0) for matrix in (K, M)]
             drawn = [
                 bolt.released
                 for bolt in structure.fitted_bolts

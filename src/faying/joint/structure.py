@@ -1,6 +1,6 @@
 """A bolted structure: meshed parts, the joints between them, the bolts that pull them together, what supports them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf
 from typing import TYPE_CHECKING, Any, Literal, cast
@@ -117,11 +117,9 @@ class Structure(Summary):
                     f"bolt {bolt.name!r}: its face {apart[0]!r} is in no joint; add a [[joint]] of it and the seat "
                     "that it presses"
                 )
-        loose = [part for part in self.mesh.parts if part not in met]
-        if loose and len(self.mesh.parts) > 1:
-            raise InputError(
-                f"part {', '.join(loose)} has no joint; add a [[joint]] of one of its faces, or leave it out"
-            )
+        loose = loose_parts(self.mesh.bodies, met)
+        if loose:
+            raise InputError(loose)
         for what, names in (
             ("joints", [joint.name for joint in self.joints]),
             ("bolts", [bolt.name for bolt in self.bolts]),
@@ -226,7 +224,7 @@ class Structure(Summary):
         way = chosen(name)
         if is_mpi(way):
             return self._frame.over_mpi(way)
-        if len(self.mesh.parts) < 2 or way not in ("pardiso", BY_PARTS):
+        if len(self.mesh.bodies) < 2 or way not in ("pardiso", BY_PARTS):
             return way
         if way == "pardiso" and (name or not self._frame.is_large):
             return way
@@ -356,10 +354,19 @@ class Structure(Summary):
     @property
     def part_masses(self) -> Array:
         """Mass of each part [kg] (p,), without bolts and point masses."""
-        along = np.zeros(self.mesh.unknowns)
-        along[::3] = 1.0
-        of_node = np.asarray(self.matrices[1] @ along)[::3]
-        return np.array([of_node[self.mesh.part_nodes(part)].sum() for part in self.mesh.parts])
+        volumes = self.mesh.volumes
+        return np.array([(self.materials[part].density or 0.0) * volumes[part] for part in self.mesh.parts])
+
+
+def loose_parts(bodies: Sequence[Sequence[str]], met: Container[str]) -> str:
+    """What there is to say of parts that no joint and no support holds, themselves or by a bond; "" where all are."""
+    loose = [part for body in bodies for part in body if not any(one in met for one in body)]
+    if not loose or len(bodies) < 2:
+        return ""
+    return (
+        f"part {', '.join(loose)} has no joint; add a [[joint]] of one of its faces (bonded = true where it is welded "
+        "or glued), or name it in geometry.leave_out"
+    )
 
 
 def materials_of_parts(mesh: Mesh, given: str | Material | Mapping[str, str | Solid]) -> Mapping[str, Solid]:

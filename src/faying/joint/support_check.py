@@ -61,6 +61,8 @@ def check_contact(structure: Structure, pressures: Sequence[Array], openings: Se
     for bolt in structure.bolts:
         if bolt.diameter is not None:
             meet(*(owner[face] for face in bolt.faces))
+    for pair in structure.mesh.bonded:
+        meet(*pair)
     supported = [owner[support.face] for support in structure.supports]
     for part in supported[1:]:
         meet(supported[0], part)

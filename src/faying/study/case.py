@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from faying.errors import InputError
+from faying.fe.bonded import bonded_mesh
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.files import end_of
@@ -222,7 +223,7 @@ def checked_mesh(study: Study) -> Mesh:
     faults = [fault for _, fault in name_faults(study, list(mesh.parts), mesh.face_part)]
     if faults:
         raise InputError("the study does not fit its geometry:\n" + "\n".join(f"  - {line}" for line in faults))
-    return mesh
+    return bonded_mesh(mesh, [(bond.name, bond.faces) for bond in study.bonds], snap=study.geometry.snap)
 
 
 def name_faults(study: Study, parts: Sequence[str], faces: Mapping[str, str]) -> list[tuple[str, str]]:
@@ -280,10 +281,12 @@ def _idle_bolts(study: Study) -> list[tuple[str, str]]:
 def named_faces(study: Study) -> list[tuple[str, str, str, str]]:
     """Every face that a study names: the key, what names it, that thing's name, the face."""
     named = [
-        (f"{what}[{k}].faces", what, item.name, face)
-        for what, items in (("joint", study.joints), ("bolt", study.bolts))
-        for k, item in enumerate(items, 1)
-        for face in item.faces
+        (f"joint[{joint.number}].faces", "joint", joint.name, face)
+        for joint in sorted((*study.joints, *study.bonds), key=lambda joint: joint.number)
+        for face in joint.faces
+    ]
+    named += [
+        (f"bolt[{k}].faces", "bolt", bolt.name, face) for k, bolt in enumerate(study.bolts, 1) for face in bolt.faces
     ]
     named += [(f"support[{k}].face", "support", one.face, one.face) for k, one in enumerate(study.supports, 1)]
     masses = [(k, one.face) for k, one in enumerate(study.masses, 1) if one.face is not None]

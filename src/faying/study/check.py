@@ -11,7 +11,7 @@ from typing import Literal
 from faying.errors import FayingError, InputError
 from faying.fe.face_facts import FaceFacts, GeometryFacts, read_facts
 from faying.fe.face_triangles import FaceTriangles
-from faying.fe.mesh import Mesh
+from faying.fe.mesh import Mesh, bodies_of
 from faying.fe.mesh_facts import mesh_facts
 from faying.fe.quality import quality
 from faying.fe.selectors import TOUCHING, chosen, points_of
@@ -19,6 +19,7 @@ from faying.joint.bolt import Bolt, BoltPlace, each_in_its_place
 from faying.joint.joint import each_pair_once
 from faying.joint.solid_bolt import SolidBolt
 from faying.joint.strength import SolidPlace, bolt_notes, material_notes
+from faying.joint.structure import loose_parts
 from faying.memory import available
 from faying.notes import Note
 from faying.progress import duration
@@ -213,10 +214,10 @@ def _named(study: Study, facts: GeometryFacts, found: _Findings) -> dict[str, tu
 
 def _selector_key(study: Study, label: str) -> str:
     """Where a selector stands: under [geometry.face], or in place of a name."""
-    for what, items in (("joint", study.joints), ("bolt", study.bolts)):
-        for k, item in enumerate(items, 1):
-            if label in item.faces and label in (f"{item.name} first", f"{item.name} second"):
-                return f"{what}[{k}].faces"
+    named = [(f"joint[{joint.number}].faces", joint) for joint in (*study.joints, *study.bonds)]
+    for key, item in (*named, *((f"bolt[{k}].faces", bolt) for k, bolt in enumerate(study.bolts, 1))):
+        if label in item.faces and label in (f"{item.name} first", f"{item.name} second"):
+            return key
     if label.endswith("]") and label.split("[")[0] in ("support", "mass"):
         return f"{label}.face"
     return f"geometry.face.{label}"
@@ -252,10 +253,14 @@ def _expected(
 def _contacts(sketch: Sketch, found: _Findings) -> None:
     """Whether the faces of each joint meet, and how far apart they lie."""
     spec, size = sketch.study.geometry, sketch.facts.size
-    joints = {joint.name: joint.faces for joint in sketch.study.joints}
+    every = sorted((*sketch.study.joints, *sketch.study.bonds), key=lambda joint: joint.number)
+    joints = {joint.name: joint.faces for joint in every}
     found.tried("contact", "joint", lambda: each_pair_once(joints))
-    for k, joint in enumerate(sketch.study.joints, 1):
-        key = f"joint[{k}].faces"
+    loose = _loose(sketch)
+    if loose:
+        found.add("fault", "loose-part", loose, "joint")
+    for joint in every:
+        key = f"joint[{joint.number}].faces"
         parts = [sketch.mesh.face_part[face] for face in joint.faces]
         if parts[0] == parts[1]:
             text = f"faces {joint.faces[0]!r} and {joint.faces[1]!r} are both on part {parts[0]!r}; a joint needs two"
@@ -274,7 +279,13 @@ def _contacts(sketch: Sketch, found: _Findings) -> None:
         widest = max(abs(contact.gap) for contact in meets)
         area = 1e6 * sum(contact.area for contact in meets)
         reach = joint.search_distance or 0.01 * size
-        if widest > reach:
+        if joint.bonded and widest > max(TOUCHING * size, spec.snap):
+            text = f"joint {joint.name!r} is bonded, but its faces are {show(widest, 'm')} apart"
+            found.add("fault", "contact", f"{text}; move a part, or give geometry.snap", key)
+        elif joint.bonded:
+            text = f"joint {joint.name!r}: its faces are bonded over {area:.4g} mm2"
+            found.add("ok", "contact", text, key)
+        elif widest > reach:
             text = f"joint {joint.name!r}: its faces are {show(widest, 'm')} apart, more than {show(reach, 'm')}"
             found.add("fault", "contact", f"{text}; move a part, or give search_distance", key)
         elif widest > max(TOUCHING * size, spec.snap):
@@ -285,6 +296,15 @@ def _contacts(sketch: Sketch, found: _Findings) -> None:
             )
         else:
             found.add("ok", "contact", f"joint {joint.name!r}: its faces touch over {area:.4g} mm2", key)
+
+
+def _loose(sketch: Sketch) -> str:
+    """What there is to say of parts that are in no joint, as the run says it; "" where there are none."""
+    owner, study = sketch.mesh.face_part, sketch.study
+    pairs = [(owner[bond.faces[0]], owner[bond.faces[1]]) for bond in study.bonds]
+    met = {owner[face] for joint in study.joints for face in joint.faces}
+    met |= {owner[support.face] for support in study.supports}
+    return loose_parts(bodies_of(tuple(sketch.facts.by_part), pairs), met)
 
 
 def _bolts(sketch: Sketch, found: _Findings) -> Sketch:

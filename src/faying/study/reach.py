@@ -39,8 +39,8 @@ def law_findings(sketch: Sketch) -> Iterator[Line]:
     for surface in dict.fromkeys(surfaces):
         for text in surface.warnings:
             yield "note", "surface", text, key
-    for k, (joint, surface) in enumerate(zip(study.joints, surfaces, strict=True), 1):
-        at = f"joint[{k}].law" if joint.law is not None else "law"
+    for joint, surface in zip(study.joints, surfaces, strict=True):
+        at = f"joint[{joint.number}].law" if joint.law is not None else "law"
         parts = [sketch.mesh.face_part[face] for face in joint.faces]
         rough, other = (sketch.materials[part] for part in parts)
         try:
@@ -51,8 +51,8 @@ def law_findings(sketch: Sketch) -> Iterator[Line]:
         if surface.faces is not None:
             pair = study.law_of(joint).pair(rough, other)
             yield "ok", "mates", f"joint {joint.name!r}: {line_of(surface.faces, pair)}", at
-        yield from _beside(sketch, k, joint, reach, name, law)
-        yield from _form(sketch, k, joint)
+        yield from _beside(sketch, joint.number, joint, reach, name, law)
+        yield from _form(sketch, joint.number, joint)
 
 
 def _form(sketch: Sketch, k: int, joint: JointChoice) -> Iterator[Line]:

@@ -39,6 +39,7 @@ class Study:
         text: the study file as it was read; files: all files that it names, so that a result depends on them.
         materials, parts: materials by name; name of the material of each part.
         geometry, surface, law, joints, bolts, supports, masses, modes, response, test, hammer: the tables of the file.
+        bonds: joints whose faces are welded or glued; `joints` are the others.
         backbone: which curve over amplitude is asked for; None where the file does not say.
         beside: other laws and surfaces whose modes stand beside those of the study.
         uncertain: which numbers scatter; None where the file does not say.
@@ -64,6 +65,7 @@ class Study:
     backbone: BackboneChoice | None = None
     beside: tuple[BesideChoice, ...] = ()
     uncertain: UncertainChoice | None = None
+    bonds: tuple[JointChoice, ...] = ()
     name: str = PLAIN
     text: str = field(default="", repr=False)
     files: tuple[Path, ...] = ()
@@ -118,7 +120,10 @@ class Study:
         materials = read_materials(top)
         geometry = read_geometry(top)
         parts = read_parts(top, materials)
-        joints = tuple(JointChoice.of(t, i) for i, t in enumerate(top.tables("joint", required=True)))
+        every = [JointChoice.of(t, i) for i, t in enumerate(top.tables("joint", required=True))]
+        joints, bonds = (tuple(joint for joint in every if joint.bonded is bonded) for bonded in (False, True))
+        if bonds and not joints:
+            faults.add("every [[joint]] is bonded; Faying needs one at least that bolts press together")
         law = LawChoice.of(top.table("law") or Table({}, "law", faults))
         shared = top.table("surface")
         surface = None if shared is None else SurfaceChoice.of(shared)
@@ -152,6 +157,7 @@ class Study:
             surface=surface,
             law=law,
             joints=joints,
+            bonds=bonds,
             bolts=bolts,
             supports=tuple(s for s in supports if s is not None),
             masses=tuple(m for m in masses if m is not None),
@@ -221,7 +227,7 @@ def _note_lacking(
         there = "no" if choice is None else "fractal" if choice.scan is None else "scan"
         fault = (joint.law or law).fault_without(there)
         if fault and not fault.startswith("[surface]"):
-            fault = f"{f'joint[{number}].law' if joint.law else 'law'}: {fault}"
+            fault = f"{f'joint[{joint.number or number}].law' if joint.law else 'law'}: {fault}"
         if fault and fault not in told:
             told.add(fault)
             faults.add(where + fault)

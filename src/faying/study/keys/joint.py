@@ -32,7 +32,8 @@ class JointChoice:
     """Two faces that meet, before there is a mesh to place them on.
 
     search_distance [m] between faces that count as meeting; surface and law: of this joint alone, those of the study
-    where None; form: the distance of the faces before any load that is no roughness.
+    where None; form: the distance of the faces before any load that is no roughness; bonded: whether the faces are
+    welded or glued, which takes nothing else; number: its place among the [[joint]] of the study, from 1.
     """
 
     name: str
@@ -44,6 +45,8 @@ class JointChoice:
     surface: SurfaceChoice | None = None
     law: LawChoice | None = None
     form: Form | None = None
+    bonded: bool = False
+    number: int = 0
 
     @classmethod
     def of(cls, table: Table, index: int) -> "JointChoice":
@@ -53,6 +56,13 @@ class JointChoice:
             table.data.pop("gap")
         surface, law = table.table("surface"), table.table("law")
         name = table.text("name", f"joint {index + 1}")
+        bonded = table.truth("bonded", False)
+        more = [key for key in table.data if key not in ("name", "faces", "bonded")]
+        if bonded and more:
+            table.faults.add(
+                f"{table.where}.{more[0]}: joint {name!r} is bonded, so that it has no pressure, slip or law; leave "
+                f"{', '.join(more)} out, or bonded"
+            )
         choice = cls(
             name=name,
             faces=face_names(table, "faces", name),
@@ -63,6 +73,8 @@ class JointChoice:
             surface=None if surface is None else SurfaceChoice.of(surface),
             law=None if law is None else LawChoice.of(law),
             form=read_form(table.table("form")),
+            bonded=bonded,
+            number=index + 1,
         )
         table.close()
         return choice

@@ -1,0 +1,90 @@
+"""Faces that are welded or glued: the nodes of both become one, so that their parts are one body."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.fe.faces import face_centre
+from faying.fe.interface import join
+from faying.fe.mesh import Mesh
+from faying.fe.sides import Blocks
+from faying.notes import Note
+from faying.typing import Array, Index, Mask
+
+CLOSE = 1e-6  # of the size of the mesh: nodes nearer than this are one
+SHARE = 1e-3  # of the area over which faces meet: how much of it may lack nodes that match
+
+
+def bonded_mesh(mesh: Mesh, pairs: Sequence[tuple[str, tuple[str, str]]], *, snap: float = 0.0) -> Mesh:
+    """Merge the nodes of faces that are bonded.
+
+    Args:
+        mesh: the parts and their faces.
+        pairs: name of each bond, for messages, and the names of its two faces, on two parts.
+        snap: nodes that lie no farther apart than this are one, too [m].
+
+    Raises:
+        InputError: a face does not exist, both are on one part, they do not meet, or their nodes do not match.
+    """
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
+    if not pairs:
+        return mesh
+    n = len(mesh.points)
+    ends, notes = [], []
+    for name, faces in pairs:
+        met, area = _matched(mesh, name, faces, max(snap, CLOSE * mesh.size))
+        ends.append(met)
+        text = f"{name}: {faces[0]} and {faces[1]} are bonded over {1e6 * area:.4g} mm2: no pressure, no law"
+        notes.append(Note(code="bonded", joint=name, text=text))
+    one, two = np.concatenate(ends, axis=1)
+    _, column = connected_components(csr_array((np.ones(len(one)), (one, two)), shape=(n, n)), directed=False)
+    _, first = np.unique(column, return_index=True)
+
+    def moved(blocks: Blocks) -> Blocks:
+        return tuple(column[block].astype(np.int64) for block in blocks)
+
+    return replace(
+        mesh,
+        points=mesh.points[first],
+        parts={part: moved(blocks) for part, blocks in mesh.parts.items()},
+        faces={face: moved(blocks) for face, blocks in mesh.faces.items()},
+        node_numbers=None if mesh.node_numbers is None else mesh.node_numbers[first],
+        turned=None if mesh.turned is None else mesh.turned[first],
+        bonded=(*mesh.bonded, *((mesh.face_part[a], mesh.face_part[b]) for _, (a, b) in pairs)),
+        notes=(*mesh.notes, *notes),
+    )
+
+
+def _matched(mesh: Mesh, name: str, faces: tuple[str, str], close: float) -> tuple[Index, float]:
+    """Nodes (2, m) of two faces that lie on each other, and the area [m2] over which the faces meet."""
+    from scipy.spatial import cKDTree
+
+    for face in faces:
+        mesh.face(face)  # raises where there is none
+    if mesh.face_part[faces[0]] == mesh.face_part[faces[1]]:
+        raise InputError(f"joint {name!r}: both faces are on part {mesh.face_part[faces[0]]!r}; a bond needs two parts")
+    a, b = (mesh.face_nodes(face) for face in faces)
+    distance, index = cKDTree(mesh.points[a]).query(mesh.points[b])
+    near = distance <= close
+    matched = np.zeros(len(mesh.points), dtype=bool)
+    matched[a[index[near]]] = True
+    area = _area(mesh.points, mesh.face(faces[0]), matched)
+    facing = float(join(mesh, *faces).weights.sum())  # raises where they do not meet
+    if abs(area - facing) > SHARE * facing:
+        raise InputError(
+            f"joint {name!r} is bonded, but its faces meet over {1e6 * facing:.4g} mm2 and their nodes match over "
+            f"{1e6 * area:.4g} mm2; mesh both parts together from a STEP file, let the mesher make their nodes one, or "
+            "unite the parts in the CAD program"
+        )
+    return np.stack([a[index[near]], b[near]]), facing
+
+
+def _area(points: Array, blocks: Blocks, nodes: Mask) -> float:
+    """Area [m2] of those elements of a face whose nodes are all among some."""
+    inside = tuple(block[np.all(nodes[block], axis=1)] for block in blocks)
+    inside = tuple(block for block in inside if len(block))
+    return face_centre(points, inside)[2] if inside else 0.0
