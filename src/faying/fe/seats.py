@@ -6,14 +6,14 @@ import numpy as np
 
 from faying.fe.bores import LEVEL, WHOLE, Bore
 from faying.fe.face_facts import FACING, FaceFacts, GeometryFacts
-from faying.typing import Array, Mask
+from faying.fe.seen_along import across, circle, hits
 
 CONE = 1e-3  # of the radius: how far the points of a face lie from a cone that it counts as
 FARTHEST = 4.0  # outer diameters of a seat beyond the end of a bore, up to which lips are sought
 COVERED = 0.15  # share of the ring of a seat that lips cover, at least
 BALANCED = 0.3  # of the outer radius: how far the middle of what they cover lies from the axis, at most
 SHANK = 0.95  # of the radius of a bolt: what must find a free way to the lips
-RING, RADII = 48, 4  # points round a ring, and rings between its edges, at which lips are looked for
+RADII = 4  # circles between the edges of a ring, at which lips are looked for
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,7 +67,7 @@ def lips(facts: GeometryFacts, bore: Bore, *, top: bool, shank: float, ring: tup
         ring: inner and outer diameter of the seat [m].
     """
     outwards = bore.axis if top else -bore.axis
-    plane, origin = _across(outwards), bore.at(bore.high if top else bore.low)
+    plane, origin = across(outwards), bore.at(bore.high if top else bore.low)
     arms = facts.corners - origin
     flat, depth = arms @ plane, arms @ outwards
     far = FARTHEST * ring[1]
@@ -80,41 +80,16 @@ def lips(facts: GeometryFacts, bore: Bore, *, top: bool, shank: float, ring: tup
         for k in np.unique(owner).tolist()
         if facts.faces[k].normal is not None and np.array(facts.faces[k].normal) @ outwards > FACING
     }
-    points = np.concatenate([_circle(r) for r in np.linspace(ring[0] / 2, ring[1] / 2, RADII + 2)[1:-1]])
-    hits, deep = _hits(flat, depth, points)
-    way = _hits(flat, depth, np.concatenate([np.zeros((1, 2)), _circle(SHANK * shank / 2)]))
+    points = np.concatenate([circle(r) for r in np.linspace(ring[0] / 2, ring[1] / 2, RADII + 2)[1:-1]])
+    over, deep = hits(flat, depth, points)
+    way = hits(flat, depth, np.concatenate([np.zeros((1, 2)), circle(SHANK * shank / 2)]))
     for level in sorted({round(level / LEVEL) * LEVEL for level in levels.values()}):
         if not 0 < level < far or np.any(way[0] & (way[1] > LEVEL) & (way[1] < level - LEVEL)):
             continue
         faces = [k for k, one in levels.items() if abs(one - level) <= LEVEL]
-        covered = np.any(hits & np.isin(owner, faces)[:, None] & (np.abs(deep - level) <= 2 * LEVEL), axis=0)
+        covered = np.any(over & np.isin(owner, faces)[:, None] & (np.abs(deep - level) <= 2 * LEVEL), axis=0)
         aside = np.linalg.norm(points[covered].mean(axis=0)) if np.any(covered) else np.inf
         if covered.mean() > COVERED and aside < BALANCED * ring[1] / 2:
-            touched = [k for k in faces if np.any(hits[owner == k] & covered)]
+            touched = [k for k in faces if np.any(over[owner == k] & covered)]
             return [facts.faces[k] for k in touched]
     return []
-
-
-def _across(axis: Array) -> Array:
-    """Two unit directions (3, 2) across an axis."""
-    one = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    one /= np.linalg.norm(one)
-    return np.stack([one, np.cross(axis, one)], axis=1)
-
-
-def _circle(radius: float) -> Array:
-    angle = 2 * np.pi * (np.arange(RING) + 0.25) / RING
-    return radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-
-
-def _hits(flat: Array, depth: Array, points: Array) -> tuple[Mask, Array]:
-    """Which triangles (t, 3, 2) lie over which points (p, 2), and at what depth [m]; both (t, p)."""
-    one, two = flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
-    area = one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0]
-    upright = np.abs(area) <= 1e-9 * np.maximum((one**2).sum(axis=1), (two**2).sum(axis=1))
-    area = np.where(upright, 1.0, area)
-    arm = points[None] - flat[:, :1]
-    u = (arm[..., 0] * two[:, None, 1] - arm[..., 1] * two[:, None, 0]) / area[:, None]
-    v = (one[:, None, 0] * arm[..., 1] - one[:, None, 1] * arm[..., 0]) / area[:, None]
-    inside = (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9) & ~upright[:, None]
-    return inside, depth[:, :1] + u * (depth[:, 1:2] - depth[:, :1]) + v * (depth[:, 2:3] - depth[:, :1])

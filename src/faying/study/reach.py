@@ -1,6 +1,6 @@
 """How far the laws of a study reach beside the pressures that its bolts will make."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import pi
 from typing import Any, Literal
 
@@ -20,6 +20,7 @@ from faying.materials import Material
 from faying.study.case import surfaces_of
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.surface import Surface
+from faying.study.load_shares import WIDE, Share, load_shares
 from faying.study.sketch import Sketch
 from faying.typing import Array
 from faying.units import show
@@ -39,6 +40,10 @@ def law_findings(sketch: Sketch) -> Iterator[Line]:
     for surface in dict.fromkeys(surfaces):
         for text in surface.warnings:
             yield "note", "surface", text, key
+    through = {joint.name: _through(sketch, joint) for joint in study.joints}
+    areas = {joint.name: sum(c.area for c in sketch.contacts(joint.faces)) for joint in study.joints}
+    pairs = {joint.name: joint.faces for joint in study.joints}
+    shares = load_shares(sketch.mesh, pairs, through, areas)
     for joint, surface in zip(study.joints, surfaces, strict=True):
         at = f"joint[{joint.number}].law" if joint.law is not None else "law"
         parts = [sketch.mesh.face_part[face] for face in joint.faces]
@@ -51,7 +56,7 @@ def law_findings(sketch: Sketch) -> Iterator[Line]:
         if surface.faces is not None:
             pair = study.law_of(joint).pair(rough, other)
             yield "ok", "mates", f"joint {joint.name!r}: {line_of(surface.faces, pair)}", at
-        yield from _beside(sketch, joint.number, joint, reach, name, law)
+        yield from _beside(sketch, shares[joint.name], joint, reach, name, law)
         yield from _form(sketch, joint.number, joint)
 
 
@@ -91,20 +96,19 @@ def law_reach(
 
 
 def _beside(
-    sketch: Sketch, number: int, joint: JointChoice, reach: float | None, name: str, law: ContactLaw | None
+    sketch: Sketch, bolts: Sequence[Share], joint: JointChoice, reach: float | None, name: str, law: ContactLaw | None
 ) -> Iterator[Line]:
     """The mean and the rim pressure of a joint at the greatest preload beside the reach of its law."""
-    key = f"joint[{number}].faces"
+    key = f"joint[{joint.number}].faces"
     area = sum(contact.area for contact in sketch.contacts(joint.faces))
     if not area:
         return
-    bolts = _through(sketch, joint)
     seated = sum(
         place.bolt.preload[-1]
         for place in sketch.fitted_bolts
         if isinstance(place, SolidPlace) and place.bolt.preload and {*place.bolt.faces} & {*joint.faces}
     )
-    force = seated + sum(place.bolt.preload[-1] for place, _ in bolts)
+    force = seated + sum(one.share * one.place.bolt.preload[-1] for one in bolts)
     if not force:
         text = f"joint {joint.name!r}: no bolt runs through it; only the parts' bending can press it together"
         yield "note", "unclamped", text, key
@@ -116,7 +120,9 @@ def _beside(
                 text = f"joint {joint.name!r}: {name} is outside its validity range at the mean pressure: {reason}"
                 yield "note", "validity", text, key
     rims = [
-        pressures for place, depth in bolts if (pressures := _rim(sketch, place, depth, area / len(bolts))) is not None
+        tuple(one.rise * pressure for pressure in pressures)
+        for one in bolts
+        if (pressures := _rim(sketch, one, area / len(bolts))) is not None
     ]
     text = f"joint {joint.name!r}: {show(force, 'N')} on {1e6 * area:.4g} mm2 press {show(mean, 'Pa', digits=3)} on it"
     highest = mean
@@ -170,17 +176,18 @@ def _corners(sketch: Sketch, joint: JointChoice) -> Array:
     return np.asarray(np.concatenate([sketch.mesh.points[rows.ravel()] for rows in sketch.mesh.face(joint.faces[0])]))
 
 
-def _rim(sketch: Sketch, place: BoltPlace | SolidPlace, depth: float, mine: float) -> tuple[float, float] | None:
+def _rim(sketch: Sketch, one: Share, mine: float) -> tuple[float, float] | None:
     """Mean pressure [Pa] in the cone of a bolt, and that at its hole; None where head and nut press no ring.
 
-    mine: its share of the joint's area [m2].
+    mine: its share of the area of a joint that alone takes its force [m2]; of several the cone is as wide as it will.
     """
+    place = one.place
     ring = None if isinstance(place, SolidPlace) else seat_ring(sketch.mesh, place)
     if ring is None:
         return None
     hole, seat = ring
-    near = min(depth, place.length - depth)
-    outer = max(2 * float(np.sqrt(mine / pi + (hole / 2) ** 2)), seat)
+    near = min(one.depth, place.length - one.depth)
+    outer = max(2 * float(np.sqrt(mine / pi + (hole / 2) ** 2)), seat) if one.share == 1 else WIDE * seat
     try:
         return cone_pressure(place.bolt.preload[-1], depth=near, length=place.length, seat=seat, hole=hole, outer=outer)
     except FayingError:
