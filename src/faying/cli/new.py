@@ -38,6 +38,7 @@ def asked(proposal: Any, scan: Path | None) -> Any:
     from faying import units
     from faying.materials import CATALOGUE
     from faying.study import new
+    from faying.study.bolt_names import grouped
 
     facts = proposal.facts
     click.echo(f"{facts.file}: {len(facts.parts)} parts, {len(proposal.joints)} joints, {len(proposal.bolts)} bolts")
@@ -45,7 +46,7 @@ def asked(proposal: Any, scan: Path | None) -> Any:
     for bolt in proposal.bolts:
         alike.setdefault(bolt.remark, []).append(bolt.name)
     for remark, names in alike.items():
-        click.echo(f"  {new.grouped(names)}: {remark}")
+        click.echo(f"  {grouped(names)}: {remark}")
     for remark in proposal.remarks:
         click.echo(f"  {remark}")
     choice = click.Choice(list(CATALOGUE))

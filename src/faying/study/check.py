@@ -23,6 +23,7 @@ from faying.joint.structure import loose_parts
 from faying.memory import available
 from faying.notes import Note
 from faying.progress import duration
+from faying.study.bolt_names import MOST_NAMES, grouped
 from faying.study.case import SIZES, name_faults
 from faying.study.expected import Expected, unknowns_of
 from faying.study.keys.geometry import mesh_of
@@ -310,6 +311,7 @@ def _loose(sketch: Sketch) -> str:
 def _bolts(sketch: Sketch, found: _Findings) -> Sketch:
     """Bolts in their places: seats that look away from each other, axes in their holes, forces that they bear."""
     places: list[BoltPlace | SolidPlace] = []
+    well: dict[str, list[tuple[str, str]]] = {}  # what is said -> bolts and keys of which it is
     for k, bolt in enumerate(sketch.study.bolts, 1):
 
         def place(bolt: Bolt | SolidBolt = bolt) -> None:
@@ -327,8 +329,13 @@ def _bolts(sketch: Sketch, found: _Findings) -> Sketch:
             found.add("ok", "bolt", text, f"bolt[{k}].part")
             continue
         ring = "whole faces" if made.ring is None else f"a ring of {' to '.join(show(d, 'm') for d in made.ring)}"
-        found.add("ok", "bolt", f"bolt {bolt.name!r} clamps {length} between seats that are {ring}", f"bolt[{k}].faces")
+        well.setdefault(f"{length} between seats that are {ring}", []).append((bolt.name, f"bolt[{k}].faces"))
         _notes(found, made.notes, f"bolt[{k}].seat")
+    for words, some in well.items():
+        many = len(some) > MOST_NAMES
+        who = f"{grouped([name for name, _ in some])} clamp" if many else ""
+        for name, key in some[:1] if many else some:
+            found.add("ok", "bolt", f"{who or f'bolt {name!r} clamps'} {words}", key)
     found.tried("bolt", "bolt", lambda: each_in_its_place([one for one in places if isinstance(one, BoltPlace)]))
     sketch = replace(sketch, fitted_bolts=tuple(places))
     keys = {bolt.name: f"bolt[{k}].preload" for k, bolt in enumerate(sketch.study.bolts, 1)}

@@ -13,13 +13,17 @@ from faying.study.study import Study
 
 SEGMENTS = 2.0  # elements along a radius of curvature, as the mesher is told
 CURVED = 3.0  # so much more than beside a curved face alone: its edges are fine on the planes around, too (counted)
-# CPU seconds from the mesh to the modes of one load, by unknowns: the T-specimen on one thread (docs/speed.md)
-MEASURED = ((38_517, 3.4), (55_032, 4.1), (142_605, 14.0), (502_002, 98.3), (674_781, 137.0), (1_078_110, 514.0))
+# of the command with one load, on one thread: counted on assemblies of 17,000 to 370,000 unknowns
+START, EACH, GROWTH = 5.0, 2e-4, 1.13  # CPU seconds: those of any run, and EACH n^GROWTH
+LOAD, OTHER = 0.25, 0.5  # of that: what each further load takes, and each other law
+LEVELS, WAVES = 0.2, 0.2  # of that: the shares of damping at levels, and of waves where no joint has a form
+CURVE = 13.0  # CPU seconds of a curve over amplitude (docs/backbone.md)
+BARE, VECTORS = 0.13e9, 24e3  # B: of any run, and for each unknown, with PARDISO's factor in single precision
 OVER_MPI = 11e3  # B for each unknown that the processes of mpiexec take (docs/speed.md)
-MESHED = 1e-4  # CPU seconds per tetrahedron that the mesher takes, about
 BASIS = (
-    "unknowns from volume, size and curved faces, within a factor of two; time as a T-specimen of as many took on one "
-    "thread, times loads and laws; the contact of a scan comes on top where it has not been solved yet"
+    "unknowns from volume, size and curved faces, within a factor of two; the greatest memory of the run, and its time "
+    "on one thread, as runs of as many unknowns took; the contact of a scan comes on top where it has not been solved "
+    "yet"
 )
 
 
@@ -29,8 +33,8 @@ class Expected:
 
     Args:
         unknowns: of the mesh.
-        memory: of a factorisation [B].
-        seconds: of all loads on one thread [s].
+        memory: the greatest that the run takes [B].
+        seconds: of the run on one thread [s].
         basis: where the numbers come from.
     """
 
@@ -41,21 +45,20 @@ class Expected:
 
     @classmethod
     def of(cls, study: Study, unknowns: int) -> "Expected":
-        """What a study of so many unknowns needs: the load at hand and the bounds, each once, and other laws again."""
-        solved = len(study.loads) * (1 + len(study.beside)) + 2 / 3
-        at, took = np.array(MEASURED).T
-        one = float(np.exp(np.interp(np.log(unknowns), np.log(at), np.log(took))))
-        if unknowns < at[0]:
-            one = took[0] * unknowns / at[0]
-        elif unknowns > at[-1]:
-            one = took[-1] * (unknowns / at[-1]) ** 2
-        seconds = one * solved + (MESHED * unknowns / UNKNOWNS if study.geometry.step is not None else 0.0)
+        """What the run of a study of so many unknowns needs: its loads, other laws, damping, waves and curves."""
+        share = 1.0 + LOAD * (len(study.loads) - 1) + OTHER * len(study.beside)
+        share -= 0.0 if study.modes.levels else LEVELS
+        share -= WAVES if any(joint.form is not None for joint in study.joints) else 0.0
+        seconds = START + share * EACH * unknowns**GROWTH
+        if study.backbone is not None:
+            seconds += CURVE * len(study.loads) * max(len(study.backbone.laws), 1)
         way = chosen(study.modes.solver)
         if is_mpi(way):
             memory = OVER_MPI * unknowns
         else:
-            memory = in_single(unknowns) if way in ("pardiso", BY_PARTS) else guessed(unknowns)
-        return cls(unknowns=unknowns, memory=memory, seconds=float(seconds))
+            memory = BARE + VECTORS * unknowns
+            memory += 0.0 if way in ("pardiso", BY_PARTS) else guessed(unknowns) - in_single(unknowns)
+        return cls(unknowns=unknowns, memory=memory, seconds=seconds)
 
 
 def unknowns_of(

@@ -11,12 +11,12 @@ from faying.fe.face_facts import read_facts
 from faying.fe.selectors import AXES, Selector
 from faying.files import together, write_atomically, write_text
 from faying.materials import CATALOGUE
+from faying.study.bolt_names import grouped
 from faying.study.proposal import GRADE, SHARE, BoltProposal, Proposal, propose
 from faying.study.template import SCHEMA, surface
 from faying.units import show
 
 STEEL = "S355"
-MOST_NAMES = 2  # bolts that a line names one by one
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -250,13 +250,6 @@ def _assumed_of_bolts(bolts: Sequence[BoltProposal], answers: Answers) -> list[s
         elif answers.preload is None:
             groups.setdefault("no preload; its thread is not known: give one", []).append(bolt.name)
     return [f"{grouped(names)}: {words}" for words, names in groups.items()]
-
-
-def grouped(names: Sequence[str]) -> str:
-    """Names on one line: each of a few, else how many they are and the first and the last."""
-    if len(names) <= MOST_NAMES:
-        return ", ".join(names)
-    return f"{len(names)} bolts ({names[0]} to {names[-1]})"
 
 
 def _mm(length: float) -> str:
