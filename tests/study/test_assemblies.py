@@ -12,7 +12,7 @@ from click.testing import CliRunner
 import faying
 from faying.cli.main import cli
 from faying.fe.cad import read_parts
-from faying.study import Study, run
+from faying.study import Study, new, run
 from faying.units import si
 from tests.helpers import assemblies
 from tests.helpers.proposed import proposed
@@ -82,6 +82,14 @@ def test_new_finds_parts_joints_and_bolts(made, name):
     written = made(name)[1].read_text()
     for words in kind.says:
         assert words in written
+
+
+def test_pins_as_parts_are_dowels(folder):
+    found = new.find(assemblies.cover(folder / "pins.step", pins_drawn=True))
+    assert found.left_out == ("pin 1", "pin 2")
+    assert len(found.bolts) == 4
+    (line,) = [remark for remark in found.remarks if "dowel" in remark]
+    assert line.startswith("'pin 1', 'pin 2': dowels. A dowel is no bolt")
 
 
 def checked(toml):

@@ -53,7 +53,7 @@ class Fasteners:
             out.append(
                 f"{listed(self.dowels)}: dowels. A dowel is no bolt: it has no preload and carries shear alone. Left "
                 "out of the mesh (geometry.leave_out); to count its stiffness take it out of that list and give its "
-                "wall a [[joint]] with bonded = true for each hole"
+                "wall a [[joint]] with bonded = true for each hole, which holds it along its axis, too"
             )
         if self.others:
             out.append(
@@ -114,13 +114,24 @@ def find_fasteners(facts: GeometryFacts, joints: Sequence[Contact]) -> Fasteners
 def _pressed(
     facts: GeometryFacts, joints: Sequence[Contact], shank: FaceFacts
 ) -> tuple[list[FaceFacts], list[FaceFacts]]:
-    """Flat faces of a bolt that press on other parts: those that look along its axis, and those that look back."""
+    """Flat faces of a bolt that press on other parts: those that look along its axis, and those that look back.
+
+    The ends of the shank do not count, such as that of a dowel on the bottom of its hole.
+    """
     axis = np.array(shank.axis)
     sides = [side for contact in joints for side in (contact.first, contact.second) if side[0] == shank.part]
-    pressed = [facts.face(*side) for side in dict.fromkeys(sides)]
+    pressed = [face for side in dict.fromkeys(sides) if _beyond(facts, face := facts.face(*side), shank)]
     low = [face for face in pressed if face.normal is not None and np.array(face.normal) @ axis > 0.99]
     high = [face for face in pressed if face.normal is not None and np.array(face.normal) @ axis < -0.99]
     return low, high
+
+
+def _beyond(facts: GeometryFacts, face: FaceFacts, shank: FaceFacts) -> bool:
+    """Whether a face reaches farther from the axis than the shank does."""
+    assert shank.radius is not None
+    arm = facts.triangles(face).reshape(-1, 3) - np.array(shank.start)
+    axis = np.array(shank.axis)
+    return bool(np.linalg.norm(arm - np.outer(arm @ axis, axis), axis=1).max() > (1 + TIGHT) * shank.radius)
 
 
 def _nuts(facts: GeometryFacts, pairs: Sequence[tuple[FaceFacts, FaceFacts, float]]) -> bool:

@@ -194,7 +194,8 @@ def _in_row(facts: GeometryFacts, stack: Stack, out: LeftOut) -> FoundBolt | Non
 
 DOWELS = (
     "have one diameter, as those of dowels. A dowel is no bolt: it has no preload and carries shear alone. Left out; "
-    "to count its stiffness draw the pin as a part and give its wall a [[joint]] with bonded = true for each hole"
+    "to count its stiffness draw the pin as a part and give its wall a [[joint]] with bonded = true for each hole, "
+    "which holds it along its axis, too"
 )
 
 
