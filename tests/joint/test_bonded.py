@@ -47,6 +47,9 @@ def test_a_body_cut_in_two_and_bonded_is_that_body():
     same = frequencies(joined, dict.fromkeys(("p0", "p1"), STEEL))
     assert same == pytest.approx(frequencies(one, {"p0": STEEL}), rel=1e-6)
     assert joined.volumes == pytest.approx(cut.volumes)
+    again = cut.bonded_at(SEAM[0][1])
+    assert np.array_equal(again.points, joined.points)
+    assert again.bonded == joined.bonded == (("p0", "p1"),)
 
 
 def _moved(points):

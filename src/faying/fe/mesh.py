@@ -154,6 +154,23 @@ class Mesh(Summary):
 
         return mesh_axes(self, ax)
 
+    @checked_call
+    def bonded_at(self, *pairs: tuple[str, str]) -> "Mesh":
+        """Return the mesh with faces welded or glued: the nodes of both become one, and their parts one body.
+
+        Args:
+            pairs: Names of two faces each, on two parts, whose nodes match where the faces meet.
+
+        Returns:
+            The mesh with fewer nodes; `bodies` are its parts that hang together.
+
+        Raises:
+            InputError: A face does not exist, both are on one part, they do not meet, or their nodes do not match.
+        """
+        from faying.fe.bonded import bonded_mesh
+
+        return bonded_mesh(self, [(f"{first} on {second}", (first, second)) for first, second in pairs])
+
     def face(self, name: str) -> Blocks:
         """Blocks of a named face, each (f, a). Raises InputError that lists the faces there are."""
         if name not in self.faces:

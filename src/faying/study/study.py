@@ -16,7 +16,7 @@ from faying.study.keys.backbone import BackboneChoice
 from faying.study.keys.beside import BesideChoice
 from faying.study.keys.bolt import read_bolt
 from faying.study.keys.geometry import GeometryChoice, read_geometry
-from faying.study.keys.joint import JointChoice
+from faying.study.keys.joint import JointChoice, read_joints
 from faying.study.keys.law import LawChoice
 from faying.study.keys.material import read_materials, read_parts
 from faying.study.keys.reader import Faults, Table
@@ -120,10 +120,7 @@ class Study:
         materials = read_materials(top)
         geometry = read_geometry(top)
         parts = read_parts(top, materials)
-        every = [JointChoice.of(t, i) for i, t in enumerate(top.tables("joint", required=True))]
-        joints, bonds = (tuple(joint for joint in every if joint.bonded is bonded) for bonded in (False, True))
-        if bonds and not joints:
-            faults.add("every [[joint]] is bonded; Faying needs one at least that bolts press together")
+        joints, bonds = read_joints(top)
         law = LawChoice.of(top.table("law") or Table({}, "law", faults))
         shared = top.table("surface")
         surface = None if shared is None else SurfaceChoice.of(shared)
