@@ -15,7 +15,7 @@ from faying.cli.main import cli, main
 from faying.fe.face_facts import read_facts
 from faying.fe.geometry import mesh_step
 from faying.joint.vdi2230 import cone_angle, cone_pressure
-from faying.study import Study, new, template
+from faying.study import Study, build, new, template
 from faying.study.case import Case
 from faying.study.check import check
 from faying.study.expected import Expected, unknowns_of
@@ -326,3 +326,16 @@ def test_json_gives_lines_and_what_is_expected(folder):
     bolt = next(one for one in out["findings"] if one["code"] == "bolt")
     assert bolt["key"] == "bolt[1].faces"
     assert "faces" in (folder / "study.toml").read_text().splitlines()[bolt["line"] - 1]
+
+
+def test_a_meshed_bolt_whose_nut_is_in_no_joint_is_refused_as_by_the_run(tmp_path):
+    example = Path(__file__).parents[2] / "examples" / "solid-bolt"
+    (tmp_path / "blocks-and-bolt.step").write_bytes((example / "blocks-and-bolt.step").read_bytes())
+    text = (example / "study.toml").read_text()
+    begin, end = text.index('[[joint]]\nname = "nut"'), text.index("[[bolt]]")
+    (tmp_path / "study.toml").write_text(text[:begin] + text[end:])
+    faults = [one.text for one in check(tmp_path / "study.toml").faults]
+    (fault,) = [text for text in faults if "in no joint" in text]
+    assert fault.startswith("bolt 'M8': its face 'bolt.nut' is in no joint; add a [[joint]]")
+    with pytest.raises(faying.InputError, match=re.escape(fault)):
+        build(Study.read(tmp_path / "study.toml"))

@@ -111,12 +111,9 @@ class Structure(Summary):
         if twice:
             raise InputError(f"part {', '.join(twice)} is two solid bolts; a part is drawn in once, with one preload")
         for bolt in solid:
-            apart = [face for face in bolt.faces if face not in faces]
+            apart = seat_apart(bolt, faces)
             if apart:
-                raise InputError(
-                    f"bolt {bolt.name!r}: its face {apart[0]!r} is in no joint; add a [[joint]] of it and the seat "
-                    "that it presses"
-                )
+                raise InputError(apart)
         loose = loose_parts(self.mesh.bodies, met)
         if loose:
             raise InputError(loose)
@@ -356,6 +353,16 @@ class Structure(Summary):
         """Mass of each part [kg] (p,), without bolts and point masses."""
         volumes = self.mesh.volumes
         return np.array([(self.materials[part].density or 0.0) * volumes[part] for part in self.mesh.parts])
+
+
+def seat_apart(bolt: SolidBolt, faces: Container[str]) -> str:
+    """What there is to say of a meshed bolt with a face that is in no joint and no support; "" where both are."""
+    apart = [face for face in bolt.faces if face not in faces]
+    if not apart:
+        return ""
+    return (
+        f"bolt {bolt.name!r}: its face {apart[0]!r} is in no joint; add a [[joint]] of it and the seat that it presses"
+    )
 
 
 def loose_parts(bodies: Sequence[Sequence[str]], met: Container[str]) -> str:

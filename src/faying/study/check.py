@@ -19,7 +19,7 @@ from faying.joint.bolt import Bolt, BoltPlace, each_in_its_place
 from faying.joint.joint import each_pair_once
 from faying.joint.solid_bolt import SolidBolt
 from faying.joint.strength import SolidPlace, bolt_notes, material_notes
-from faying.joint.structure import loose_parts
+from faying.joint.structure import loose_parts, seat_apart
 from faying.memory import available
 from faying.notes import Note
 from faying.progress import duration
@@ -311,6 +311,8 @@ def _loose(sketch: Sketch) -> str:
 def _bolts(sketch: Sketch, found: _Findings) -> Sketch:
     """Bolts in their places: seats that look away from each other, axes in their holes, forces that they bear."""
     places: list[BoltPlace | SolidPlace] = []
+    met = {face for joint in sketch.study.joints for face in joint.faces}
+    met |= {support.face for support in sketch.study.supports}
     well: dict[str, list[tuple[str, str]]] = {}  # what is said -> bolts and keys of which it is
     for k, bolt in enumerate(sketch.study.bolts, 1):
 
@@ -321,6 +323,9 @@ def _bolts(sketch: Sketch, found: _Findings) -> Sketch:
                 places.append(bolt.placed(sketch.mesh))
 
         if not found.tried("bolt", f"bolt[{k}].{'at' if bolt.at else 'faces'}", place):
+            continue
+        if isinstance(bolt, SolidBolt) and (apart := seat_apart(bolt, met)):
+            found.add("fault", "bolt", apart, f"bolt[{k}].faces")
             continue
         made = places[-1]
         length = show(made.length, "m")
