@@ -64,9 +64,9 @@ def test_a_joint_on_a_bonded_body_is_that_on_the_body(solver):
     mates = faying.Mates.of_fractal(D=2.39, G="1.53e-10 m", scan_area="16 mm^2", materials="S355")
     law = mates.law("jk")
     cut = bonded_mesh(boxes((30, 30, 40), (2, 2, 2), sections=((2, 2),) * 3), SEAM)
-    whole = boxes((60, 40), (4, 2), sections=((2, 2),) * 2)
+    uncut = boxes((60, 40), (4, 2), sections=((2, 2),) * 2)
     states = []
-    for mesh, last in ((cut, 2), (whole, 1)):
+    for mesh, last in ((cut, 2), (uncut, 1)):
         joint = faying.Joint((f"p{last - 1}.right", f"p{last}.left"), law)
         bolt = faying.Bolt("bolt", ("p0.left", f"p{last}.right"))
         structure = faying.Structure(mesh, "S355", [joint], [bolt])
@@ -101,7 +101,7 @@ def test_what_does_not_match_is_refused():
 
 @pytest.fixture(scope="module")
 def welded(tmp_path_factory):
-    """A rib on the middle of a plate, and a plate below them that a joint takes; a bolt beside the rib."""
+    """A rib on the middle of a plate, and a plate below them that a joint takes; a bolt next to the rib."""
     path = tmp_path_factory.mktemp("welded") / "welded.step"
     written(
         path,

@@ -16,7 +16,7 @@ from faying.text import json_text
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
-    help="Folder for the results (default: results/ beside study.toml, results/NAME/ beside NAME.toml).",
+    help="Folder for the results (default: results/ of study.toml, results/NAME/ of NAME.toml).",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--no-files", is_flag=True, help="Write no files, only print.")

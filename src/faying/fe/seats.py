@@ -33,7 +33,7 @@ def countersink(facts: GeometryFacts, bore: Bore, *, top: bool) -> Countersink |
         top: whether it is the end that lies farther along the axis.
     """
     outwards = bore.axis if top else -bore.axis
-    found, area, widest, whole = [], 0.0, bore.radius, 0.0
+    found, area, widest, cone_area = [], 0.0, bore.radius, 0.0
     for number in sorted({other for mine in bore.faces for other in facts.face(bore.part, mine).neighbours}):
         face = facts.face(bore.part, number)
         if face.kind != "other":
@@ -49,8 +49,8 @@ def countersink(facts: GeometryFacts, bore: Bore, *, top: bool) -> Countersink |
         found.append(face)
         area += face.area
         widest = float(radius.max())
-        whole = np.pi * (radius.min() + radius.max()) * float(np.hypot(np.ptp(depth), np.ptp(radius)))
-    return Countersink(faces=tuple(found), outer=2 * widest) if found and area > WHOLE * whole else None
+        cone_area = np.pi * (radius.min() + radius.max()) * float(np.hypot(np.ptp(depth), np.ptp(radius)))
+    return Countersink(faces=tuple(found), outer=2 * widest) if found and area > WHOLE * cone_area else None
 
 
 def lips(facts: GeometryFacts, bore: Bore, *, top: bool, shank: float, ring: tuple[float, float]) -> list[FaceFacts]:

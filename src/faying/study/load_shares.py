@@ -1,8 +1,8 @@
 """How the force of each bolt is shared by the joints that it clamps, before anything is solved.
 
-Joints one behind the other carry the whole force each. Joints at one depth lie side by side, as the faces on both sides
-of a T-slot: pressure falls in proportion from the hole to nothing at the edge of the deformation cone of VDI 2230, and
-each joint has the part of it that lies on its faces.
+Each of several joints one behind the other carries all of the force. Joints at one depth lie side by side, as on both
+sides of a T-slot: pressure falls in proportion from the hole to nothing at the edge of the cone of VDI 2230, and each
+joint has the part of it that lies on its faces.
 """
 
 from collections.abc import Mapping, Sequence
@@ -31,7 +31,7 @@ class Share:
         place: the bolt.
         depth: of the joint below the head [m].
         share: of the force [-].
-        rise: pressure over that of a joint which covers the whole cone [-].
+        rise: pressure over that of a joint which covers the cone [-].
     """
 
     place: BoltPlace | SolidPlace
@@ -65,12 +65,12 @@ def load_shares(
             if len(level) == 1:
                 out[level[0]].append(Share(place=place, depth=depths[level[0]]))
                 continue
-            weights, whole = _weights(mesh, place, [faces[name] for name in level], depths[level[0]])
+            weights, cone = _weights(mesh, place, [faces[name] for name in level], depths[level[0]])
             total = weights.sum()
             known = total > 0
             parts = weights / total if known else np.array([areas[name] for name in level])
             for name, part in zip(level, parts / parts.sum(), strict=True):
-                rise = whole / total if known else 1.0
+                rise = cone / total if known else 1.0
                 out[name].append(Share(place=place, depth=depths[name], share=float(part), rise=float(rise)))
     return out
 
@@ -78,7 +78,7 @@ def load_shares(
 def _weights(
     mesh: NamedFaces, place: BoltPlace | SolidPlace, pairs: Sequence[tuple[str, str]], depth: float
 ) -> tuple[Array, float]:
-    """Integral of the pressure of a bolt over each joint, 1 at its hole [m2] (j,), and over the whole of its cone."""
+    """Integral of the pressure of a bolt over each joint, 1 at its hole [m2] (j,), and over its cone."""
     ring = seat_ring(mesh, place) if isinstance(place, BoltPlace) else None
     if ring is None:
         return np.zeros(len(pairs)), 0.0

@@ -49,7 +49,7 @@ def find(step: Path) -> Proposal:
 
 
 def write(proposal: Proposal, step: Path, out: Path, answers: Answers, *, force: bool = False) -> Written:
-    """Write the study, and the synthetic scan beside it where no scan is given; all files or none.
+    """Write the study, and the synthetic scan with it where no scan is given; all files or none.
 
     Args:
         proposal: from `find`.

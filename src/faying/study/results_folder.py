@@ -13,6 +13,6 @@ def results_folder(folder: Path, name: str) -> Path:
         name: of the study file, without its suffix.
 
     Returns:
-        `results` beside `study.toml`, `results/NAME` beside `NAME.toml`.
+        `results` for `study.toml`, `results/NAME` for `NAME.toml`.
     """
     return folder / FOLDER if name == PLAIN else folder / FOLDER / name

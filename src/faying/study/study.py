@@ -72,7 +72,7 @@ class Study:
 
     @property
     def results(self) -> Path:
-        """The folder of its results: `results` beside study.toml, `results/NAME` beside NAME.toml."""
+        """The folder of its results: `results` for study.toml, `results/NAME` for NAME.toml."""
         return results_folder(self.folder, self.name)
 
     @property
