@@ -65,7 +65,7 @@ def test_init_and_run(tmp_path, capsys):
     captured = capsys.readouterr()
     data = json.loads(captured.out)
     assert data["title"] == "Two blocks and a bolt"
-    made = {p.name for p in (tmp_path / "results").iterdir()}
+    made = {p.name for p in (tmp_path / "results" / "mine").iterdir()}
     assert made == {
         "result.nc",
         "modes.csv",
@@ -76,7 +76,7 @@ def test_init_and_run(tmp_path, capsys):
         "modes.png",
         "mac.svg",
     }
-    report = (tmp_path / "results" / "report.html").read_text()
+    report = (tmp_path / "results" / "mine" / "report.html").read_text()
     assert "outside its validity range" in report  # the flag travels with the numbers
     assert not re.search(r'(src|href)="(?!data:|#)', report)  # nothing is fetched: one self-contained file
     assert "\x1b[" not in captured.out  # no colour when not a terminal
