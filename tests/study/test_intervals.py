@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 import faying
+from faying.errors import InputError
+from faying.result.interval_figure import intervals
 from faying.study import Study
 from faying.study.scatter import SCATTER, assumed
 
@@ -94,6 +96,20 @@ def test_intervals_can_be_left_out(tmp_path):
     found = faying.run(study(tmp_path, intervals=False))
     assert found.interval is None
     assert found.interval_low is None
+    with pytest.raises(InputError, match="intervals = true"):
+        intervals(found)
+
+
+def test_the_figure_has_a_bar_from_5_to_95_percent_of_each_mode(plain):
+    left, right = intervals(plain).axes
+    bars = left.patches[: len(plain.bonded)]
+    value = plain.frequencies[-1]
+    assert [bar.get_x() for bar in bars] == pytest.approx(100 * (plain.interval_low[-1] / value - 1))
+    assert [bar.get_width() for bar in bars] == pytest.approx(
+        100 * (plain.interval_high - plain.interval_low)[-1] / value
+    )
+    # shares of a mode fill its row
+    assert sum(bar.get_width() for bar in right.patches[:: len(plain.bonded)]) == pytest.approx(100)
 
 
 def test_a_prediction_takes_the_same_table_where_the_study_says_nothing(tmp_path):

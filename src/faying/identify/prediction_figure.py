@@ -37,9 +37,8 @@ def interval_axes(found: Prediction, ax: "Axes | None" = None) -> "Axes":
 
 
 def _draw_intervals(ax: Any, found: Prediction) -> None:
-    values, test = found.observed
-    full = values[found.sound]
-    low, middle, high = (np.nanquantile(full, level, axis=0) for level in (0.05, 0.5, 0.95))
+    test, levels = found.observed[1], found.quantiles(LEVELS)
+    low, middle, high = levels.frequencies if levels.paired is None or found.test is None else levels.paired
     count = len(found.loads)
     for load in range(count):
         y = np.arange(middle.shape[1]) + (load - (count - 1) / 2) * 0.7 / count

@@ -13,7 +13,7 @@ from faying.output import page, report_measured
 from faying.output.report_curves import backbone_curves, response_curves
 from faying.output.scene import of_result, pages, to_text
 from faying.output.sections import Section, sections
-from faying.result import Result
+from faying.result import Result, interval_figure
 from faying.result import backbone_figure as backbone
 from faying.result import figure as structure
 from faying.result import response_figure as response
@@ -173,6 +173,12 @@ def _on_axes(draw: Callable[[Any, Result], Any]) -> Callable[[Result], Any]:
 
 
 FIGURES = {
+    "intervals": ReportFigure(
+        draw=interval_figure.intervals,
+        caption="Left: 5 to 95 % of each frequency at the greatest preload about the value as computed, with the test. "
+        "Right: what makes the interval, in shares of its variance.",
+        applies=lambda result: result.interval is not None,
+    ),
     "frequencies": ReportFigure(
         draw=_on_axes(structure.frequencies),
         caption="Frequency against preload, relative to the bonded value of each mode.",

@@ -570,7 +570,7 @@ class Result(Recorded):
     def plot(self, modes: int = 6, ax: Any = None) -> "list[Axes]":
         """Draw the frequency of each mode against preload.
 
-        The range that the laws state and the draws of waves are bands; frequencies of the test are hollow dots.
+        5 to 95 % are bands; without intervals the range that the laws state. Frequencies of the test are hollow dots.
 
         Args:
             modes: How many modes, from the lowest.
