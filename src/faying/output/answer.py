@@ -25,7 +25,7 @@ def answer(result: Result) -> Rows:
     for j in range(len(result.bonded)):
         cells = [str(j + 1), moves(result, j), f"{result.frequencies[-1, j]:.2f}"]
         cells.append(_interval(float(result.interval_low[-1, j]), float(result.interval_high[-1, j])))
-        cells += [f"{slopes[j]:+.2g}"] * several
+        cells += [f"{slopes[j]:+.0f}" if abs(slopes[j]) >= 100 else f"{slopes[j]:+.2g}"] * several
         cells += _damping(result, j)
         rows.append(cells)
     return rows

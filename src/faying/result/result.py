@@ -620,6 +620,7 @@ class Result(Recorded):
             if indices is not None and indices.size and not (indices.min() >= -1 and indices.max() < count):
                 raise ReadError(f"its {name} run from {indices.min()} to {indices.max()}, past what the file holds")
 
+    @checked_call
     def modes_at(self, load: float | None = None, source: str = "this study") -> ModelModes:
         """The modes at a preload [N], by default the greatest, for a comparison with a test.
 

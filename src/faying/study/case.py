@@ -8,13 +8,13 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.bonded import bonded_mesh
 from faying.fe.interface import Interface, join
-from faying.fe.mesh import Mesh
+from faying.fe.mesh import Mesh, bodies_of
 from faying.files import end_of
 from faying.joint.joint import FittedJoint, with_form
 from faying.joint.joint_law import JointLaw
 from faying.joint.modal import ModalProblem
 from faying.joint.strength import bolt_notes, material_notes
-from faying.joint.structure import Structure
+from faying.joint.structure import Structure, loose_parts
 from faying.materials import Material
 from faying.measured.mapping import PointMap
 from faying.notes import Note
@@ -252,15 +252,12 @@ def name_faults(study: Study, parts: Sequence[str], faces: Mapping[str, str]) ->
 
 
 def _loose_parts(study: Study, parts: Sequence[str], faces: Mapping[str, str]) -> list[tuple[str, str]]:
-    """Parts that no joint and no support holds, which a structure refuses."""
-    held = {faces[face] for joint in study.joints for face in joint.faces} | {
-        faces[support.face] for support in study.supports
-    }
-    return [
-        (f"part.{name}", f"part {name!r} has no joint; add a [[joint]] of one of its faces, or leave it out")
-        for name in parts
-        if name not in held and len(parts) > 1
-    ]
+    """Parts that no joint, no bond and no support holds, which a structure refuses."""
+    met = {faces[face] for joint in study.joints for face in joint.faces}
+    met |= {faces[support.face] for support in study.supports}
+    pairs = [(faces[bond.faces[0]], faces[bond.faces[1]]) for bond in study.bonds]
+    fault = loose_parts(bodies_of(tuple(parts), pairs), met)
+    return [("joint", fault)] if fault else []
 
 
 def _idle_bolts(study: Study) -> list[tuple[str, str]]:

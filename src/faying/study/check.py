@@ -11,7 +11,7 @@ from typing import Literal
 from faying.errors import FayingError, InputError
 from faying.fe.face_facts import FaceFacts, GeometryFacts, read_facts
 from faying.fe.face_triangles import FaceTriangles
-from faying.fe.mesh import Mesh, bodies_of
+from faying.fe.mesh import Mesh
 from faying.fe.mesh_facts import mesh_facts
 from faying.fe.quality import quality
 from faying.fe.selectors import TOUCHING, chosen, points_of
@@ -19,7 +19,7 @@ from faying.joint.bolt import Bolt, BoltPlace, each_in_its_place
 from faying.joint.joint import each_pair_once
 from faying.joint.solid_bolt import SolidBolt
 from faying.joint.strength import SolidPlace, bolt_notes, material_notes
-from faying.joint.structure import loose_parts, seat_apart
+from faying.joint.structure import seat_apart
 from faying.memory import available
 from faying.notes import Note
 from faying.progress import duration
@@ -257,9 +257,6 @@ def _contacts(sketch: Sketch, found: _Findings) -> None:
     every = sorted((*sketch.study.joints, *sketch.study.bonds), key=lambda joint: joint.number)
     joints = {joint.name: joint.faces for joint in every}
     found.tried("contact", "joint", lambda: each_pair_once(joints))
-    loose = _loose(sketch)
-    if loose:
-        found.add("fault", "loose-part", loose, "joint")
     for joint in every:
         key = f"joint[{joint.number}].faces"
         parts = [sketch.mesh.face_part[face] for face in joint.faces]
@@ -297,15 +294,6 @@ def _contacts(sketch: Sketch, found: _Findings) -> None:
             )
         else:
             found.add("ok", "contact", f"joint {joint.name!r}: its faces touch over {area:.4g} mm2", key)
-
-
-def _loose(sketch: Sketch) -> str:
-    """What there is to say of parts that are in no joint, as the run says it; "" where there are none."""
-    owner, study = sketch.mesh.face_part, sketch.study
-    pairs = [(owner[bond.faces[0]], owner[bond.faces[1]]) for bond in study.bonds]
-    met = {owner[face] for joint in study.joints for face in joint.faces}
-    met |= {owner[support.face] for support in study.supports}
-    return loose_parts(bodies_of(tuple(sketch.facts.by_part), pairs), met)
 
 
 def _bolts(sketch: Sketch, found: _Findings) -> Sketch:
