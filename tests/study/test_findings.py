@@ -62,7 +62,7 @@ def test_the_default_says_what_it_took_and_what_it_does_not_know(default):
     assert "times its k_n" in choice
     assert default.laws[0]["name"] == "half-space"
     assert texts(default, "mates")[0].startswith("both faces as surface.x3p, unrelated; ")
-    assert "predicts no loss" in texts(default, "no-loss")[0]
+    assert "gives no damping at rest" in texts(default, "no-loss")[0]
     assert np.isnan(default.loss_factors).all()
     assert "loss" not in default.csv_text().splitlines()[1]
     assert default.to_dict()["loss_factors"]["values"][0][0] is None
