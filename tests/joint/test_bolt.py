@@ -67,13 +67,17 @@ def beam(length=0.02, nu=0.3):
 
 
 def test_the_shank_is_a_cantilever_with_shear():
-    """One end held: tip compliances L/EA, L/GJ, L3/3EI + L/kGA, L/EI, L2/2EI."""
+    """One end held: tip compliances delta_S, L/GJ, L3/3EI + L/kGA, L/EI, L2/2EI.
+
+    delta_S of an M8 threaded up to its head: (.5 + .4) d on pi d^2/4, L + .5 d on pi d_3^2/4 (VDI 2230).
+    """
     full, m, fitted = beam()
     d, L = 8e-3, fitted.length
     area, inertia = pi / 4 * d**2, pi / 64 * d**4
     shear = 6 * (1 + m.nu) / (7 + 6 * m.nu) * m.G * area
     tip = np.linalg.inv(full[6:, 6:])
-    assert tip[0, 0] == pytest.approx(L / (m.E * area))
+    minor = pi / 4 * (d - 1.22687 * 1.25e-3) ** 2
+    assert tip[0, 0] == pytest.approx((0.9 * d / area + (L + 0.5 * d) / minor) / m.E)
     assert tip[3, 3] == pytest.approx(L / (m.G * 2 * inertia))
     for axis, turn in ((1, 5), (2, 4)):
         assert tip[axis, axis] == pytest.approx(L**3 / (3 * m.E * inertia) + L / shear)
@@ -143,7 +147,9 @@ def test_washers_lie_in_series_and_give_the_seat():
     with_two = bolt(at=(0.04, 0.02, 0.0), washers=(WASHER, WASHER)).fitted(mesh)
     bare = bolt(at=(0.04, 0.02, 0.0), seat=(8.4e-3, 16e-3)).fitted(mesh)
     area = pi / 4 * (16e-3**2 - 8.4e-3**2)
-    assert 1 / with_two.axial_stiffness - 1 / bare.axial_stiffness == pytest.approx(2 * 1.6e-3 / (STEEL.E * area))
+    more = 2 * 1.6e-3 / (STEEL.E * area)  # of the washers, and of the bolt that is longer by them
+    more += 2 * 1.6e-3 / (STEEL.E * pi / 4 * (8e-3 - 1.22687 * 1.25e-3) ** 2)
+    assert 1 / with_two.axial_stiffness - 1 / bare.axial_stiffness == pytest.approx(more)
     assert with_two.load == pytest.approx(bare.load, abs=1e-15)
 
 

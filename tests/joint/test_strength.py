@@ -88,7 +88,10 @@ def test_a_seat_is_measured_by_the_bearing_limit_of_its_part(made):
     ("bolt", "text"),
     [
         ({"grade": "8.8"}, "grade needs the size of the thread; give thread"),
-        ({"thread": "M8"}, "thread is used with grade alone"),
+        (
+            {"thread": "M8x1", "diameter": "8 mm", "pitch": "1.25 mm", "material": "45 steel"},
+            "and pitch = 1.25 mm differ",
+        ),
         ({"grade": "8.9", "thread": "M8"}, "no property class of ISO 898-1"),
         ({"grade": "8.8", "thread": "8 mm"}, "should be a metric thread"),
         ({"grade": "8.8", "diameter": "8.5 mm", "material": "45 steel"}, "no coarse thread has a diameter of 8.5 mm"),

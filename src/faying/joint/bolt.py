@@ -1,9 +1,9 @@
 """Bolts: the force they pull with, and the shank, head, nut and washers that move with the structure."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import pi
+from math import isclose, pi
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,8 +14,9 @@ from faying.fe.elasticity import Solid
 from faying.fe.faces import NamedFaces, face_centre
 from faying.fe.holes import Hole, holes
 from faying.fe.mesh import Mesh
+from faying.joint.bolt_compliance import HEADS, Head, Section, bolt_sections
 from faying.joint.tapped import INSIDE, RoundHole, engaged_length, round_hole
-from faying.joint.threads import Fastener
+from faying.joint.threads import THICKEST, THINNEST, Fastener, Thread
 from faying.materials import material_of
 from faying.misuse import checked_call, shortened
 from faying.notes import Note
@@ -133,10 +134,16 @@ class Bolt:
         preload: Forces [N] that it is tightened to, one load after another.
         fastener: Thread and property class, from which its proof load follows; None where they are not known.
         engaged: Length [m] of the thread in a tapped hole; 1.5 diameters, or its depth if that is less, where None.
+        thread: Metric thread, or its name, such as "M8x1"; that of the fastener, or else the coarse one of the
+            diameter, where None.
+        shank: Length [m] of the plain shank under the head, 0 for a bolt that is threaded up to its head. Where None: 0
+            for a shank as thick as the thread; else, for a reduced shank, up to where the thread engages.
+        head: "hexagon" or "socket".
 
     Raises:
-        InputError: Diameter without material or the other way round, a diameter of 0 or less, a ring without width;
-            when it is fitted, an axis beside its hole, or `at` without a hole, a diameter or a ring.
+        InputError: Diameter without material or the other way round, a diameter of 0 or less, a ring without width,
+            two different threads; when it is fitted, an axis beside its hole, `at` without a hole, a diameter or a
+            ring, or a shank longer than what it clamps.
 
     Source:
         Head and nut: ISO 4014, ISO 4032. Stretch inside a tapped hole: half a diameter, VDI 2230 (l_G).
@@ -154,6 +161,9 @@ class Bolt:
     preload: tuple[float, ...]
     fastener: Fastener | None
     engaged: float | None
+    thread: Thread | None
+    shank: float | None
+    head: Head
     part: ClassVar[None] = None  # it is no part of the mesh
 
     def __init__(
@@ -171,6 +181,9 @@ class Bolt:
         preload: float | str | Sequence[float | str] = (),
         fastener: Fastener | None = None,
         engaged: float | str | None = None,
+        thread: Thread | str | None = None,
+        shank: float | str | None = None,
+        head: Head = "hexagon",
     ) -> None:
         what = f"bolt {name!r}"
         if (diameter is None) != (material is None):
@@ -193,16 +206,44 @@ class Bolt:
             "preload": tuple(positive(force, "N", f"{what}: preload") for force in forces),
             "fastener": fastener,
             "engaged": None if engaged is None else positive(engaged, "m", f"{what}: engaged"),
+            "thread": Thread.parse(thread) if isinstance(thread, str) else thread,
+            "shank": None if shank is None else si(shank, "m", name=f"{what}: shank"),
+            "head": head,
         }
         for key, value in values.items():
             object.__setattr__(self, key, value)
         if self.seat is not None and not 0 <= self.seat[0] < self.seat[1]:
             raise InputError(f"{what}: the seat's inner diameter must be less than its outer")
+        self._check_shape(what)
 
-    def fitted(self, mesh: Mesh) -> "FittedBolt":
-        """Return the bolt in its place on a mesh. Raises InputError as `placed`, and where no element lies in its ring.
+    def _check_shape(self, what: str) -> None:
+        """Raise InputError where thread, shank and head do not go together."""
+        if self.head not in HEADS:
+            raise InputError(f'{what}: head = {shortened(self.head)}; give "hexagon" or "socket"')
+        if self.shank is not None and self.shank < 0:
+            raise InputError(f"{what}: shank = {show(self.shank, 'm')}; give 0 or more")
+        if self.thread is not None and self.fastener is not None and self.thread != self.fastener.thread:
+            raise InputError(f"{what}: thread {self.thread} is not that of its fastener, {self.fastener.thread}")
+
+    @property
+    def metric(self) -> Thread | None:
+        """The thread: as given, or else the coarse one of the diameter; None where neither says it, or beyond M300."""
+        if self.fastener is not None or self.thread is not None:
+            return self.thread if self.fastener is None else self.fastener.thread
+        covered = self.diameter is not None and THINNEST <= self.diameter <= THICKEST
+        return Thread.near(self.diameter) if covered and self.diameter is not None else None
+
+    def fitted(self, mesh: Mesh, materials: Mapping[str, Solid] | None = None) -> "FittedBolt":
+        """Return the bolt in its place on a mesh.
 
         Its ends are the mean motions of its seats.
+
+        Args:
+            mesh: The mesh.
+            materials: Part -> its material; the part that is tapped counts as of the bolt's material where None.
+
+        Raises:
+            InputError: As `placed`; no element lies in its ring; its shank is longer than what it clamps.
         """
         place = self.placed(mesh)
         point, end = place.point, place.point + place.length * place.axis
@@ -213,8 +254,18 @@ class Bolt:
             mean_motion(mesh.points, mesh.face(name), centre, region)
             for name, centre, region in zip(self.faces, (point, end), (ring, place.thread or ring), strict=True)
         )
+        tapped = None
+        if place.thread is not None and self.material is not None:
+            tapped = (materials or {}).get(mesh.face_part[self.faces[1]], self.material).E
+        if self.diameter is not None and self.shank is not None and self.shank > place.free * (1 + 1e-6):
+            raise InputError(
+                f"bolt {self.name!r}: its shank is {show(self.shank, 'm')} long, but its thread begins to engage "
+                f"{show(place.free, 'm')} below its head; give a length from 0 to that"
+            )
         return FittedBolt(
             bolt=self,
+            free=place.free,
+            E_tapped=tapped,
             point=point,
             axis=place.axis,
             length=place.length,
@@ -298,6 +349,7 @@ class Bolt:
             point=hole.point - free * hole.axis,
             axis=hole.axis,
             length=free + min(INSIDE * diameter, engaged),
+            inside=min(INSIDE * diameter, engaged),
             ring=self._seat(found, alone=False),
             thread=Band(point=hole.point, axis=hole.axis, low=0.0, high=engaged),
         )
@@ -389,7 +441,8 @@ class BoltPlace:
     """Where a bolt lies.
 
     point [m] and axis (3,): from head to nut; length [m]: clamped; ring: inner and outer diameter [m] of the seats,
-    None for whole faces; thread: what the bolt engages of a tapped hole, None where it has a nut.
+    None for whole faces; thread: what the bolt engages of a tapped hole, None where it has a nut; inside: how much of
+    the length lies in a tapped hole [m].
     """
 
     bolt: Bolt
@@ -398,6 +451,12 @@ class BoltPlace:
     length: float
     ring: tuple[float, float] | None
     thread: Band | None = None
+    inside: float = 0.0
+
+    @property
+    def free(self) -> float:
+        """Length [m] from under the head to where the thread engages, washers included."""
+        return self.length - self.inside + sum(washer.thickness for washer in self.bolt.washers)
 
     @property
     def notes(self) -> tuple[Note, ...]:
@@ -425,6 +484,18 @@ def each_in_its_place(bolts: "Sequence[BoltPlace | FittedBolt]") -> None:
                 )
 
 
+def _thread_notes(bolt: Bolt, metric: Thread | None) -> list[Note]:
+    """What was assumed of a thread that is not given."""
+    if metric is not None and metric.is_coarse:
+        return []
+    text = f"bolt {bolt.name!r}: no coarse thread has a diameter of {show(bolt.diameter or 0.0, 'm')}"
+    if metric is None:
+        text += "; it counts as a plain cylinder, without head, thread and nut"
+    else:
+        text += f'; a pitch of {show(metric.pitch, "m", digits=3)} is taken; thread, such as "M8x1", gives another'
+    return [Note(code="bolt-pitch", text=text)]
+
+
 def _chosen(bolt: Bolt, ring: tuple[float, float] | None, thread: Band | None) -> tuple[Note, ...]:
     notes = []
     if ring is not None and bolt.seat is None and not bolt.washers:
@@ -435,6 +506,8 @@ def _chosen(bolt: Bolt, ring: tuple[float, float] | None, thread: Band | None) -
         length = show(thread.high, "m", digits=3)
         text = f"bolt {bolt.name!r}: its thread engages {length} of its tapped hole; engaged gives another length"
         notes.append(Note(code="bolt-thread", text=text))
+    if bolt.diameter is not None and bolt.fastener is None and bolt.thread is None:
+        notes += _thread_notes(bolt, bolt.metric)
     return tuple(notes)
 
 
@@ -444,7 +517,9 @@ class FittedBolt:
 
     point [m] and axis (3,): from head to nut; length [m]: clamped; ends: mean motions (6, unknowns) of both seats;
     ring: inner and outer diameter [m] of the seats, None for whole faces; extent: the same, or the least and greatest
-    diameter of the whole first face about the axis; thread: what it engages of a tapped hole, None where it has a nut.
+    diameter of the whole first face about the axis; thread: what it engages of a tapped hole, None where it has a nut;
+    free: length [m] from under the head to where the thread engages, washers included; E_tapped: Young's modulus [Pa]
+    of the part that is tapped, None where the bolt has a nut.
     """
 
     bolt: Bolt
@@ -454,7 +529,9 @@ class FittedBolt:
     ends: tuple[Any, ...]
     ring: tuple[float, float] | None
     extent: tuple[float, float]
+    free: float
     thread: Band | None = None
+    E_tapped: float | None = None
 
     @property
     def notes(self) -> tuple[Note, ...]:
@@ -486,7 +563,10 @@ class FittedBolt:
 
     @cached_property
     def stiffness(self) -> Any | None:
-        """Sparse stiffness [N/m] of shank and washers: a beam with shear between the seats; None without a shank."""
+        """Sparse stiffness [N/m] between the seats; None without a shank.
+
+        A beam with shear, whose axial stiffness is that of bolt, nut and washers.
+        """
         from scipy.sparse import csr_array
 
         beam = self._beam()
@@ -517,14 +597,35 @@ class FittedBolt:
         """None: what the parts lose while the bolt's force is given, since the shank is none of them."""
         return None
 
+    @cached_property
+    def sections(self) -> tuple[Section, ...]:
+        """Cylinders in series that stand for the bolt, washers aside (VDI 2230); none without a shank."""
+        bolt, thread = self.bolt, self.bolt.metric
+        if bolt.diameter is None or bolt.material is None:
+            return ()
+        if thread is None:
+            area = pi / 4 * bolt.diameter**2
+            return (Section(name="shank", length=self.length, area=area, E=bolt.material.E),)
+        reduced = not isclose(bolt.diameter, thread.diameter, rel_tol=1e-6)
+        default = self.free if reduced else 0.0
+        return bolt_sections(
+            thread,
+            free=self.free,
+            E=bolt.material.E,
+            diameter=bolt.diameter,
+            shank=default if bolt.shank is None else min(bolt.shank, self.free),
+            head=bolt.head,
+            engaged=None if self.thread is None else self.thread.high - self.thread.low,
+            E_tapped=self.E_tapped,
+        )
+
     @property
     def axial_stiffness(self) -> float:
-        """Stiffness of shank and washers in series [N/m]; 0 without a shank."""
-        bolt = self.bolt
-        if bolt.diameter is None or bolt.material is None:
+        """Stiffness of bolt, nut and washers in series [N/m], 1/delta_S of VDI 2230; 0 without a shank."""
+        if not self.sections:
             return 0.0
-        shank = self.length / (bolt.material.E * pi / 4 * bolt.diameter**2)
-        return 1 / (shank + sum(w.compliance for w in bolt.washers))
+        washers = sum(w.compliance for w in self.bolt.washers)
+        return 1 / (sum(section.compliance for section in self.sections) + washers)
 
     @property
     def rigidity(self) -> float:

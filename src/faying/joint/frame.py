@@ -62,7 +62,9 @@ class Frame:
         """The bolts in their places."""
         joined = [*self.joined, *(support.face for support in self.supports)]
         fitted = tuple(
-            bolt.fitted(self.mesh) if isinstance(bolt, Bolt) else bolt.fitted(self.mesh, self.matrices[0], joined)
+            bolt.fitted(self.mesh, self.materials)
+            if isinstance(bolt, Bolt)
+            else bolt.fitted(self.mesh, self.matrices[0], joined)
             for bolt in self.bolts
         )
         each_in_its_place([bolt for bolt in fitted if isinstance(bolt, FittedBolt)])

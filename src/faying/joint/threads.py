@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 from math import isclose, pi
 
 from faying.errors import InputError
@@ -29,6 +30,8 @@ COARSE = {
     36: 4.0,
     39: 4.0,
 }
+# the same beyond the property classes of ISO 898-1; wider threads have the last pitch
+LARGE = {42: 4.5, 45: 4.5, 48: 5.0, 52: 5.0, 56: 5.5, 60: 5.5, 64: 6.0, 68: 6.0}
 # diameters [mm] of clearance holes, fine, medium and coarse, by nominal diameter [mm] (ISO 273)
 CLEARANCE_HOLES = {
     3: (3.2, 3.4, 3.6),
@@ -64,6 +67,7 @@ PROOF = {
 }
 THICK, PROOF_THICK = 16e-3, 600e6  # beyond this diameter [m], class 8.8 has this stress under proof load [Pa]
 LEAST, GREATEST = 1.6e-3, 39e-3  # diameters [m] that ISO 898-1 covers
+THINNEST, THICKEST = 1e-3, 300e-3  # diameters [m] of the threads of ISO 261
 FORM = re.compile(r"M([0-9]+(?:\.[0-9]+)?)(?:\s*x\s*([0-9]+(?:\.[0-9]+)?))?")
 
 
@@ -83,9 +87,9 @@ class Thread:
     pitch: float
 
     def __post_init__(self) -> None:
-        if not (LEAST <= self.diameter <= GREATEST and 0 < self.pitch < self.diameter / 3):
+        if not (THINNEST <= self.diameter <= THICKEST and 0 < self.pitch < self.diameter / 3):
             raise InputError(
-                f"thread {self}: ISO 898-1 covers M1.6 to M39, with a pitch of less than a third of the diameter"
+                f"thread {self}: metric threads are M1 to M300, with a pitch of less than a third of the diameter"
             )
 
     def __str__(self) -> str:
@@ -111,12 +115,52 @@ class Thread:
             f'{", ".join(f"M{size}" for size in COARSE)}; give thread = "M8x1" with its pitch'
         )
 
+    @classmethod
+    def near(cls, diameter: float) -> "Thread":
+        """Return the coarse thread of a diameter [m], with a pitch between those of the sizes about it.
+
+        Below M3 the ratio of pitch to diameter is that of M3; above M68 the pitch is 6 mm.
+
+        Raises:
+            InputError: The diameter is none of a metric thread, 1 mm to 300 mm.
+        """
+        size, pitches = 1e3 * diameter, COARSE | LARGE
+        sizes = sorted(pitches)
+        if size <= sizes[0]:
+            return cls(diameter=diameter, pitch=diameter * pitches[sizes[0]] / sizes[0])
+        for low, high in pairwise(sizes):
+            if low <= size <= high:
+                share = (size - low) / (high - low)
+                return cls(diameter=diameter, pitch=1e-3 * (pitches[low] + share * (pitches[high] - pitches[low])))
+        return cls(diameter=diameter, pitch=1e-3 * pitches[sizes[-1]])
+
+    @property
+    def is_coarse(self) -> bool:
+        """Whether this is a coarse thread of ISO 261."""
+        return any(
+            isclose(1e3 * self.diameter, size, rel_tol=1e-9) and isclose(1e3 * self.pitch, pitch, rel_tol=1e-9)
+            for size, pitch in (COARSE | LARGE).items()
+        )
+
+    @property
+    def pitch_diameter(self) -> float:
+        """Pitch diameter d_2 [m] (ISO 724)."""
+        return self.diameter - 0.64952 * self.pitch
+
+    @property
+    def minor_diameter(self) -> float:
+        """Minor diameter d_3 [m] of the bolt, at the root of its thread (ISO 898-1:2013, 9.1.6.1)."""
+        return self.diameter - 1.22687 * self.pitch
+
+    @property
+    def minor_area(self) -> float:
+        """Area [m2] of the minor diameter, A_d3."""
+        return pi / 4 * self.minor_diameter**2
+
     @property
     def stress_area(self) -> float:
         """Nominal stress area [m2]: that of the mean of pitch and minor diameter (ISO 898-1:2013, 9.1.6.1)."""
-        pitch_diameter = self.diameter - 0.64952 * self.pitch  # ISO 724
-        minor_diameter = self.diameter - 1.22687 * self.pitch
-        return pi / 4 * ((pitch_diameter + minor_diameter) / 2) ** 2
+        return pi / 4 * ((self.pitch_diameter + self.minor_diameter) / 2) ** 2
 
 
 def size_for_hole(diameter: float) -> int | None:
@@ -150,7 +194,7 @@ class Fastener:
         grade: The property class, one of `PROOF`.
 
     Raises:
-        InputError: The class is not known.
+        InputError: The class is not known, or the thread is none of M1.6 to M39.
 
     Source:
         ISO 898-1:2013, Table 3 (stress under proof load).
@@ -162,6 +206,10 @@ class Fastener:
     def __post_init__(self) -> None:
         if self.grade not in PROOF:
             raise InputError(f'grade "{self.grade}" is no property class of ISO 898-1; there are {", ".join(PROOF)}')
+        if not LEAST <= self.thread.diameter <= GREATEST:
+            raise InputError(
+                f"thread {self.thread}: the property classes of ISO 898-1 cover M1.6 to M39; leave out grade"
+            )
 
     @property
     def proof_stress(self) -> float:

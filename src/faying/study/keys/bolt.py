@@ -13,7 +13,16 @@ from faying.materials import Material
 from faying.study.keys.face import face_names
 from faying.study.keys.reader import Table, point, quantity
 
-OF_THE_MESH = ("material", "seat", "washer", "head_mass", "nut_mass", "engaged")  # what a meshed bolt has already
+OF_THE_MESH = (
+    "material",
+    "seat",
+    "washer",
+    "head_mass",
+    "nut_mass",
+    "engaged",
+    "shank",
+    "head",
+)  # what a meshed bolt has already
 
 
 def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bolt | SolidBolt | None:
@@ -23,8 +32,9 @@ def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bo
     at = table.take("at", point, None)
     part = table.text("part", None)
     diameter = table.quantity("diameter", "m", None)
-    preload = _preload(table, diameter)
-    fastener = _fastener(table, diameter)
+    pitch = table.quantity("pitch", "m", None)
+    preload = _preload(table, diameter, pitch)
+    thread, fastener = _thread(table, diameter, pitch, meshed=part is not None)
     bolt: Bolt | SolidBolt | None
     if part is not None:
         _note_solid(table, part)
@@ -37,6 +47,9 @@ def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bo
             "head_mass": table.quantity("head_mass", "kg", None),
             "nut_mass": table.quantity("nut_mass", "kg", None),
             "engaged": table.quantity("engaged", "m", None),
+            "shank": table.quantity("shank", "m", None, positive=False),
+            "head": table.text("head", "hexagon", ("hexagon", "socket")),
+            "thread": thread,
         }
         if diameter is None and "material" in table.data:
             table.faults.add(
@@ -60,24 +73,33 @@ def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bo
     return bolt
 
 
-def _fastener(table: Table, diameter: float | None) -> Fastener | None:
-    """Thread and property class; the thread is the coarse one of the diameter where it is not given."""
-    grade, thread = table.text("grade", None), table.text("thread", None)
-    if grade is None:
-        if thread is not None:
-            table.faults.add(
-                f'{table.where}.thread is used with grade alone; give grade, such as "8.8", or leave it out'
-            )
-        return None
-    if thread is None and diameter is None:
+def _thread(
+    table: Table, diameter: float | None, pitch: float | None, *, meshed: bool
+) -> tuple[Thread | None, Fastener | None]:
+    """The thread where it is given, by itself or by its pitch; and with its property class, where that is given."""
+    grade, text = table.text("grade", None), table.text("thread", None)
+    if meshed and grade is None and text is not None:
+        table.faults.add(
+            f'{table.where}.thread is used with grade alone where the bolt is meshed; give grade, such as "8.8", or '
+            "leave it out"
+        )
+        return None, None
+    if grade is not None and text is None and diameter is None:
         table.faults.add(f'{table.where}.grade needs the size of the thread; give thread, such as "M8"')
-        return None
+        return None, None
 
-    def made() -> Fastener:
-        size = Thread.parse(thread) if thread is not None else Thread.coarse(diameter or 0.0)
-        return Fastener(thread=size, grade=grade)
+    def made() -> Thread | None:
+        if text is not None:
+            return Thread.parse(text)
+        return None if pitch is None or diameter is None else Thread(diameter=diameter, pitch=pitch)
 
-    return table.made(made)
+    thread = table.made(made)
+    if thread is not None and pitch is not None and not isclose(thread.pitch, pitch, rel_tol=1e-6):
+        table.faults.add(f'{table.where}: thread = "{text}" and pitch = {1e3 * pitch:g} mm differ; leave pitch out')
+    if grade is None:
+        return thread, None
+    size = thread or table.made(lambda: Thread.coarse(diameter or 0.0))
+    return thread, None if size is None else table.made(lambda: Fastener(thread=size, grade=grade))
 
 
 def _note_solid(table: Table, part: str) -> None:
@@ -123,13 +145,13 @@ def _ring(value: Any, name: str) -> tuple[float, float]:
     return inner, outer
 
 
-def _preload(table: Table, diameter: float | None) -> tuple[float, ...]:
+def _preload(table: Table, diameter: float | None, pitch: float | None) -> tuple[float, ...]:
     """Forces [N], given as such or as torques with what turns them into forces."""
     forces = table.take("preload", lambda v, name: _rising(v, name, "N", "12 kN"), None)
     torques = table.take("torque", lambda v, name: _rising(v, name, "N m", "20 N m"), None)
     thread: dict[str, Any] = {
         "nut_factor": table.number("nut_factor", None),
-        "pitch": table.quantity("pitch", "m", None),
+        "pitch": pitch,
         "thread_friction": table.number("thread_friction", None),
         "head_friction": table.number("head_friction", None),
     }
