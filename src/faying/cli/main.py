@@ -17,6 +17,7 @@ COMMANDS = {
     "asperity": ("asperity", "Press one asperity by finite elements: force, area, stresses."),
     "attach": ("attach", "Lay a joint on a model of another solver, and write it in its words."),
     "backbone": ("backbone", "Frequency and damping of a mode against its amplitude."),
+    "bolts": ("bolts", "A sheet for each bolt by VDI 2230: preload, stresses, slip, torque."),
     "check": ("check", "Look at a study without solving it: faults, notes, memory, time."),
     "compare": ("compare", "Set a hammer test beside the result of a study: MAC, pairs, FRFs."),
     "condense": ("condense", "One joint as a 6 x 6 stiffness and loss between two points, with its error."),

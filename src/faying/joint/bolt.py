@@ -139,6 +139,7 @@ class Bolt:
         shank: Length [m] of the plain shank under the head, 0 for a bolt that is threaded up to its head. Where None: 0
             for a shank as thick as the thread; else, for a reduced shank, up to where the thread engages.
         head: "hexagon" or "socket".
+        friction: Coefficients of friction in the thread and under the head; for the bolt sheet alone.
 
     Raises:
         InputError: Diameter without material or the other way round, a diameter of 0 or less, a ring without width,
@@ -164,6 +165,7 @@ class Bolt:
     thread: Thread | None
     shank: float | None
     head: Head
+    friction: tuple[float, float] | None
     part: ClassVar[None] = None  # it is no part of the mesh
 
     def __init__(
@@ -184,6 +186,7 @@ class Bolt:
         thread: Thread | str | None = None,
         shank: float | str | None = None,
         head: Head = "hexagon",
+        friction: tuple[float, float] | None = None,
     ) -> None:
         what = f"bolt {name!r}"
         if (diameter is None) != (material is None):
@@ -209,6 +212,7 @@ class Bolt:
             "thread": Thread.parse(thread) if isinstance(thread, str) else thread,
             "shank": None if shank is None else si(shank, "m", name=f"{what}: shank"),
             "head": head,
+            "friction": friction,
         }
         for key, value in values.items():
             object.__setattr__(self, key, value)

@@ -60,7 +60,7 @@ def bolt_sections(
         head: "hexagon" (0.5 d) or "socket" (0.4 d).
         engaged: Length [m] that engages a tapped hole; half a diameter of it stretches, or all of it if that is less.
             Not used where there is a nut.
-        E_tapped: Young's modulus [Pa] of the part that is tapped (0.33 d); None for a nut (0.4 d) of the bolt's modulus.
+        E_tapped: Young's modulus [Pa] of the part that is tapped (0.33 d); None for a nut (0.4 d) like the bolt.
 
     Raises:
         InputError: A shank longer than the free length, a length or modulus that is not positive, or an unknown head.

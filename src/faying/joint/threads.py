@@ -65,7 +65,20 @@ PROOF = {
     "10.9": 830e6,
     "12.9": 970e6,
 }
+# least tensile strength and least stress at yield, or at 0.2 % or 0.0048 d of lasting elongation [Pa] (the same table)
+STRENGTH = {
+    "4.6": (400e6, 240e6),
+    "4.8": (420e6, 340e6),
+    "5.6": (500e6, 300e6),
+    "5.8": (520e6, 420e6),
+    "6.8": (600e6, 480e6),
+    "8.8": (800e6, 640e6),
+    "9.8": (900e6, 720e6),
+    "10.9": (1040e6, 940e6),
+    "12.9": (1220e6, 1100e6),
+}
 THICK, PROOF_THICK = 16e-3, 600e6  # beyond this diameter [m], class 8.8 has this stress under proof load [Pa]
+STRENGTH_THICK = (830e6, 660e6)  # and these strengths
 LEAST, GREATEST = 1.6e-3, 39e-3  # diameters [m] that ISO 898-1 covers
 THINNEST, THICKEST = 1e-3, 300e-3  # diameters [m] of the threads of ISO 261
 FORM = re.compile(r"M([0-9]+(?:\.[0-9]+)?)(?:\s*x\s*([0-9]+(?:\.[0-9]+)?))?")
@@ -197,7 +210,7 @@ class Fastener:
         InputError: The class is not known, or the thread is none of M1.6 to M39.
 
     Source:
-        ISO 898-1:2013, Table 3 (stress under proof load).
+        ISO 898-1:2013, Table 3 (strengths and stress under proof load).
     """
 
     thread: Thread
@@ -216,6 +229,21 @@ class Fastener:
         """Stress under proof load [Pa]."""
         thick = self.grade == "8.8" and self.thread.diameter > THICK
         return PROOF_THICK if thick else PROOF[self.grade]
+
+    @property
+    def tensile_strength(self) -> float:
+        """Least tensile strength R_m [Pa]."""
+        return self._strength[0]
+
+    @property
+    def yield_stress(self) -> float:
+        """Least stress [Pa] at yield, or at 0.2 % of lasting elongation (0.0048 d for 4.8, 5.8 and 6.8)."""
+        return self._strength[1]
+
+    @property
+    def _strength(self) -> tuple[float, float]:
+        thick = self.grade == "8.8" and self.thread.diameter > THICK
+        return STRENGTH_THICK if thick else STRENGTH[self.grade]
 
     @property
     def proof_load(self) -> float:

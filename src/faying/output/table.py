@@ -1,6 +1,6 @@
 """The tables of a result as plain text, for terminals, and as rows, for the report."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import product
 from math import floor, log10
 from typing import Any
@@ -373,17 +373,18 @@ def fractals(result: Result) -> Rows:
     return [["joint", "scan", *FRACTAL, "G of the law"], *rows] if rows else []
 
 
-def text(rows: Rows) -> str:
-    """Align rows in columns: the first two to the left, the others to the right."""
+NAMED = ("preload", "source", "law", "joint", "part", "bolt", "method", "scan")  # heads of columns of names
+
+
+def text(rows: Rows, left: Sequence[int] | None = None) -> str:
+    """Align rows in columns: those of `left`, or the first two that hold names, to the left, others to the right."""
     if not rows:
         return ""
     widths = np.max([[len(cell) for cell in row] for row in rows], axis=0)
     lines = []
     for row in rows:
         cells = [
-            cell.ljust(w)
-            if k < 2 and rows[0][k] in ("preload", "source", "law", "joint", "part", "bolt", "method", "scan")
-            else cell.rjust(w)
+            cell.ljust(w) if (k in left if left is not None else k < 2 and rows[0][k] in NAMED) else cell.rjust(w)
             for k, (cell, w) in enumerate(zip(row, widths, strict=True))
         ]
         lines.append("  ".join(cells).rstrip())

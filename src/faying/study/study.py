@@ -15,6 +15,7 @@ from faying.misuse import checked_call
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.keys.beside import BesideChoice
 from faying.study.keys.bolt import read_bolt
+from faying.study.keys.bolt_sheet import BoltSheetChoice, read_bolt_sheets
 from faying.study.keys.geometry import GeometryChoice, read_geometry
 from faying.study.keys.joint import JointChoice, read_joints
 from faying.study.keys.law import LawChoice
@@ -42,6 +43,7 @@ class Study:
         bonds: joints whose faces are welded or glued; `joints` are the others.
         backbone: which curve over amplitude is asked for; None where the file does not say.
         beside: other laws and surfaces whose modes stand beside those of the study.
+        bolt_sheets: what is said for the sheets of the bolts.
         uncertain: which numbers scatter; None where the file does not say.
         order: the order of tightening as indices of bolts, pass after pass; None where all are pulled at once.
     """
@@ -67,6 +69,7 @@ class Study:
     uncertain: UncertainChoice | None = None
     bonds: tuple[JointChoice, ...] = ()
     name: str = PLAIN
+    bolt_sheets: tuple[BoltSheetChoice, ...] = ()
     text: str = field(default="", repr=False)
     files: tuple[Path, ...] = ()
 
@@ -130,6 +133,7 @@ class Study:
         _note_lacking_beside(faults, joints, (law, surface), beside, () if backbone is None else backbone.laws)
         read = [read_bolt(t, i, materials) for i, t in enumerate(top.tables("bolt", required=True))]
         bolts = tuple(bolt for bolt in read if bolt is not None)
+        sheets = read_bolt_sheets(top.tables("bolt_sheet"), [bolt.name for bolt in bolts])
         supports = [read_support(t) for t in top.tables("support")]
         masses = [read_mass(t) for t in top.tables("mass")]
         counts = {len(b.preload) for b in bolts if b.preload}
@@ -166,6 +170,7 @@ class Study:
             backbone=backbone,
             beside=beside,
             uncertain=uncertain,
+            bolt_sheets=sheets,
             text=text,
             files=tuple(dict.fromkeys(faults.files)),
         )

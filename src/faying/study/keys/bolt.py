@@ -33,7 +33,8 @@ def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bo
     part = table.text("part", None)
     diameter = table.quantity("diameter", "m", None)
     pitch = table.quantity("pitch", "m", None)
-    preload = _preload(table, diameter, pitch)
+    friction = (table.number("thread_friction", None), table.number("head_friction", None))
+    preload = _preload(table, diameter, pitch, friction)
     thread, fastener = _thread(table, diameter, pitch, meshed=part is not None)
     bolt: Bolt | SolidBolt | None
     if part is not None:
@@ -50,6 +51,7 @@ def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bo
             "shank": table.quantity("shank", "m", None, positive=False),
             "head": table.text("head", "hexagon", ("hexagon", "socket")),
             "thread": thread,
+            "friction": None if None in friction else friction,
         }
         if diameter is None and "material" in table.data:
             table.faults.add(
@@ -145,15 +147,17 @@ def _ring(value: Any, name: str) -> tuple[float, float]:
     return inner, outer
 
 
-def _preload(table: Table, diameter: float | None, pitch: float | None) -> tuple[float, ...]:
+def _preload(
+    table: Table, diameter: float | None, pitch: float | None, friction: tuple[float | None, float | None]
+) -> tuple[float, ...]:
     """Forces [N], given as such or as torques with what turns them into forces."""
     forces = table.take("preload", lambda v, name: _rising(v, name, "N", "12 kN"), None)
     torques = table.take("torque", lambda v, name: _rising(v, name, "N m", "20 N m"), None)
     thread: dict[str, Any] = {
         "nut_factor": table.number("nut_factor", None),
         "pitch": pitch,
-        "thread_friction": table.number("thread_friction", None),
-        "head_friction": table.number("head_friction", None),
+        "thread_friction": friction[0],
+        "head_friction": friction[1],
     }
     if "preload" not in table.data and "torque" not in table.data:
         table.faults.add(f'{table.where}.preload is missing; give a force such as "12 kN", or torque = "20 N m"')

@@ -1,0 +1,35 @@
+"""faying bolts STUDY.toml: a sheet for each bolt."""
+
+import json
+from pathlib import Path
+
+import click
+
+from faying.cli.progress import Form, Shown, progress_options
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option("--preload", metavar="FORCE", help='Which of the study\'s preloads, such as "8 kN" (default: greatest).')
+@click.option("--html", "page", type=click.Path(path_type=Path), help="Write the sheets as a page, with all formulas.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
+@progress_options
+def command(study: Path, preload: str | None, page: Path | None, as_json: bool, progress: Form | None) -> None:
+    """Calculate each bolt of STUDY by VDI 2230, steps R0 to R13, with compliances found by finite elements.
+
+    [[bolt_sheet]] gives working loads, friction and the way of tightening.
+    """
+    from faying.files import write_text
+    from faying.output import bolt_sheet as shown
+    from faying.study.bolt_sheet import bolt_sheet
+
+    with Shown("bolts", progress) as report:
+        found = bolt_sheet(study, preload, report=report)
+    file = None if page is None else write_text(page, shown.html(found))
+    if as_json:
+        files = [] if file is None else [str(file)]
+        click.echo(json.dumps(found.to_dict() | {"files": files}, indent=2, allow_nan=False))
+        return
+    click.echo(shown.terminal(found))
+    if file is not None:
+        click.echo(f"\nwritten: {file}")

@@ -1,0 +1,114 @@
+"""[[bolt_sheet]]: what the sheet of a bolt needs beyond the study: working load, friction, way of tightening."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from faying.errors import InputError
+from faying.joint.tightening import tightening
+from faying.study.keys.reader import Table, quantity
+
+MOST_FACTOR = 10.0  # greatest tightening factor that is no slip of the pen
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoltSheetChoice:
+    """What is said of one bolt, or of all that no other table names; None for what is not said.
+
+    Args:
+        bolt: Name of the bolt; None for all others.
+        way: Way of tightening, a name of `joint.tightening.TIGHTENING`.
+        tightening_factor: alpha_A, greatest over least preload.
+        thread_friction, head_friction, slip_friction: Coefficients [-], in the thread, under the head, in the joint.
+        axial: Least and greatest working load [N] that pulls the parts apart.
+        introduction: Load introduction factor n [-]; 1 for a load at the seats.
+        transverse: Load [N] across the bolt that friction carries.
+        clamp: Clamp load [N] that is asked for, for a seal or against opening.
+        embedding: Of thread, seats and joints together [m], in place of the guide value.
+        thermal_loss: Preload [N] that temperature takes.
+        shear_strength: Of the tapped part [Pa].
+        rolled: When the thread is rolled, "before" or "after" heat treatment.
+    """
+
+    bolt: str | None = None
+    way: str | None = None
+    tightening_factor: float | None = None
+    thread_friction: float | None = None
+    head_friction: float | None = None
+    slip_friction: float | None = None
+    axial: tuple[float, float] | None = None
+    introduction: float = 1.0
+    transverse: float | None = None
+    clamp: float | None = None
+    embedding: float | None = None
+    thermal_loss: float | None = None
+    shear_strength: float | None = None
+    rolled: Literal["before", "after"] = "before"
+
+    @classmethod
+    def of(cls, table: Table, bolts: Sequence[str]) -> "BoltSheetChoice":
+        """Read one [[bolt_sheet]]."""
+        name = table.text("bolt", None)
+        if name is not None and name not in bolts:
+            known = ", ".join(f'"{one}"' for one in bolts)
+            table.faults.add(f'{table.where}.bolt = "{name}" is no bolt; there are {known}')
+        way = table.text("tightening", None)
+        if way is not None:
+            table.made(lambda: tightening(way, f"{table.where}.tightening"))
+        choice = cls(
+            bolt=name,
+            way=way,
+            tightening_factor=table.take("tightening_factor", _between(1.0, MOST_FACTOR), None),
+            thread_friction=table.take("thread_friction", _between(0.02, 1.0), None),
+            head_friction=table.take("head_friction", _between(0.02, 1.0), None),
+            slip_friction=table.take("slip_friction", _between(0.02, 2.0), None),
+            axial=table.take("axial", _axial, None),
+            introduction=table.take("introduction", _between(0.0, 1.0), 1.0),
+            transverse=table.take("transverse", _not_negative, None),
+            clamp=table.take("clamp", _not_negative, None),
+            embedding=table.quantity("embedding", "m", None),
+            thermal_loss=table.quantity("thermal_loss", "N", None, positive=False),
+            shear_strength=table.quantity("shear_strength", "Pa", None),
+            rolled=table.text("rolled", "before", ("before", "after")),
+        )
+        if way is not None and choice.tightening_factor is not None:
+            table.faults.add(f"{table.where} has both tightening and tightening_factor; give one of them")
+        table.close()
+        return choice
+
+
+def read_bolt_sheets(tables: Sequence[Table], bolts: Sequence[str]) -> tuple[BoltSheetChoice, ...]:
+    """Read all [[bolt_sheet]]; a fault is noted where two name the same bolt, or two name none."""
+    found = tuple(BoltSheetChoice.of(table, bolts) for table in tables)
+    names = [one.bolt for one in found]
+    for table, choice in zip(tables, found, strict=True):
+        if names.count(choice.bolt) > 1:
+            who = "no bolt" if choice.bolt is None else f'the bolt "{choice.bolt}"'
+            table.faults.add(f"{table.where}: two tables name {who}; leave one out")
+    return found
+
+
+def _between(low: float, high: float) -> Any:
+    def convert(value: Any, name: str) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
+            raise InputError(f"{name} = {value!r} should be a number from {low:g} to {high:g}")
+        return float(value)
+
+    return convert
+
+
+def _not_negative(value: Any, name: str) -> float:
+    force = float(quantity(value, "N", name, positive=False))
+    if force < 0:
+        raise InputError(f'{name} = "{value}" should be 0 or more')
+    return force
+
+
+def _axial(value: Any, name: str) -> tuple[float, float]:
+    items = value if isinstance(value, list) else ["0 N", value]
+    if len(items) != 2:
+        raise InputError(f'{name} = {value!r} should be one load or the least and the greatest: ["0 kN", "4 kN"]')
+    low, high = (float(quantity(one, "N", name, positive=False)) for one in items)
+    if high < low or high < 0:
+        raise InputError(f"{name} = {value!r}: the second load must be the greater, and pull the parts apart")
+    return low, high
