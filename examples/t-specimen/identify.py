@@ -8,7 +8,7 @@ search may end there on a bound.
 Chosen, not identified: the width (bending across the thin side of the stems hardly depends on it), holes and washers,
 the bolts in the middle of what stands out. Not used: everything that the paper computed.
 
-Least squares run on a plane-stress model of the two T's grown together, which takes a moment. What it leaves out (the
+Least squares run on a plane-stress model of the two T's bonded, which takes a moment. What it leaves out (the
 joint, the third dimension, the holes) is the ratio of the study's frequencies to its own: computed for the dimensions
 found, and put back into the model until they rest.
 

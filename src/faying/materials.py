@@ -35,7 +35,7 @@ class Material:
         nu: Poisson's ratio [-].
         density: [kg/m3].
         yield_strength: [Pa].
-        hardness: flow pressure of the closed laws of asperities [Pa]; 2.8 times the yield strength where not given
+        hardness: flow pressure of the analytic laws of asperities [Pa]; 2.8 times the yield strength where not given
             (Tabor 1951). Without `brinell` or `vickers` it is the hardness of every law and of spots of every size.
         brinell: measured Brinell hardness [Pa]; HB 170 is 1.67e9 Pa. From 1.3e9 to 7.6e9 Pa it gives `vickers`.
         vickers: hardness over the size of an indentation, for contact solved on a scan and for laws of conductance.

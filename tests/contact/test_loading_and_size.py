@@ -251,7 +251,7 @@ def test_the_softer_body_by_its_bulk_gives_the_hardness_over_size():
         assert pair.bulk_hardness == soft.brinell
         assert pair.vickers == soft.vickers
         assert pair.vickers.at(1e-6) == pytest.approx(soft.brinell)  # below the range of the fit: one hardness
-    assert PAIR.hardness == 994e6  # that of the paper, for the closed laws of single asperities
+    assert PAIR.hardness == 994e6  # that of the paper, for the analytic laws of single asperities
     assert PAIR.vickers.at(1e-6) == pytest.approx(6.2e9, rel=0.05)
 
 

@@ -256,7 +256,7 @@ def test_abaqus_parts_and_instances(tmp_path):
 
 @pytest.mark.parametrize("kind", SOLID_KINDS)
 def test_parts_that_share_nodes_are_split_at_a_named_face(tmp_path, kind):
-    """The two blocks grown together at x = 50 mm; one set of nodes names the joint on both."""
+    """The two blocks bonded at x = 50 mm; one set of nodes names the joint on both."""
     apart = two((kind, kind), move=None)
     merged = meshfiles.abaqus(apart, faces="nodes")
     n = meshfiles.numbers(apart)
@@ -346,9 +346,9 @@ def test_faults_of_a_mesh_file(tmp_path):
     )
     fault(tmp_path, good + "*ELEMENT, TYPE=C3D8\n" + turned + "\n", "element 9 is given twice")
     fault(tmp_path, good.replace("C3D8I", "C3D27"), "elements of type C3D27 are not known; known are C3D4")
-    fault(tmp_path, good.replace("C3D8I", "C3D20"), "do not make elements of 20 nodes; is the file whole")
+    fault(tmp_path, good.replace("C3D8I", "C3D20"), "do not make elements of 20 nodes; is the file complete")
     fault(tmp_path, good[: good.index("*Element")], "0 kinds of solid elements")
-    fault(tmp_path, good[: at + 20], r"is the file whole", kind=faying.ReadError)
+    fault(tmp_path, good[: at + 20], r"is the file complete", kind=faying.ReadError)
     fault(
         tmp_path,
         good.replace("_p0.left_S6, S6", "_p0.front_S6, S6"),
@@ -394,15 +394,15 @@ def test_faults_of_other_formats(tmp_path):
     fault(
         tmp_path,
         text.replace("$EndElements", "").replace(text[-60:-14], "") + "$EndElements\n",
-        "is the file whole",
+        "is the file complete",
         "m.msh",
     )
     archive = meshfiles.ansys(mesh)
     fault(tmp_path, archive.replace("SOLID186", "SOLID226"), "is of type 226; known are SOLID185", "m.cdb")
-    fault(tmp_path, archive[: archive.index("EBLOCK") + 900], "is the archive whole", "m.cdb")
+    fault(tmp_path, archive[: archive.index("EBLOCK") + 900], "is the archive complete", "m.cdb")
     fault(tmp_path, archive.replace("EBLOCK,19,SOLID", "EBLOCK,10,COMPACT"), "EBLOCK without the key SOLID", "m.cdb")
     line = next(line for line in archive.splitlines() if line.startswith("      100"))
-    fault(tmp_path, archive.replace(line, f"{line}\n{line}"), "is the archive whole", "m.cdb")
+    fault(tmp_path, archive.replace(line, f"{line}\n{line}"), "is the archive complete", "m.cdb")
     fault(tmp_path, "FINISH\n", "holds 0 nodes in NBLOCK", "m.cdb")
     if pytest.importorskip("meshio"):
         fault(tmp_path, "nonsense", "cannot be read as VTK", "m.vtu")
@@ -450,7 +450,7 @@ def test_an_archive_with_other_elements_and_turned_nodes(tmp_path):
     spider = "".join(f"{w:9d}" for w in (1, 9, 1, 1, 0, 0, 0, 0, 2, 0, 9999, 100, 103))
     more = archive.replace("/PREP7\n", "/PREP7\nET,9,MPC184\n").replace(f"{-1:9d}\n", f"{spider}\n{-1:9d}\n", 1)
     with pytest.raises(
-        faying.ReadError, match=f"EBLOCK says {count} elements and holds {count + 1}; is the archive whole"
+        faying.ReadError, match=f"EBLOCK says {count} elements and holds {count + 1}; is the archive complete"
     ):
         faying.read_mesh(written(tmp_path, more, "m.cdb"), unit="mm")
     head = next(line for line in more.splitlines() if line.startswith("EBLOCK"))
@@ -460,7 +460,7 @@ def test_an_archive_with_other_elements_and_turned_nodes(tmp_path):
         "1 elements of type 184 (rigid or multipoint elements) are left out, with their stiffness and mass"
     ]
     gone = "\n".join(one for one in archive.splitlines() if one != turned) + "\n"
-    with pytest.raises(faying.ReadError, match="NBLOCK says .* nodes and holds .*; is the archive whole"):
+    with pytest.raises(faying.ReadError, match="NBLOCK says .* nodes and holds .*; is the archive complete"):
         faying.read_mesh(written(tmp_path, gone, "m.cdb"), unit="mm")
 
 

@@ -18,7 +18,7 @@ FREQUENCIES = np.linspace(200.0, 16000.0, 400)
 
 @pytest.fixture(scope="module")
 def bar():
-    """A bar, cut in the middle and grown together by stiff springs: mesh, K, M, loss (none), modes and damped modes."""
+    """A bar, cut in the middle and bonded by stiff springs: mesh, K, M, loss (none), modes and damped modes."""
     mesh = stack([L / 2, L / 2], [14, 14], width=SIDE, height=SIDE, sections=[(1, 1), (1, 1)])
     K, M = assemble(mesh, dict.fromkeys(mesh.parts, BAR))
     joint = join(mesh, "p0.right", "p1.left")

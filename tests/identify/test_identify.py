@@ -216,7 +216,7 @@ def test_the_result(chain):
     assert chain.quantiles((0.1, 0.9)).shape == (2, 6)
     assert chain.answered == chain.evaluations >= 256
     assert codes(chain) == ["not-told"]
-    assert "The test tells nothing of unseen" in chain.notes[0].text
+    assert "The test says nothing about unseen" in chain.notes[0].text
 
 
 def test_least_squares_and_what_the_test_sees(chain):
@@ -367,7 +367,7 @@ def test_an_identification_is_one_page(chain):
 
     page = identified(chain, "a <chain>", "made by the model")
     assert "a &lt;chain&gt;: identification" in page
-    assert "The test tells nothing of unseen" in page
+    assert "The test says nothing about unseen" in page
     assert "contact.c" in page
     assert page.count("<figure>") == 1
 

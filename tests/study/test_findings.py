@@ -59,7 +59,7 @@ def closed(tmp_path_factory):
 def test_the_default_says_what_it_took_and_what_it_does_not_know(default):
     (choice,) = texts(default, "law-choice")
     assert "half-space" in choice
-    assert "times its k_n" in choice
+    assert "times this stiffness" in choice
     assert default.laws[0]["name"] == "half-space"
     assert texts(default, "mates")[0].startswith("both faces as surface.x3p, unrelated; ")
     assert "gives no damping at rest" in texts(default, "no-loss")[0]

@@ -10,7 +10,7 @@ import click
 @click.option("--port", type=click.IntRange(0, 65535), default=0, help="Port to listen on [a free one].")
 @click.option("--open/--no-open", "opened", default=True, help="Open the page in the browser.")
 def command(place: Path, port: int, opened: bool) -> None:
-    """A page on this machine for the project in FOLDER: look at scan and geometry, edit, check and run the study.
+    """Open the project in FOLDER in the browser: view scan and geometry; edit, check and run the study.
 
     It works without a network. The address holds a token; nobody without it is let in. Ctrl-C ends it.
     """

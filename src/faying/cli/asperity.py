@@ -57,7 +57,7 @@ NEEDED = ("R", "h_a")
 @click.option("--processes", type=click.IntRange(1, 1024), help="For --table [the number of cores].")
 @click.option("--netcdf", type=click.Path(dir_okay=False), help="Write histories and results.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
-@click.option("--plot", type=click.Path(dir_okay=False), help="Figure of one case beside the published laws.")
+@click.option("--plot", type=click.Path(dir_okay=False), help="Figure of one case with the published laws.")
 def command(
     table_file: str | None,
     processes: int | None,

@@ -20,7 +20,7 @@ from faying.text import json_text
     required=True,
     type=click.Path(path_type=Path),
     metavar="STUDY.toml",
-    help="Study that gives surface, law and materials, and for --pressure solve the bolts.",
+    help="Study with surface, law and materials; with --pressure solve also with bolts.",
 )
 @click.option(
     "--joint", metavar="NAME", help="Which of the study's joints; else the one with these faces, or the only one."
@@ -33,7 +33,7 @@ from faying.text import json_text
 )
 @click.option("--preload", metavar="FORCE", help='With solve: which of the study\'s preloads, such as "8 kN".')
 @click.option(
-    "--tolerance", metavar="LENGTH", help="How far apart the faces may lie (default: 1 % of the model's size)."
+    "--tolerance", metavar="LENGTH", help="Greatest distance between the faces (default: 1 % of the model's size)."
 )
 @click.option(
     "--coupling",
@@ -53,15 +53,15 @@ from faying.text import json_text
     help="paper: the JK paper's dampers eta sqrt(M k), which depend on the mesh.",
 )
 @click.option("--to", "solver", type=click.Choice(SOLVERS), help="The solver to write for.")
-@click.option("--out", type=click.Path(path_type=Path), help="Folder of the decks (default: joint/ beside the model).")
-@click.option("--any-size", is_flag=True, help="Take a joint of any area.")
+@click.option("--out", type=click.Path(path_type=Path), help="Folder of the decks (default: joint/ next to the model).")
+@click.option("--any-size", is_flag=True, help="Accept a joint of any area.")
 @click.option(
     "--matrices",
     type=click.Path(path_type=Path),
     metavar="FILE",
     help="Stiffness and mass of the bare parts: job.sti of CalculiX, .mtx, DMIG; gives modes with the joint.",
 )
-@click.option("--mass", type=click.Path(path_type=Path), help="With a .mtx: the mass, another.")
+@click.option("--mass", type=click.Path(path_type=Path), help="With a .mtx: file of the mass matrix.")
 @click.option("--dofs", type=click.Path(path_type=Path), help='With a .mtx: "node direction" of each row.')
 @click.option("--stiffness-unit", metavar="UNIT", help='Of the matrices, such as "N/mm".')
 @click.option("--mass-unit", metavar="UNIT", help='Of the matrices, such as "t".')
@@ -94,7 +94,7 @@ def command(
     count: int,
     as_json: bool,
 ) -> None:
-    """Lay the law of a study on two faces of MODEL and write the joint for another solver.
+    """Apply the contact law of a study to two faces of MODEL and write the joint for another solver.
 
     MODEL: .inp of Abaqus or CalculiX, .bdf, .msh, .cdb.
     """

@@ -40,7 +40,7 @@ from faying.text import json_text
 def command(study: Path, **options: Any) -> None:
     """Frequency and damping of one mode of STUDY against its amplitude, from rest to large motions.
 
-    What is done is kept beside the output; the same command goes on after an interruption.
+    Finished work is saved next to the output; the same command resumes after an interruption.
     """
     from faying.files import new_folder
     from faying.measured.ring_down import MeasuredBackbone

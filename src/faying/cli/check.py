@@ -16,7 +16,7 @@ COLUMNS = 80
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, with the key and the line of each finding.")
 def command(study: Path, as_json: bool) -> int:
-    """Look at STUDY without solving: keys, names, contacts, bolts, reach of the laws, unknowns, memory, time."""
+    """Check STUDY without solving: keys, names, contacts, bolts, reach of the laws, unknowns, memory, time."""
     from faying.study.check import by_level, check
 
     found = check(study)

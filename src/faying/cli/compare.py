@@ -60,7 +60,7 @@ def command(
     out: Path | None,
     as_json: bool,
 ) -> None:
-    """Set the hammer test in TEST (a universal file) beside RESULT (result.nc of `faying run`).
+    """Compare the hammer test in TEST (a universal file) with RESULT (result.nc of `faying run`).
 
     The mode shapes of TEST are taken where it holds some; otherwise they are identified from its FRFs.
     """

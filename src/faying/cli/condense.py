@@ -26,7 +26,7 @@ NUMBER = click.IntRange(1, 99_999_999)  # eight digits, the field of a bulk data
 @click.option("--node-a", type=NUMBER, default=900001, show_default=True, help="Number of the first point's node.")
 @click.option("--node-b", type=NUMBER, default=900002, show_default=True, help="Number of the second point's node.")
 @click.option("--element", type=NUMBER, default=900001, show_default=True, help="Number of the element and property.")
-@click.option("--out", type=click.Path(path_type=Path), help="Folder of the deck (default: joint/ beside the study).")
+@click.option("--out", type=click.Path(path_type=Path), help="Folder of the deck (default: joint/ next to the study).")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
 @progress_options
 def command(
@@ -45,7 +45,7 @@ def command(
     as_json: bool,
     progress: Form | None,
 ) -> None:
-    """Condense a joint of STUDY to six motions, and say how far that holds."""
+    """Condense a joint of STUDY to a 6 x 6 stiffness between two points, with the error of that."""
     from faying.decks.write import write_condensed
     from faying.errors import InputError
     from faying.output.table import text

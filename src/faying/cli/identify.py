@@ -40,9 +40,9 @@ def command(
     as_json: bool,
     progress: Form | None,
 ) -> None:
-    """What the test of STUDY tells of the numbers that its [uncertain] lists, and what it cannot tell.
+    """Update the uncertain numbers of STUDY from its test, and list those that the test cannot identify.
 
-    What is done is kept beside the output; the same command goes on after an interruption.
+    Finished work is saved next to the output; the same command resumes after an interruption.
     """
     from faying.files import new_folder, write_text
     from faying.identify import identification_figure as drawing

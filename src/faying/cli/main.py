@@ -13,30 +13,30 @@ import click
 
 # command -> (module, one line for `faying --help`)
 COMMANDS = {
-    "app": ("app", "A page on this machine: scan, geometry, study, run, result."),
+    "app": ("app", "Open a page in the browser: scan, geometry, study, run, result."),
     "asperity": ("asperity", "Press one asperity by finite elements: force, area, stresses."),
-    "attach": ("attach", "Lay a joint on a model of another solver, and write it in its words."),
+    "attach": ("attach", "Add a joint to a model of another solver and write it in that solver's format."),
     "backbone": ("backbone", "Frequency and damping of a mode against its amplitude."),
     "bolts": ("bolts", "A sheet for each bolt by VDI 2230: preload, stresses, slip, torque."),
-    "check": ("check", "Look at a study without solving it: faults, notes, memory, time."),
-    "compare": ("compare", "Set a hammer test beside the result of a study: MAC, pairs, FRFs."),
+    "check": ("check", "Check a study without solving it: faults, notes, memory, time."),
+    "compare": ("compare", "Compare a hammer test with the result of a study: MAC, pairs, FRFs."),
     "condense": ("condense", "One joint as a 6 x 6 stiffness and loss between two points, with its error."),
     "faces": ("faces", "Faces of a STEP or mesh file: numbers, normals, centres, contacts."),
     "form": ("form", "Flatness, crowns and twist of a measured face or gap."),
-    "identify": ("identify", "What a test tells of the numbers that scatter in a study."),
+    "identify": ("identify", "Update the uncertain numbers of a study from a hammer test."),
     "init": ("init", "Write a commented study file to start from."),
     "law": ("law", "Curves of a contact law: area, stiffness and loss against pressure."),
     "models": ("models", "List the contact models with their sources, inputs and ranges."),
     "modes": ("modes", "Real modes of a study or of assembled matrices, also over many machines."),
     "new": ("new", "Write a study of your own STEP file: joints, bolts, seats, mesh."),
-    "predict": ("predict", "Intervals of the frequencies under scatter, and what causes them."),
+    "predict": ("predict", "Intervals of the frequencies from uncertain inputs, and which input causes them."),
     "ring-down": ("ring_down", "Frequency and damping over amplitude from a free decay."),
     "run": ("run", "Run a study: from the surface and the preload to the modes."),
     "schema": ("schema", "JSON schema of a study, for editors that know TOML."),
     "sweep": ("sweep", "Many laws, surfaces and preloads on one structure, solved once."),
     "surface": ("surface", "Roughness, fractal dimension D and roughness G of a scan."),
     "test": ("test", "Identify the modes of a hammer test from its FRFs."),
-    "view": ("view", "Look at a study, a result, a mesh or a STEP file in the browser."),
+    "view": ("view", "Show a study, a result, a mesh or a STEP file in the browser."),
 }
 
 

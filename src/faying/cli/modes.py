@@ -15,7 +15,7 @@ from faying.text import json_text
     type=click.Path(path_type=Path),
     help="In place of a study: .mtx, .npz, .sti of CalculiX, or DMIG of Nastran.",
 )
-@click.option("--mass", type=click.Path(path_type=Path), help="Beside --stiffness, where that file does not hold it.")
+@click.option("--mass", type=click.Path(path_type=Path), help="Mass matrix, where the file of --stiffness has none.")
 @click.option("--stiffness-unit", default="N/m", show_default=True, help="Of the entries of the stiffness.")
 @click.option("--mass-unit", default="kg", show_default=True, help="Of the entries of the mass.")
 @click.option(
@@ -31,7 +31,7 @@ from faying.text import json_text
     "--mpi",
     type=click.IntRange(1, 1_000_000),
     metavar="PROCESSES",
-    help="Solve with SLEPc over so many processes, which mpiexec starts.",
+    help="Solve with SLEPc in this number of processes, started by mpiexec.",
 )
 @click.option(
     "--export",

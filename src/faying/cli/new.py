@@ -13,11 +13,15 @@ from faying.text import json_text
 @click.argument("step", type=click.Path(path_type=Path))
 @click.option("--scan", type=click.Path(path_type=Path), help="Scan of one face (default: a synthetic milled one).")
 @click.option("--out", type=click.Path(path_type=Path), default="study.toml", show_default=True, help="The study file.")
-@click.option("--yes", is_flag=True, help="Ask nothing: steel, class 8.8 at 70 % of the proof load; each is said.")
+@click.option(
+    "--yes",
+    is_flag=True,
+    help="Ask nothing; assume steel, class 8.8, 70 % of the proof load, and print it.",
+)
 @click.option("--force", is_flag=True, help="Replace files that exist.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was found and written as JSON; asks nothing.")
 def command(step: Path, scan: Path | None, out: Path, yes: bool, force: bool, as_json: bool) -> None:
-    """Write a commented study of the assembly in STEP: its joints, bolts, seats and mesh, and what is left to say."""
+    """Write a commented study of the assembly in STEP: joints, bolts, seats, mesh, and a list of what to fill in."""
     from faying.errors import InputError
     from faying.study import new
 

@@ -51,11 +51,11 @@ def command(
     as_json: bool,
     progress: Form | None,
 ) -> None:
-    """Intervals of the frequencies of STUDY under the scatter that its [uncertain] states, and what causes them.
+    """Intervals of the frequencies of STUDY from the scatter in its [uncertain], and which input causes them.
 
     With --backbones also those of a mode's frequency and damping against its amplitude.
 
-    What is done is kept beside the output; the same command goes on after an interruption.
+    Finished work is saved next to the output; the same command resumes after an interruption.
     """
     from faying.errors import InputError
     from faying.files import new_folder, write_text

@@ -25,13 +25,13 @@ from faying.text import json_text
     "--mpi",
     type=click.IntRange(1, 1_000_000),
     metavar="PROCESSES",
-    help="Solve by multigrid over so many processes, which mpiexec starts, in place of a factorisation.",
+    help="Solve by multigrid in this number of processes, started by mpiexec, instead of a factorisation.",
 )
 @click.option(
     "--engine",
     type=click.Choice(("reanalysis", "direct")),
     default="reanalysis",
-    help="reanalysis: one factorisation for many states; direct: one for every step, to check the other by.",
+    help="reanalysis: one factorisation for many states; direct: one for every step, as a check.",
 )
 @progress_options
 def command(

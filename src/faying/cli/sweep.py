@@ -43,7 +43,7 @@ def command(
 ) -> None:
     """Evaluate STUDY for many laws, surfaces and preloads: the parts are solved once, only the joint changes.
 
-    What is done is kept beside the output; the same command goes on after an interruption.
+    Finished work is saved next to the output; the same command resumes after an interruption.
     """
     from faying.files import new_folder
     from faying.output.figures import sweep as drawing

@@ -8,11 +8,11 @@ import click
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(dir_okay=False, path_type=Path), help="The page (default: beside FILE).")
+@click.option("--out", type=click.Path(dir_okay=False, path_type=Path), help="The page (default: next to FILE).")
 @click.option("--unit", help='Unit of a mesh file, such as "mm"; no mesh file says.')
 @click.option("--open/--no-open", "show", default=True, help="Open the page in the browser.")
 def command(file: Path, out: Path | None, unit: str | None, show: bool) -> None:
-    """Look at FILE: a study (.toml) before it is run, a result (.nc), a mesh, or a STEP file.
+    """Show FILE: a study (.toml) before it is run, a result (.nc), a mesh, or a STEP file.
 
     Writes one page that opens anywhere, with everything inside, and opens it in the browser. A study shows its mesh
     with joints, bolts, supports and masses; a result its moving modes and the maps of its joints; a click on a face

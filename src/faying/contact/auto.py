@@ -1,4 +1,4 @@
-"""The law for users who name none: the numerical contact of their scan, or the closed law that comes closest to it."""
+"""The default law: the numerical contact of the scan, or the analytic law that comes closest to it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ from faying.errors import FayingError, InputError
 from faying.materials import ContactPair
 from faying.typing import Array
 
-CLOSE = 1.3  # a closed law stands for the numerical contact where their k_n differ by no more than this factor
+CLOSE = 1.3  # an analytic law stands for the numerical contact where their k_n differ by no more than this factor
 SHARES = np.array([10**-2.5, 1e-2, 10**-1.5])  # of the greatest pressure: where laws are compared
 
 
@@ -27,7 +27,7 @@ class Choice:
     Args:
         law: the law.
         reason: one line; empty where the user named the law.
-        ratios: k_n of each closed law over that of the numerical contact, at the middle pressure.
+        ratios: k_n of each analytic law over that of the numerical contact, at the middle pressure.
         mates: both faces and their materials in one line; empty where the law takes nothing from a surface.
     """
 
@@ -49,7 +49,7 @@ def pick(
 
     "auto" takes the half-space contact of the scan where it is valid at a hundredth of the bulk hardness (10 spots
     touch, half of the stiffness is on spots of 4 points or more, and k_n moves by at most 25 % on half the points each
-    way); else the closed law whose k_n comes closest to it, where that lies within 30 %; else the half-space contact
+    way); else the analytic law whose k_n comes closest to it, where that lies within 30 %; else the half-space contact
     all the same, with its flags. With D and G alone there is no contact to solve: JK is taken. exact: the half-space
     contact of this surface and pair, where there is one already, so that it is not solved again.
 
@@ -79,7 +79,9 @@ def _choose(surface: RoughSurface, pair: ContactPair, exact: HalfSpace | None) -
     middle = {name: float(row[1]) for name, row in ratios.items()}
     nearest = min(ratios, key=lambda name: float(np.abs(np.log(ratios[name])).max()), default=None)
     said = (
-        "" if nearest is None else f"; the closed law nearest to it, {nearest}, has {middle[nearest]:.2f} times its k_n"
+        ""
+        if nearest is None
+        else f"; for comparison, the closest analytic law ({nearest}) gives {middle[nearest]:.2f} times this stiffness"
     )
     at = f"at {pressure[1] / 1e6:.3g} MPa"
     faults = [reason for reason, mask in solved.reasons.items() if mask[1]]
@@ -94,7 +96,7 @@ def _choose(surface: RoughSurface, pair: ContactPair, exact: HalfSpace | None) -
             f"{nearest}, with {middle[nearest]:.2f} times the k_n of the half-space, which does not resolve the contact"
         )
         return Choice(law=build(nearest, {}, surface, pair), reason=f"{reason} {at}: {faults[0]}", ratios=middle)
-    reason = f"half-space, though {faults[0]} {at}: no closed law lies within {CLOSE - 1:.0%} of it{said}"
+    reason = f"half-space, though {faults[0]} {at}: no analytic law lies within {CLOSE - 1:.0%} of it{said}"
     return Choice(law=law, reason=reason, ratios=middle)
 
 

@@ -251,7 +251,7 @@ class Mates(Summary):
 
         Args:
             name: any law in any spelling, "jk" or "gw-ke" say; "auto" is what `faying run` takes: the half-space
-                contact of the scan where it resolves the contact, else the closed law nearest to it.
+                contact of the scan where it resolves the contact, else the analytic law nearest to it.
             given: parameters of the law, in SI units or as text with a unit; they count before what the faces give.
 
         Returns:
@@ -354,7 +354,7 @@ def law_for(
         pair: the materials that meet; one name for both.
         counter: the other face: its scan; "same", statistically alike but unrelated; or "smooth".
         model: a law by name, or "auto": the half-space contact of the scan where it resolves the contact, else the
-            closed law nearest to it.
+            analytic law nearest to it.
         cache: folder that keeps solved contacts; None keeps nothing.
 
     Returns:

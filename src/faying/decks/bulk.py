@@ -158,7 +158,7 @@ class Bulk:
             few, many = _SKINS[name]
             nodes = [int(word) for word in fields[2 : 2 + many] if word]
             if not all(fields[2 : 2 + few]) or len(fields) < 2 + few:
-                raise ReadError(f"{where}: {name} {fields[0]} has no {few} corners; is the file whole?")
+                raise ReadError(f"{where}: {name} {fields[0]} has no {few} corners; is the file complete?")
             self.skins.setdefault(f"face{fields[1] or fields[0]}", []).append(
                 nodes if len(nodes) == many else nodes[:few]
             )
@@ -200,7 +200,7 @@ class Bulk:
     def place(self, grid: int, seen: tuple[str, ...] = ()) -> Array:
         """Place of a grid in the basic system (3,)."""
         if grid not in self.grids:
-            raise ReadError(f"GRID {grid} of a coordinate system is not in the file; is the file whole?")
+            raise ReadError(f"GRID {grid} of a coordinate system is not in the file; is the file complete?")
         system, at, _ = self.grids[grid]
         return self._basic(np.array(at), self.default[0] if system is None else system, seen)
 
@@ -210,7 +210,7 @@ class Bulk:
             return at
         label = f"coordinate system {system}"
         if system not in self.systems or label in seen:
-            raise ReadError(f"{label} is not in the file, or is given by itself; is the file whole?")
+            raise ReadError(f"{label} is not in the file, or is given by itself; is the file complete?")
         name, reference, fields = self.systems[system]
         if name[4] == "1":
             origin, along, across = (self.place(int(word), (*seen, label)) for word in fields[1:4])

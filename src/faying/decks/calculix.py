@@ -29,7 +29,7 @@ def read_matrices(path: Path, _names: tuple[str, str]) -> Matrices:
         file = path.with_suffix(suffix)
         values = numbers_of(file, read_text(file, what))
         if len(values) % 3:
-            raise ReadError(f"{file} is not rows of row, column and value; is it whole?")
+            raise ReadError(f"{file} is not rows of row, column and value; is it complete?")
         table = values.reshape(-1, 3)
         i, j = whole(file, table[:, 0], n), whole(file, table[:, 1], n)
         once(file.name, np.minimum(i, j), np.maximum(i, j), n)

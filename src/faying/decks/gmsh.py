@@ -40,7 +40,7 @@ class _Words:
 
     def _take(self, count: int) -> list[bytes]:
         if count < 0 or self.at + count > len(self.words):
-            raise ReadError(f"${self.name} ends in the middle of a record; is the file whole?")
+            raise ReadError(f"${self.name} ends in the middle of a record; is the file complete?")
         self.at += count
         return self.words[self.at - count : self.at]
 
@@ -66,7 +66,7 @@ class _Bytes:
     def _take(self, kind: str, count: int) -> Array:
         end = self.at + int(kind[1]) * count
         if count < 0 or end > len(self.data):
-            raise ReadError(f"${self.name} ends in the middle of a record; is the file whole?")
+            raise ReadError(f"${self.name} ends in the middle of a record; is the file complete?")
         self.at, start = end, self.at
         return np.frombuffer(self.data[start:end], dtype=self.order + kind)
 
@@ -98,7 +98,7 @@ def _sections(path: Path) -> tuple[str, dict[str, _Words | _Bytes]]:
     order = "<"
     if words[1] == b"1":
         if words[2] != b"8" or rest[:4] not in (b"\1\0\0\0", b"\0\0\0\1"):
-            raise ReadError(f"{path} is a binary file whose order of bytes is not known; is the file whole?")
+            raise ReadError(f"{path} is a binary file whose order of bytes is not known; is the file complete?")
         order = "<" if rest[:1] == b"\1" else ">"
     out: dict[str, _Words | _Bytes] = {}
     for name in ("PhysicalNames", "Entities", "Nodes", "Elements"):
@@ -149,7 +149,7 @@ def read(path: Path) -> RawMesh:
     except ReadError:
         raise
     except (ValueError, OverflowError) as fault:
-        raise ReadError(f"{path} holds something that is not a number ({fault}); is the file whole?") from None
+        raise ReadError(f"{path} holds something that is not a number ({fault}); is the file complete?") from None
     solids: dict[str, list[tuple[int, list[int]]]] = {}
     bodies: dict[str, list[int]] = {}
     faces: dict[str, list[list[int]]] = {}
@@ -218,7 +218,7 @@ def _nodes_22(words: _Words | _Bytes) -> tuple[Index, Array]:
         record = np.dtype([("number", words.order + "i4"), ("place", words.order + "f8", 3)])
         piece = words.data[words.at : words.at + record.itemsize * max(count, 0)]
         if count < 0 or len(piece) != record.itemsize * count:
-            raise ReadError("$Nodes ends in the middle of a record; is the file whole?")
+            raise ReadError("$Nodes ends in the middle of a record; is the file complete?")
         table = np.frombuffer(piece, dtype=record)
         return table["number"].astype(np.int64), np.asarray(table["place"], dtype=float)
     flat = words.doubles(4 * count).reshape(-1, 4)
@@ -278,7 +278,7 @@ def _elements_22(words: _Words | _Bytes) -> Rows:
             width = 1 + tags + _count(code)
             table = np.array(words.ints(width * several)).reshape(-1, width).tolist()
             if not table or tags < 0:
-                raise ReadError("$Elements has a head without elements; is the file whole?")
+                raise ReadError("$Elements has a head without elements; is the file complete?")
             out += [(row[0], code, [g for g in row[1 : 1 + tags][:1] if g], row[1 + tags :]) for row in table]
             continue
         groups = words.ints(tags)[:1]

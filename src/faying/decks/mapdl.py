@@ -64,7 +64,7 @@ def read(path: Path) -> RawMesh:
         raise
     except (ValueError, IndexError, KeyError) as fault:
         raise ReadError(
-            f"{path.name}, line {min(k, len(lines)) + 1}: cannot be read ({fault}); is the archive whole and "
+            f"{path.name}, line {min(k, len(lines)) + 1}: cannot be read ({fault}); is the archive complete and "
             "in blocked format (CDWRITE)?"
         ) from None
     if not numbers or not rows:
@@ -110,7 +110,7 @@ def _types(lines: list[str], k: int, words: list[str], kinds: dict[int, str]) ->
         kinds[int(line[:width])] = re.sub(r"\D", "", name)
         k += 1
     if words[1].isdigit() and int(words[1]) != k - start - 2:
-        raise ReadError(f"line {start + 1}: ETBLOCK says {words[1]} types and holds {k - start - 2}; is it whole?")
+        raise ReadError(f"line {start + 1}: ETBLOCK says {words[1]} types and holds {k - start - 2}; is it complete?")
     return k + 1
 
 
@@ -151,7 +151,9 @@ def _nodes(
 def _counted(head: int, words: list[str], found: int, what: str) -> None:
     """Raise ReadError where a block has more or fewer lines than its head says."""
     if len(words) > 4 and words[4].isdigit() and int(words[4]) not in (0, found):
-        raise ReadError(f"line {head + 1}: {words[0]} says {words[4]} {what} and holds {found}; is the archive whole?")
+        raise ReadError(
+            f"line {head + 1}: {words[0]} says {words[4]} {what} and holds {found}; is the archive complete?"
+        )
 
 
 def _elements(

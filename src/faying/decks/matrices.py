@@ -78,7 +78,7 @@ def _check_mass(name: str, M: Any, dofs: Index) -> None:
     if np.ptp(totals) > SYMMETRIC * 100 * totals.max():
         raise InputError(
             f"{name}: the mass that moves along x, y and z is {', '.join(f'{m:.6g}' for m in totals)}; they should be "
-            "equal: is the mass matrix whole?"
+            "equal: is the mass matrix complete?"
         )
 
 
@@ -227,7 +227,7 @@ def _market(path: Path) -> Any:
         rest = rest.partition("\n")[2]
     size, _, body = rest.partition("\n")
     if not size.replace(" ", "").isdigit() or len(size.split()) != (3 if form == "coordinate" else 2):
-        raise ReadError(f"{path}: {size.strip()[:60]!r} is no size of a matrix; is the file whole?")
+        raise ReadError(f"{path}: {size.strip()[:60]!r} is no size of a matrix; is the file complete?")
     rows, columns, *entries = map(int, size.split())
     if form == "array":
         if symmetry != "general":

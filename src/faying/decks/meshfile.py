@@ -110,11 +110,11 @@ def _read(module: Any, file: Path) -> RawMesh:
     except (ValueError, IndexError, KeyError, OverflowError) as fault:
         if isinstance(fault, InputError):
             raise
-        raise ReadError(f"{file} holds something that is not understood ({fault}); is the file whole?") from None
+        raise ReadError(f"{file} holds something that is not understood ({fault}); is the file complete?") from None
     if not len(raw.numbers):
-        raise ReadError(f"{file} holds no nodes; is the file whole?")
+        raise ReadError(f"{file} holds no nodes; is the file complete?")
     if not any(len(numbers) for numbers, _ in raw.elements.values()):
-        raise ReadError(f"{file} holds no solid elements; is the file whole?")
+        raise ReadError(f"{file} holds no solid elements; is the file complete?")
     return raw
 
 
@@ -167,7 +167,7 @@ class _Builder:
         if np.any(lost):
             raise ReadError(
                 f"{self.name}: {what} names node {np.asarray(numbers)[lost][0]}, which the file does not hold; "
-                "is the file whole?"
+                "is the file complete?"
             )
         return order[place]
 

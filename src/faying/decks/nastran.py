@@ -40,7 +40,7 @@ def read(path: Path) -> RawMesh:
         except ReadError:
             raise
         except (ValueError, IndexError) as fault:
-            raise ReadError(f"{where}: {name} {fields[0]} cannot be read ({fault}); is the file whole?") from None
+            raise ReadError(f"{where}: {name} {fields[0]} cannot be read ({fault}); is the file complete?") from None
     if not bulk.grids or not bulk.solids:
         raise ReadError(
             f"{path} holds {len(bulk.grids)} GRID cards and {len(bulk.solid)} solid elements; write both into it"
@@ -173,7 +173,7 @@ def read_matrices(path: Path, names: tuple[str, str]) -> Matrices:
         except ReadError:
             raise
         except (ValueError, IndexError) as fault:
-            raise ReadError(f"{where}: DMIG {name} cannot be read ({fault}); is the file whole?") from None
+            raise ReadError(f"{where}: DMIG {name} cannot be read ({fault}); is the file complete?") from None
     for name in names:
         if name.upper() not in entries:
             raise ReadError(f"{path} holds no DMIG {name}; it holds {', '.join(sorted(entries)) or 'none'}")

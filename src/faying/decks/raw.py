@@ -52,11 +52,11 @@ class RawMesh:
                 wrong = some[(some < 1) | (some > GREATEST)]
                 if len(wrong):
                     raise ReadError(
-                        f"{what} {wrong[0]}: numbers of {what}s lie between 1 and {GREATEST:,}; is the file whole?"
+                        f"{what} {wrong[0]}: numbers of {what}s lie between 1 and {GREATEST:,}; is the file complete?"
                     )
         if self.points.shape != (len(self.numbers), 3) or not np.all(np.isfinite(self.points)):
             bad = self.numbers[~np.isfinite(self.points).all(axis=-1)] if self.points.ndim == 2 else self.numbers
-            raise ReadError(f"node {bad[0] if len(bad) else 1} has no three finite coordinates; is the file whole?")
+            raise ReadError(f"node {bad[0] if len(bad) else 1} has no three finite coordinates; is the file complete?")
 
 
 def index(values: Iterable[Any]) -> Index:
@@ -66,7 +66,7 @@ def index(values: Iterable[Any]) -> Index:
         return np.array(numbers, dtype=np.int64)
     except OverflowError:
         raise ReadError(
-            f"the number {max(numbers, key=abs):.3g} is none of a node or an element; is the file whole?"
+            f"the number {max(numbers, key=abs):.3g} is none of a node or an element; is the file complete?"
         ) from None
 
 
@@ -149,9 +149,9 @@ def numbers_of(path: Path, text: str, count: int | None = None) -> Array:
         try:
             values = np.fromstring(text.replace("D", "E").replace("d", "e"), sep=" ")
         except (DeprecationWarning, ValueError):
-            raise ReadError(f"{path} holds words that are not numbers; is it whole?") from None
+            raise ReadError(f"{path} holds words that are not numbers; is it complete?") from None
     if count is not None and len(values) != count:
-        raise ReadError(f"{path} has {len(values):,} numbers where its head says {count:,}; is it whole?")
+        raise ReadError(f"{path} has {len(values):,} numbers where its head says {count:,}; is it complete?")
     return values
 
 

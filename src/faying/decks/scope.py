@@ -95,7 +95,7 @@ def take(block: Block, scope: Scope) -> None:
         raise
     except (ValueError, IndexError, OverflowError) as fault:
         raise ReadError(
-            f"{block.where}: *{keyword} holds something that is not a number ({fault}); is the file whole?"
+            f"{block.where}: *{keyword} holds something that is not a number ({fault}); is the file complete?"
         ) from None
 
 
@@ -188,7 +188,7 @@ def _elements(block: Block, scope: Scope) -> None:
     words = block.words()
     if not words or len(words) % (count + 1):
         raise ReadError(
-            f"{block.where}: {len(words)} numbers do not make elements of {count} nodes; is the file whole?"
+            f"{block.where}: {len(words)} numbers do not make elements of {count} nodes; is the file complete?"
         )
     table = index(words).reshape(-1, count + 1)
     numbers, nodes = table[:, 0], table[:, 1:]

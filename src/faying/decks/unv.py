@@ -76,7 +76,7 @@ def read(path: Path) -> RawMesh:
             faces[name] = on
     where = [points[n] for n in points]
     if any(len(place) != 3 for place in where):
-        raise ReadError(f"{path}: a node has no three coordinates; is the file whole?")
+        raise ReadError(f"{path}: a node has no three coordinates; is the file complete?")
     bodies = {name: index(e for e in elements if e not in shells) for name, (elements, _) in groups.items()}
     return RawMesh(
         numbers=index(points),
@@ -109,7 +109,7 @@ def _elements(
     while k < len(lines):
         head = index(lines[k].split())
         if len(head) < 6:
-            raise ReadError(f"{path}: the element {lines[k].strip()!r} has no six numbers; is the file whole?")
+            raise ReadError(f"{path}: the element {lines[k].strip()!r} has no six numbers; is the file complete?")
         number, code, count = int(head[0]), int(head[1]), int(head[5])
         k += 2 if code in _BEAMS else 1
         nodes: list[int] = []
@@ -118,7 +118,7 @@ def _elements(
             k += 1
         places = _KINDS[code][1] if code in _KINDS else _FACES.get(code, range(count))
         if len(nodes) != count or len(places) != count:
-            raise ReadError(f"{path}: element {number} (kind {code}) has {len(nodes)} nodes; is the file whole?")
+            raise ReadError(f"{path}: element {number} (kind {code}) has {len(nodes)} nodes; is the file complete?")
         ordered = [nodes[i] for i in places]
         if code in _KINDS:
             solids.setdefault(_KINDS[code][0], []).append((number, ordered))

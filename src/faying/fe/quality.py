@@ -36,7 +36,7 @@ class MeshQuality:
                 Note(
                     code="stiff-elements",
                     text=f"{share:.0%} of the elements are tetrahedra with four nodes, which are far too stiff in "
-                    "bending (frequencies half as high again and more); mesh with ten nodes",
+                    "bending (frequencies too high by half or more); mesh with ten nodes",
                 )
             )
         if self.poor:

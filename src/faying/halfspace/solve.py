@@ -361,7 +361,7 @@ def _checked_map(
     if bad:
         raise InputError(
             f"heights: {bad} of {h.size} points are NaN or infinite; fill the missing points of the scan "
-            "first, or cut out a part that is whole"
+            "first, or cut out a part without gaps"
         )
     pair = tuple(spacing) if isinstance(spacing, list | tuple | np.ndarray) else (spacing, spacing)
     if len(pair) != 2:

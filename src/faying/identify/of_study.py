@@ -112,7 +112,7 @@ def identify(
         count: samples of the posterior, 100 or more.
         jobs: processes on this machine.
         dask: address of a Dask scheduler, in place of processes.
-        out: file to write, ending in .nc; what is done is kept beside it, and the same call goes on where it stopped.
+        out: file to write, ending in .nc; finished work is saved next to it, and the same call resumes there.
         report: told what is done, how much of it, and of how much.
 
     Returns:
@@ -232,7 +232,7 @@ def _check_laws(study: Study, choice: UncertainChoice) -> None:
     alone = replace(choice, models=())
     if not (alone.inputs or alone.fit):
         raise InputError(
-            "uncertain lists laws and nothing else; add what scatters beside them, for example "
+            "uncertain lists laws and no other number; add what scatters, for example "
             'stiffness = {distribution = "lognormal", median = 1, sd_ln = 0.6}'
         )
     for name, _ in choice.models:

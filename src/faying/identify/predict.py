@@ -54,7 +54,7 @@ def predict(
         seed: of the points, 0 or more.
         jobs: processes on this machine.
         dask: address of a Dask scheduler, in place of processes.
-        out: file to write, ending in .nc; what is done is kept beside it, and the same call goes on where it stopped.
+        out: file to write, ending in .nc; finished work is saved next to it, and the same call resumes there.
         report: called with a stage, the samples done, and their number; 0 of 0 while the bases grow.
         backbones: samples, the first of all, in which the mode of [backbone] is followed, each in full: 8 to `samples`;
             0 for none.

@@ -36,7 +36,7 @@ def of_data(parameters: int, wanted: Mask, used: Mask, loads: Array, modes: int)
             Note(
                 code="more-parameters-than-data",
                 text=f"{parameters} parameters and {count} {measured}: some combinations of the parameters stay as "
-                "uncertain as their priors make them. More preloads or modes, or fewer parameters, tell more.",
+                "uncertain as their priors make them. More preloads or modes, or fewer parameters, reduce that.",
             )
         )
     return out
@@ -62,7 +62,7 @@ def of_posterior(names: Sequence[str], priors: Sequence[Distribution], samples: 
         # of ln x for a lognormal: pressed against its upper end, x itself scatters by more than before
         told = float(prior.standardised(values).std(ddof=1) / prior.sd_standardised)
         if told > UNSEEN and not of_noise:
-            text = f"The test tells nothing of {name}: its posterior sd is {told:.0%} of its prior's."
+            text = f"The test says nothing about {name}: its posterior sd is {told:.0%} of its prior's."
             out.append(Note(code="not-told", text=text))
         ends = prior.quantile(np.array([END, 1 - END]))
         for share, side in ((np.mean(values < ends[0]), "lower"), (np.mean(values > ends[1]), "upper")):

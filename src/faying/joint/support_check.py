@@ -91,7 +91,7 @@ def check_motions(structure: Structure, modes: Modes) -> None:
         return  # the whole moves as one, free or on a soft suspension
     part = _mover(structure, modes.shapes[:, free])
     raise InputError(
-        f"{len(free)} motions cost no energy and {rigid_count} of them are those of the whole: part {part!r} moves "
+        f"{len(free)} motions cost no energy and {rigid_count} of them move the structure as one: part {part!r} moves "
         "freely against the others (at "
         f"{modes.frequencies[free].max():.2g} Hz). Its joints resist only some directions; give "
         "the law a tangential stiffness, a joint more, or a support"

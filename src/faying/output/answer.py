@@ -129,7 +129,7 @@ def score_line(result: Result) -> str:
     if np.isfinite(found.gain):
         adds = "adds to" if found.gain < 1 else "adds nothing to"
         words.append(
-            f"The joint model {adds} what the test at the load before tells: carried on by it, the error is "
-            f"{found.gain:.2f} of what it is without."
+            f"The joint model {adds} the test at the load before: with the model's change from load to load, the error "
+            f"is {found.gain:.2f} of the error without it."
         )
     return " ".join(words)

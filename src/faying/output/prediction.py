@@ -143,7 +143,7 @@ def text(found: Prediction) -> str:
         head = textwrap.fill(f"backbones, 5 % .. median .. 95 %: {observed_at(found)}", WIDTH)
         parts.append(f"\n{head}\n" + aligned(lines))
     if lines := beside_test(found):
-        head = textwrap.fill(f"beside the test ({found.test_source}): {inside} of {count} inside", WIDTH)
+        head = textwrap.fill(f"compared with the test ({found.test_source}): {inside} of {count} inside", WIDTH)
         parts.append(f"\n{head}\n" + aligned(lines))
     last = f"{found.loads[-1] / 1e3:g} kN"
     parts.append(f"\nwhat makes the scatter at {last}\n" + _wrapped(rows) + "\n\n" + textwrap.fill(words, WIDTH) + "\n")

@@ -77,7 +77,7 @@ def _modes(result: Result) -> tuple[Section, ...]:
             rows=table.modes(result),
             title="Modes at every preload",
             below=f"Loss factors come from complex modes with {result.damping} loss in the joints. Free: faces apart. "
-            f"Bonded: faces grown together.{rigid}",
+            f"Bonded: no gap and no slip in any joint.{rigid}",
         ),
         Section(
             name="ranges",

@@ -217,7 +217,7 @@ def parts(result: Result) -> Rows:
         return []
     rows = [(name, float(mass)) for name, mass in zip(result.parts, result.part_masses, strict=True)]
     rows += [(f"point mass {k}", mass.mass) for k, mass in enumerate(result.masses, start=1)]
-    rows.append(("all, without bolts that are no parts", sum(mass for _, mass in rows)))
+    rows.append(("sum, without bolts that are not meshed", sum(mass for _, mass in rows)))
     return [["part", "mass [kg]"], *([name, f"{mass:.4g}"] for name, mass in rows)]
 
 

@@ -115,7 +115,7 @@ class Result(Recorded):
     """What a study gives. Load [N] means the preload of the first bolt; modes are the elastic ones.
 
     Frequencies, loss factors and shapes are those of the complex modes; "bonded" are the frequencies with the faces of
-    every joint grown together, "free" those with the faces apart. `surfaces` and `laws` hold, per joint, what the law
+    every joint bonded, "free" those with the faces apart. `surfaces` and `laws` hold, per joint, what the law
     was made from and its own numbers. low and high: the frequencies at the ends of the range of stiffness that the laws
     state, None where none states one; `beside` names other laws, whose frequencies stand in `beside_frequencies`.
     `backbones` are the curves over amplitude that the study asks for, at the greatest preload.

@@ -117,8 +117,8 @@ def backbone(
         slip: "microslip" (default) cuts the law's curve into springs with sliders; "coulomb" takes one slider a point.
         law: Contact law of all joints, such as "jk", in place of the study's. A list gives a tuple of curves, from one
             basis; the study's own law keeps its parameters.
-        out: File (.nc) that the curve is written to. What is done is kept beside it until then: a computation that was
-            killed goes on where it stopped. With several curves, their files are numbered.
+        out: File (.nc) that the curve is written to. Finished steps are saved next to it until then: a computation
+            that was killed resumes where it stopped. With several curves, their files are numbered.
         report: Called with a stage, the steps done, and how many there are.
 
     Returns:

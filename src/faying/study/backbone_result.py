@@ -204,7 +204,7 @@ def _notes(curve: Curve, bounds: ErrorBounds, witness: Witness | None) -> list[N
         end = f"the curve ends at {line.points[-1].level:.3g} m/s2 of {curve.choice.amplitude[1]:.3g}: {line.reason}"
         out.append(Note(code=f"backbone-{line.code}", load=load, text=end))
     if witness is None:
-        text = "the static cycle finds no equilibrium, so that nothing stands beside the curve"
+        text = "the static cycle finds no equilibrium, so that the curve has no static comparison"
         out.append(Note(code="backbone-no-witness", load=load, text=text))
     else:
         out += _differences(curve, witness)

@@ -176,7 +176,7 @@ def _geometry(study: Study, found: _Findings) -> tuple[GeometryFacts | None, Mes
         return None, None
     _notes(found, facts.notes, "geometry.step")
     for overlap in facts.overlaps:
-        text = f"{overlap}; parts may touch, not overlap: mend it in the CAD program"
+        text = f"{overlap}; parts may touch, not overlap: correct it in the CAD program"
         found.add("fault", "overlap", text, "geometry.step")
     if not SIZES[0] <= facts.size <= SIZES[1]:
         text = f"the structure measures {facts.size:.4g} m from corner to corner; is the unit of its geometry right?"
@@ -269,7 +269,7 @@ def _contacts(sketch: Sketch, found: _Findings) -> None:
             names = f"{joint.faces[0]!r} and {joint.faces[1]!r}"
             text = f"joint {joint.name!r}: its faces {names} do not look at each other"
             if any(face.kind == "other" for name in joint.faces for face in sketch.named[name]):
-                found.add("note", "contact", f"{text} as far as planes and cylinders tell; they are curved", key)
+                found.add("note", "contact", f"{text} as far as planes and cylinders show; they are curved", key)
             else:
                 text += f" within {show(0.01 * size, 'm')}; `faying faces` lists what does"
                 found.add("fault", "contact", text, key)

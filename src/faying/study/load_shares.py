@@ -1,7 +1,7 @@
 """How the force of each bolt is shared by the joints that it clamps, before anything is solved.
 
 Each of several joints one behind the other carries all of the force. Joints at one depth lie side by side, as on both
-sides of a T-slot: pressure falls in proportion from the hole to nothing at the edge of the cone of VDI 2230, and each
+sides of a T-slot: pressure falls linearly from the hole to zero at the edge of the cone of VDI 2230, and each
 joint has the part of it that lies on its faces.
 """
 

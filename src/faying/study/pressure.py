@@ -55,7 +55,7 @@ def _table(file: Path) -> tuple[Index, Array]:
         raise ReadError(f"{file} holds no pressures; {form}")
     odd = np.flatnonzero((numbers != np.rint(numbers)) | (np.abs(numbers) > 2**53))
     if len(odd):
-        raise ReadError(f"{file}, line {table.lines[odd[0]]}: {numbers[odd[0]]:g} is no number of a node, a whole one")
+        raise ReadError(f"{file}, line {table.lines[odd[0]]}: {numbers[odd[0]]:g} is no node number; give an integer")
     if min(values) < -1e-9 * max(map(abs, values)):
         raise InputError(
             f"{file}: {sum(v < 0 for v in values)} pressures are negative; pressure presses the faces together and "

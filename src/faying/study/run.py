@@ -137,7 +137,7 @@ def collect(
     bolts, more = _bolts(case, states, shapes)
     every += more
     if isinstance(way, OverMpi):
-        every.append(Note(code="mpi", text=f"{way.summary}; nothing counts the modes"))
+        every.append(Note(code="mpi", text=f"{way.summary}; no count checks for missed modes"))
     result = Result(
         title=study.title,
         loads=case.loads,

@@ -77,7 +77,7 @@ def sweep(
 ) -> Sweep:
     """Evaluate a study at all combinations of the values of `axes` and write them to `out` (NetCDF).
 
-    What is done is kept beside `out` until all is: a sweep that was interrupted goes on where it stopped.
+    Finished points are saved next to `out` until the end: a sweep that was interrupted resumes where it stopped.
 
     Args:
         study: a Study or the path of its TOML file.

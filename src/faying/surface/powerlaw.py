@@ -340,13 +340,13 @@ def _cut_in_words(low: float, high: float, bottom: float, top: float) -> tuple[s
     words = []
     if top < high * 0.999:
         words.append(
-            f"waves under {show(1 / top, 'm', digits=3)} lie off the power law (blur, noise or roll-off) "
-            "and were left out"
+            f"wavelengths below {show(1 / top, 'm', digits=3)} do not follow the power law (blur, noise or roll-off) "
+            "and were excluded from D and G"
         )
     if bottom > low * 1.001:
         words.append(
-            f"waves over {show(1 / bottom, 'm', digits=3)} lie off the power law (form, lay or roll-off) "
-            "and were left out"
+            f"wavelengths above {show(1 / bottom, 'm', digits=3)} do not follow the power law (form, lay or roll-off) "
+            "and were excluded from D and G"
         )
     return tuple(words)
 

@@ -56,7 +56,7 @@ def estimate(ready: Prepared, limits: Limits, c: float) -> Estimate:
         return D, log(max(float(square), 1e-300)) - (6 - 2 * D) * log(gap * step) - k
 
     found = through_parts(ready, c, local, *size_band(ready, limits, 2, 1 / 8), "box counting")
-    words = "box counting is known to be off by 0.1 and more in D: quote it beside others, or correct it by --self-test"
+    words = "box counting is known to be off by 0.1 and more in D: quote other methods too, or use --self-test"
     return replace(found, notes=(*found.notes, words))
 
 
