@@ -46,7 +46,7 @@ def surfaces() -> list[tuple[str, Scan]]:
                 scan = spectral(
                     (POINTS, POINTS), spacing=SIDE / POINTS, D=D, Rq=1e-7, longest=longest, lay=(0.0, stretch), seed=1
                 )
-                # Rmax of profiles across the lay, over a sampling length of .8 mm
+                # Rmax of profiles across the lay, over a sampling length of 0.8 mm
                 rmax = float(np.mean(np.ptp(scan.heights, axis=0)))
                 name = f"D {D}, {longest * 1e3:g} mm, lay {stretch:g}"
                 out.append((name, scan.with_heights(scan.heights * (RMAX / rmax))))

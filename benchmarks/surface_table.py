@@ -3,7 +3,7 @@
 Run: python benchmarks/surface_table.py [--count 200] [--beside 80] [--rows FILE.jsonl]
     [--output docs/theory/surface-table.md]
 Takes about a quarter of an hour of one free core for 200 surfaces. Each surface is drawn
-by its number alone: H = 3 - D uniform in .3 .. .9; side 256 (half of them), 512, 1024 or 2048 points; and, each with
+by its number alone: H = 3 - D uniform in 0.3 .. 0.9; side 256 (half of them), 512, 1024 or 2048 points; and, each with
 even odds, a lay (stretch 2, any direction), white noise of 1 % of Rq, a tilt of ten times Rq over the side, 5 % of the
 points missing. Surfaces are cut from periodic Gaussian ones of twice the side. Rows found in FILE.jsonl are not
 computed again.

@@ -2,8 +2,8 @@
 
 python examples/brake-reuss-beam/backbone.py [FOLDER]. The published curves are brb_epmc_flat.yaml and
 brb_epmc_meso.yaml of github tmd-lab/tmdsimpy (examples/structures/results, MIT), looked for in FOLDER, or in
-FAYING_DATA/brake-reuss-backbones; without them only ours are printed. Nothing is fitted: friction .03 and the viscous
-part of .087 % are those of the published model.
+FAYING_DATA/brake-reuss-backbones; without them only ours are printed. Nothing is fitted: friction 0.03 and the viscous
+part of 0.087 % are those of the published model.
 """
 
 import os

@@ -2,7 +2,7 @@
 
 Length, section and bolts are those of the beam; the length of the lap, the holes and their distance are those of the
 published processing of its scans (github tmd-lab/microslip-rough-contact, SURFACE/asp_id_ltw2.m: half length 60.706 mm,
-holes .332 in wide, 1.188 in apart). The joint's area comes out at 2916 mm2; the published mesh has 2921 mm2.
+holes 0.332 in wide, 1.188 in apart). The joint's area comes out at 2916 mm2; the published mesh has 2921 mm2.
 """
 
 from dataclasses import dataclass

@@ -3,8 +3,8 @@
     python make_test.py
 
 It is no measurement. What is hammered is a model, too, but another one than study.toml's: a finer mesh, a modulus 3 %
-higher, a rougher surface, 7 kN, and .2 of the loss in the joint. Its full response, rigid motion and all, at eight
-points gets noise of .5 %, and positions in a frame of the test's own, turned and shifted.
+higher, a rougher surface, 7 kN, and 0.2 of the loss in the joint. Its full response, rigid motion and all, at eight
+points gets noise of 0.5 %, and positions in a frame of the test's own, turned and shifted.
 """
 
 from dataclasses import replace

@@ -1,7 +1,7 @@
 """A free decay whose backbone is known: writes decay.csv beside itself.
 
-One mode with frequency 100 Hz (1 - .02 a/50) and damping ratio .001 + .004 a/50 at the acceleration a [m/s2], from
-50 m/s2, with sensor noise of .02 m/s2.
+One mode with frequency 100 Hz (1 - 0.02 a/50) and damping ratio 0.001 + 0.004 a/50 at the acceleration a [m/s2], from
+50 m/s2, with sensor noise of 0.02 m/s2.
 """
 
 from pathlib import Path

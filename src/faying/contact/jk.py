@@ -9,7 +9,7 @@ Where the print is ambiguous or wrong we read it so:
 - stiffness is cut off below at `cutoff` times the smaller of a1c' and al' (the print takes a1c'/100, also when that is
   above al', where nothing is left to integrate);
 - closure="printed" keeps 76.8, 1.38, 1.16, regime borders at a1c', a2c' and strain energies integrated from zero, so
-  that force jumps by .7 % at the borders; "consistent" takes the exponents that make the law continuous for any
+  that force jumps by 0.7 % at the borders; "consistent" takes the exponents that make the law continuous for any
   Poisson's ratio (upper end x_p = 400 K/3, those of Lin and Lin), borders where y = 1 and y = x_p, and energies that
   carry on from the regime before;
 - loss="literal" evaluates eqs. 49-53 at every load, so that damping vanishes in the large stage; "held" keeps the loss
@@ -17,8 +17,8 @@ Where the print is ambiguous or wrong we read it so:
 - the tangential load enters as shear_ratio X = T/(mu F), or as shear_stress tau, with X = tau A/(mu F) in each regime
   (the paper gives tau no value); at X = 0 the loss factor is the limit in which X cancels; a regime whose X
   reaches 1 under tau slips: it adds no tangential stiffness, and the response says so;
-- stiffness grows with load throughout for 2.1 <= D <= 2.9 while cutoff <= .01; with a cutoff of .1 it falls over part
-  of the meso stage above D = 2.76, with .3 above D = 2.5: there the cut-off leaves too little of the elastic part;
+- stiffness grows with load throughout for 2.1 <= D <= 2.9 while cutoff <= 0.01; with a cutoff of 0.1 it falls over part
+  of the meso stage above D = 2.76, with 0.3 above D = 2.5: there the cut-off leaves too little of the elastic part;
 - eqs. 49-53 give dissipated over stored energy, the specific damping capacity (`specific_damping`); the loss factor of
   this project, and of the modes, is that over 2 pi;
 - asperities at hardness add no stiffness, normal or tangential, as printed (eqs. A8, A14);

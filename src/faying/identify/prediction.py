@@ -209,7 +209,7 @@ class Prediction(Recorded):
             InputError: A level outside 0 to 1, or no sample with an answer.
         """
         if not len(levels) or not all(0 <= level <= 1 for level in levels):
-            raise InputError(f"levels {tuple(levels)} should be shares from 0 to 1, for example (.05, .5, .95)")
+            raise InputError(f"levels {tuple(levels)} should be shares from 0 to 1, for example (0.05, 0.5, 0.95)")
         found = self._quantiles(tuple(map(float, levels)), self.sound)
         if self.backbones is None:
             return found

@@ -13,7 +13,7 @@ from faying.typing import Array, Index, Mask
 
 POINTS_PER_COEFFICIENT = 2.0
 HIGHEST = 7  # degree that is tried
-FLATNESS = (1.0, 0.75, 0.5)  # of the norm that limits the terms: 1 is the total degree, .5 leaves few mixed terms
+FLATNESS = (1.0, 0.75, 0.5)  # of the norm that limits the terms: 1 is the total degree, 0.5 leaves few mixed terms
 ROUNDING = 1e-11  # of an output's largest value: an error that is less by no more takes no other terms
 DEPENDENT = 1e-10  # relative pivot below which a column of the design says nothing new
 

@@ -217,7 +217,7 @@ class _Stage:
         return self.walk, self.draw
 
     def move(self) -> float:
-        """Sweep until the correlation with the start is below .1, or the most sweeps are done; return what is left."""
+        """Sweep until the correlation with the start is below 0.1, or the most sweeps are done; return what is left."""
         start, left = self._ranks(), 1.0
         for sweep in range(SWEEPS[1]):
             self._walk()

@@ -42,7 +42,7 @@ def torque_to_preload(
     """Return the preload [N] that a tightening torque [N m] gives a metric thread.
 
     diameter of the thread [m]; either nut_factor K [-], F = T/(K d), or pitch [m] and both friction coefficients [-]:
-    F = T/(P/2pi + .577 d2 mu_thread + D_b/2 mu_head), with d2 = d - .6495 P and the bearing's mean diameter D_b = 1.3 d
+    F = T/(P/2pi + 0.577 d2 mu_thread + D_b/2 mu_head), d2 = d - 0.6495 P, the bearing's mean diameter D_b = 1.3 d
     (ISO 16047:2005; Bickford, doi:10.1201/9780849381898, for K). Raises InputError where neither set is complete.
     """
     if torque <= 0 or diameter <= 0:

@@ -94,7 +94,7 @@ def steady(
     Springs that stay shut or open throughout, and sliders that cannot slip, are linear and taken in closed form. Two
     turns forget the start wholly where the slip goes to and fro along a line, as it does nearly everywhere in a mode.
     Where it runs round an ellipse, some of the shear across it is left, as it would be after two real cycles: with
-    slips in any direction up to a few percent of a point's mean shear, and .3 % of the loss of all.
+    slips in any direction up to a few percent of a point's mean shear, and 0.3 % of the loss of all.
 
     Args:
         sliders: (q, s).

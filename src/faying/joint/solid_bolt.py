@@ -14,7 +14,7 @@ from faying.joint.threads import Fastener
 from faying.misuse import checked_call
 from faying.typing import Array, Index
 
-MOST = 6000  # unknowns of the layer that is drawn in: its dense block takes .3 GB then
+MOST = 6000  # unknowns of the layer that is drawn in: its dense block takes 0.3 GB then
 
 
 @checked_call

@@ -99,7 +99,7 @@ def cone_pressure(
     """Return the pressure [Pa] in a joint under one bolt by the deformation cone: its mean, and that at the hole.
 
     The mean is the force over the section of the cone. The second falls in proportion to the distance from the hole, to
-    nothing at the edge of the cone; runs with plates of 3, 10 and 20 mm have .8 to 1.02 of it.
+    nothing at the edge of the cone; runs with plates of 3, 10 and 20 mm have 0.8 to 1.02 of it.
 
     Args:
         force: Preload [N].

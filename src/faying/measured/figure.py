@@ -51,10 +51,10 @@ def mac_map(ax: Any, comparison: ModalComparison) -> Any:
         ax.text(
             m,
             t,
-            f"{table[t, m]:.2f}".replace("0.", "."),
+            f"{table[t, m]:.2f}",
             ha="center",
             va="center",
-            fontsize=6,
+            fontsize=5,
             color="white" if table[t, m] > 0.6 else "0.3",
         )
     for t, m in comparison.pairs:

@@ -25,7 +25,7 @@ UNEVEN = 0.05  # of the time between two samples: digits that the file leaves ou
 RECORD_FORM = "a record looks like: time [s],acceleration [m/s^2] and under it rows such as 0.0001,12.3"
 KNOWN = {"acceleration": "m/s^2", "displacement": "m", "frequency": "Hz", "damping": "1", "time": "s"}
 FORM = (
-    "measured points look like: acceleration [m/s^2],frequency [Hz],damping [%] and under it rows such as 3,178.2,.21"
+    "measured points look like: acceleration [m/s^2],frequency [Hz],damping [%] and under it rows such as 3,178.2,0.21"
 )
 
 

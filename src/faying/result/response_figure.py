@@ -74,10 +74,10 @@ def mac_between_loads(ax: Any, result: Result, load: int = -1) -> Any:
             ax.text(
                 column,
                 row,
-                f"{table[row, column]:.2f}".removeprefix("0"),
+                f"{table[row, column]:.2f}",
                 ha="center",
                 va="center",
-                fontsize=6,
+                fontsize=5,
                 color="white" if table[row, column] > 0.6 else "0.3",
                 in_layout=False,
             )

@@ -81,7 +81,7 @@ class JacksonGreen(JacksonGreenBase):
     """Hertz up to x = 1.9, then fits with the hardness HG(a/R). doi:10.1115/1.1866166.
 
     hardness: "exponential", HG/Y = 2.84 [1 - exp(-0.82 (a/R)^-0.7)], of the 2005 paper, or "cosine",
-    HG/Y = 2.84 - 0.92 (1 - cos(pi a/R)), a later form. Force rises by .5 % at x = 1.9.
+    HG/Y = 2.84 - 0.92 (1 - cos(pi a/R)), a later form. Force rises by 0.5 % at x = 1.9.
     """
 
     hardness: Literal["exponential", "cosine"] = "exponential"

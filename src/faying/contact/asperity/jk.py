@@ -76,7 +76,7 @@ class JK(PowerModel):
         unit = 4 / 3 * self.pair.E_star * sqrt(self.R) * c**2.5
         out = {f.name: getattr(own, f.name) for f in fields(own)}
         out["stiffness"] = own.stiffness / (1 + 1.5 * q * np.sqrt(x))
-        # work on the substrate: integral of P d(q x^1.5), each term of P by 1.5 q x^.5
+        # work on the substrate: integral of P d(q x^1.5), each term of P by 1.5 q x^0.5
         soft = tuple(p._replace(P=tuple((1.5 * q * a, n + 0.5) for a, n in p.P)) for p in self.pieces)
         out["energy"] = own.energy + unit * work(soft, x)
         return AsperityResponse(**out)
