@@ -146,7 +146,7 @@ def test_measured_points_are_marked_on_the_curves_of_a_backbone(browser, result,
         circles = [charts.nth(k).locator("svg svg path").nth(1).get_attribute("d").count("a3.5") / 2 for k in (0, 1)]
         assert circles == [3, 2]  # damping was measured at two of them
         assert "measured (points.csv)" in charts.first.locator(".fc-key").inner_text()
-        assert page.locator("h2", has_text="Measured points beside mode 1").count() == 1
+        assert page.locator("h2", has_text="Measured points against mode 1").count() == 1
 
 
 def test_the_packed_curves_are_the_accelerance(result):

@@ -1,4 +1,4 @@
-"""`faying compare RESULT.nc TEST.uff`: a hammer test beside the result of a study."""
+"""`faying compare RESULT.nc TEST.uff`: a hammer test against the result of a study."""
 
 from pathlib import Path
 

@@ -348,7 +348,7 @@ class _Levels:
         return np.asarray(np.interp(x, np.log(self.few)[good], values[good])) if good.any() else np.zeros(x.shape)
 
     def _spread(self, full: Array) -> Array:
-        """Standard error of ln k_n from the quarters of the window, with what their mean lies off the full one."""
+        """Standard error of ln k_n from the quarters of the window, and how far their mean is from the full one."""
         if not self.parts:
             return np.zeros(full.shape)
         logs = np.stack([self._chain(part) for part in self.parts])

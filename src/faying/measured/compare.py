@@ -1,4 +1,4 @@
-"""A hammer test beside a model: MAC, paired modes, frequencies, damping, FRFs."""
+"""A hammer test against a model: MAC, paired modes, frequencies, damping, FRFs."""
 
 import csv
 import io
@@ -21,7 +21,7 @@ ALIKE = 0.9
 
 @dataclass(frozen=True, kw_only=True)
 class ModalComparison:
-    """A test beside a model.
+    """A test against a model.
 
     Args:
         test: its modes.
@@ -205,7 +205,7 @@ def compare_modes(
     least_mac: float = 0.5,
     greatest_shift: float = 0.3,
 ) -> ModalComparison:
-    """Set a test beside a model: map its points, compute MAC at what both know, pair the modes, predict the FRFs.
+    """Compare a test with a model: map its points, compute MAC at what both know, pair the modes, predict the FRFs.
 
     An FRF is predicted by the full response of the model where that is known, else by its elastic modes.
 

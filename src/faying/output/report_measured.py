@@ -1,4 +1,4 @@
-"""The section of the report that sets a hammer test beside the model, and the files of `faying compare`."""
+"""The section of the report that sets a hammer test against the model, and the files of `faying compare`."""
 
 from html import escape
 from pathlib import Path
@@ -46,7 +46,7 @@ def section(comparison: ModalComparison, pictures: dict[str, str], *, moving: bo
     worst = max(points.distance.values())
     parts = [
         "<h2>Hammer test</h2>",
-        f"<p>{escape(comparison.test.source)} beside {escape(comparison.model.title)} at "
+        f"<p>{escape(comparison.test.source)} against {escape(comparison.model.title)} at "
         f"{comparison.model.load / 1e3:g} kN. {len(points.nodes)} points of the test found a node, the farthest "
         f"{worst * 1e3:.3g} mm away.</p>",
     ]

@@ -70,7 +70,7 @@ def _answer(result: Result) -> tuple[Section, ...]:
 def _modes(result: Result) -> tuple[Section, ...]:
     """The modes under the study's laws, and under what could stand in place of them."""
     rigid = f" Rigid-body values: up to {result.rigid.max():.1e} Hz." if len(result.rigid) else ""
-    laws = f"Laws beside each other {_last(result)}"
+    laws = f"Laws compared {_last(result)}"
     return (
         Section(
             name="modes",
@@ -175,8 +175,8 @@ def _backbones(result: Result) -> Iterator[Section]:
             yield Section(
                 name="backbone measured",
                 rows=table.backbone_measured(curve),
-                title=f"Measured points beside {what}",
-                line=f"measured points of {curve.measured_source} beside {what}",
+                title=f"Measured points against {what}",
+                line=f"measured points of {curve.measured_source} against {what}",
                 below=f"From {curve.measured_source}; a dozen at most, and what the curve has at their amplitude.",
             )
         yield Section(
@@ -188,7 +188,7 @@ def _backbones(result: Result) -> Iterator[Section]:
 
 
 def _tests(result: Result) -> tuple[Section, ...]:
-    """What was measured, or somebody else's model, beside the study."""
+    """What was measured, or published, to compare with the study."""
     c, hammer = result.comparison, result.hammer
     return (
         Section(

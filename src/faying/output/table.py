@@ -338,7 +338,7 @@ CLEAN = "Of clean metal in vacuum; films hinder the flow, gas or grease in the g
 
 
 def hammer(result: Result) -> Rows:
-    """The hammer test beside the model, one row per mode of the test; empty where there is none."""
+    """The hammer test against the model, one row per mode of the test; empty where there is none."""
     return [] if result.hammer is None else result.hammer.rows()
 
 

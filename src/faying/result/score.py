@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Score:
-    """Measured frequencies and what stands beside them.
+    """Measured frequencies and the guesses that they are compared with.
 
     Args:
         loads: [N] (l,).

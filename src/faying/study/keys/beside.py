@@ -1,4 +1,4 @@
-"""[[beside]]: another law, surface or form for every joint, whose modes stand beside the study's own."""
+"""[[beside]]: another law, surface or form for every joint, whose modes are listed with those of the study."""
 
 from dataclasses import dataclass
 

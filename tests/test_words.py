@@ -1,0 +1,174 @@
+"""Words of docs and messages: one word for one thing, no history of the making, decimals with their zero.
+
+Code, inline code and links are not prose and are taken out first. Each pattern is followed by what to write instead.
+"""
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+SITE = ROOT / "docs" / "_build"
+PAGES = [ROOT / "README.md", *sorted(p for p in (ROOT / "docs").rglob("*.md") if SITE not in p.parents)]
+APART = {"first-study.md", "bolted-joint-numbers.md"}  # pages that do not follow these rules in full
+SOURCES = sorted((ROOT / "src" / "faying").rglob("*.py"))
+NOT_TEXT = {"output/page.py", "output/scene/pages.py"}  # style sheets
+LINTED = [
+    pytest.param(
+        page,
+        id=str(page.relative_to(ROOT)),
+        marks=[pytest.mark.xfail(reason="not rewritten by these rules", strict=False)] if page.name in APART else [],
+    )
+    for page in PAGES
+]
+
+# pattern of a word that needs its author: what to write instead
+PRIVATE = {
+    r"besides?": "with, next to, compared with, against",
+    r"told": "printed, noted, known",
+    r"whole(?! number)": "full, entire, complete",
+    r"kept": "saved, cached, held",
+    r"mends?|mended": "corrects, reduces",
+    r"ladder|rungs?": "pressure series, level",
+    r"grips?": "sticks",
+    r"grown together": "bonded",
+    r"closed laws?": "analytic law",
+    r"that which": "what, or a noun",
+    r"lies? off": "does not follow",
+}
+# what tells of the making and not of the product
+HISTORY = {
+    r"used to": "say what is so now",
+    r"no longer(?! side)": "say what is so now",
+    r"yesterday|another day|on its day|this hour": "leave the day out",
+    r"before (?:this|these changes|that change)": "say what is so now",
+    r"earlier (?:run|state)s?": "say what is so now",
+    r"not measured since": "measure it, or leave it out",
+    r"(?:quieter|slower|faster) machine": "leave the machine out",
+}
+# what belongs to one machine or one day; /usr/bin is on every one
+PLACES = {
+    r"(?<![\w.])/(?:work|home|root|tmp|Users)/[\w.]": "a path of one machine",
+    r"[A-Z]:\\Users": "a path of one machine",
+    r"\b20\d\d-\d\d-\d\d\b": "a date",
+    r"\b(?:Mon|Tues|Wednes|Thurs|Fri|Satur|Sun)day\b": "a day",
+}
+# a message may say that a file is no longer there
+IN_MESSAGES = PLACES | {p: PRIVATE[p] for p in (r"grown together", r"closed laws?", r"that which", r"lies? off")}
+# a decimal without its zero: .31, -.4, (.5; not 1.5, ".3f", [.., x.5 or the end of a range 1..5
+DECIMAL = re.compile(r"(?<![\w.)\]/*:}\\])(?<!:[-+<>^ ,])\.(?=\d)(?!\d+[fgdeE%](?![-+\d]))")
+
+
+def prose(page: str) -> str:
+    """A page with all that is no prose blanked, line by line, so that numbers of lines stay."""
+    out, fence = [], ""
+    for line in page.splitlines():
+        mark = re.match(r"\s*(`{3,}|:{3,})", line)
+        if fence or (mark and not fence):
+            if mark and not fence:
+                fence = mark.group(1)
+            elif line.strip() == fence:
+                fence = ""
+            out.append("")
+            continue
+        line = re.sub(r"`[^`]*`", "``", line)
+        line = re.sub(r"\]\([^)]*\)|\{[a-z]+\}``|https?://\S+|doi:\S+", "]", line)
+        out.append(line)
+    return "\n".join(out)
+
+
+def found(patterns: dict[str, str], text: str) -> Iterator[tuple[int, str]]:
+    """Line and message of each pattern in a text."""
+    for pattern, better in patterns.items():
+        words = (
+            pattern if "\\" in pattern[:3] or pattern.startswith("(") or pattern[0] == "[" else rf"\b(?:{pattern})\b"
+        )
+        for hit in re.finditer(words, text, re.IGNORECASE):
+            yield text.count("\n", 0, hit.start()) + 1, f"{hit.group()!r}: {better}"
+
+
+def texts(source: str) -> Iterator[tuple[int, str]]:
+    """Line and text of every string of a module that has a space; each value in an f-string reads {}."""
+    seen: set[int] = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.JoinedStr):
+            seen |= {id(inner) for value in node.values for inner in ast.walk(value)}
+            text = "".join(str(v.value) if isinstance(v, ast.Constant) else "{}" for v in node.values)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in seen:
+            text = node.value
+        else:
+            continue
+        if " " in text:
+            yield node.lineno, text
+
+
+@pytest.mark.parametrize("page", LINTED)
+def test_a_page_has_the_words_of_the_field_and_no_history(page):
+    text = prose(page.read_text(encoding="utf-8"))
+    faults = [f"{page.name}:{line}: {said}" for line, said in found(PRIVATE | HISTORY | PLACES, text)]
+    assert not faults, "\n".join(faults)
+
+
+@pytest.mark.parametrize("page", LINTED)
+def test_decimals_of_a_page_have_their_zero(page):
+    lines = page.read_text(encoding="utf-8").splitlines()
+    faults = [f"{page.name}:{k}: {line.strip()[:90]}" for k, line in enumerate(lines, 1) if DECIMAL.search(line)]
+    assert not faults, "write 0.31 for .31\n" + "\n".join(faults)
+
+
+def test_decimals_of_messages_and_docstrings_have_their_zero():
+    faults = [
+        f"{path.relative_to(ROOT)}:{line}: {text.strip()[:90]}"
+        for path in SOURCES
+        if path.relative_to(ROOT / "src" / "faying").as_posix() not in NOT_TEXT
+        for line, text in texts(path.read_text(encoding="utf-8"))
+        if DECIMAL.search(text)
+    ]
+    assert not faults, "write 0.31 for .31\n" + "\n".join(faults)
+
+
+def test_messages_have_no_private_words_and_no_path_of_a_machine():
+    faults = [
+        f"{path.relative_to(ROOT)}:{line}: {said}"
+        for path in SOURCES
+        for line, text in texts(path.read_text(encoding="utf-8"))
+        for _, said in found(IN_MESSAGES, text)
+    ]
+    assert not faults, "\n".join(faults)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("modes beside the test", "'beside'"),
+        ("The Whole map is at hardness", "'Whole'"),
+        ("faces grown together", "'grown together'"),
+        ("it took 51 s on another day", "'another day'"),
+        ("as it used to be", "'used to'"),
+        ("written to /home/x/results", "'/home/x'"),
+        ("measured on 2025-01-31", "'2025-01-31'"),
+    ],
+)
+def test_the_lint_finds_what_it_is_for(text, said):
+    assert [message.split(":")[0] for _, message in found(PRIVATE | HISTORY | PLACES, text)] == [said]
+
+
+def test_the_lint_leaves_code_and_plain_words_alone():
+    page = "a whole number, `[[beside]]`\n```sh\nfaying run --beside /tmp/x\n```\n[a page](beside.md), /usr/bin/python3"
+    assert not list(found(PRIVATE | HISTORY | PLACES, prose(page)))
+    assert prose("a\n```\nb\n```\nc") == "a\n\n\n\nc"  # numbers of lines stay
+
+
+@pytest.mark.parametrize("text", ["falls by .31 %", "(.5, .9)", "-.4", "| .04 |", "+- .04", "p/E* .01", "1 .. .5"])
+def test_a_decimal_without_zero_is_found(text):
+    assert DECIMAL.search(text)
+
+
+@pytest.mark.parametrize(
+    "text", ["0.31", "1.5e-3", "3..5", "x.5", "{x:.3g}", "{x:+.2%}", '".3f"', "v1.2", "d).5", "file.3mf"]
+)
+def test_other_points_are_left_alone(text):
+    assert not DECIMAL.search(text)
