@@ -102,6 +102,7 @@ def test_cmy_lies_near_hardened_ground_steel_by_ultrasound(script: ModuleType, p
         source="Krolikowski and Szczepek 1991, Wear",
         rel=0.5,
         why="roughness and slope of the specimens are assumed, 0.3 um and 0.125 (sigma/um)^0.402",
+        measured=True,
     )
     assert 0.5 < min(ratios) < max(ratios) < 2
 

@@ -18,6 +18,7 @@ import faying
 
 VARIABLE = "FAYING_VALIDATION"
 KEYS = ("source", "quantity", "unit", "published", "ours", "tolerance", "relative", "why", "test", "version", "date")
+MEASURED = "measured"  # the last key of numbers that somebody measured
 
 
 @dataclass(frozen=True)
@@ -26,11 +27,12 @@ class Published:
 
     test: str
 
-    def __call__(self, quantity, published, ours, *, source, unit="1", rel=None, tol=None, why=""):
+    def __call__(self, quantity, published, ours, *, source, unit="1", rel=None, tol=None, why="", measured=False):
         """Assert that ours is within `rel` (share of the published value) or `tol` (in its unit); note both.
 
         quantity: what it is, in words that stand alone; source: "doi:..." or a book or standard with its place; unit:
-        of both numbers, "1" for none; why: what explains the difference, or why the tolerance is what it is.
+        of both numbers, "1" for none; why: what explains the difference, or why the tolerance is what it is; measured:
+        whether somebody measured the published number, in place of computing or prescribing it.
         """
         assert (rel is None) != (tol is None), "give rel or tol"
         published, ours = float(published), float(ours)
@@ -47,6 +49,7 @@ class Published:
                 "test": self.test,
                 "version": faying.__version__,
                 "date": datetime.now(UTC).date().isoformat(),
+                **({MEASURED: True} if measured else {}),
             }
         )
         expected = pytest.approx(published, rel=rel) if rel is not None else pytest.approx(published, abs=tol)

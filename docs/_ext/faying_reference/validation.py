@@ -1,7 +1,7 @@
 """The table of published numbers that the tests compare with, from the file that they write."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,23 +12,34 @@ ENTRIES = Path(__file__).parents[2] / "validation.json"
 
 
 class Validation(Section):
-    """A section for each source."""
+    """Two parts, what was measured first, with a section for each source."""
 
     def lines(self) -> list[str]:
         """Return the sections."""
         self.env.note_dependency(str(ENTRIES))
         entries = json.loads(ENTRIES.read_text(encoding="utf-8"))
-        out: list[str] = []
-        for source in dict.fromkeys(entry["source"] for entry in entries):
-            own = [entry for entry in entries if entry["source"] == source]
-            out += heading(_title(source))
-            out += [escape(f"{len(own)} numbers, {source}."), ""]
-            out += table(HEAD, [_row(entry) for entry in own], (44, 15, 15, 13, 13))
-            for why in dict.fromkeys(entry["why"] for entry in own if entry["why"]):
-                out += [escape(f"What explains the difference: {why}."), ""]
-            runs = dict.fromkeys(f"{entry['version']} on {entry['date']}" for entry in own)
-            out += [escape(f"Run with version {', '.join(runs)}."), ""]
-        return out
+        measured = [entry for entry in entries if entry.get("measured")]
+        out = [*heading("Measured"), *_counts(measured), *_sections(measured)]
+        rest = [entry for entry in entries if not entry.get("measured")]
+        return [*out, *heading("Verified against other computations and standards"), *_counts(rest), *_sections(rest)]
+
+
+def _counts(entries: Sequence[Mapping[str, Any]]) -> list[str]:
+    sources = len({entry["source"] for entry in entries})
+    return [f"{len(entries)} numbers of {sources} sources.", ""]
+
+
+def _sections(entries: Sequence[Mapping[str, Any]]) -> list[str]:
+    out: list[str] = []
+    for source in dict.fromkeys(entry["source"] for entry in entries):
+        own = [entry for entry in entries if entry["source"] == source]
+        out += heading(_title(source), "~")
+        out += [escape(f"{len(own)} numbers, {source}."), ""]
+        out += table(HEAD, [_row(entry) for entry in own], (44, 15, 15, 13, 13))
+        for why in dict.fromkeys(entry["why"] for entry in own if entry["why"]):
+            out += [escape(f"What explains the difference or the tolerance: {why}."), ""]
+        out += [escape(f"Run with version {', '.join(dict.fromkeys(entry['version'] for entry in own))}."), ""]
+    return out
 
 
 HEAD = ("quantity", "published", "Faying", "difference", "tolerance")
