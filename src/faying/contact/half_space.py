@@ -357,7 +357,7 @@ class HalfSpace(ContactLaw):
         ratio = float(np.median(self.series.values["lay"]))
         if ratio < 1 + LAY:
             return ()
-        return (f"its k_t is the mean of two directions, which the lay of the scan sets {ratio - 1:.0%} apart",)
+        return (f"its k_t is the mean of two directions, which differ by {ratio - 1:.0%} (lay of the scan)",)
 
     def resolution_error(self, pressure: float) -> dict[str, float]:
         """Relative change of area, k_n and k_t when the scan is halved in points each way [-].

@@ -253,7 +253,7 @@ def with_form(
 def wave_notes(name: str, waviness: Waviness, axes: FaceAxes) -> list[Note]:
     """Which waves are drawn, and which of them the mesh does not carry. Raises InputError where they do not fit."""
     laid = LaidWaves.of(waviness, axes)
-    text = f"{name}: {laid.words()} ({waviness.origin}), draw {waviness.seed}; another draw is another joint. "
+    text = f"{name}: {laid.words()} ({waviness.origin}), draw {waviness.seed}; another draw gives other frequencies. "
     text += f"faying sweep over joint.{name}.form.waviness_seed, or faying predict, says how far draws differ"
     notes = [Note(code="waves", joint=name, text=text)]
     return notes if laid.lost <= 0 else [*notes, Note(code="waves-mesh", joint=name, text=f"{name}: {laid.cut()}")]

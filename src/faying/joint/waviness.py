@@ -243,5 +243,5 @@ class LaidWaves:
         least = show(self.carried, "m")
         return (
             f"the mesh carries waves longer than {least} ({NODES} nodes of the coarser face in a wave); the shorter, "
-            f"{self.lost:.2g} of the variance, are left out. Finer elements on the faces carry them"
+            f"{self.lost:.2g} of the variance, are left out. Finer elements on the faces include them"
         )

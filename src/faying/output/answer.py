@@ -127,9 +127,9 @@ def score_line(result: Result) -> str:
     if found.inside is not None:
         words.append(f"{int(found.inside.sum())} of {found.measured} measured frequencies lie within 5 to 95 %.")
     if np.isfinite(found.gain):
-        adds = "adds to" if found.gain < 1 else "adds nothing to"
+        helps = "reduces" if found.gain < 1 else "does not reduce"
         words.append(
-            f"The joint model {adds} the test at the load before: with the model's change from load to load, the error "
-            f"is {found.gain:.2f} of the error without it."
+            f"The joint model {helps} the error of a guess: the test at the load before, times the model's change, "
+            f"misses by {found.gain:.2f} of what that test alone does."
         )
     return " ".join(words)

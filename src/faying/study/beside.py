@@ -47,11 +47,11 @@ def solve_beside(case: Case, choice: BesideChoice, engine: Engine, progress: Pro
         states = tuple(_slim(solve(other, k, solver, progress, ranges=False)) for k in loads)
     except FayingError as fault:
         progress.done = done + 2 * len(case.study.loads)
-        text = f"{choice.name} beside: no answer: {fault}"
+        text = f"alternative {choice.name}: no answer: {fault}"
         return Beside(name=choice.name, case=None, states=(), notes=(Note(code="beside", text=text),))
     notes = [*law_reasons(other.structure, other.surfaces), *(note for state in states for note in state.notes)]
     told = tuple(
-        replace(note, text=f"{choice.name} beside: {note.text}")
+        replace(note, text=f"alternative {choice.name}: {note.text}")
         for note in notes
         if note.code in TOLD and note not in case.notes
     )

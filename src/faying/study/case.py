@@ -149,7 +149,7 @@ def law_reasons(structure: Structure, surfaces: tuple[Surface, ...]) -> list[Not
 def mates_notes(laws: Sequence[JointLaw], *, alike: bool = False) -> list[Note]:
     """Both faces of each joint and their materials, each once; alike: whether the other face was assumed so."""
     said = dict.fromkeys(law.mates for law in laws if law.mates)
-    hint = "; the other face is assumed alike, surface.counter names another" if alike else ""
+    hint = "; the other face is assumed alike: surface.counter gives its own scan" if alike else ""
     return [Note(code="mates", text=line + hint) for line in said]
 
 

@@ -228,7 +228,7 @@ def mesh_size(facts: GeometryFacts, bolts: set[str | None]) -> tuple[float, str]
     plates = [part for part in facts.parts if part.name not in bolts]
     thin = min(plates, key=_thickness)
     size = rounded(_thickness(thin) / ACROSS, 2)
-    why = f"{ACROSS} elements across {thin.name!r}, which is about {show(_thickness(thin), 'm', digits=2)} thick"
+    why = f"{ACROSS} elements across {thin.name!r}, which is about {show(_thickness(thin), 'm', digits=3)} thick"
     free, widest = available(), _thickness(thin)
     while size < widest:
         unknowns = unknowns_of(facts, size)

@@ -46,8 +46,8 @@ def _size(way: str, value: Any) -> dict[str, Any]:
         return {"Wq": None, "origin": "spectrum of the scan, continued to longer waves"}
     if way == "process":
         process = PROCESSES[value]
-        ends = f"{show(process.least, 'm', digits=2)} to {show(process.greatest, 'm', digits=2)}"
-        return {"Wq": GAUSSIAN * process.Wa, "origin": f"{value}, the middle of Wa {ends}"}
+        ends = f"{show(process.least, 'm', digits=3)} to {show(process.greatest, 'm', digits=3)}"
+        return {"Wq": GAUSSIAN * process.Wa, "origin": f"{value}, the geometric mean of Wa {ends}"}
     if way == "flatness":
         return {"Wq": RMS_OF_FLATNESS * value, "origin": f"a third of a flatness tolerance of {show(value, 'm')}"}
     return {"Wq": value if way == "Wq" else GAUSSIAN * value, "origin": f"{way} {show(value, 'm')}"}
