@@ -34,7 +34,7 @@ def _sections(entries: Sequence[Mapping[str, Any]]) -> list[str]:
     for source in dict.fromkeys(entry["source"] for entry in entries):
         own = [entry for entry in entries if entry["source"] == source]
         out += heading(_title(source), "~")
-        out += [escape(f"{len(own)} numbers, {source}."), ""]
+        out += [escape(f"{len(own)} {'number' if len(own) == 1 else 'numbers'}, {source}."), ""]
         out += table(HEAD, [_row(entry) for entry in own], (44, 15, 15, 13, 13))
         for why in dict.fromkeys(entry["why"] for entry in own if entry["why"]):
             out += [escape(f"What explains the difference or the tolerance: {why}."), ""]

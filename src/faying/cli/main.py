@@ -15,7 +15,7 @@ import click
 COMMANDS = {
     "app": ("app", "Open a page in the browser: scan, geometry, study, run, result."),
     "asperity": ("asperity", "Press one asperity by finite elements: force, area, stresses."),
-    "attach": ("attach", "Add a joint to a model of another solver and write it in that solver's format."),
+    "attach": ("attach", "Add a joint to a model of another solver, in the format of that solver."),
     "backbone": ("backbone", "Frequency and damping of a mode against its amplitude."),
     "bolts": ("bolts", "A sheet for each bolt by VDI 2230: preload, stresses, slip, torque."),
     "check": ("check", "Check a study without solving it: faults, notes, memory, time."),
