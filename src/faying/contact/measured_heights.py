@@ -74,7 +74,7 @@ class MeasuredHeights(ContactLaw):
         form = "measured heights have the columns gap and probability density"
         unit = given.get("gaps_unit")
         gaps = Wanted(names=("gap", "gaps"), unit="m", given=None if unit is None else str(unit), key="gaps_unit")
-        density = Wanted(names=("probability", "probability density", "density"), unit="", given=None, key="")
+        density = Wanted(names=("probability", "probability density", "density", "chance"), unit="", given=None, key="")
         table = read_list(Path(str(given["gaps"])), (gaps, density), form)
         return cls(gaps=table[:, 0], probability=table[:, 1], pair=pair, **own)
 
