@@ -139,6 +139,7 @@ def test_numbers_of_sobol_are_loaded_while_signals_wait(monkeypatch):
     """A Ctrl-C inside SciPy's loading is swallowed there: its points are all alike then, which must not go on."""
     script = (
         "import signal, os, numpy as np\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # a job in the background ignores it
         "orig = np.lib.npyio.NpzFile.__getitem__\n"
         "def get(self, key):\n"
         "    os.kill(os.getpid(), signal.SIGINT)\n"
