@@ -92,7 +92,7 @@ def test_the_loading_stiffness_is_the_slope_of_the_solved_approach(name, tmp_pat
 
 
 def test_a_joint_closes_as_the_solved_contact_does():
-    law = Mates(self_affine(256, 0.8), materials="45 steel").law("half-space")
+    law = Mates(self_affine(128, 0.8), materials="45 steel").law("half-space")
     joint = JointLaw(model=law)
     low, high = law.contact_at(5e6), law.contact_at(50e6)
     found = joint.approach(50e6) - joint.approach(5e6)
@@ -100,7 +100,7 @@ def test_a_joint_closes_as_the_solved_contact_does():
 
 
 def test_unloading_is_stiffer_than_loading_at_every_pressure():
-    law = Mates(self_affine(256, 0.5), materials="45 steel").law("half-space")
+    law = Mates(self_affine(128, 0.5), materials="45 steel").law("half-space")
     said = law.at_pressure(np.geomspace(law.least_pressure, law.greatest_pressure, 500))
     assert np.all(said.k_load <= said.k_n * (1 + 1e-12))
     loading = law.with_(stiffness="loading").at_pressure(20e6)
@@ -227,7 +227,7 @@ def test_refined_waves_are_the_same_waves():
 
 
 def test_the_change_with_resolution_is_split_into_points_and_waves():
-    law = HalfSpace(self_affine(256, 0.5), PAIR)
+    law = HalfSpace(self_affine(128, 0.5), PAIR)
     split = law.resolution(10e6)
     coarse, spacing = halved_map(law.scan.heights, law.scan.spacing)
     from_half = law._solve(coarse, spacing, 10e6).normal_stiffness(loading=False)
