@@ -70,6 +70,7 @@ def test_init_and_run(tmp_path, capsys):
         "result.nc",
         "modes.csv",
         "report.html",
+        "intervals.svg",
         "frequencies.svg",
         "pressure.svg",
         "law.svg",

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from math import isfinite
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from faying.joint.solid_bolt import SolidBolt
 from faying.joint.strength import seat_limit
 from faying.joint.threads import Thread
 from faying.joint.tightening import TIGHTENING
+from faying.misuse import checked_call
 from faying.progress import Report
 from faying.result.bolts import BoltNumbers
 from faying.study.bolt_numbers import bolt_numbers
@@ -88,8 +88,9 @@ class BoltSheets:
         }
 
 
+@checked_call
 def bolt_sheet(
-    study: Study | str | PathLike[str], preload: float | str | None = None, *, report: Report | None = None
+    study: Study | str | Path, preload: float | str | None = None, *, report: Report | None = None
 ) -> BoltSheets:
     """Return a sheet for each bolt of a study, by VDI 2230, with compliances found by finite elements.
 
@@ -108,7 +109,7 @@ def bolt_sheet(
     Source:
         VDI 2230 Part 1:2015, section 4, for concentric clamping and loading.
     """
-    plan = study if isinstance(study, Study) else Study.read(Path(study))
+    plan = Study.read(study)
     wanted = None if preload is None else positive(preload, "N", "preload")
     number = len(plan.loads) - 1 if wanted is None else preload_index(plan.loads, wanted)
     if number is None:
