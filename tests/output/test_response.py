@@ -67,7 +67,7 @@ def test_mac_between_loads_has_the_first_load_in_rows(result):
     axes = response.mac_between_loads(ax(), result)
     np.testing.assert_array_equal(axes.images[0].get_array(), result.mac[1])
     assert (axes.get_ylabel(), axes.get_xlabel()) == ("mode at 2 kN", "mode at 8 kN")
-    assert {text.get_text() for text in axes.texts} == {".90", "1.00", ".10"}
+    assert {text.get_text() for text in axes.texts} == {"0.90", "1.00", "0.10"}
     assert len(response.macs(result).axes) == 2  # one map, one colour bar
 
 
