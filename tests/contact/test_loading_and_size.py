@@ -99,6 +99,7 @@ def test_a_joint_closes_as_the_solved_contact_does():
     assert found == pytest.approx(high.approach - low.approach, rel=0.03)
 
 
+@pytest.mark.slow
 def test_unloading_is_stiffer_than_loading_at_every_pressure():
     law = Mates(self_affine(128, 0.5), materials="45 steel").law("half-space")
     said = law.at_pressure(np.geomspace(law.least_pressure, law.greatest_pressure, 500))

@@ -133,12 +133,12 @@ def test_blur_lowers_the_upper_end_and_waviness_raises_the_lower():
     rough = spectral((512, 512), spacing=1e-6, D=2.4, Rq=1e-6, seed=3)
     s = spectrum(gaussian_lowpass(rough, 6e-6))
     law, notes = powerlaw.fit_band(s, *powerlaw.supported_band(s))
-    assert any("waves under" in note for note in notes)
+    assert any("wavelengths below" in note for note in notes)
     assert law.used[-1] < 0.4 * s.nyquist
     long = spectral((512, 512), spacing=1e-6, D=2.4, Rq=1e-6, longest=2e-5, seed=3)
     s = spectrum(long)
     law, notes = powerlaw.fit_band(s, *powerlaw.supported_band(s))
-    assert any("waves over" in note for note in notes)
+    assert any("wavelengths above" in note for note in notes)
     assert law.used[0] > 2.5e4
     assert law.slope == pytest.approx(2.2, abs=0.1)
 
