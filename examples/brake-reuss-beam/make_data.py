@@ -36,7 +36,9 @@ def write(path: Path, folder: Path) -> None:
     gaps = data["normzinterp"].ravel() * float(data["z_max"].item())
     table = np.column_stack([gaps * 1e6, data["pzinterp"].ravel()])
     head = f"asperity radius {data['Re'].item():.6g} m, density {data['area_density'].item():.7g} 1/m2\n"
-    np.savetxt(folder / "asperity-gaps.csv", table, fmt="%.6f", delimiter=",", header=head + "gap [um],probability density")
+    np.savetxt(
+        folder / "asperity-gaps.csv", table, fmt="%.6f", delimiter=",", header=head + "gap [um],probability density"
+    )
     places = data["mesoscale_xygap"] * [1e3, 1e3, 1e6]
     np.savetxt(folder / "gap-map.csv", places, fmt="%.5f", delimiter=",", header="x [mm],y [mm],gap [um]")
 
