@@ -106,15 +106,13 @@ def text(result: Any) -> str:
     return "\n".join([head, first, *([*lines, ""] if lines else []), *others, *notes, *hammer])
 
 
-def _wrapped(text: str) -> list[str]:
-    """A sentence, 80 columns wide."""
+def _wrapped(text: str, first: str = "", rest: str = "") -> list[str]:
+    """A text, 80 columns wide; first, rest: what stands before its first line and before the others."""
     from textwrap import wrap
 
-    return wrap(text, 80, break_long_words=False, break_on_hyphens=False)
+    return wrap(text, 80, initial_indent=first, subsequent_indent=rest, break_long_words=False, break_on_hyphens=False)
 
 
 def _item(text: str) -> list[str]:
-    """A note as an item of a list, 80 columns wide."""
-    from textwrap import wrap
-
-    return wrap(text, 80, initial_indent="- ", subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
+    """A note as an item of a list."""
+    return _wrapped(text, "- ", "  ")

@@ -9,6 +9,11 @@ STRIPPING = 0.897  # C_3 for a bolt that is stronger than the tapped part (Alexa
 SHEAR = 0.6  # shear strength of a bolt over its tensile strength, at least (VDI 2230 Part 1:2015, section 5.5.6)
 
 
+def _lost_force(f: float, S: float, P: float) -> float:
+    """Force that a stack of compliances S and P loses where it settles by f."""
+    return f / (S + P)
+
+
 def thread_torque(F: float, P: float, d_2: float, mu_G: float) -> float:
     """Torque [N m] in the shank while a bolt is tightened to F [N]."""
     return F * (0.16 * P + 0.58 * d_2 * mu_G)
@@ -130,7 +135,7 @@ def _losses() -> tuple[Step, ...]:
             "f_Z delta_S delta_P",
             symbol="F_Z",
             unit="N",
-            function=lambda f, S, P: f / (S + P),
+            function=_lost_force,
         ),
         _step(
             "R4",
@@ -139,7 +144,7 @@ def _losses() -> tuple[Step, ...]:
             "f_law delta_S delta_P",
             symbol="F_Zlaw",
             unit="N",
-            function=lambda f, S, P: f / (S + P),
+            function=_lost_force,
         ),
         _step(
             "R4",
@@ -148,7 +153,7 @@ def _losses() -> tuple[Step, ...]:
             "f_Zd delta_S delta_P",
             symbol="F_Zd",
             unit="N",
-            function=lambda f, S, P: f / (S + P),
+            function=_lost_force,
         ),
         _step(
             "R4",

@@ -204,7 +204,7 @@ def _at_loads(states: Sequence[LoadedCase], lossless: bool, bounds: tuple[Array,
     The ends of the range of a law lie between the frequencies of free and of bonded faces, as stiffness raises each of
     them: where the basis of the ends misses that, the bound is the end.
     """
-    low, high = _stacked([s.low for s in states]), _stacked([s.high for s in states])
+    low, high = (_stacked(rows) for rows in zip(*(s.law_range for s in states), strict=True))
     return {
         "frequencies": np.stack([s.damped.frequencies for s in states]),
         "loss_factors": np.stack([np.where(lossless, np.nan, s.damped.loss_factors) for s in states]),

@@ -30,7 +30,6 @@ class LoadedCase:
         preload: the equilibrium of the joints.
         springs: stiffness and loss of each joint at its points.
         modes, damped: real modes with the springs, and complex modes with their loss.
-        low, high: frequencies [Hz] (m,) at the ends of the range that the laws state; None where none states one.
         response: what [response] asks for; test_response: that at the points of a hammer test.
         beyond: what bonding the points beyond the end of their law makes of the modes; None where there are none.
         notes: where a law leaves its validity range, and the like.
@@ -45,8 +44,6 @@ class LoadedCase:
     springs: tuple[Springs[Interface], ...]
     modes: Modes
     damped: DampedModes
-    low: Array | None
-    high: Array | None
     response: ResponseAtLoad | None
     test_response: FullResponse | None
     beyond: Beyond | None
@@ -55,6 +52,11 @@ class LoadedCase:
     beyond_share: float
     levels: LevelDamping | None = None
     ends: Mapping[str, Pair] | None = None
+
+    @property
+    def law_range(self) -> Pair | tuple[None, None]:
+        """Frequencies [Hz] (m,) at the ends of the range that the laws state; None twice where none states one."""
+        return (self.ends or {}).get("scan", (None, None))
 
     @property
     def bonded_frequencies(self) -> Array:
@@ -87,18 +89,15 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
     )
     response, test_response, notes = _responses(case, number, loaded, progress)
     beyond = bonded_beyond(case, load, springs, damped)
-    ends = ends_of(case, preload, engine) if ranges else None
-    low, high = (ends or {}).get("scan", (None, None))
     return LoadedCase(
         load=load,
+        # the ends first: their modes make the basis better in which the levels find theirs
+        ends=ends_of(case, preload, engine) if ranges else None,
         levels=level_damping(case, preload, found, engine.basis()) if ranges else None,
         preload=preload,
         springs=springs,
         modes=modes,
         damped=damped,
-        low=low,
-        high=high,
-        ends=ends,
         response=response,
         test_response=test_response,
         beyond=beyond,

@@ -52,7 +52,7 @@ class WaveBand:
 class _Wavy:
     """A joint on which waves are drawn: its gap without waves (q,) [m], and the waves, whose seed varies.
 
-    own: the seed of the draw that the case has; -2 where it has none.
+    own: the seed of the draw that the case has; None where it has none.
     """
 
     positions: Array
@@ -60,7 +60,7 @@ class _Wavy:
     base: Array
     axes: FaceAxes
     laid: LaidWaves
-    own: int
+    own: int | None
 
     def gap(self, seed: int) -> Array:
         waves = replace(self.laid, waves=replace(self.laid.waves, seed=seed))
@@ -152,7 +152,7 @@ def _wavy(case: Case) -> list[_Wavy | None]:
                 base=interface.gap - given,
                 axes=axes,
                 laid=laid,
-                own=-2 if silent else laid.waves.seed,
+                own=None if silent else laid.waves.seed,
             )
         )
     return out
