@@ -6,14 +6,16 @@ from faying.notes import LIMITS, WRONG, Note, by_severity, grouped, percent
 
 
 def outside(load, share, joint="flange", why="fewer than 10 spots touch"):
-    text = f"{joint}, {load:g} kN: the law is outside its validity range on {percent(share)} of the joint: {why}"
+    where = f"outside its validity range for {percent(share)} of the joint's stiffness"
+    text = f"{joint}, {load:g} kN: the law is {where}: {why}"
     return Note(code="outside-validity", joint=joint, load=1e3 * load, share=share, text=text)
 
 
 def test_loads_and_shares_become_spans():
     (one,) = grouped([outside(4, 0.16), outside(8, 0.16), outside(12, 0.18)])
     assert one.text == (
-        "flange, 4 to 12 kN: the law is outside its validity range on 16 to 18% of the joint: fewer than 10 spots touch"
+        "flange, 4 to 12 kN: the law is outside its validity range for 16 to 18% of the joint's stiffness: "
+        "fewer than 10 spots touch"
     )
     assert one.load is None
 

@@ -72,7 +72,8 @@ class Note:
         text: the sentence for people.
         joint: the joint that it is about; "" for the whole structure.
         load: the preload of the first bolt [N] at which it holds; None for all.
-        share: the share of the joint's area that it concerns [-]; None where that means nothing.
+        share: the share of the joint that it concerns [-], of its area or of its stiffness as the text says; None where
+            that means nothing.
     """
 
     code: str
@@ -99,7 +100,7 @@ def grouped(notes: Iterable[Note]) -> tuple[Note, ...]:
     """Notes of one kind that differ in a few numbers alone, as one with the least and the greatest of them.
 
     "flange, 4 kN: ... on 16% of the joint" and "flange, 12 kN: ... on 18% of the joint" become "flange, 4 to 12 kN: ...
-    on 16% to 18% of the joint". A grouped note is in the place of the first; those of another joint stay apart.
+    on 16 to 18% of the joint". A grouped note is in the place of the first; those of another joint stay apart.
     """
     groups: dict[tuple[str, str, str], list[Note]] = {}
     for note in notes:

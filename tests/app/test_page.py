@@ -20,7 +20,7 @@ def example(tmp_path_factory):
     folder = tmp_path_factory.mktemp("example")
     study = folder / "study.toml"
     template.write(study)
-    text = study.read_text().replace('model = "auto"', 'model = "jk"').replace('["2 kN", "6 kN"]', '"6 kN"')
+    text = study.read_text().replace('model = "auto"', 'model = "jk"').replace('["8 kN", "15 kN"]', '"6 kN"')
     text = re.sub("(?m)^(scan|counter) = .*\n", "", text)  # no contact to solve: D and G in place of the scan
     study.write_text(text.replace("[surface]\n", '[surface]\nD = 2.39\nG = "1.53e-10 m"\nscan_area = "16 mm^2"\n'))
     return folder

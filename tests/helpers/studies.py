@@ -1,4 +1,4 @@
-"""The study of `faying init` under the JK law of given D and G: cheap, with a loss, and with keys to vary."""
+"""The study of `faying init` under JK of given D and G, at 2 and 6 kN: cheap, with a loss, and with keys to vary."""
 
 from pathlib import Path
 
@@ -21,7 +21,7 @@ substrate = 1.0
 counterbody = "part"
 
 """
-    + template.TEXT[END:]
+    + template.TEXT[END:].replace('["8 kN", "15 kN"] ', '["2 kN", "6 kN"]  ')
 )
 
 

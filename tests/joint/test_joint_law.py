@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -97,6 +99,22 @@ def test_faces_meet_under_a_law_that_grows_in_proportion_to_pressure():
         assert law.approach(pressure) == pytest.approx(expected, rel=1e-6)
         assert law.pressure(np.array([expected]))[0] == pytest.approx(pressure, rel=1e-5)
     assert law.pressure(np.array([0.0, -1e-9]))[0].tolist() == [0, 0]
+
+
+def test_outside_validity_counts_stiffness_and_no_area():
+    """k_n = C p: a point at a hundredth of the pressure has a hundredth of the stiffness. Below 1 % nothing is said."""
+
+    class Light(Given):
+        def at_pressure(self, pressure, *, exact=None):
+            found = super().at_pressure(pressure, exact=exact)
+            return replace(found, reasons={"light": found.pressure < 2e6, "heavy": found.pressure > 8e6})
+
+    law = JointLaw(model=Light(k_n=lambda p: 1e6 * p, k_t=lambda p: 8e5 * p))
+    pressure, area = np.array([0.0, 1e5, 1e6, 4e6, 10e6]), np.array([5.0, 1.0, 2.0, 1.0, 0.3])
+    shares = law.outside_validity(pressure, area)
+    assert shares == pytest.approx({"light": 2.1 / 9.1, "heavy": 3.0 / 9.1}, rel=1e-9)
+    assert law.outside_validity(pressure[[1, 3]], area[[1, 3]] * [0.3, 1.0]) == {}
+    assert law.outside_validity(pressure[:1], area[:1]) == {}
 
 
 @pytest.mark.parametrize("scan_area", [None, 16e-6])

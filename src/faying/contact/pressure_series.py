@@ -23,8 +23,8 @@ from faying.typing import Array
 
 STRIDE = 4  # a large map itself is solved at every fourth pressure first
 CLOSE = 0.015  # miss of a predicted closing, over what a threefold pressure closes, at which no pressure is added
-CLOSE_ALONE = 0.005  # the same of a small map, whose curve no coarser map carries
-SHAPE = 600  # points a side from which on the map on a quarter of them carries the shape of the curves
+CLOSE_ALONE = 0.01  # the same of a map whose curve no coarser map carries
+SHAPE = 600  # points a side from which on the map on a quarter of them may carry the shape of the curves
 FINEST = 1.08  # least factor between two pressures
 COLUMNS = 8, 60  # pressures at which the map itself may be solved: at least and at most, and between them
 MAX_POINTS = 3e6  # as many as make this number of points together
@@ -214,6 +214,12 @@ class _Levels:
     def refine(self) -> None:
         """Solve more pressures where the closing between solved ones is not predicted well, the worst first."""
         top = self.top()
+        at = [p for p in self.first if p < top]
+        triples = list(zip(at, at[1:], at[2:], strict=False))
+        if not self.alone:  # the coarsest map carries the shape of the curves where that predicts them better
+            carried = sum(self._miss(*three) for three in triples)
+            self.alone = True
+            self.alone = sum(self._miss(*three) for three in triples) < carried
         many, few = COLUMNS[1], COLUMNS[0]
         most = many if self.alone else min(max(int(MAX_POINTS / self.heights.size), few), many)
         close = CLOSE_ALONE if self.alone else CLOSE
@@ -230,8 +236,7 @@ class _Levels:
             split(a, b, miss)
             split(b, c, miss)
 
-        at = [p for p in self.first if p < top]
-        for a, b, c in zip(at, at[1:], at[2:], strict=False):
+        for a, b, c in triples:
             judge(a, b, c)
         while waiting and len(self.rows[0]) < most:
             _, a, b = heappop(waiting)

@@ -17,6 +17,7 @@ from faying.typing import Array, Index
 
 FEW = 200  # pressures that take no longer to invert than a table to make
 LEAST_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p(approach) goes on as a power
+LEAST_SHARE = 0.01  # of a joint's stiffness, worth at most half of that in a frequency: less is not said
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -173,6 +174,22 @@ class JointLaw:
     def answer(self, pressure: Array) -> Response:
         """What the law says at pressures [Pa]; beyond its ends, what it says there."""
         return self.model.at_pressure(self._within(pressure), exact=False if np.size(pressure) > self.few else None)
+
+    def outside_validity(self, pressure: Array, area: Array) -> dict[str, float]:
+        """Return the share of the joint's stiffness [-] that lies outside the law's validity range, for each reason.
+
+        Not the share of its area: where faces part, pressure and stiffness fall to nothing over much of a joint, and so
+        does what an error of the law there can change.
+
+        Args:
+            pressure: at each point [Pa].
+            area: of each point [m^2].
+        """
+        stiffness = area * self.stiffness(pressure)[0]
+        total = float(stiffness.sum())
+        reasons = self.answer(pressure).reasons.items() if total > 0 else ()
+        shares = {reason: float(stiffness @ mask) / total for reason, mask in reasons}
+        return {reason: share for reason, share in shares.items() if share >= LEAST_SHARE}
 
     def _within(self, pressure: Array) -> Array:
         """Pressures brought within the law; 0 stays 0."""

@@ -305,21 +305,17 @@ def _order(structure: Structure, order: Sequence[str] | None) -> list[int] | Non
 
 
 def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[Note]:
-    """Say where contact is lost and where a law leaves its validity range, with the share of the joint's area."""
+    """Say where contact is lost, and how much of a joint's stiffness lies outside the validity range of its law."""
     kilo = f"{load / 1e3:g} kN"
     out = [
         Note(code="open", joint=name, load=load, text=f"{name}, {kilo}: no contact is left; the joint carries nothing")
         for name in open_joints(structure, preload.pressures)
     ]
     for joint, pressure in zip(structure.joints, preload.pressures, strict=True):
-        model, weights, area = joint.law.model, joint.interface.weights, joint.interface.area
-        answer = joint.law.answer(pressure)
-        for reason, mask in answer.reasons.items():
-            share = float(weights @ mask / area)
-            if share > 0:
-                where = f"{model.name} is outside its validity range on {percent(share)} of the joint"
-                text = f"{joint.name}, {kilo}: {where}: {reason}"
-                out.append(Note(code="outside-validity", joint=joint.name, load=load, share=share, text=text))
+        for reason, share in joint.law.outside_validity(pressure, joint.interface.weights).items():
+            where = f"outside its validity range for {percent(share)} of the joint's stiffness"
+            text = f"{joint.name}, {kilo}: {joint.law.model.name} is {where}: {reason}"
+            out.append(Note(code="outside-validity", joint=joint.name, load=load, share=share, text=text))
     return out
 
 

@@ -306,10 +306,9 @@ def _flags(law: JointLaw, pressure: Array, area: Array) -> list[str]:
             f"validity: on {float(area @ beyond) / total:.2%} of the joint the pressure exceeds the "
             f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends; stiffness is held there"
         )
-    for text, mask in law.answer(pressure).reasons.items():
-        share = float(area @ mask) / total
-        if share > 0:
-            out.append(f"validity: {model.name} is outside its validity range on {percent(share)} of the joint: {text}")
+    for reason, share in law.outside_validity(pressure, area).items():
+        where = f"{model.name} is outside its validity range for {percent(share)} of the joint's stiffness"
+        out.append(f"validity: {where}: {reason}")
     if not np.any(pressure > 0):
         out.append("validity: the joint carries no pressure, so it has no stiffness")
     return out

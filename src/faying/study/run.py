@@ -33,7 +33,7 @@ from faying.study.tracks import compared, encounters, macs, shapes_of
 from faying.typing import Array
 
 LEVEL_FIELDS = ("frequencies", "damping", "low", "high", "slip", "error")
-NOT_ZERO = 1e-2  # Hz: a rigid motion above it is noted
+NOT_ZERO = 1e-3  # of the first frequency: a rigid motion above it has cost 1e-6 of that mode's eigenvalue, and is noted
 
 
 @checked_call
@@ -129,10 +129,11 @@ def collect(
         comparison = replace(comparison, beside=np.stack([_predicted(b, comparison) for b in besides]))
     lossless = not structure.predicts_loss
     rigid = np.max([s.modes.frequencies[: case.rigid_count] for s in states], axis=0)
+    first = states[0].modes.frequencies[case.rigid_count]
     every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more]
     every += encounters(states, steps)
     every += level_notes(case, [state.levels for state in states], lossless)
-    every += [*(note for b in besides for note in b.notes), *_closing_notes(study, rigid)]
+    every += [*(note for b in besides for note in b.notes), *_closing_notes(study, rigid, first)]
     way = structure.solver(study.modes.solver)
     bolts, more = _bolts(case, states, shapes)
     every += more
@@ -321,7 +322,7 @@ def _response(study: Study, states: Sequence[LoadedCase]) -> Receptance | None:
     )
 
 
-def _closing_notes(study: Study, rigid: Array) -> list[Note]:
+def _closing_notes(study: Study, rigid: Array, first: float) -> list[Note]:
     out = []
     if study.uncertain is not None:
         within = [column.key for column in study.uncertain.inputs if column.within]
@@ -331,8 +332,11 @@ def _closing_notes(study: Study, rigid: Array) -> list[Note]:
             f"gives{taken}; faying predict gives intervals"
         )
         out.append(Note(code="uncertain", text=text))
-    if len(rigid) and rigid.max() > NOT_ZERO:
-        text = f"a rigid-body motion comes out at {rigid.max():.2g} Hz instead of 0: the solution has lost digits"
+    if len(rigid) and rigid.max() > NOT_ZERO * first:
+        text = (
+            f"a rigid-body motion comes out at {rigid.max():.2g} Hz instead of 0: rounding has cost the frequencies "
+            "digits, most those near it; look for parts or springs far stiffer than the rest"
+        )
         out.append(Note(code="rigid", text=text))
     if study.modes.damping == "viscous":
         text = (
