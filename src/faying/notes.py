@@ -46,6 +46,7 @@ LIMITS = frozenset(
         "wave-band",
         "uncertain-cut",
         "interval",
+        "mesh-error",
         "few-samples",
         "surrogate-wide",
         "surrogate-rough",

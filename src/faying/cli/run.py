@@ -33,6 +33,11 @@ from faying.text import json_text
     default="reanalysis",
     help="reanalysis: one factorisation for many states; direct: one for every step, as a check.",
 )
+@click.option(
+    "--refine",
+    metavar="TOLERANCE",
+    help="Mesh finer and run again until the error of every frequency by the mesh is below it, such as 0.2%.",
+)
 @progress_options
 def command(
     study: Path,
@@ -42,6 +47,7 @@ def command(
     uff: bool,
     mpi: int | None,
     engine: str,
+    refine: str | None,
     progress: Form | None,
 ) -> None:
     """Run STUDY: surface, contact law, preload, modes; write NetCDF, CSV, figures and a report."""
@@ -63,7 +69,7 @@ def command(
     every = [*stages(plan), *([] if no_files else ["report"])]
     bar = Shown("study", progress, every)
     with nullcontext() if no_files else together(folder, "give another with --out", [RESULT]) as hidden, bar:
-        result = run(plan, report=lambda stage, done, _: bar(stage, done, len(every)), engine=engine)
+        result = run(plan, report=lambda stage, done, _: bar(stage, done, len(every)), engine=engine, refine=refine)
         files = []
         if hidden is not None:
             bar("report", len(every) - 1, len(every))

@@ -61,23 +61,23 @@ def element_mass(points: Array, cells: Index, density: float, rule: str = "exact
     return np.asarray((share @ pairs).reshape(len(cells), values.shape[1], values.shape[1]))
 
 
-def _pairs(cells: Index) -> tuple[Index, Index]:
+def pairs_of(cells: Index) -> tuple[Index, Index]:
     """Local numbers of every pair of nodes of an element, each pair once."""
     a, b = np.triu_indices(cells.shape[1])
     return a, b
 
 
-def _keys(blocks: Blocks, nodes: int) -> Index:
+def pair_keys(blocks: Blocks, nodes: int) -> Index:
     """Row times nodes plus column of every pair of nodes of every element, row <= column."""
     out = []
     for cells in blocks:
-        a, b = _pairs(cells)
+        a, b = pairs_of(cells)
         first, second = cells[:, a], cells[:, b]
         out.append((np.minimum(first, second) * nodes + np.maximum(first, second)).ravel())
     return np.concatenate(out)
 
 
-def _slots(key: Index) -> tuple[Index, Index]:
+def distinct(key: Index) -> tuple[Index, Index]:
     """The distinct keys in order, and where each key stands among them."""
     order = np.argsort(key, kind="stable")
     ranked = key[order]
@@ -107,21 +107,21 @@ def assemble(mesh: Mesh, materials: Mapping[str, Solid], *, mass: str = "exact")
     from scipy.sparse import bsr_array, csr_array, get_index_dtype
 
     n = len(mesh.points)
-    pairs, slot = _slots(_keys(mesh.blocks, n))
+    pairs, slot = distinct(pair_keys(mesh.blocks, n))
     # only pairs with row <= column are summed, those on the diagonal by half; the rest is the transpose
     stiff, weight = np.zeros((len(pairs), 9)), np.zeros(len(pairs))
     first = 0
     for name, cells in _chunks(mesh):
         solid = materials[name]
-        a, b = _pairs(cells)
+        a, b = pairs_of(cells)
         here = slot[first : first + len(cells) * len(a)]
         first += len(here)
         block = element_stiffness(mesh.points, cells, solid.E, solid.nu).transpose(0, 1, 3, 2, 4)[:, a, b]
         swapped = cells[:, a] > cells[:, b]
         block[swapped] = block[swapped].transpose(0, 2, 1)
-        _add(stiff, here, block.reshape(-1, 9))
+        add_rows(stiff, here, block.reshape(-1, 9))
         heavy = element_mass(mesh.points, cells, solid.density or 0.0, mass)
-        _add(weight[:, None], here, heavy[:, a, b].reshape(-1, 1))
+        add_rows(weight[:, None], here, heavy[:, a, b].reshape(-1, 1))
     short = get_index_dtype(maxval=max(3 * n, 18 * len(pairs)))  # indices take a third of a matrix
     columns, rows = (pairs % n).astype(short), pairs // n
     half = np.where(rows == columns, 0.5, 1.0)
@@ -129,17 +129,18 @@ def assemble(mesh: Mesh, materials: Mapping[str, Solid], *, mass: str = "exact")
     stiff *= half[:, None]
     K = bsr_array((stiff.reshape(-1, 3, 3), columns, pointer), shape=(3 * n, 3 * n)).tocsr()
     M = csr_array((weight * half, columns, pointer), shape=(n, n))
-    return _with_transpose(K), _threefold(_with_transpose(M))
+    return with_transpose(K), _threefold(with_transpose(M))
 
 
-def _add(total: Array, slot: Index, values: Array) -> None:
+def add_rows(total: Array, slot: Index, values: Array) -> None:
     """Add rows of values (p, k) to the rows `slot` of total (m, k), where a slot may occur many times."""
     width = total.shape[1]
     places = width * slot[:, None] + np.arange(width)  # of single numbers, which NumPy adds ten times as fast as rows
     np.add.at(total.reshape(-1), places.ravel(), values.ravel())
 
 
-def _with_transpose(upper: Any) -> Any:
+def with_transpose(upper: Any) -> Any:
+    """The symmetric matrix of its upper triangle, which has half of the diagonal."""
     whole = (upper + upper.T).tocsr()
     whole.sort_indices()
     return whole

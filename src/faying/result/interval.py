@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from faying.typing import Array
 
-OF_PARTS = ("structure", "mode")  # sources that no stiffness of a joint bounds
+OF_PARTS = ("mesh", "structure", "mode")  # sources that no stiffness of a joint bounds
 LEAST_SQUARE = 1e-300  # where nothing moves a frequency
 
 

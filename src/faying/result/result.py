@@ -344,6 +344,14 @@ class Result(Recorded):
         default=None,
         group="modes",
     )
+    mesh_error: Array | None = variable(
+        "load",
+        "mode",
+        unit="1",
+        long_name="estimated relative error of the frequency by the mesh",
+        default=None,
+        group="modes",
+    )
     levels: Array | None = variable(
         "level",
         unit="m/s2",
@@ -703,6 +711,8 @@ class Result(Recorded):
         ]
         kept = [(name, values) for name, values in columns if values is not None]
         heads = [f"{name} [{'-' if name == 'loss factor' else 'Hz'}]" for name, _ in kept]
+        if self.mesh_error is not None:
+            heads, kept = [*heads, "error of the mesh [-]"], [*kept, ("", self.mesh_error)]
         if self.levels is not None and self.level_damping is not None:
             at = [(level, self.level_damping[:, k]) for k, level in enumerate(self.levels)]
             heads += [f"damping ratio at {level:g} m/s2 [-]" for level, _ in at]

@@ -3,9 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
+from faying.fe.interface import Interface
 from faying.joint.equilibrium import PreloadState
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
+from faying.joint.springs import Springs
 from faying.study.case import Case
 from faying.study.engine import Engine
 from faying.study.scatter import LEVELS, default, stated
@@ -15,7 +19,10 @@ Pair = tuple[Array, Array]  # frequencies [Hz] at both ends of one number
 
 
 def ends_of(case: Case, preload: PreloadState, engine: Engine) -> dict[str, Pair]:
-    """Frequencies of one load at 5 and at 95 % of what changes no pressure: the scan's range, and k_t/k_n."""
+    """Frequencies of one load at 5 and at 95 % of what changes no pressure: the scan's range, and k_t/k_n.
+
+    "contact": with each half of the points of the joints, for the error of the mesh.
+    """
     joints, out = case.structure.joints, {}
 
     def pair(laws: Sequence[tuple[JointLaw, JointLaw]]) -> Pair:
@@ -38,7 +45,19 @@ def ends_of(case: Case, preload: PreloadState, engine: Engine) -> dict[str, Pair
                 for law, (low, _, high) in zip(laws, ratios, strict=True)
             ]
         )
+    if case.study.modes.intervals and not any(joint.per_node for joint in joints):
+        springs = case.structure.springs(preload.pressures)
+        out["contact"] = (
+            engine.frequencies([half_of(one, 0) for one in springs]),
+            engine.frequencies([half_of(one, 1) for one in springs]),
+        )
     return out
+
+
+def half_of(springs: Springs[Interface], which: int) -> Springs[Interface]:
+    """Every second point of a joint, from the first or from the second one, with twice its stiffness."""
+    twice = 2.0 * (np.arange(len(springs.k_n)) % 2 == which)
+    return replace(springs, k_n=twice * springs.k_n, k_t=twice * springs.k_t)
 
 
 def quantiles(case: Case, own: str, common: str, name: str) -> tuple[float, float, float]:

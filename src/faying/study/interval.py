@@ -11,17 +11,21 @@ from faying.result.interval import Interval
 from faying.study.case import Case
 from faying.study.changed import Changed, can_change, frequencies_of
 from faying.study.ends import Pair, at_median_ratio, quantiles
+from faying.study.mesh_error import MeshError
 from faying.study.scatter import ENDS, SCATTER, SCORE, default, mode_sd, stated, structure_sd
 from faying.study.solve import LoadedCase
 from faying.study.wave_band import Draws, WaveBand
 from faying.typing import Array
 
 
-def intervals(case: Case, states: Sequence[LoadedCase]) -> tuple[WaveBand | None, Interval | None, list[Note]]:
+def intervals(
+    case: Case, states: Sequence[LoadedCase], mesh: MeshError | None
+) -> tuple[WaveBand | None, Interval | None, list[Note]]:
     """Draws of waves and the interval of every frequency, from states and from a small basis.
 
     Args:
         case, states: the case and its state under each load.
+        mesh: the error of the mesh, where it is known.
 
     Returns:
         The draws, None where none are drawn; the interval; notes on what is assumed, or could not be found.
@@ -47,18 +51,19 @@ def intervals(case: Case, states: Sequence[LoadedCase]) -> tuple[WaveBand | None
         found = iter(frequencies_of(case, states, [one for some in changes.values() for one in some]))
     except FayingError as fault:
         text = f"no interval from the law and no draws of waves: {fault}"
-        return None, _combined(case, states, {}), [Note(code="interval", text=text)]
+        return None, _combined(case, states, {}, mesh), [Note(code="interval", text=text)]
     by_name = {name: [next(found) for _ in some] for name, some in changes.items()}
     band = draws.band(states, by_name.pop("waves", []))
     middle = by_name.pop("middle")[0] if "middle" in by_name else None
     pairs = {name: (one, other) for name, (one, other) in by_name.items()}
-    return band, _combined(case, states, pairs, middle, band), draws.notes(case)
+    return band, _combined(case, states, pairs, mesh, middle, band), draws.notes(case)
 
 
 def _combined(
     case: Case,
     states: Sequence[LoadedCase],
     pairs: dict[str, Pair],
+    mesh: MeshError | None,
     middle: Array | None = None,
     band: WaveBand | None = None,
 ) -> Interval:
@@ -67,7 +72,7 @@ def _combined(
     middle: frequencies at the median of k_t/k_n, about which the ends of the law lie.
     """
     frequencies = np.stack([state.damped.frequencies for state in states])
-    for name in {name for state in states for name in state.ends or {}}:
+    for name in {name for state in states for name in state.ends or {} if name in SCATTER}:
         both = [(state.ends or {})[name] for state in states]
         pairs[name] = np.stack([one[0] for one in both]), np.stack([one[1] for one in both])
     found = {name: np.log(np.stack(pair) / frequencies) for name, pair in pairs.items()}
@@ -85,6 +90,8 @@ def _combined(
         found["preload"] = _by_preload(case.loads, frequencies, _preload_factors(case))
     for name, sd in (("structure", structure_sd(case.study.uncertain)), ("mode", mode_sd(case.study.uncertain))):
         found[name] = SCORE * sd * np.array([-1.0, 1.0])[:, None, None] * np.ones(frequencies.shape)
+    if mesh is not None:
+        found["mesh"] = mesh.offsets
     names = tuple(name for name in SCATTER if name in found)
     return Interval(sources=names, offsets=np.stack([found[name] for name in names]))
 

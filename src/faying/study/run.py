@@ -26,7 +26,9 @@ from faying.study.engine import engine_of
 from faying.study.findings import against_exact_contact, falling
 from faying.study.interval import intervals
 from faying.study.level_damping import level_notes
+from faying.study.mesh_error import mesh_error, mesh_notes
 from faying.study.provenance import provenance
+from faying.study.refine import refined, tolerance_of
 from faying.study.solve import LoadedCase, solve
 from faying.study.study import Study
 from faying.study.tracks import compared, encounters, macs, shapes_of
@@ -37,7 +39,13 @@ NOT_ZERO = 1e-3  # of the first frequency: a rigid motion above it has cost 1e-6
 
 
 @checked_call
-def run(study: Study | str | Path, *, report: Report | None = None, engine: str = "reanalysis") -> Result:
+def run(
+    study: Study | str | Path,
+    *,
+    report: Report | None = None,
+    engine: str = "reanalysis",
+    refine: float | str | None = None,
+) -> Result:
     """Run a study from the surface to the modes.
 
     Args:
@@ -45,6 +53,8 @@ def run(study: Study | str | Path, *, report: Report | None = None, engine: str 
         report: called with (stage, stages done, stages in all) as each stage begins.
         engine: "reanalysis", one factorisation for many states; or "direct", one for each Newton step and each set of
             modes, to check the other by.
+        refine: estimated error of every frequency by the mesh, such as 0.002 or "0.2 %", to which the parts are meshed
+            finer and run again; None for the size that the study gives.
 
     Returns:
         The result; nothing is written.
@@ -54,6 +64,8 @@ def run(study: Study | str | Path, *, report: Report | None = None, engine: str 
         NotConverged: an iteration stops short.
     """
     study = Study.read(study)
+    if refine is not None:
+        return refined(study, tolerance_of(refine), lambda finer: run(finer, report=report, engine=engine))
     if study.backbone is not None and is_mpi(chosen(study.modes.solver)):
         raise InputError("[backbone] asks for a factorisation; leave it out, or the processes of MPI")
     if study.backbone is not None:
@@ -65,7 +77,9 @@ def run(study: Study | str | Path, *, report: Report | None = None, engine: str 
     besides = [solve_beside(case, choice, solver, progress) for choice in study.beside]
     progress.begin("modes free and bonded")
     free, bonded, notes = bounds(case)
-    band, interval, more = intervals(case, states)
+    mesh = mesh_error(case, states) if study.modes.intervals else None
+    band, interval, more = intervals(case, states, mesh)
+    more += mesh_notes(case, mesh) if study.modes.intervals else []
     result = collect(case, states, (free, bonded), [*notes, *findings(case, states), *more], besides)
     if band is not None:
         result = replace(result, **band.fields(case.loads))
@@ -77,6 +91,7 @@ def run(study: Study | str | Path, *, report: Report | None = None, engine: str 
             interval_low=low,
             interval_high=high,
             interval_offsets=interval.offsets,
+            mesh_error=None if mesh is None else mesh.total,
         )
     if study.backbone is None:
         return result
