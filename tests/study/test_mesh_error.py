@@ -63,6 +63,7 @@ def holds(found, fine) -> np.ndarray:
     return (low <= moved) & (moved <= high)
 
 
+@pytest.mark.slow
 def test_a_lap_holds_the_frequencies_of_smaller_elements(lap, coarse):
     fine = run(replace(finer(lap, 0.6), modes=replace(lap.modes, intervals=False)))
     assert holds(coarse, fine).all()

@@ -35,7 +35,7 @@ class Surplus:
 
     Source:
         R.E. Bank, R.K. Smith, "A posteriori error estimates based on hierarchical bases", SIAM J. Numer. Anal. 30
-        (1993) 921-935, doi:10.1137/0730048, equations (2.9) and (2.10).
+        (1993) 921-935, doi:10.1137/0730048: the defect of the equations, solved in the complement of the basis.
     """
 
     mesh: Mesh
