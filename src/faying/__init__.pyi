@@ -58,6 +58,8 @@ from .study.attach import attach as attach
 from .study.axes import axis_of as axis_of
 from .study.backbone import backbone as backbone
 from .study.bolt_sheet import bolt_sheet as bolt_sheet
+from .study.level_curves import LevelCurves as LevelCurves
+from .study.level_curves import level_curves as level_curves
 from .study.sweep import sweep as sweep
 from .surface import synthesize as synthesize
 from .surface.combine import Combined as Combined

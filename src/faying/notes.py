@@ -34,6 +34,7 @@ LIMITS = frozenset(
         "outside-validity",
         "beyond-law",
         "level-damping",
+        "no-level-damping",
         "window",
         "falls",
         "far-from-exact",

@@ -28,6 +28,11 @@ from faying.text import json_text
 @click.option("--harmonics", type=click.IntRange(1, 9), help="Highest harmonic of the motion; 1 is quick [3].")
 @click.option("--rest-damping", metavar="RATIO", help='Ratio to critical that is added, for example 0.001, or "law".')
 @click.option("--coulomb", is_flag=True, help="One slider at each point in place of the law's own curve.")
+@click.option(
+    "--quick",
+    is_flag=True,
+    help="Curves of all modes by secant passes, without harmonics; with --mode beside harmonic balance of that mode.",
+)
 @click.option("--measured", multiple=True, type=click.Path(path_type=Path), help="CSV of measured points to draw.")
 @click.option(
     "--out",
@@ -56,6 +61,9 @@ def command(study: Path, **options: Any) -> None:
     measured = [MeasuredBackbone.read(path) for path in options["measured"]]
     plan = Study.read(study)
     choice, loads = asked(plan, options)
+    if options["quick"]:
+        _quick(plan, choice, loads, options)
+        return
     out = out or plan.results / "backbone.nc"
     progress = Shown("backbone", options["progress"])
     with new_folder(out.parent, "give another file with --out"), progress as report:
@@ -75,6 +83,40 @@ def command(study: Path, **options: Any) -> None:
     for curve in curves:
         click.echo(text(curve))
     click.echo(f"\nwritten to {', '.join(str(file) for file in files)}")
+
+
+def _quick(plan: Any, choice: Any, loads: list[int], options: dict[str, Any]) -> None:
+    """Curves of all modes under one preload, printed and written as CSV; with harmonic balance of one mode if asked."""
+    from dataclasses import replace
+
+    from faying.errors import InputError
+    from faying.files import new_folder
+    from faying.output import table
+    from faying.study.backbone import backbones
+    from faying.study.level_curves import balanced_rows, level_curves, rows
+
+    unused = [name for name in ("at", "law", "measured", "plot") if options[name]]
+    unused += ["coulomb"] * options["coulomb"]
+    if unused or len(loads) > 1 or len(choice.friction) > 1:
+        which = ", ".join(f"--{name}" for name in unused) or "several preloads or frictions"
+        raise InputError(f"--quick has curves of all modes under one preload and one friction; leave out {which}")
+    out = options["out"] or plan.results / "level-curves.csv"
+    if out.suffix != ".csv":
+        raise InputError(f"--out {out}: the curves of --quick are written as CSV; end the name in .csv")
+    study, curve = replace(plan, backbone=choice), None
+    with new_folder(out.parent, "give another file with --out"), Shown("backbone", options["progress"]) as report:
+        curves = level_curves(study, load=plan.loads[loads[0]], report=report)
+        if options["mode"] is not None:
+            (curve,) = backbones(study, choice, loads=loads, report=report)
+        curves.to_csv(out)
+    if options["as_json"]:
+        beside = {} if curve is None else {"curves": [curve.to_dict()]}
+        click.echo(json_text(curves.to_dict() | beside | {"files": [str(out)]}))
+        return
+    click.echo(f"{curves.summary()[0]}: frequency [Hz], damping [%]\n\n{table.text(rows(curves))}")
+    if curve is not None:
+        click.echo(f"\nmode {curve.mode}, harmonics 0 to {curve.harmonics}\n{table.text(balanced_rows(curves, curve))}")
+    click.echo(f"\nwritten to {out}")
 
 
 def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:

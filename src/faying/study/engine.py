@@ -32,8 +32,8 @@ class Engine(Protocol):
     def vibrate(self, springs: Sequence[Springs[Interface]]) -> Vibration:
         """Real and complex modes with springs on the joints. Raises InputError where a part moves freely."""
 
-    def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
-        """Frequencies [Hz] of the elastic modes with other springs, to half of `RANGE_ERROR`."""
+    def frequencies(self, springs: Sequence[Springs[Interface]], tolerance: float = RANGE_ERROR) -> Array:
+        """Frequencies [Hz] of the elastic modes with other springs; tolerance: of their squares."""
 
     def basis(self) -> Array:
         """Vectors (unknowns, m), orthonormal with the mass, in which modes near the last ones can be found."""
@@ -86,7 +86,7 @@ class Direct:
         )
         return Vibration(modes=modes, damped=damped, stiffness=stiffness, loss=loss)
 
-    def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
+    def frequencies(self, springs: Sequence[Springs[Interface]], tolerance: float = RANGE_ERROR) -> Array:
         """See `Engine`."""
         modes, _ = self._modes(springs)
         return modes.frequencies[self.case.rigid_count :][: self.case.study.modes.count]
@@ -134,12 +134,12 @@ class Reanalysis:
         """See `Engine`."""
         return vibrate(self.case.modal, springs, self._preloads.problem, self._shared)
 
-    def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
+    def frequencies(self, springs: Sequence[Springs[Interface]], tolerance: float = RANGE_ERROR) -> Array:
         """See `Engine`."""
         if not self._looked and self._shared.near is not None:
             self._shared.near.look_everywhere()
             self._looked = True
-        modes, _ = self._shared.of(self.case.modal, springs, tolerance=RANGE_ERROR, shapes=False)
+        modes, _ = self._shared.of(self.case.modal, springs, tolerance=tolerance, shapes=False)
         return modes.frequencies[self.case.rigid_count :][: self.case.study.modes.count]
 
     def basis(self) -> Array:

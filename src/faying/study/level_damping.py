@@ -93,10 +93,27 @@ def _with_friction(model: LevelModel, case: Case, preload: PreloadState, frictio
     return changed.at(case.study.modes.levels, case.study.modes.count)
 
 
+def _why_none(case: Case) -> str:
+    """Why there is no damping at levels, and what to do."""
+    per_node = [joint.name for joint in case.structure.joints if joint.per_node]
+    if per_node:
+        return (
+            f"no damping at levels of acceleration: {', '.join(per_node)} has springs per node, which do not slip; "
+            "leave springs out of the joint"
+        )
+    laws = dict.fromkeys(joint.law.model.name for joint in case.structure.joints)
+    return (
+        f"no damping at levels of acceleration: under {' and '.join(laws)} a joint has no stiffness that slips, or all "
+        'of it is open; give joint.tangential a number, or "mindlin", or another law'
+    )
+
+
 def level_notes(case: Case, found: Sequence[LevelDamping | None], lossless: bool) -> list[Note]:
     """What is assumed of friction and of rest."""
-    if any(one is None for one in found) or not found:
+    if not found or not case.study.modes.levels:
         return []
+    if any(one is None for one in found):
+        return [Note(code="no-level-damping", text=_why_none(case))]
     words = []
     if any(joint.friction is None for joint in case.structure.joints):
         words.append(f"friction {FRICTION[1]:g}, between {FRICTION[0]:g} and {FRICTION[2]:g} (joint.friction gives it)")

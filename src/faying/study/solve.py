@@ -1,14 +1,14 @@
 """One load of a case: the preload of its joints, their springs, the modes and the response."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from faying.fe.damped import DampedModes
 from faying.fe.interface import Interface
 from faying.fe.modes import Modes
 from faying.joint.equilibrium import PreloadState
 from faying.joint.springs import Springs
-from faying.joint.state import law_notes
+from faying.joint.state import Vibration, law_notes
 from faying.joint.strength import pressure_notes
 from faying.measured.model import FullResponse
 from faying.notes import Note
@@ -19,6 +19,9 @@ from faying.study.engine import Engine
 from faying.study.level_damping import LevelDamping, level_damping
 from faying.study.response import LoadedStructure, ResponseAtLoad
 from faying.typing import Array, Mask
+
+SOFTENED = 0.3  # of k_t: joints that slip
+SHAPE_ERROR = 1e-5  # of squared frequencies: shapes are then right to its root, and damping by slip to twice that
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,9 +94,8 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
     beyond = bonded_beyond(case, load, springs, damped)
     return LoadedCase(
         load=load,
-        # the ends first: their modes make the basis better in which the levels find theirs
         ends=ends_of(case, preload, engine) if ranges else None,
-        levels=level_damping(case, preload, found, engine.basis()) if ranges else None,
+        levels=_levels(case, preload, found, engine, springs) if ranges else None,
         preload=preload,
         springs=springs,
         modes=modes,
@@ -112,6 +114,16 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
         ),
         beyond_share=_share(springs, [j.past_end(s) for j, s in zip(structure.joints, springs, strict=True)]),
     )
+
+
+def _levels(
+    case: Case, preload: PreloadState, found: Vibration, engine: Engine, springs: Sequence[Springs[Interface]]
+) -> LevelDamping | None:
+    """Damping at levels, in a basis with the modes of joints that slip: softened ones, exact enough for shapes."""
+    if not case.study.modes.levels:
+        return None
+    engine.frequencies([replace(one, k_t=SOFTENED * one.k_t) for one in springs], SHAPE_ERROR)
+    return level_damping(case, preload, found, engine.basis())
 
 
 def _responses(
