@@ -1,15 +1,19 @@
 """Damping at levels of acceleration, in a run."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import faying
+from faying.joint.form import Form
 from faying.output import table
 from faying.study import Study, run, universal
 from faying.study.level_damping import FRICTION, REST
 from tests.helpers import studies
+
+PLATES = Path(__file__).parents[2] / "examples" / "plates-and-bolts" / "plates.toml"
 
 
 @pytest.fixture(scope="module")
@@ -106,6 +110,30 @@ def test_levels_are_those_of_the_backbone(fine, mode):
     found = run(replace(plan, modes=replace(plan.modes, levels=levels)))
     slip = found.level_slip[0, :, mode - 1]
     assert slip == pytest.approx(curve.damping[picked], rel=5e-3, abs=1e-7)
+    assert np.all(np.abs(slip / curve.damping[picked] - 1) < found.level_error[0, :, mode - 1] + 2e-3)
     # the loss of the law at rest, which the curve leaves out, moves the complex mode by as much at every level
     change = np.diff(found.level_frequencies[0, :, mode - 1])
     assert change == pytest.approx(np.diff(curve.frequency[picked]), abs=1e-4 * curve.frequency[0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("mode", [1, 3, 4])
+def test_levels_are_those_of_the_backbone_on_lapped_plates(mode):
+    """Thin laps open and slip at single points: 1 % of the damping up to 100 m/s2, within the stated error."""
+    study = Study.read(PLATES)
+    sizes = {name: 1.6 * size for name, size in study.geometry.face_size.items()}
+    plan = replace(
+        study,
+        geometry=replace(study.geometry, size=1.6 * study.geometry.size, face_size=sizes),
+        bolts=tuple(replace(bolt, preload=bolt.preload[-1:]) for bolt in study.bolts),
+        joints=tuple(replace(joint, friction=0.2, form=Form()) for joint in study.joints),
+        modes=replace(study.modes, count=5, intervals=False),
+    )
+    curve = faying.backbone(plan, mode, 0.2, (1.0, 100.0), rest_damping=0.0)
+    picked = np.flatnonzero(curve.damping > 1e-6)[::3]
+    levels = tuple(float(curve.acceleration[k]) for k in picked)
+    found = run(replace(plan, modes=replace(plan.modes, levels=levels)))
+    slip, stated = found.level_slip[0, :, mode - 1], found.level_error[0, :, mode - 1]
+    assert slip == pytest.approx(curve.damping[picked], rel=0.01)
+    assert np.all(np.abs(slip / curve.damping[picked] - 1) < stated + 2e-3)
+    assert found.level_frequencies[0, :, mode - 1] == pytest.approx(curve.frequency[picked], rel=1e-4)

@@ -87,7 +87,7 @@ class LevelModel:
             before, damping = damping, max(lost, 0.0) / (2 * np.pi * speed**2 * amplitude**2)
             error = abs(damping - before) / damping if damping > 0 else 0.0
             change = self._change(motion, cycles)
-            self._follow(motion, forces.force, speed)
+            self._follow(motion, forces.force, speed, damping)
             squared = speed**2
             softer = float(shape @ change @ shape)  # of the squared frequency, to first order
             if done == 0 and abs(softer) < SLIGHT * squared:
@@ -99,19 +99,23 @@ class LevelModel:
         softened = max(1 - (speed / float(speeds[number])) ** 2, 0.0)
         return speed / (2 * np.pi), damping, error + OF_SHAPE * float(np.sqrt(softened))
 
-    def _follow(self, motion: Array, force: Array, speed: float) -> None:
-        """Correct the mean and the higher harmonics of a motion in place by what they leave of their equations.
+    def _follow(self, motion: Array, force: Array, speed: float, damping: float) -> None:
+        """Correct a motion in place by what it leaves of its equations: mean, lag and higher harmonics.
 
-        force: of the cycle (1 + 2H, m) [N]; speed: circular frequency of the mode [rad/s]. A mode at rest whose own
-        frequency a harmonic meets is left out.
+        Args:
+            motion, force: of the cycle (1 + 2H, m) [m], [N]; the cosine of the first harmonic stays.
+            speed, damping: circular frequency of the mode [rad/s] and its ratio [-]: negative damping keeps it going.
         """
         speeds, shapes = self.slip.modes
         squares, shapes = speeds[self.rigid :] ** 2, shapes[:, self.rigid :]
-        for harmonic in (0, *range(2, HARMONICS + 1)):
+        for harmonic in range(HARMONICS + 1):
             driven = (harmonic * speed) ** 2
-            rows = [0] if harmonic == 0 else [2 * harmonic - 1, 2 * harmonic]
+            rows = [0] if harmonic == 0 else [2] if harmonic == 1 else [2 * harmonic - 1, 2 * harmonic]
             left = force[rows] - driven * motion[rows] @ self.slip.mass
+            if harmonic == 1:
+                left = left + 2 * damping * driven * motion[1:2] @ self.slip.mass
             stiff = squares - driven
+            # a mode whose own speed is near that of the harmonic is left out
             flexible = np.where(np.abs(stiff) > MET * driven, 1 / np.where(stiff == 0, 1.0, stiff), 0.0)
             motion[rows] -= (left @ shapes * flexible) @ shapes.T
 

@@ -19,7 +19,7 @@ FRICTION = (0.03, 0.12, 0.5)
 # damping ratio at rest of bolted structures of which nothing is measured: measured are 0.034 and 0.087 % on the
 # Brake-Reuss beam, 0.10 and 0.13 % on another of its kind by ring-down
 REST = (3e-4, 1e-3, 3e-3)
-MORE_MODES = 40  # of the basis, beyond those asked for, in which a mode is found again
+MORE_MODES = 150  # of the basis, beyond those asked for, in which a mode is found again
 FEW_SPRINGS = 12  # into which a law is cut for the ends of friction: they differ by factors, this changes a hundredth
 
 

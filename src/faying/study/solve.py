@@ -20,7 +20,7 @@ from faying.study.level_damping import LevelDamping, level_damping
 from faying.study.response import LoadedStructure, ResponseAtLoad
 from faying.typing import Array, Mask
 
-SOFTENED = 0.3  # of k_t: joints that slip
+SOFTENED = (0.3, 0.1)  # of k_t: joints that slip
 SHAPE_ERROR = 1e-5  # of squared frequencies: shapes are then right to its root, and damping by slip to twice that
 
 
@@ -122,7 +122,8 @@ def _levels(
     """Damping at levels, in a basis with the modes of joints that slip: softened ones, exact enough for shapes."""
     if not case.study.modes.levels:
         return None
-    engine.frequencies([replace(one, k_t=SOFTENED * one.k_t) for one in springs], SHAPE_ERROR)
+    for share in SOFTENED:
+        engine.frequencies([replace(one, k_t=share * one.k_t) for one in springs], SHAPE_ERROR)
     return level_damping(case, preload, found, engine.basis())
 
 
