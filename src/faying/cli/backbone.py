@@ -31,7 +31,7 @@ from faying.text import json_text
 @click.option(
     "--quick",
     is_flag=True,
-    help="Curves of all modes by secant passes, without harmonics; with --mode beside harmonic balance of that mode.",
+    help="Curves of all modes by secant passes, without harmonics; --mode compares one with harmonic balance.",
 )
 @click.option("--measured", multiple=True, type=click.Path(path_type=Path), help="CSV of measured points to draw.")
 @click.option(
