@@ -21,7 +21,7 @@ from faying import Material, solve_asperity  # noqa: E402  the thread limits are
 from faying.asperity_fe import AsperityResult  # noqa: E402
 from faying.asperity_fe.cases import solve_cases  # noqa: E402
 from faying.asperity_fe.drive import AsperityCase  # noqa: E402
-from faying.fe.solve import available  # noqa: E402
+from faying.numerics.solve import available  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 CAPS = [(15, 100), (20, 750), (40, 3000), (80, 6000)]

@@ -16,7 +16,7 @@ import numpy as np
 import faying
 from faying.contact.measured_heights import MeasuredHeights
 from faying.joint.joint_law import JointLaw
-from faying.joint.microslip import Microslip
+from faying.microslip.microslip import Microslip
 from faying.typing import Array
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "brake-reuss-beam"

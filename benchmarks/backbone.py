@@ -22,13 +22,13 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 import numpy as np  # noqa: E402  the thread limits are read when it is loaded
 
 from faying import Study  # noqa: E402
-from faying.fe.modes import lowest_modes  # noqa: E402
-from faying.joint.epmc import Epmc  # noqa: E402
-from faying.joint.microslip import Microslip  # noqa: E402
-from faying.joint.slip_basis import SlipBasis  # noqa: E402
-from faying.joint.slip_model import SlipJoint, SlipModel  # noqa: E402
+from faying.case.case import Case  # noqa: E402
 from faying.joint.support_check import checked_preload  # noqa: E402
-from faying.study.case import Case  # noqa: E402
+from faying.microslip.epmc import Epmc  # noqa: E402
+from faying.microslip.microslip import Microslip  # noqa: E402
+from faying.microslip.slip_basis import SlipBasis  # noqa: E402
+from faying.microslip.slip_model import SlipJoint, SlipModel  # noqa: E402
+from faying.numerics.modes import lowest_modes  # noqa: E402
 
 MODES = 15
 REPEATS = 10  # of the evaluation that is timed

@@ -65,9 +65,9 @@ def study_in(folder, loads=LOADS):
 
 def ours(folder):
     """Preloads and modes at three loads, as `faying run` solves them."""
-    from faying.study.case import Case, Progress
-    from faying.study.engine import Reanalysis
-    from faying.study.solve import solve
+    from faying.case.case import Case, Progress
+    from faying.case.engine import Reanalysis
+    from faying.case.solve import solve
 
     begin = time.process_time()
     case = Case.of(study_in(folder))
@@ -85,9 +85,9 @@ def calculix(folder):
     """The same by ccx, whose input file Faying writes."""
     import numpy as np
 
+    from faying.case.case import build
     from faying.decks import calculix as deck
-    from faying.study import build
-    from faying.study.attach import attach
+    from faying.export.attach import attach
     from tests.helpers import ccx
 
     study = study_in(folder, LOADS[1:2])

@@ -16,8 +16,8 @@ import numpy as np
 from scipy.stats import norm
 
 import faying
+from faying.case.scatter import SCORE
 from faying.study import Study
-from faying.study.scatter import SCORE
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 NOMINAL = np.array([0.5, 0.8, 0.9, 0.95])

@@ -20,8 +20,9 @@ from structures import ROOT  # noqa: E402  the thread counts come first
 
 def measured(study):
     """CPU seconds of the preload at all loads and of the whole run; what the preload took."""
+    from faying.answer.run import run
+    from faying.case.case import build
     from faying.joint.support_check import checked_preload
-    from faying.study import build, run
 
     structure = build(study)
     structure.vibrating, structure.loads, structure.rigid  # noqa: B018
@@ -38,7 +39,7 @@ def main():
     ask = argparse.ArgumentParser()
     ask.add_argument("--only", choices=("t-specimen", "brake-reuss"))
     given = ask.parse_args()
-    from faying.joint.form import Form
+    from faying.form.form import Form
     from faying.study import Study
 
     flat = Study.read(ROOT / "examples/t-specimen/study.toml")

@@ -18,8 +18,8 @@ SIZES = {20: (16, (7, 3)), 60: (22, (10, 5)), 200: (34, (15, 7)), 500: (46, (21,
 
 
 def row(size, processes, alone):
-    from faying.fe.modes import lowest_modes
-    from faying.fe.mpi import modes_over_mpi
+    from faying.mpi.modes import modes_over_mpi
+    from faying.numerics.modes import lowest_modes
 
     layers, section = SIZES[size]
     mesh = structures.bar(layers=(layers, layers), section=section)

@@ -37,8 +37,8 @@ WHO = {MILLION: ["ours", "parts", "distinct"], THREE_MILLION: ["parts"]}
 
 
 def meshed(size):
+    from faying.case.case import checked_mesh
     from faying.study import Study
-    from faying.study.case import checked_mesh
 
     if size == MILLION:
         return bar()
@@ -87,7 +87,7 @@ def joined(mesh):
 
 
 def double(mesh):
-    from faying.fe.modes import lowest_modes
+    from faying.numerics.modes import lowest_modes
 
     return solved(mesh, lowest_modes)
 
@@ -97,7 +97,7 @@ def ours(mesh):
     from functools import partial
 
     from faying.fe.elasticity import rigid_motions
-    from faying.fe.nearby import refined_modes
+    from faying.numerics.nearby import refined_modes
 
     return solved(mesh, partial(refined_modes, rigid=rigid_motions(mesh.points)))
 
@@ -108,10 +108,10 @@ def parts(mesh, alike=True):
 
     import numpy as np
 
-    from faying.fe.by_parts import PartByPart
     from faying.fe.elasticity import rigid_motions
-    from faying.fe.nearby import refined_modes
     from faying.joint.frame import unknowns_of
+    from faying.numerics.by_parts import PartByPart
+    from faying.numerics.nearby import refined_modes
 
     way = PartByPart(
         [unknowns_of(mesh.part_nodes(part)) for part in mesh.parts],

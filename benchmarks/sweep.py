@@ -24,9 +24,9 @@ OUTSIDE = ("surface.D=2.26:2.54:7", "surface.G='3e-11 m:8e-10 m:7:log'", "bolt.p
 
 def full(structure, laws, forces, count):
     """The same variant with the full matrices: frequencies of the complex modes."""
-    from faying.fe.damped import damped_modes
-    from faying.fe.modes import lowest_modes
-    from faying.study.run import SPARE_MODES
+    from faying.answer.run import SPARE_MODES
+    from faying.numerics.damped import damped_modes
+    from faying.numerics.modes import lowest_modes
 
     joints = tuple(replace(joint, law=law) for joint, law in zip(structure.joints, laws, strict=True))
     variant = replace(structure, joints=joints)
@@ -42,12 +42,12 @@ def main():
     ask.add_argument("--size", type=int, default=150, choices=sorted(EDGES))
     ask.add_argument("--checks", type=int, default=20)
     given = ask.parse_args()
+    from faying.case.case import checked_mesh, structure_of, surfaces_of
     from faying.study import Study
-    from faying.study.axes import Grid, axis_of
-    from faying.study.case import checked_mesh, structure_of, surfaces_of
-    from faying.study.recipe import Recipe
-    from faying.study.sweep import evaluate
-    from faying.study.trainer import Trainer
+    from faying.sweeps.axes import Grid, axis_of
+    from faying.sweeps.recipe import Recipe
+    from faying.sweeps.sweep import evaluate
+    from faying.sweeps.trainer import Trainer
 
     plan = Study.read(ROOT / "examples/t-specimen/study.toml")
     edge, at_joint = EDGES[given.size]

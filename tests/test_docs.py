@@ -60,13 +60,13 @@ def test_commands(page, checkout):
             continue
         if line == "app":  # it serves until it is ended; tests/app has it
             continue
-        # no cluster is here: tests/study has one; twelve runs are minutes: tests/joint/test_waviness.py has the draws
+        # no cluster is here: tests/study has one; twelve runs are minutes: tests/form/test_waviness.py has the draws
         if "--dask" in shlex.split(line) or "waviness_seed" in line:
             named, *words = shlex.split(line)
             command = cli.get_command(click.Context(cli), named)
             command.make_context(named, words)  # raises where the words are wrong
             continue
-        if line == "run lap.toml":  # a minute long; tests/study/test_new.py runs such a study
+        if line == "run lap.toml":  # a minute long; tests/setup/test_new.py runs such a study
             assert any(words.startswith("new ") and "lap.toml" in words for words in commands(page))
             continue
         done = subprocess.run(

@@ -16,7 +16,7 @@ from faying.cli.main import main
 from faying.columns import read_numbers
 from faying.errors import ReadError
 from faying.files import together, uninterrupted, write_atomically
-from faying.study import template
+from faying.setup import template
 from tests.helpers.studies import write
 
 
@@ -52,7 +52,7 @@ def test_a_folder_that_is_not_there(tmp_path):
 LIMITED = """
 import resource, sys
 sys.dont_write_bytecode = True  # Python would leave cut files of bytecode, and the packages would be broken
-from faying.study import case
+from faying.case import case
 
 def meshed(study, of=case.checked_mesh):
     mesh = of(study)  # the mesher has a process and a file of its own

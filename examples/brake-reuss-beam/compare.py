@@ -6,8 +6,10 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
+from faying.answer.run import run
+from faying.case.case import build
 from faying.result import Result
-from faying.study import Study, build, run
+from faying.study import Study
 
 HERE = Path(__file__).parent
 NAMES = ("flat", "measured-form")

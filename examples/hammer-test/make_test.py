@@ -12,14 +12,15 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.fe.damped import damped_modes
-from faying.fe.modes import lowest_modes
+from faying.case.case import build
+from faying.case.response import LoadedStructure
 from faying.joint.tighten import tighten
 from faying.measured.frf import FRF
 from faying.measured.mapping import Transform
 from faying.measured.uff_write import write_uff
-from faying.study import Study, build
-from faying.study.response import LoadedStructure
+from faying.numerics.damped import damped_modes
+from faying.numerics.modes import lowest_modes
+from faying.study import Study
 
 HERE = Path(__file__).parent
 POINTS = 8

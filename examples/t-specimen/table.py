@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 import faying
-from faying.joint.form import Form
+from faying.form.form import Form
 from faying.output import table
 from faying.result.result import preload_slope
 from faying.study import Study

@@ -1,6 +1,14 @@
 # The public names. Each is imported when it is first used (lazy_loader reads this file).
 from . import contact as contact
+from .answer.bolt_sheet import bolt_sheet as bolt_sheet
+from .answer.level_curves import LevelCurves as LevelCurves
+from .answer.level_curves import level_curves as level_curves
+from .answer.run import run as run
 from .asperity_fe import solve_asperity as solve_asperity
+from .backbones.backbone import backbone as backbone
+from .bolt.bolt import Bolt as Bolt
+from .bolt.bolt import Washer as Washer
+from .bolt.solid_bolt import SolidBolt as SolidBolt
 from .contact.compare import Comparison as Comparison
 from .contact.half_space import HalfSpace as HalfSpace
 from .contact.jk import JK as JK
@@ -15,26 +23,24 @@ from .errors import FayingError as FayingError
 from .errors import InputError as InputError
 from .errors import NotConverged as NotConverged
 from .errors import ReadError as ReadError
+from .export.attach import attach as attach
 from .fe.mesh import Mesh as Mesh
+from .form.fit import fit_form as fit_form
+from .form.flatness import minimum_zone as minimum_zone
+from .form.form import Form as Form
+from .form.gap_map import FaceMap as FaceMap
+from .form.gap_map import GapMap as GapMap
+from .form.waviness import Waviness as Waviness
 from .halfspace import solve_half_space as solve_half_space
 from .identify.identification import Identification as Identification
 from .identify.load import load as load
 from .identify.of_study import identify as identify
 from .identify.predict import predict as predict
 from .identify.prediction import Prediction as Prediction
-from .joint.bolt import Bolt as Bolt
-from .joint.bolt import Washer as Washer
-from .joint.flatness import minimum_zone as minimum_zone
-from .joint.form import Form as Form
-from .joint.form_fit import fit_form as fit_form
-from .joint.gap_map import FaceMap as FaceMap
-from .joint.gap_map import GapMap as GapMap
 from .joint.joint import Joint as Joint
-from .joint.solid_bolt import SolidBolt as SolidBolt
 from .joint.state import State as State
 from .joint.state import VibrationModes as VibrationModes
 from .joint.structure import Structure as Structure
-from .joint.waviness import Waviness as Waviness
 from .materials import CATALOGUE as CATALOGUE
 from .materials import RIGID as RIGID
 from .materials import ContactPair as ContactPair
@@ -53,14 +59,6 @@ from .result import Result as Result
 from .result import read_model_modes as read_model_modes
 from .result.backbone import Backbone as Backbone
 from .study import Study as Study
-from .study import run as run
-from .study.attach import attach as attach
-from .study.axes import axis_of as axis_of
-from .study.backbone import backbone as backbone
-from .study.bolt_sheet import bolt_sheet as bolt_sheet
-from .study.level_curves import LevelCurves as LevelCurves
-from .study.level_curves import level_curves as level_curves
-from .study.sweep import sweep as sweep
 from .surface import synthesize as synthesize
 from .surface.combine import Combined as Combined
 from .surface.combine import combine as combine
@@ -71,5 +69,7 @@ from .surface.roughness import Roughness as Roughness
 from .surface.scan import Profile as Profile
 from .surface.scan import Scan as Scan
 from .surface.write import write_scan as write_scan
+from .sweeps.axes import axis_of as axis_of
+from .sweeps.sweep import sweep as sweep
 
 __version__: str

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
-from faying.study import template
+from faying.setup import template
 from faying.surface.synthesize import spectral
 from faying.surface.write import write_scan
 from tests.helpers.browser import WAIT, opened, until

@@ -135,7 +135,7 @@ def test_condensing_the_elastic_rest_changes_nothing():
     part, rest = (Body(elements=np.flatnonzero(m), **settings_) for m in (near, ~near))
     far = FarField(body=rest, border=shared(part, rest), solver="superlu")
     small = Body(elements=np.flatnonzero(near), far=far.spring, **settings_)
-    from faying.fe.solve import factorise
+    from faying.numerics.solve import factorise
 
     load = np.zeros(whole.size)
     load[whole.touching[:3]] = -1e3

@@ -8,8 +8,8 @@ from click.testing import CliRunner
 
 import faying
 from faying.cli.faces import command
-from faying.fe.mesh_facts import mesh_facts
-from tests.fe.test_face_facts import box, written
+from faying.geometry.mesh_facts import mesh_facts
+from tests.geometry.test_face_facts import box, written
 from tests.helpers.boxes import row
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "two-blocks"

@@ -10,7 +10,7 @@ from faying.cli.main import main
 from faying.cli.run import text
 from faying.contact.two_faces import faces_of
 from faying.result import Result
-from faying.study import template
+from faying.setup import template
 from faying.surface.fractal import fit_fractal
 from faying.surface.read import read_scan
 

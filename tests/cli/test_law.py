@@ -133,7 +133,7 @@ def test_faults_are_told(words: list[str], message: str) -> None:
 def test_a_law_on_a_scan_shows_what_the_surface_says(tmp_path: Path) -> None:
     """D and G with the intervals that `faying surface` prints, and its remarks."""
     from faying import fit_fractal, read_scan
-    from faying.study import template
+    from faying.setup import template
     from faying.units import show
 
     template.surface(tmp_path / "s.x3p")
@@ -167,7 +167,7 @@ def test_conductance_goes_with_the_stiffness(tmp_path: Path) -> None:
 
 
 def test_conductance_of_several_laws_of_a_scan(tmp_path: Path) -> None:
-    from faying.study import template
+    from faying.setup import template
 
     template.surface(tmp_path / "s.x3p")
     words = (

@@ -111,7 +111,7 @@ def test_init_keeps_what_is_not_its_own(tmp_path, capsys):
 
 
 def test_a_run_that_fails_leaves_no_folder(tmp_path, capsys):
-    from faying.study.template import write
+    from faying.setup.template import write
 
     path = tmp_path / "study.toml"
     write(path)

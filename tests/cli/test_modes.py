@@ -8,7 +8,7 @@ from scipy.io import mmwrite
 from scipy.sparse import load_npz
 
 from faying.cli import main
-from faying.fe.mpi import TOLERANCE
+from faying.mpi.modes import TOLERANCE
 from tests.helpers.mpi import mpi as mpi
 from tests.helpers.studies import write
 

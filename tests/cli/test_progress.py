@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from faying.answer.run import run, stages
 from faying.cli import progress
 from faying.cli.main import cli
 from faying.cli.progress import Shown
 from faying.progress import duration
-from faying.study import Study, run
-from faying.study.run import stages
+from faying.study import Study
 
 
 class Clock:

@@ -17,7 +17,7 @@ from faying.halfspace.solve import halved_map, refined_map
 from faying.halfspace.spots import Spots, solve_with_size
 from faying.hardness import VickersHardness
 from faying.joint.joint_law import JointLaw
-from faying.study import template
+from faying.setup import template
 from faying.surface.scan import Scan
 
 ROOT = Path(__file__).parents[2]

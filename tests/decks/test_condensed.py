@@ -10,7 +10,7 @@ from faying.decks.deck import CondensedDeck
 from faying.decks.programs import CONDENSED, module_of
 from faying.decks.system import System
 from faying.decks.write import write_condensed
-from faying.joint.condensed import carried
+from faying.export.condensed import carried
 
 NODES = (7, 12)
 

@@ -11,7 +11,7 @@ import faying
 from faying.fe.attach import mean_motion
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
-from faying.fe.modes import lowest_modes
+from faying.numerics.modes import lowest_modes
 from tests.helpers.boxes import block
 from tests.helpers.one_point import one_point
 

@@ -33,7 +33,7 @@ def test_the_readers_are_seen_to_ask_for_every_key_of_the_template(reference, tm
 
     from faying_reference.study_keys import NAME, recorded
 
-    from faying.study.template import TEXT
+    from faying.setup.template import TEXT
 
     found = {key.path for key in recorded().values()}
     data = tomllib.loads(TEXT)

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from faying.study import Study, run
+from faying.answer.run import run
+from faying.study import Study
 
 ROOT = Path(__file__).parent.parent.parent
 EXAMPLE = ROOT / "examples" / "brake-reuss-beam"
@@ -41,7 +42,7 @@ def test_without_the_measurement_it_says_where_to_get_it(folder):
 
 def test_the_joint_has_the_area_of_the_published_mesh(folder):
     """2921 mm2 in the reduced published mesh, whose holes are polygons: within 0.3 %."""
-    from faying.fe.cad import read_step
+    from faying.geometry.cad import read_step
 
     areas = {
         face.name: face.mass for solid in read_step(folder / "brake-reuss-beam.step").solids for face in solid.faces

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from faying.case.case import build, checked_mesh
 from faying.fe.faces import face_centre
 from faying.joint.modal import ModesChoice
 from faying.joint.tighten import tighten
-from faying.study import Study, build
-from faying.study.case import checked_mesh
+from faying.study import Study
 
 STUDY = Path(__file__).parents[2] / "examples/solid-bolt/study.toml"
 
@@ -55,7 +55,7 @@ def test_a_bolt_that_is_no_part_is_named(study):
 
 def test_the_bolt_moves_with_the_blocks(structure):
     """Tight, all three parts have but the six rigid motions."""
-    from faying.fe.modes import lowest_modes
+    from faying.numerics.modes import lowest_modes
 
     found = tighten(structure, structure.assembly(), [2e3])
     K, _ = structure.joined(structure.springs(found.pressures))
@@ -67,9 +67,9 @@ def test_the_bolt_moves_with_the_blocks(structure):
 @pytest.mark.slow
 def test_a_sweep_over_its_preload(study, tmp_path):
     """Against full solutions of the same study, at an end and between the ends."""
-    from faying.study import run
-    from faying.study.axes import axis_of
-    from faying.study.sweep import sweep
+    from faying.answer.run import run
+    from faying.sweeps.axes import axis_of
+    from faying.sweeps.sweep import sweep
 
     fine = dict.fromkeys(("bolt.head", "bolt.nut", "upper.seat", "lower.seat"), 4e-3)
     coarse = replace(study.geometry, size=15e-3, face_size={"upper.joint": 7e-3, **fine})

@@ -4,7 +4,7 @@ import pytest
 import faying
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.mesh import Mesh
-from faying.fe.modes import lowest_modes
+from faying.numerics.modes import lowest_modes
 from tests.helpers.boxes import block, stack
 
 STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0)

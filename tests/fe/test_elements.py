@@ -11,9 +11,9 @@ from faying.fe.elements import KINDS, SOLIDS
 from faying.fe.faces import face_centre
 from faying.fe.interface import join
 from faying.fe.mesh import Mesh, least_jacobian
-from faying.fe.modes import lowest_modes
 from faying.fe.sides import all_sides, nodes_of, skin
 from faying.joint.structure import bond
+from faying.numerics.modes import lowest_modes
 from tests.helpers.boxes import SOLID_KINDS, block, row
 from tests.helpers.loads import face_load
 

@@ -9,12 +9,12 @@ import faying
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
 from faying.fe.mesh import Mesh
-from faying.fe.modes import lowest_modes
 from faying.fe.overlap import overlap
 from faying.fe.sides import sides_on
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Structure
+from faying.numerics.modes import lowest_modes
 from tests.helpers.boxes import SOLID_KINDS, block, row
 from tests.helpers.loads import bolt_load
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import faying
-from faying.fe.damped import damped_modes
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
-from faying.fe.modes import lowest_modes
 from faying.fe.response import Vibration, frequency_response
+from faying.numerics.damped import damped_modes
+from faying.numerics.modes import lowest_modes
 from tests.helpers.boxes import stack
 
 BAR = faying.Material(name="bar", E=200e9, nu=0.0, density=7800.0)

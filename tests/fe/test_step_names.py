@@ -6,10 +6,10 @@ import re
 import pytest
 
 import faying
-from faying.fe.cad import kernel, read_parts
-from faying.fe.geometry import mesh_step
-from faying.fe.products import decoded, read_products
-from faying.fe.selectors import Selector
+from faying.geometry.cad import kernel, read_parts
+from faying.geometry.geometry import mesh_step
+from faying.geometry.products import decoded, read_products
+from faying.geometry.selectors import Selector
 
 
 def assembly(tmp_path, *parts, loose=False):

@@ -7,9 +7,9 @@ from scipy.linalg import eigh
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.elements import KINDS
 from faying.fe.mesh import Mesh
-from faying.fe.modes import lowest_modes
 from faying.fe.surplus import Surplus, _higher
 from faying.materials import CATALOGUE
+from faying.numerics.modes import lowest_modes
 from tests.helpers.boxes import block
 
 STEEL = CATALOGUE["45 steel"]

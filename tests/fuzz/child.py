@@ -58,7 +58,7 @@ def record(path):
 
 
 def form(path):
-    from faying.joint.gap_map import read_heights
+    from faying.form.gap_map import read_heights
 
     return len(read_heights(Path(path))[1])
 

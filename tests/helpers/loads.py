@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from faying.bolt.bolt import Bolt
 from faying.fe.faces import sampled
-from faying.joint.bolt import Bolt
 
 
 def face_load(points, blocks, axis_point, direction):

@@ -7,7 +7,7 @@ from functools import cache
 import pytest
 
 import faying
-from faying.fe.mpi import programs
+from faying.mpi.modes import programs
 
 
 @cache

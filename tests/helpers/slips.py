@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from faying.joint.microslip import Microslip
-from faying.joint.slip_model import SlipJoint, SlipModel
+from faying.microslip.microslip import Microslip
+from faying.microslip.slip_model import SlipJoint, SlipModel
 
 
 def slider(stiffness, limits, *, normal=1.0):

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from faying.study import template
+from faying.setup import template
 
 START, END = template.TEXT.index("# The rough surface"), template.TEXT.index('[[joint]]\nname = "joint"')
 TEXT = (

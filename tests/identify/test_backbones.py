@@ -11,8 +11,10 @@ import pytest
 import xarray
 
 import faying
+from faying.backbones.backbone import median_of
 from faying.cli import main
 from faying.errors import InputError
+from faying.form.form import Form
 from faying.identify import follow
 from faying.identify import predict as module
 from faying.identify import prediction_figure as drawing
@@ -20,13 +22,11 @@ from faying.identify.backbones import Backbones
 from faying.identify.ensemble import Ensemble
 from faying.identify.follow import Follower, sliding
 from faying.identify.prediction import Prediction
-from faying.joint.form import Form
 from faying.output import prediction as tables
 from faying.output.report_predicted import predicted
 from faying.progress import silent
 from faying.study import Study
-from faying.study.backbone import median_of
-from faying.study.trainer import Trainer
+from faying.sweeps.trainer import Trainer
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "two-blocks"
 LAW = """

@@ -45,9 +45,9 @@ def twin(plan, truth=TRUTH, seed=3, model=None):
         uncertain=None,
         test=None,
     )
-    from faying.study.case import Case, Progress
-    from faying.study.engine import Reanalysis
-    from faying.study.solve import solve
+    from faying.case.case import Case, Progress
+    from faying.case.engine import Reanalysis
+    from faying.case.solve import solve
 
     case = Case.of(other)
     joints = tuple(replace(j, law=replace(j.law, scale=truth["stiffness"])) for j in case.structure.joints)
@@ -72,7 +72,7 @@ def twin(plan, truth=TRUTH, seed=3, model=None):
 
 
 def plan_points(plan):
-    from faying.study.case import checked_mesh
+    from faying.case.case import checked_mesh
 
     points = checked_mesh(plan).points
     directions = np.array([[1, 1, 1], [-1, 1, -1], [1, -1, -1]])

@@ -8,18 +8,19 @@ import pytest
 import xarray
 
 import faying
+from faying.answer.run import run
 from faying.distribution import Distribution
 from faying.errors import FayingError, InputError
-from faying.fe.damped import damped_modes
-from faying.fe.modes import lowest_modes
 from faying.identify import evaluate
 from faying.identify import predict as module
 from faying.identify.ensemble import Ensemble, Inputs
 from faying.identify.evaluate import Evaluator, Reduced
 from faying.identify.prediction import Prediction
 from faying.joint.modal import ModesChoice
-from faying.joint.reduce import Reduction
-from faying.study import Study, run
+from faying.numerics.damped import damped_modes
+from faying.numerics.modes import lowest_modes
+from faying.reduction.reduce import Reduction
+from faying.study import Study
 from tests.helpers.cluster import cluster_of
 from tests.helpers.studies import write
 
@@ -171,7 +172,7 @@ def test_an_interrupted_prediction_goes_on(plan, tmp_path, monkeypatch):
     assert not out.with_name("p.nc.part").exists()
 
 
-@pytest.mark.slow  # the same cluster runs a sweep in tests/study/test_sweep.py
+@pytest.mark.slow  # the same cluster runs a sweep in tests/sweeps/test_sweep.py
 def test_a_cluster_gives_the_same_when_a_worker_dies_half_way(plan, tmp_path, monkeypatch):
     """To the last bit, in the same bases."""
     pytest.importorskip("distributed", reason="the extra dask is not installed")
@@ -261,7 +262,7 @@ def test_what_was_cut_is_said(tmp_path):
 
 def test_the_second_degree_of_a_random_form_has_the_flatness_of_its_tolerance():
     """The shapes of [uncertain] flatness: over one face, their mean flatness is two thirds of the tolerance."""
-    from faying.joint.flatness import minimum_zone
+    from faying.form.flatness import minimum_zone
     from faying.study.keys.uncertain import SHAPE_SD
 
     generator = np.random.default_rng(5)

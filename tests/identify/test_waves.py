@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import faying
+from faying.answer.run import run
 from faying.identify.ensemble import Ensemble
 from faying.identify.evaluate import LIMIT
 from faying.study import Study
 from faying.study.keys import test as keys
-from faying.study.run import run
 from tests.helpers.studies import write
 
 MEASURED = keys.TestChoice(

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import faying
+from faying.bolt.bolt import Bolt, Washer
 from faying.fe.holes import holes
 from faying.fe.interface import join
 from faying.fe.mesh import Mesh
 from faying.fe.sides import sides_on
-from faying.joint.bolt import Bolt, Washer
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Structure

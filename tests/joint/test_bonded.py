@@ -8,15 +8,15 @@ from click.testing import CliRunner
 from scipy.linalg import eigh
 
 import faying
+from faying.case.case import build, checked_mesh
 from faying.cli.main import cli
 from faying.fe.bonded import bonded_mesh
 from faying.fe.elasticity import assemble
 from faying.fe.mesh import Mesh
-from faying.fe.solve import BY_PARTS
-from faying.joint.part_shares import PartShares
-from faying.study import Study, build
-from faying.study.case import checked_mesh
-from tests.fe.test_face_facts import box, written
+from faying.numerics.solve import BY_PARTS
+from faying.reduction.part_shares import PartShares
+from faying.study import Study
+from tests.geometry.test_face_facts import box, written
 from tests.helpers.boxes import row
 
 STEEL = faying.CATALOGUE["S355"]

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 import faying
+from faying.bolt.bolt import Bolt
+from faying.bolt.vdi2230 import cone_angle, cone_compliance, embedding_guide
 from faying.fe.interface import join
-from faying.fe.modes import lowest_modes
-from faying.joint.bolt import Bolt
 from faying.joint.clamping import clamping, stack_of
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Structure
-from faying.joint.vdi2230 import cone_angle, cone_compliance, embedding_guide
+from faying.numerics.modes import lowest_modes
 from tests.helpers.laws import Given
 from tests.helpers.rings import discs
 
@@ -273,8 +273,8 @@ def test_a_face_that_is_a_ring_is_a_seat():
 
 
 def meshed(**changes):
+    from tests.bolt.test_solid_bolt import structure as with_solid_bolts
     from tests.helpers.voxels import bolted
-    from tests.joint.test_solid_bolt import structure as with_solid_bolts
 
     made = with_solid_bolts(bolted(kind="hex8"), **changes)
     at = made.springs([np.full(len(j.interface.weights), 5e6) for j in made.joints])

@@ -7,9 +7,9 @@ from scipy.sparse import csr_array, diags_array
 import faying
 from faying.contact.half_space import HalfSpace
 from faying.contact.tabulated import TabulatedLaw
-from faying.fe.damped import damped_modes
-from faying.fe.modes import lowest_modes
 from faying.joint.joint_law import JointLaw
+from faying.numerics.damped import damped_modes
+from faying.numerics.modes import lowest_modes
 from faying.surface.scan import Scan
 from tests.helpers.scans import gaussian
 

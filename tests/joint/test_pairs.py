@@ -9,8 +9,8 @@ import pytest
 import faying
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
-from faying.fe.modes import lowest_modes
 from faying.joint.pairs import consistent
+from faying.numerics.modes import lowest_modes
 from tests.helpers import models
 from tests.helpers.models import FACES, K_N, K_T, pairs_of, springs, two
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from faying.bolt.bolt import Bolt
 from faying.errors import InputError
-from faying.fe.by_parts import PartByPart
-from faying.fe.memory import in_single
-from faying.fe.solve import available
 from faying.joint.attachments import Support
-from faying.joint.bolt import Bolt
+from faying.numerics.by_parts import PartByPart
+from faying.numerics.memory import in_single
+from faying.numerics.solve import available
 from tests.helpers.plates import STEEL, plates
 
 FACES = ("high.top", "low.bottom")

@@ -4,13 +4,13 @@ import pytest
 import faying
 from faying.fe.faces import face_centre
 from faying.fe.interface import join
-from faying.fe.modes import lowest_modes
 from faying.joint import preload as module
 from faying.joint.equilibrium import Equilibrium
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.loads import preload_index
 from faying.joint.structure import Structure
+from faying.numerics.modes import lowest_modes
 from tests.helpers.boxes import stack
 from tests.helpers.loads import bolt_load, face_load
 

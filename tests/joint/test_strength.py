@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 import faying
+from faying.case.case import build
 from faying.joint.joint_law import JointLaw
 from faying.joint.strength import bolt_notes, material_notes, pressure_notes
-from faying.study import Study, build
-from faying.study.template import write
+from faying.setup.template import write
+from faying.study import Study
 from tests.helpers.laws import Given
 
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import faying
+from faying.case.case import Case
 from faying.joint.modal import ModesChoice
 from faying.study import Study
-from faying.study.case import Case
 from tests.helpers.plates import LAW, STEEL, stacked
 from tests.helpers.studies import write
 

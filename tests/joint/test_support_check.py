@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 import faying
+from faying.bolt.bolt import Bolt
 from faying.fe.interface import join
-from faying.fe.modes import lowest_modes
 from faying.joint.attachments import Support
-from faying.joint.bolt import Bolt
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions, checked_preload, open_joints
+from faying.numerics.modes import lowest_modes
 from tests.helpers.boxes import stack
 from tests.helpers.laws import Given
 

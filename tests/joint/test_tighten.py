@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import faying
-from faying.joint.bolt import Bolt
+from faying.bolt.bolt import Bolt
 from faying.joint.tighten import tighten
 from tests.helpers.laws import Given
 from tests.helpers.plates import STEEL, plates, stacked

@@ -224,7 +224,7 @@ def test_a_report_is_small(address):
 def test_the_report_of_the_t_specimen_is_below_3_mb(tmp_path):
     from pathlib import Path
 
-    from faying.study import run
+    from faying.answer.run import run
 
     found = run(Path(__file__).parents[2] / "examples" / "t-specimen" / "study.toml")
     assert len(report.html(found).encode()) < 3e6

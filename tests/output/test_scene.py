@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from faying.fe.cad import read_step
 from faying.fe.face_map import joint_map, projection, quartered
+from faying.geometry.cad import read_step
 from faying.output import scene as scenes
 from faying.output.scene.text import to_dict
 from tests.helpers.boxes import stack

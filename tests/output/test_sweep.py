@@ -6,9 +6,9 @@ from matplotlib.figure import Figure
 
 import faying
 from faying.output.figures import sweep as drawing
-from faying.study.axes import axis_of
-from faying.study.sweep_files import Sweep
 from faying.style import save
+from faying.sweeps.axes import axis_of
+from faying.sweeps.files import Sweep
 
 
 def made(*texts, modes=3):

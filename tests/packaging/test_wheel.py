@@ -51,7 +51,7 @@ def test_one_version_and_one_licence_everywhere():
 
 
 def test_the_container_installs_the_libraries_that_the_message_names():
-    from faying.fe.cad import LIBRARIES
+    from faying.geometry.cad import LIBRARIES
 
     needed = LIBRARIES["Debian, Ubuntu"].removeprefix("apt-get install ").split()
     text = (ROOT / "Dockerfile").read_text()

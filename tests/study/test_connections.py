@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import faying
-from faying.joint.bolt import torque_to_preload
+from faying.bolt.bolt import torque_to_preload
 from faying.study import Study
 from tests.helpers.studies import TEXT
 

@@ -12,9 +12,9 @@ import pytest
 import faying
 from faying.cli.main import COMMANDS, main
 from faying.contact.build import laws
-from faying.fe.memory import check_modes
 from faying.fe.response import frequency_response
-from faying.joint.form import PARAMETERS
+from faying.form.form import PARAMETERS
+from faying.numerics.memory import check_modes
 from faying.study import Study
 from tests.helpers.meshfiles import STUDY
 

@@ -7,11 +7,14 @@ import numpy as np
 import pytest
 
 import faying
+from faying.answer.run import run
+from faying.case import case
+from faying.case.case import build
 from faying.cli import main
-from faying.fe.selectors import Selector
-from faying.study import Study, build, case, run
-from faying.study.axes import axis_of
-from faying.study.sweep import sweep
+from faying.geometry.selectors import Selector
+from faying.study import Study
+from faying.sweeps.axes import axis_of
+from faying.sweeps.sweep import sweep
 from tests.helpers.studies import write
 
 IN_FULL = {"density": "3e9 1/m^2", "radius": "60 um", "sigma": "0.5 um"}

@@ -8,7 +8,8 @@ from click.testing import CliRunner
 
 from faying.app.project import Project
 from faying.cli.main import cli
-from faying.study import Study, template
+from faying.setup import template
+from faying.study import Study
 from tests.helpers.results import small_result
 
 
@@ -25,7 +26,7 @@ def folder(tmp_path):
 
 
 def test_two_studies_in_one_folder_have_two_folders_of_results(folder, monkeypatch):
-    monkeypatch.setattr("faying.study.run", lambda *_, **__: small_result())
+    monkeypatch.setattr("faying.answer.run.run", lambda *_, **__: small_result())
     monkeypatch.setattr("faying.output.report.write", lambda result, hidden: [result.save(hidden / "result.nc")])
     first = call("run", folder / "study.toml").output
     written = {path: path.read_bytes() for path in (folder / "results").iterdir()}

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 import faying
-from faying.joint.form import Form
-from faying.joint.machining import ASSUMED, GAUSSIAN, PROCESSES
+from faying.answer.run import run
+from faying.case.case import build
+from faying.case.changed import TOLERANCE
+from faying.form.form import Form
+from faying.form.machining import ASSUMED, GAUSSIAN, PROCESSES
 from faying.joint.modal import ModesChoice
-from faying.study import Study, build, run
-from faying.study.changed import TOLERANCE
+from faying.study import Study
 from tests.helpers.studies import write
 
 

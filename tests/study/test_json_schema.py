@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from faying.cli.main import main
-from faying.study import template
-from tests.fe.test_face_facts import box, written
+from faying.setup import template
+from tests.geometry.test_face_facts import box, written
 
 jsonschema = pytest.importorskip("jsonschema", reason="the group dev has it")
 ROOT = Path(__file__).parents[2]
@@ -46,7 +46,7 @@ def test_it_accepts_every_example(path):
 
 
 def test_it_accepts_what_init_and_new_write(tmp_path):
-    from faying.study import new
+    from faying.setup import new
 
     assert accepts(base())
     step = written(tmp_path / "two.step", box((0, 0, 0), (40, 20, 10), "a"), box((0, 0, 10), (40, 20, 20), "b"))

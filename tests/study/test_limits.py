@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import faying
-from faying.joint.face_axes import FaceAxes
-from faying.joint.form import Form
-from faying.study import check
+from faying.form.face_axes import FaceAxes
+from faying.form.form import Form
+from faying.setup import check
 
 BLOCKS = Path(__file__).parents[2] / "examples" / "two-blocks"
 TEXT = (BLOCKS / "study.toml").read_text()

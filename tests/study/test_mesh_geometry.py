@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import faying
+from faying.answer.run import run
 from faying.fe.elasticity import assemble
-from faying.fe.modes import lowest_modes
-from faying.study import Study, run
+from faying.numerics.modes import lowest_modes
+from faying.study import Study
 from tests.helpers import meshfiles
 from tests.helpers.boxes import row
 

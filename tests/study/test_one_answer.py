@@ -9,13 +9,14 @@ import pytest
 from click.testing import CliRunner
 
 import faying
+from faying.case.case import checked_laws, surfaces_of
 from faying.cli.law import command as law_command
 from faying.identify.ensemble import Ensemble
-from faying.study import Study, template
-from faying.study.axes import Grid, axis_of
-from faying.study.case import checked_laws, surfaces_of
-from faying.study.reach import law_reach
-from faying.study.recipe import Recipe
+from faying.setup import template
+from faying.setup.reach import law_reach
+from faying.study import Study
+from faying.sweeps.axes import Grid, axis_of
+from faying.sweeps.recipe import Recipe
 from tests.helpers import meshfiles
 from tests.helpers.models import two
 

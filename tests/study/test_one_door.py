@@ -9,11 +9,11 @@ import pytest
 from click.testing import CliRunner
 
 import faying
+from faying.case.case import Case
 from faying.cli.law import command as law_command
 from faying.contact.build import AUTO, build, kinds
 from faying.decks.included import included
 from faying.study import Study
-from faying.study.case import Case
 from faying.study.keys.surface import SurfaceChoice
 from faying.study.part_folder import fingerprint
 from tests.helpers import meshfiles
@@ -81,7 +81,7 @@ def test_the_source_of_a_material_is_kept_and_shown(folder):
     plan = study(folder, material={"mine": own | {"source": "data sheet 7"}})
     assert plan.materials["mine"].source == "data sheet 7"
     used = replace(plan, parts=dict.fromkeys(plan.parts, "mine"))
-    from faying.study.run import _sources
+    from faying.answer.run import _sources
 
     assert "material mine: data sheet 7" in _sources(Case.of(used))
 

@@ -8,10 +8,12 @@ import pytest
 from click.testing import CliRunner
 
 import faying
+from faying.answer.run import run
+from faying.bolt.bolt import FittedBolt
+from faying.case.case import build
 from faying.cli.main import cli
-from faying.fe.selectors import Selector
-from faying.joint.bolt import FittedBolt
-from faying.study import Study, build, run
+from faying.geometry.selectors import Selector
+from faying.study import Study
 from tests.helpers.assemblies import bracket, flanges
 from tests.helpers.proposed import proposed
 

@@ -5,9 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from faying.study import Study, backbone, run
-from faying.study import beside as other_laws
-from faying.study.case import Case, surfaces_of
+from faying.answer.run import run
+from faying.backbones import backbone
+from faying.case import beside as other_laws
+from faying.case.case import Case, surfaces_of
+from faying.study import Study
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.keys.beside import BesideChoice
 from faying.study.keys.law import LawChoice

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 import faying
-from faying.fe.solve import available
-from faying.study import Study, build, run
+from faying.answer.run import run
+from faying.case.case import build
+from faying.numerics.solve import available
+from faying.study import Study
 from tests.helpers.studies import write
 
 MORE = """

@@ -5,9 +5,9 @@ import tomllib
 import pytest
 
 import faying
-from faying.fe.selectors import Selector
+from faying.case.case import checked_mesh
+from faying.geometry.selectors import Selector
 from faying.study import Study
-from faying.study.case import checked_mesh
 from faying.study.keys.geometry import GeometryChoice, with_faces
 from tests.helpers.boxes import row
 from tests.helpers.studies import write

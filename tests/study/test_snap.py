@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import faying
-from faying.fe.modes import lowest_modes
-from faying.study import Study, build
+from faying.case.case import build
+from faying.numerics.modes import lowest_modes
+from faying.study import Study
 from tests.helpers import meshfiles
 from tests.helpers.boxes import row
 

@@ -9,13 +9,13 @@ from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import spsolve
 
 import faying
+from faying.bolt.solid_bolt import SolidBolt
 from faying.decks.matrices import arranged, read_matrices
-from faying.fe.constraint import constrain
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
 from faying.fe.mesh import Mesh
-from faying.fe.modes import lowest_modes
-from faying.joint.solid_bolt import SolidBolt
+from faying.numerics.constraint import constrain
+from faying.numerics.modes import lowest_modes
 from tests.helpers import ccx
 from tests.helpers.boxes import SOLID_KINDS, block, row
 from tests.helpers.voxels import bolted

@@ -18,7 +18,7 @@ import faying
 from faying.decks import calculix, mapdl, nastran
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
-from faying.fe.modes import lowest_modes
+from faying.numerics.modes import lowest_modes
 from tests.helpers import ccx, meshfiles, readers
 from tests.helpers.loads import face_load
 from tests.helpers.models import FACES, deck_of, two
@@ -123,9 +123,9 @@ def test_calculix_runs_the_contact_table(tmp_path):
         scan_area=16e-6,
         pair=faying.ContactPair(faying.CATALOGUE["45 steel"], faying.CATALOGUE["45 steel"]),
     )
+    from faying.export.attach import _contact
     from faying.joint.joint_law import JointLaw
     from faying.joint.pairs import lumped
-    from faying.study.attach import _contact
     from faying.study.keys.joint import JointChoice
 
     mesh = two(("hex8", "hex8"), ((3, 2), (3, 2)), numbers=False)
@@ -311,8 +311,8 @@ def calculix_model(mesh, materials):
 @needs_ccx
 def test_the_t_specimen_in_calculix(tmp_path):
     """From STEP to mesh, from mesh to .inp, from there with `attach` to a deck that CalculiX solves: six digits."""
-    from faying.fe.geometry import mesh_step
-    from faying.study.attach import attach
+    from faying.export.attach import attach
+    from faying.geometry.geometry import mesh_step
 
     step = HERE.parent.parent / "examples" / "t-specimen" / "t-specimen.step"
     made = mesh_step(step, size=0.03, local_size={"upper.joint": 0.02})
@@ -351,8 +351,8 @@ def test_the_t_specimen_in_calculix(tmp_path):
 @needs_ccx
 def test_modes_of_matrices_that_calculix_stores(tmp_path):
     """Bare parts stored by MATRIXSTORAGE, the joint added here: the frequencies of CalculiX with SPRING2."""
-    from faying.study.attach import attach
-    from faying.study.bare import modes_with_joint
+    from faying.export.attach import attach
+    from faying.export.bare import modes_with_joint
 
     made = two(("hex20", "hex20"), ((2, 2), (2, 2)), counts=(3, 2))
     (tmp_path / "model.inp").write_text(meshfiles.abaqus(made))
@@ -366,7 +366,7 @@ def test_modes_of_matrices_that_calculix_stores(tmp_path):
     K, M = assemble(found.deck.mesh, materials, mass="stiffness")
     pairs = found.pairs
     real = lowest_modes(K + pairs.matrix(), M, 12, shift_frequency=1000.0)
-    from faying.fe.damped import damped_modes
+    from faying.numerics.damped import damped_modes
 
     ours = damped_modes(real, K + pairs.matrix(), M, pairs.matrix(pairs.loss), rigid=6, count=6)
     assert modes.frequencies == pytest.approx(ours.frequencies, rel=1e-6)
@@ -379,9 +379,9 @@ def test_modes_of_matrices_that_calculix_stores(tmp_path):
 @needs_ccx
 def test_the_pressure_of_the_preload_in_calculix(tmp_path):
     """Blocks pressed together on half of their backs: our pressure against node-to-surface contact, 2 % in norm."""
+    from faying.case.case import build
+    from faying.export.attach import attach
     from faying.fe.sides import sides_on
-    from faying.study import build
-    from faying.study.attach import attach
 
     made = two(("hex8", "hex8"), ((12, 8), (12, 8)), counts=(10, 8))
     faces, owner = dict(made.faces), dict(made.face_part)

@@ -40,7 +40,7 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
 }
 
 # where names of annotations without a module are looked for: those of overloads stand as they are written
-BARE = ("typing", "numpy", "pathlib", "matplotlib.axes", "pandas", "xarray", "faying.study.backbone")
+BARE = ("typing", "numpy", "pathlib", "matplotlib.axes", "pandas", "xarray", "faying.backbones.backbone")
 
 DATA = {
     "faying.CATALOGUE": "The materials that need not be given, by name: :ref:`catalogue`.",

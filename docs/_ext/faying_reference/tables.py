@@ -14,7 +14,7 @@ import faying
 from faying.contact.build import kinds
 from faying.contact.parameter import Parameter
 from faying.decks.programs import PROGRAMS
-from faying.joint.form import VARIED as FORM
+from faying.form.form import VARIED as FORM
 from faying.materials import CATALOGUE
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse

@@ -14,7 +14,7 @@ import numpy as np
 
 from faying.asperity_fe.body import Balance, Body, State
 from faying.errors import NotConverged
-from faying.fe.solve import Repeatable, factorise
+from faying.numerics.solve import Repeatable, factorise
 from faying.typing import Array, Index
 
 TOLERANCE = 1e-5  # unbalanced force over the forces that press

@@ -8,7 +8,7 @@ import numpy as np
 
 from faying.asperity_fe.body import Body, Spring
 from faying.asperity_fe.plasticity import equivalent
-from faying.fe.solve import factorise
+from faying.numerics.solve import factorise
 from faying.typing import Array, Index
 
 

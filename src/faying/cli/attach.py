@@ -101,9 +101,9 @@ def command(
     from faying import units
     from faying.decks.write import write
     from faying.errors import InputError
+    from faying.export.attach import attach
+    from faying.export.bare import modes_with_joint
     from faying.study import Study
-    from faying.study.attach import attach
-    from faying.study.bare import modes_with_joint
 
     if solver is None and matrices is None:
         raise InputError(f"nothing to do: name a solver with --to ({', '.join(SOLVERS)}), or matrices with --matrices")

@@ -47,12 +47,12 @@ def command(study: Path, **options: Any) -> None:
 
     Finished work is saved next to the output; the same command resumes after an interruption.
     """
+    from faying.backbones.backbone import backbones
+    from faying.backbones.choice import names
     from faying.files import new_folder
     from faying.measured.ring_down import MeasuredBackbone
     from faying.result import backbone_figure as drawing
     from faying.study import Study
-    from faying.study.backbone import backbones
-    from faying.study.backbone_choice import names
     from faying.style import check_figure, save
 
     plot, out = options["plot"], options["out"]
@@ -89,11 +89,11 @@ def _quick(plan: Any, choice: Any, loads: list[int], options: dict[str, Any]) ->
     """Curves of all modes under one preload, printed and written as CSV; with harmonic balance of one mode if asked."""
     from dataclasses import replace
 
+    from faying.answer.level_curves import balanced_rows, level_curves, rows
+    from faying.backbones.backbone import backbones
     from faying.errors import InputError
     from faying.files import new_folder
     from faying.output import table
-    from faying.study.backbone import backbones
-    from faying.study.level_curves import balanced_rows, level_curves, rows
 
     unused = [name for name in ("at", "law", "measured", "plot") if options[name]]
     unused += ["coulomb"] * options["coulomb"]
@@ -122,8 +122,8 @@ def _quick(plan: Any, choice: Any, loads: list[int], options: dict[str, Any]) ->
 def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
     """The choice of the study with the options in place of it, and the indices of its loads."""
     from faying import units
+    from faying.backbones.choice import chosen, load_index
     from faying.errors import InputError
-    from faying.study.backbone_choice import chosen, load_index
     from faying.study.keys.backbone import accelerations, laws
 
     given: dict[str, Any] = {"mode": options["mode"], "harmonics": options["harmonics"]}

@@ -17,7 +17,7 @@ COLUMNS = 80
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, with the key and the line of each finding.")
 def command(study: Path, as_json: bool) -> int:
     """Check STUDY without solving: keys, names, contacts, bolts, reach of the laws, unknowns, memory, time."""
-    from faying.study.check import by_level, check
+    from faying.setup.check import by_level, check
 
     found = check(study)
     if as_json:

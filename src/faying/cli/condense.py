@@ -48,9 +48,9 @@ def command(
     """Condense a joint of STUDY to a 6 x 6 stiffness between two points, with the error of that."""
     from faying.decks.write import write_condensed
     from faying.errors import InputError
+    from faying.export.condense import condense
     from faying.output.table import text
     from faying.study import Study
-    from faying.study.condense import condense
 
     if solver is not None and unit is None:
         raise InputError('--to needs --unit, the unit of length of that model, such as "mm"')

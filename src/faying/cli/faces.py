@@ -32,16 +32,16 @@ def command(geometry: Path, part: str | None, unit: str | None, as_json: bool) -
 def read(geometry: Path, unit: str | None) -> Any:
     """The facts of a STEP file, or of the named faces of a mesh file."""
     from faying.errors import InputError
-    from faying.fe.cad import STEP
+    from faying.geometry.cad import STEP
 
     if geometry.suffix.lower() in STEP:
-        from faying.fe.face_facts import read_facts
+        from faying.geometry.face_facts import read_facts
 
         if unit is not None:
             raise InputError("--unit goes with a mesh file; a STEP file says its unit")
         return read_facts(geometry)
     from faying.decks.meshfile import read_mesh
-    from faying.fe.mesh_facts import mesh_facts
+    from faying.geometry.mesh_facts import mesh_facts
 
     return mesh_facts(read_mesh(geometry, unit=unit))
 
@@ -112,7 +112,7 @@ def _row(face: Any, named: bool) -> list[str]:
 
 def _direction(normal: Any) -> str:
     """An axis word, or three numbers."""
-    from faying.fe.selectors import AXES
+    from faying.geometry.selectors import AXES
 
     words = [word for word, axis in AXES.items() if max(abs(a - b) for a, b in zip(axis, normal, strict=True)) < 1e-6]
     return words[0] if words else " ".join(f"{x:.2f}" for x in normal)

@@ -20,9 +20,9 @@ def command(
 ) -> None:
     """Flatness, crowns and twist of the form in FILE: a list of points x, y, z (csv, txt, dat, xyz, asc) or a scan."""
     from faying.errors import ReadError
-    from faying.joint import form_figure as drawing
-    from faying.joint.form_fit import fit_form
-    from faying.joint.gap_map import read_heights
+    from faying.form import figure as drawing
+    from faying.form.fit import fit_form
+    from faying.form.gap_map import read_heights
     from faying.style import check_ending, save
 
     if plot:

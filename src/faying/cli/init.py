@@ -11,7 +11,7 @@ import click
 @click.option("--json", "as_json", is_flag=True, help="Print what was written as JSON.")
 def command(study: Path, force: bool, as_json: bool) -> None:
     """Write a commented study to STUDY, with the geometry and the scan of a small bolted pair, so that it runs."""
-    from faying.study.template import write
+    from faying.setup.template import write
 
     made = write(study, force=force)
     if as_json:

@@ -56,8 +56,8 @@ def command(
     """Real modes of STUDY at its first preload, or of assembled matrices."""
     from faying import units
     from faying.errors import InputError
+    from faying.export.assembled import Assembled
     from faying.study import Study
-    from faying.study.assembled import Assembled
 
     if (study is None) == (stiffness is None):
         raise InputError("give either a study or --stiffness and --mass, for example faying modes study.toml")
@@ -95,8 +95,8 @@ def command(
 
 def _here(given: Any, count: int, shift: float) -> dict[str, Any]:
     from faying.decks.matrices import total_mass
-    from faying.fe.memory import check_modes
-    from faying.fe.modes import lowest_modes, missed_modes
+    from faying.numerics.memory import check_modes
+    from faying.numerics.modes import lowest_modes, missed_modes
 
     check_modes(count, given.stiffness.shape[0])
     modes = lowest_modes(given.stiffness, given.mass, count, shift_frequency=shift)
@@ -114,7 +114,7 @@ def _here(given: Any, count: int, shift: float) -> dict[str, Any]:
 
 
 def _over_mpi(given: Any, count: int, shift: float, processes: int) -> dict[str, Any]:
-    from faying.fe.mpi import modes_over_mpi
+    from faying.mpi.modes import modes_over_mpi
 
     modes = modes_over_mpi(
         given.stiffness, given.mass, count, shift_frequency=shift, processes=processes, points=given.points

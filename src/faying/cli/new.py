@@ -23,7 +23,7 @@ from faying.text import json_text
 def command(step: Path, scan: Path | None, out: Path, yes: bool, force: bool, as_json: bool) -> None:
     """Write a commented study of the assembly in STEP: joints, bolts, seats, mesh, and a list of what to fill in."""
     from faying.errors import InputError
-    from faying.study import new
+    from faying.setup import new
 
     silent = yes or as_json
     if not silent and not sys.stdin.isatty():
@@ -41,8 +41,8 @@ def asked(proposal: Any, scan: Path | None) -> Any:
     """Ask what the geometry does not tell; each question has its default."""
     from faying import units
     from faying.materials import CATALOGUE
-    from faying.study import new
-    from faying.study.bolt_names import grouped
+    from faying.setup import new
+    from faying.setup.bolt_names import grouped
 
     facts = proposal.facts
     click.echo(f"{facts.file}: {len(facts.parts)} parts, {len(proposal.joints)} joints, {len(proposal.bolts)} bolts")

@@ -51,12 +51,13 @@ def command(
     progress: Form | None,
 ) -> None:
     """Run STUDY: surface, contact law, preload, modes; write NetCDF, CSV, figures and a report."""
+    from faying.answer.run import run, stages
     from faying.errors import InputError
-    from faying.fe.solve import MPI
+    from faying.export import universal
     from faying.files import together
+    from faying.numerics.solve import MPI
     from faying.output import report
-    from faying.study import Study, run, universal
-    from faying.study.run import stages
+    from faying.study import Study
 
     plan = Study.read(study)
     if mpi is not None:

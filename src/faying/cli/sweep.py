@@ -48,9 +48,9 @@ def command(
     from faying.files import new_folder
     from faying.output.figures import sweep as drawing
     from faying.study import Study
-    from faying.study.axes import axis_of
-    from faying.study.sweep import sweep
     from faying.style import save
+    from faying.sweeps.axes import axis_of
+    from faying.sweeps.sweep import sweep
 
     axes = [axis_of(text) for text in settings]
     if plot:

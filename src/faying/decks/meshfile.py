@@ -85,7 +85,7 @@ def _meshed(
     wrong: Sequence[str],
 ) -> Mesh:
     """The mesh of a STEP file."""
-    from faying.fe.geometry import mesh_step
+    from faying.geometry.geometry import mesh_step
 
     if wrong:
         raise InputError(f"{file.name} is a STEP file, which says its unit and its parts; leave {wrong[0]} out")

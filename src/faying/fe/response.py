@@ -6,10 +6,10 @@ from typing import Any, Literal
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.damped import DampedModes
-from faying.fe.modes import Modes
-from faying.fe.solve import conjugate_gradients
 from faying.memory import require
+from faying.numerics.damped import DampedModes
+from faying.numerics.modes import Modes
+from faying.numerics.solve import conjugate_gradients
 from faying.typing import Array, Complex
 
 STATIC = 1e-8  # accuracy of the response at the shift

@@ -7,17 +7,17 @@ from typing import Self
 
 import numpy as np
 
+from faying.case.case import surfaces_of
 from faying.contact.build import kinds
 from faying.distribution import Distribution
 from faying.errors import FayingError, InputError
 from faying.identify.points import at_shares, sobol
-from faying.study.case import surfaces_of
 from faying.study.keys.surface import Surface
 from faying.study.keys.uncertain import Input, UncertainChoice
 from faying.study.keys.varied import MODEL, formed
 from faying.study.study import Study
-from faying.study.variation import Point, check_key
 from faying.surface.estimators.base import Scatter
+from faying.sweeps.variation import Point, check_key
 from faying.typing import Array
 
 LEVEL = "surface.level"  # of the spectrum in the middle of its band, at a given D

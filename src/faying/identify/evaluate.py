@@ -14,15 +14,15 @@ from faying.identify.identity import by_name, named
 from faying.identify.points import at_shares, sobol
 from faying.identify.store import Store
 from faying.joint.joint_law import JointLaw
-from faying.joint.reduced import ReducedModel, Variant
 from faying.joint.structure import Structure
 from faying.measured.mac import mac
 from faying.measured.pairing import pair_over_loads
 from faying.progress import Report, silent
+from faying.reduction.reduced import ReducedModel, Variant
 from faying.study.keys.test import TestChoice
-from faying.study.parallel import Rows, each
-from faying.study.recipe import Recipe, contact_shares
-from faying.study.trainer import Trainer
+from faying.sweeps.parallel import Rows, each
+from faying.sweeps.recipe import Recipe, contact_shares
+from faying.sweeps.trainer import Trainer
 from faying.typing import Array, Index
 
 TRAINED = 1.5e-4  # relative error of a frequency where the bases are trained

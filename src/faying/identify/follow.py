@@ -7,21 +7,21 @@ from typing import Self
 
 import numpy as np
 
+from faying.backbones.backbone import curve_like, median_of
+from faying.backbones.choice import friction_of
+from faying.backbones.result import measured_points
 from faying.errors import FayingError, InputError
 from faying.identify.backbones import Backbones
 from faying.identify.ensemble import Ensemble, by_reason
 from faying.identify.evaluate import Reduced
 from faying.identify.identity import LIKE
-from faying.joint.epmc import PER_DECADE
 from faying.joint.structure import Structure
+from faying.microslip.epmc import PER_DECADE
 from faying.result.backbone import Backbone
-from faying.study.backbone import curve_like, median_of
-from faying.study.backbone_choice import friction_of
-from faying.study.backbone_result import measured_points
 from faying.study.keys.backbone import BackboneChoice
-from faying.study.parallel import Rows, each
-from faying.study.recipe import Recipe
 from faying.study.study import Study
+from faying.sweeps.parallel import Rows, each
+from faying.sweeps.recipe import Recipe
 from faying.typing import Array
 
 FEWEST = 8  # backbones

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from faying import units
+from faying.case.case import mates_notes
 from faying.errors import InputError
 from faying.identify.ensemble import Ensemble, scattering
 from faying.identify.evaluate import LIMIT, Reduced
@@ -20,14 +21,13 @@ from faying.identify.store import Store
 from faying.joint.loads import preload_index
 from faying.misuse import checked_call
 from faying.progress import Report, silent
-from faying.study.case import mates_notes
 from faying.study.keys.test import TestChoice
 from faying.study.keys.uncertain import UncertainChoice
 from faying.study.keys.varied import MODEL
-from faying.study.parallel import Rows
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
-from faying.study.variation import check_key
+from faying.sweeps.parallel import Rows
+from faying.sweeps.variation import check_key
 from faying.typing import Array, Index
 
 COUNT = 1000  # samples of the posterior

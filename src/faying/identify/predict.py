@@ -7,6 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from faying.case.case import mates_notes
+from faying.case.provenance import provenance
+from faying.case.scatter import assumed, discrepancy
 from faying.errors import InputError
 from faying.identify.ensemble import Ensemble, by_reason
 from faying.identify.evaluate import LIMIT, Reduced
@@ -17,13 +20,10 @@ from faying.identify.store import Store
 from faying.misuse import checked_call
 from faying.notes import Note
 from faying.progress import Report
-from faying.study.case import mates_notes
 from faying.study.keys.uncertain import UncertainChoice
-from faying.study.parallel import Rows
 from faying.study.part_folder import fingerprint
-from faying.study.provenance import provenance
-from faying.study.scatter import assumed, discrepancy
 from faying.study.study import Study
+from faying.sweeps.parallel import Rows
 from faying.typing import Array
 
 FEWEST, MOST = 8, 1_000_000  # samples

@@ -1,11 +1,11 @@
 """What a prediction or an identification keeps on disk: the bases, and every chunk of samples as it is done."""
 
 from faying.files import write_arrays
-from faying.joint.reduce import Reduction
-from faying.joint.reduced import ReducedModel
-from faying.study.parallel import Rows
+from faying.reduction.reduce import Reduction
+from faying.reduction.reduced import ReducedModel
 from faying.study.part_folder import Kept, load_arrays
-from faying.study.sweep_files import kept_model
+from faying.sweeps.files import kept_model
+from faying.sweeps.parallel import Rows
 from faying.typing import Array
 
 Bases = tuple[ReducedModel, tuple[Array, Array] | None]

@@ -11,18 +11,18 @@ from typing import Any
 
 import numpy as np
 
+from faying.bolt.bolt import BoltPlace, FittedBolt
+from faying.bolt.solid_bolt import FittedSolidBolt
+from faying.bolt.vdi2230 import cone_compliance
 from faying.errors import NotConverged
 from faying.fe.faces import NamedFaces, face_centre
 from faying.fe.interface import Interface
-from faying.fe.modes import Modes
-from faying.fe.product import product
 from faying.fe.sides import nodes_of
-from faying.fe.solve import conjugate_gradients
-from faying.joint.bolt import BoltPlace, FittedBolt
-from faying.joint.solid_bolt import FittedSolidBolt
 from faying.joint.springs import Springs
 from faying.joint.structure import Structure
-from faying.joint.vdi2230 import cone_compliance
+from faying.numerics.modes import Modes
+from faying.numerics.product import product
+from faying.numerics.solve import conjugate_gradients
 from faying.typing import Array
 
 ACCURACY = 1e-4  # of the residual of a solution: a compliance is right to its square, what lies in a joint to it

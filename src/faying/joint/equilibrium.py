@@ -15,9 +15,9 @@ from typing import Any, TypeVar
 import numpy as np
 
 from faying.errors import InputError, NotConverged
-from faying.fe.product import product_of_sizes
 from faying.joint.joint_law import JointLaw
 from faying.joint.springs import InterfaceMotion
+from faying.numerics.product import product_of_sizes
 from faying.typing import Array, Index, Mask
 
 Found = TypeVar("Found")

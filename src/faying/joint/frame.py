@@ -7,18 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from faying.fe.by_parts import PartByPart
-from faying.fe.constraint import constrain, free_motions
+from faying.bolt.bolt import Bolt, FittedBolt, each_in_its_place
+from faying.bolt.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.fe.corners import Corners
 from faying.fe.elasticity import Solid, assemble, rigid_motions
-from faying.fe.memory import in_single
 from faying.fe.mesh import Mesh
-from faying.fe.over_mpi import OverMpi, processes_named
 from faying.fe.sides import nodes_of
 from faying.joint.attachments import PointMass, Support
-from faying.joint.bolt import Bolt, FittedBolt, each_in_its_place
-from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.memory import available
+from faying.mpi.over_mpi import OverMpi, processes_named
+from faying.numerics.by_parts import PartByPart
+from faying.numerics.constraint import constrain, free_motions
+from faying.numerics.memory import in_single
 from faying.typing import Array, Index
 
 STILL = 1e-12  # of the greatest stiffness of an unknown: what a motion may ask for that nothing resists

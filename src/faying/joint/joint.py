@@ -11,11 +11,11 @@ from faying.errors import InputError
 from faying.fe.elasticity import Solid
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
-from faying.joint.face_axes import FaceAxes
-from faying.joint.form import Form
+from faying.form.face_axes import FaceAxes
+from faying.form.form import Form
+from faying.form.waviness import LaidWaves, Waviness
 from faying.joint.joint_law import JointLaw
 from faying.joint.springs import Springs
-from faying.joint.waviness import LaidWaves, Waviness
 from faying.misuse import checked_call
 from faying.notes import Note
 from faying.typing import Array, Mask

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 from typing import Literal
 
-from faying.fe.solve import BY_PARTS, MPI
 from faying.joint.structure import Structure
+from faying.numerics.solve import BY_PARTS, MPI
 
 SPARE_MODES = 6  # beyond those asked for, so that the basis of the complex modes does not end at the last of them
 MOST_MODES = 10_000

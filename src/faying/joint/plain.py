@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from faying.fe.constraint import constrain
 from faying.fe.interface import Motion
-from faying.fe.solve import factorise
 from faying.joint.equilibrium import Equilibrium, Steps, StickSlip, admissible, check_balance
 from faying.joint.joint_law import JointLaw
+from faying.numerics.constraint import constrain
+from faying.numerics.solve import factorise
 from faying.typing import Array, Index
 
 

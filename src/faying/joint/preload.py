@@ -12,12 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from faying.errors import InputError, NotConverged
-from faying.fe.constraint import constrain
 from faying.fe.corners import Corners
 from faying.fe.interface import Motion
-from faying.fe.shifted import Shifted
-from faying.fe.single import factorise_roughly
-from faying.fe.solve import Factorisation, Factoriser
 from faying.joint.equilibrium import (
     MOST_STEPS,
     Equilibrium,
@@ -29,6 +25,10 @@ from faying.joint.equilibrium import (
     check_balance,
 )
 from faying.joint.joint_law import JointLaw
+from faying.numerics.constraint import constrain
+from faying.numerics.shifted import Shifted
+from faying.numerics.single import factorise_roughly
+from faying.numerics.solve import Factorisation, Factoriser
 from faying.typing import Array, Index
 
 AGED = 40  # conjugate-gradient steps after which a new factorisation is cheaper: one step costs a fiftieth of it

@@ -4,19 +4,19 @@ from collections.abc import Sequence
 from typing import Any
 
 from faying.errors import NotConverged
-from faying.fe.changed import Changed, whole
-from faying.fe.constraint import constrain
 from faying.fe.interface import Interface
-from faying.fe.memory import check_modes
-from faying.fe.modes import Modes, lowest_modes
-from faying.fe.nearby import NearbyModes, near_factor, refined_modes
-from faying.fe.shifted import Shifted
-from faying.fe.single import factorise_roughly
-from faying.fe.solve import Factoriser
 from faying.joint.frame import added
 from faying.joint.modal import SPARE_MODES, ModalProblem
 from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
+from faying.numerics.changed import Changed, whole
+from faying.numerics.constraint import constrain
+from faying.numerics.memory import check_modes
+from faying.numerics.modes import Modes, lowest_modes
+from faying.numerics.nearby import NearbyModes, near_factor, refined_modes
+from faying.numerics.shifted import Shifted
+from faying.numerics.single import factorise_roughly
+from faying.numerics.solve import Factoriser
 from faying.typing import Array
 
 EXACT = 1e-8  # of the squared frequencies, complex or not: 5e-9 of a frequency, 1e-8 of a loss factor, 1e-4 of a shape

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.damped import DampedModes, damped_near
 from faying.fe.interface import Interface
-from faying.fe.modes import Modes
 from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import MOST_MODES, SOLVERS, ModalProblem, ModesChoice
 from faying.joint.preload import PreloadProblem
@@ -21,6 +19,8 @@ from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions, checked_preload, open_joints
 from faying.misuse import checked_call, shortened
 from faying.notes import Note, percent
+from faying.numerics.damped import DampedModes, damped_near
+from faying.numerics.modes import Modes
 from faying.style import Summary
 from faying.text import titled
 from faying.typing import Array

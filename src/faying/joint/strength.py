@@ -7,11 +7,11 @@ from typing import Protocol
 
 import numpy as np
 
+from faying.bolt.bolt import Bolt, BoltPlace, FittedBolt
+from faying.bolt.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.errors import InputError
 from faying.fe.elasticity import Solid
 from faying.fe.faces import NamedFaces, face_centre
-from faying.joint.bolt import Bolt, BoltPlace, FittedBolt
-from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.joint.structure import Structure
 from faying.notes import Note
 from faying.typing import Array

@@ -7,24 +7,24 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 
+from faying.bolt.bolt import Bolt, FittedBolt, solid_of
+from faying.bolt.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.errors import FayingError, InputError
-from faying.fe.constraint import constrain
 from faying.fe.elasticity import Solid
 from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
 from faying.fe.outline import Outline, outline
 from faying.fe.quality import quality
-from faying.fe.solve import BY_PARTS, Factoriser, chosen, is_mpi
 from faying.joint.attachments import PointMass, Support
-from faying.joint.bolt import Bolt, FittedBolt, solid_of
 from faying.joint.frame import Frame, added
 from faying.joint.joint import FittedJoint, Joint, each_pair_once, known_face
 from faying.joint.preload import PreloadProblem
-from faying.joint.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.joint.springs import Springs
 from faying.materials import STIFFEST, Material, material_of
 from faying.misuse import checked_call, shortened
 from faying.notes import Note
+from faying.numerics.constraint import constrain
+from faying.numerics.solve import BY_PARTS, Factoriser, chosen, is_mpi
 from faying.style import Summary
 from faying.text import listed, titled
 from faying.typing import Array, Index

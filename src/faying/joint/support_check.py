@@ -7,10 +7,10 @@ import numpy as np
 
 from faying.errors import InputError, NotConverged
 from faying.fe.elasticity import rigid_motions
-from faying.fe.modes import Modes
 from faying.joint.equilibrium import Equilibrium, PreloadState
 from faying.joint.structure import Structure
 from faying.joint.tighten import tighten
+from faying.numerics.modes import Modes
 from faying.typing import Array
 
 RIGID_BELOW = 0.01  # of the shift: a frequency below it is that of a motion that nothing resists

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.product import product
+from faying.numerics.product import product
 from faying.typing import Array
 
 

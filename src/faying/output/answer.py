@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from faying.case.scatter import SCATTER
 from faying.output.table import Rows
 from faying.result import Result
 from faying.result.result import preload_slope
 from faying.result.score import Score
-from faying.study.scatter import SCATTER
 from faying.typing import Array
 
 BOTH = 0.6  # of the greater motion that the other parts must have for "all"

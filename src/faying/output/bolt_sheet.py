@@ -2,10 +2,10 @@
 
 from html import escape
 
-from faying.joint.sheet import Quantity, Row
+from faying.answer.bolt_sheet import BoltSheet, BoltSheets
+from faying.bolt.sheet import Quantity, Row
 from faying.output import page
 from faying.output.table import Rows, text
-from faying.study.bolt_sheet import BoltSheet, BoltSheets
 from faying.units import show
 
 # units of the rows, with the factor from SI

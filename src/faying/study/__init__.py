@@ -1,7 +1,5 @@
-"""The study file and the one pipeline that runs it."""
+"""The study file: what it may say, and what it says."""
 
-from faying.study.case import build
-from faying.study.run import run
 from faying.study.study import Study
 
-__all__ = ["Study", "build", "run"]
+__all__ = ["Study"]

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Self
 
+from faying.bolt.bolt import Bolt
+from faying.bolt.solid_bolt import SolidBolt
 from faying.errors import ReadError
 from faying.joint.attachments import PointMass, Support
-from faying.joint.bolt import Bolt
 from faying.joint.modal import ModesChoice
-from faying.joint.solid_bolt import SolidBolt
 from faying.materials import Material
 from faying.misuse import checked_call
 from faying.study.keys.backbone import BackboneChoice

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.study.axes import Axis
-from faying.study.sweep_files import Sweep
 from faying.style import check_figure, new_figure, prefixed
+from faying.sweeps.axes import Axis
+from faying.sweeps.files import Sweep
 
 MAPS = 4
 

@@ -172,8 +172,8 @@ def drawn(diameter: float, extent: Sequence[float], size: float) -> tuple[float,
 
 def _planned_bolts(study: "Study", mesh: Mesh) -> tuple[Bolt, ...]:
     """The bolts of a study on its mesh."""
+    from faying.bolt.bolt import Bolt as Beam
     from faying.fe.faces import face_centre
-    from faying.joint.bolt import Bolt as Beam
 
     out = []
     for bolt in study.bolts:

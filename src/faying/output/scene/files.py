@@ -27,8 +27,8 @@ def of_file(path: str | Path, unit: str | None = None) -> Scene:
     if unit is not None and not meshed:
         raise InputError(f"--unit goes with a mesh file; {file.name} has its units inside")
     if kind == ".toml":
+        from faying.case.case import checked_mesh
         from faying.study import Study
-        from faying.study.case import checked_mesh
 
         study = Study.read(file)
         return of_mesh(checked_mesh(study), study)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.fe.face_facts import read_facts
+from faying.geometry.face_facts import read_facts
 from faying.output.scene.build import face, feature_edges, measures
 from faying.output.scene.model import Scene
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from faying.joint.form import Form
+from faying.form.form import Form
 from faying.study.keys.form import read_form
 from faying.study.keys.law import LawChoice
 from faying.study.keys.reader import Table

@@ -5,10 +5,10 @@ from itertools import pairwise
 from math import isclose
 from typing import Any
 
+from faying.bolt.bolt import Bolt, Washer, torque_to_preload
+from faying.bolt.solid_bolt import SolidBolt
+from faying.bolt.threads import Fastener, Thread
 from faying.errors import InputError
-from faying.joint.bolt import Bolt, Washer, torque_to_preload
-from faying.joint.solid_bolt import SolidBolt
-from faying.joint.threads import Fastener, Thread
 from faying.materials import Material
 from faying.study.keys.face import face_names
 from faying.study.keys.reader import Table, point, quantity

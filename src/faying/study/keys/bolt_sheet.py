@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from faying.bolt.tightening import tightening
 from faying.errors import InputError
-from faying.joint.tightening import tightening
 from faying.study.keys.reader import Table, quantity
 
 MOST_FACTOR = 10.0  # greatest tightening factor that is no slip of the pen

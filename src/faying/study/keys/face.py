@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.face_facts import Point
-from faying.fe.selectors import AXES, WITHIN, Selector
+from faying.geometry.face_facts import Point
+from faying.geometry.selectors import AXES, WITHIN, Selector
 from faying.study.keys.reader import Table, direction, point, whole_number
 
 FORM = '"upper.joint", or {part = "upper", normal = "+z"}'

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from faying.joint.form import PARAMETERS, Form
-from faying.joint.gap_map import FaceMap, GapMap, read_gap_map, read_heights
+from faying.form.form import PARAMETERS, Form
+from faying.form.gap_map import FaceMap, GapMap, read_gap_map, read_heights
 from faying.study.keys.reader import Table, direction, point
 from faying.study.keys.waviness import read_waviness
 

@@ -8,8 +8,8 @@ from faying import cache
 from faying.decks.included import included
 from faying.errors import InputError
 from faying.fe.mesh import Mesh
-from faying.fe.mesh_facts import mesh_facts
-from faying.fe.selectors import Selector, chosen, points_of
+from faying.geometry.mesh_facts import mesh_facts
+from faying.geometry.selectors import Selector, chosen, points_of
 from faying.study.keys.face import read_selector
 from faying.study.keys.reader import Faults, Table
 
@@ -104,7 +104,7 @@ def mesh_of(spec: GeometryChoice) -> Mesh:
         from faying.decks.meshfile import read_mesh
 
         return with_faces(read_mesh(spec.mesh, unit=spec.unit, parts=spec.sets or None), spec)
-    from faying.fe.geometry import mesh_step
+    from faying.geometry.geometry import mesh_step
 
     return mesh_step(
         spec.file,

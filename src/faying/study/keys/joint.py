@@ -5,7 +5,7 @@ from typing import Any, Literal
 
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
-from faying.joint.form import Form
+from faying.form.form import Form
 from faying.study.keys.face import face_names
 from faying.study.keys.form import read_form
 from faying.study.keys.law import LawChoice

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 from faying import units
 from faying.contact.parameter import FILE, Parameter
 from faying.errors import InputError
-from faying.fe.selectors import Selector
+from faying.geometry.selectors import Selector
 
 MOST = 1_000_000  # of what is counted, where a key says no less
 MOST_FRICTION, MOST_LOSS = 10.0, 2.0  # coefficient of friction, loss factor [-]

@@ -9,7 +9,7 @@ from faying import cache, units
 from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.two_faces import COUNTERS, Counter, Faces
 from faying.errors import InputError
-from faying.joint.waviness import ScanWaves
+from faying.form.waviness import ScanWaves
 from faying.study.keys.reader import Table
 from faying.surface.fractal import FractalFit
 from faying.surface.read import read_scan

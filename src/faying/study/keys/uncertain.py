@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from faying import units
+from faying.bolt.tightening import tightening
 from faying.contact.build import find
 from faying.contact.parameter import Parameter
 from faying.distribution import Distribution, uncertain_text
 from faying.errors import InputError
-from faying.joint.form import PARAMETERS as SHAPES
-from faying.joint.form import VARIED
-from faying.joint.tightening import tightening
+from faying.form.form import PARAMETERS as SHAPES
+from faying.form.form import VARIED
 from faying.materials import Material
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.reader import Faults, quantity
@@ -33,7 +33,7 @@ OF_MATERIAL = {
 OF_TEST = ("test", "discrepancy", "test_loss", "discrepancy_loss")
 OWN = ("preload", *OF_TEST, "surface.fit", "surface.scans", "law.model")  # that are no plain distribution
 # standard deviations of the shapes of a joint over the flatness tolerance of its faces: the second-degree part of the
-# random form of `faying.joint.form`, whose mean flatness over one face is two thirds of the tolerance
+# random form of `faying.form.form`, whose mean flatness over one face is two thirds of the tolerance
 DRAWS = 1_000_000  # of waves, of which each sample has one
 SHAPE_SD = {"crown_along": 0.41, "crown_across": 0.41, "twist": 0.36}
 

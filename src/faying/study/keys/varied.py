@@ -2,7 +2,7 @@
 
 from faying.contact.build import kinds
 from faying.contact.parameter import FILE, TABLE, Parameter
-from faying.joint.form import VARIED
+from faying.form.form import VARIED
 from faying.study.keys.joint import TANGENTIAL
 from faying.study.keys.law import OF_SURFACE
 

@@ -3,8 +3,8 @@
 from typing import Any
 
 from faying.contact.parameter import Parameter
-from faying.joint.machining import GAUSSIAN, PROCESSES, RMS_OF_FLATNESS
-from faying.joint.waviness import OF_WAVES, PARAMETERS, Waviness
+from faying.form.machining import GAUSSIAN, PROCESSES, RMS_OF_FLATNESS
+from faying.form.waviness import OF_WAVES, PARAMETERS, Waviness
 from faying.study.keys.reader import Table
 from faying.units import show
 

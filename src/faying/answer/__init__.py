@@ -1,0 +1,1 @@
+"""What a run answers: results, intervals, findings, numbers of bolts."""

@@ -1,0 +1,180 @@
+"""Frequency and damping of all modes over their amplitude, by secant passes: a curve of each mode in seconds."""
+
+import csv
+import io
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from faying.answer.run import run
+from faying.backbones.choice import chosen, friction_of, load_index
+from faying.errors import InputError
+from faying.files import write_text
+from faying.misuse import checked_call
+from faying.progress import Report
+from faying.result import Result
+from faying.result.backbone import Backbone
+from faying.study.study import Study
+from faying.style import Summary
+from faying.typing import Array
+
+EACH_DECADE = 6  # levels
+
+
+@checked_call
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class LevelCurves(Summary):
+    """Frequency and damping of all modes at rising levels of acceleration, under one preload.
+
+    Args:
+        title: Of the study.
+        load: Preload of the first bolt [N].
+        friction: Coefficient of each joint [-].
+        levels: Peak acceleration (l,) of the point that moves most [m/s2].
+        frequencies: At each level and of each mode (l, m) [Hz].
+        damping: Ratio to critical (l, m) [-], of slip and of what is added at rest.
+        error: Estimated error of the iteration (l, m), over the damping of slip [-].
+    """
+
+    title: str
+    load: float
+    friction: tuple[float, ...]
+    levels: Array
+    frequencies: Array
+    damping: Array
+    error: Array
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and the frequency and damping of the first modes at both ends."""
+        head = f"Curves of {self.frequencies.shape[1]} modes of {self.title!r} at {self.load / 1e3:g} kN"
+        rows = {"levels": f"{len(self.levels)}, {self.levels[0]:.3g} to {self.levels[-1]:.3g} m/s2"}
+        for mode in range(min(8, self.frequencies.shape[1])):
+            f, z = self.frequencies[[0, -1], mode], 100 * self.damping[[0, -1], mode]
+            rows[f"mode {mode + 1}"] = f"{f[0]:.2f} to {f[1]:.2f} Hz, {z[0]:.3g} to {z[1]:.3g} %"
+        return head, rows
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the curves, ready for JSON, in SI units."""
+        arrays = {"levels": "m/s2", "frequencies": "Hz", "damping": "1", "error": "1"}
+        out: dict[str, Any] = {"title": self.title, "load": self.load, "friction": list(self.friction)}
+        return out | {name: {"unit": unit, "values": getattr(self, name).tolist()} for name, unit in arrays.items()}
+
+    def csv_text(self) -> str:
+        """Return one row for each mode and level as text, units in the heading."""
+        out = io.StringIO()
+        rows = csv.writer(out, lineterminator="\n")
+        rows.writerow(["mode", "acceleration [m/s^2]", "frequency [Hz]", "damping [%]", "error of slip [%]"])
+        for mode in range(self.frequencies.shape[1]):
+            for k, level in enumerate(self.levels):
+                numbers = (self.frequencies[k, mode], 100 * self.damping[k, mode], 100 * self.error[k, mode])
+                rows.writerow([mode + 1, f"{level:.6g}", *(f"{one:.8g}" for one in numbers)])
+        return out.getvalue()
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write the rows of `csv_text`; the file appears complete or not at all."""
+        return write_text(Path(path), self.csv_text())
+
+
+def rows(curves: LevelCurves) -> list[list[str]]:
+    """One row per mode: frequency and damping at levels a decade apart, or the first and the last."""
+    steps = list(range(0, len(curves.levels), EACH_DECADE))
+    shown = steps if len(steps) > 1 else [0, len(curves.levels) - 1]
+    out = [["mode", *(f"{curves.levels[k]:.3g} m/s2" for k in shown)]]
+    for mode in range(curves.frequencies.shape[1]):
+        values = [(curves.frequencies[k, mode], 100 * curves.damping[k, mode]) for k in shown]
+        out.append([str(mode + 1), *(f"{f:.2f}, {z:.3g}" for f, z in values)])
+    return out
+
+
+def balanced_rows(curves: LevelCurves, curve: Backbone) -> list[list[str]]:
+    """One row per level that a curve by harmonic balance reaches: frequency and damping of both."""
+    out = [["m/s2", "quick [Hz]", "balanced [Hz]", "quick [%]", "balanced [%]", "error of quick [%]"]]
+    for k, level in enumerate(curves.levels):
+        if not curve.acceleration[0] <= level <= curve.acceleration[-1]:
+            continue
+        f, z = curve.at_acceleration(level)
+        own = curves.frequencies[k, curve.mode - 1], 100 * curves.damping[k, curve.mode - 1]
+        error = 100 * curves.error[k, curve.mode - 1]
+        out.append(
+            [
+                f"{level:.3g}",
+                f"{own[0]:.3f}",
+                f"{float(f):.3f}",
+                f"{own[1]:.4g}",
+                f"{100 * float(z):.4g}",
+                f"{error:.2g}",
+            ]
+        )
+    return out
+
+
+@checked_call
+def level_curves(
+    study: Study | str | Path,
+    friction: float | None = None,
+    amplitude: tuple[float, float] | None = None,
+    *,
+    load: float | None = None,
+    rest_damping: float | None = None,
+    report: Report | None = None,
+) -> LevelCurves:
+    """Follow all modes of a study from small to large amplitudes, without harmonics.
+
+    What is left out is taken from [backbone] of the study, or its default.
+
+    Args:
+        study: A Study or the path of its TOML file.
+        friction: Coefficient [-] of all joints, 0 to 10; that of each joint in the study where left out.
+        amplitude: First and last acceleration amplitude [m/s2] of the point that moves most.
+        load: Preload of the first bolt [N], one of the study's; the greatest by default.
+        rest_damping: Ratio to critical [-] that is added to that of slip.
+        report: Called with a stage, the stages done, and how many there are.
+
+    Returns:
+        The curves. They leave out harmonics and the mean opening of the joints, which `backbone` has.
+
+    Raises:
+        InputError: No friction is given, no law has a stiffness that slips, there is no such load.
+        NotConverged: The preload or the modes are not found.
+
+    Source:
+        The first harmonic of a cycle of hysteresis as springs, equivalent linearisation: Caughey 1960,
+        doi:10.1115/1.3644075.
+    """
+    study = Study.read(study)
+    asked = {"amplitude": amplitude, "rest_damping": rest_damping}
+    choice = chosen(study, friction, asked)
+    if choice.rest_damping == "law":
+        raise InputError('rest_damping = "law" goes with harmonic balance; give a number, such as 0.001')
+    (mu,) = friction_of(study, replace(choice, friction=choice.friction[:1]))
+    first, last = choice.amplitude
+    levels = np.geomspace(first, last, max(2, round(EACH_DECADE * np.log10(last / first)) + 1))
+    index = len(study.loads) - 1 if load is None else load_index(study, load)
+    found = _bare(study, index, mu, tuple(levels.tolist()), report)
+    if found.level_slip is None or found.level_frequencies is None or found.level_error is None:
+        raise InputError("no joint can slip: its law has no tangential stiffness, or its springs are per node")
+    rest = float(choice.rest_damping or 0.0)
+    return LevelCurves(
+        title=study.title,
+        load=study.loads[index],
+        friction=mu,
+        levels=levels,
+        frequencies=found.level_frequencies[0],
+        damping=found.level_slip[0] + rest,
+        error=found.level_error[0],
+    )
+
+
+def _bare(
+    study: Study, index: int, friction: tuple[float, ...], levels: tuple[float, ...], report: Report | None
+) -> Result:
+    """The run of one load with the damping at levels, and without what it does not ask for."""
+    bolts = tuple(replace(bolt, preload=bolt.preload[index : index + 1]) for bolt in study.bolts)
+    joints = tuple(replace(joint, friction=mu) for joint, mu in zip(study.joints, friction, strict=True))
+    modes = replace(study.modes, levels=levels, intervals=False)
+    bare = replace(
+        study, bolts=bolts, joints=joints, modes=modes, beside=(), backbone=None, response=None, test=None, hammer=None
+    )
+    return run(bare, report=report)

@@ -1,0 +1,376 @@
+"""From a study to its result."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from faying.answer.bolt_numbers import bolt_numbers, conductances
+from faying.answer.findings import against_exact_contact, falling
+from faying.answer.interval import intervals
+from faying.answer.refine import refined, tolerance_of
+from faying.answer.tracks import compared, encounters, macs, shapes_of
+from faying.backbones.backbone import backbones_of
+from faying.backbones.choice import friction_of
+from faying.bolt.bolt import FittedBolt
+from faying.case.beside import Beside, beside_fields, solve_beside
+from faying.case.bounds import bounds
+from faying.case.case import Case, Progress
+from faying.case.engine import engine_of
+from faying.case.level_damping import level_notes
+from faying.case.mesh_error import mesh_error, mesh_notes
+from faying.case.provenance import provenance
+from faying.case.solve import LoadedCase, solve
+from faying.errors import InputError, NotConverged
+from faying.joint.structure import Structure
+from faying.misuse import checked_call
+from faying.mpi.over_mpi import OverMpi
+from faying.notes import Note
+from faying.numerics.solve import chosen, is_mpi
+from faying.progress import Report
+from faying.result import BoltNumbers, Comparison, Receptance, Result
+from faying.study.study import Study
+from faying.typing import Array
+
+LEVEL_FIELDS = ("frequencies", "damping", "low", "high", "slip", "error")
+NOT_ZERO = 1e-3  # of the first frequency: a rigid motion above it has cost 1e-6 of that mode's eigenvalue, and is noted
+
+
+@checked_call
+def run(
+    study: Study | str | Path,
+    *,
+    report: Report | None = None,
+    engine: str = "reanalysis",
+    refine: float | str | None = None,
+) -> Result:
+    """Run a study from the surface to the modes.
+
+    Args:
+        study: a Study or the path of its TOML file.
+        report: called with (stage, stages done, stages in all) as each stage begins.
+        engine: "reanalysis", one factorisation for many states; or "direct", one for each Newton step and each set of
+            modes, to check the other by.
+        refine: estimated error of every frequency by the mesh, such as 0.002 or "0.2 %", to which the parts are meshed
+            finer and run again; None for the size that the study gives.
+
+    Returns:
+        The result; nothing is written.
+
+    Raises:
+        InputError, ReadError: what the study gives cannot be used.
+        NotConverged: an iteration stops short.
+    """
+    study = Study.read(study)
+    if refine is not None:
+        return refined(study, tolerance_of(refine), lambda finer: run(finer, report=report, engine=engine))
+    if study.backbone is not None and is_mpi(chosen(study.modes.solver)):
+        raise InputError("[backbone] asks for a factorisation; leave it out, or the processes of MPI")
+    if study.backbone is not None:
+        friction_of(study, study.backbone)  # raises, before the work, where nothing can slip
+    progress = Progress(len(stages(study)), report)
+    case = Case.of(study, progress)
+    solver = engine_of(engine, case)
+    states = [solve(case, number, solver, progress) for number in range(len(study.loads))]
+    besides = [solve_beside(case, choice, solver, progress) for choice in study.beside]
+    progress.begin("modes free and bonded")
+    free, bonded, notes = bounds(case)
+    mesh = mesh_error(case, states) if study.modes.intervals else None
+    band, interval, more = intervals(case, states, mesh)
+    more += mesh_notes(case, mesh) if study.modes.intervals else []
+    result = collect(case, states, (free, bonded), [*notes, *findings(case, states), *more], besides)
+    if band is not None:
+        result = replace(result, **band.fields(case.loads))
+    if interval is not None:
+        low, high = interval.ends(result.frequencies, free, bonded)
+        result = replace(
+            result,
+            interval_sources=interval.sources,
+            interval_low=low,
+            interval_high=high,
+            interval_offsets=interval.offsets,
+            mesh_error=None if mesh is None else mesh.total,
+        )
+    if study.backbone is None:
+        return result
+    progress.begin(f"mode {study.backbone.mode} over amplitude")
+    curves = backbones_of(case, study.backbone)
+    every = (*result.notes, *(note for curve in curves for note in curve.notes))
+    return replace(result, backbones=curves, notes=tuple(dict.fromkeys(every)))
+
+
+def findings(case: Case, states: Sequence[LoadedCase]) -> list[Note]:
+    """What the states say of the laws and the joint, beyond where a law ends."""
+    return [*falling(case, states), *against_exact_contact(case, states[0])]
+
+
+def stages(study: Study) -> list[str]:
+    """The stages that `run` reports for a study, in their order."""
+    loads = [f"{load / 1e3:g} kN" for load in study.loads]
+    out = [] if study.hammer is None else ["hammer test"]
+    out += ["surface", "mesh"]
+    for number, load in enumerate(loads):
+        out += [f"preload {load}", f"modes at {load}"]
+        out += [f"frequency response at {load}"] if study.response is not None else []
+        if study.hammer is not None and number == study.hammer.load:
+            out.append("frequency response at the points of the test")
+    out += [stage for _ in study.beside for load in loads for stage in (f"preload {load}", f"modes at {load}")]
+    out.append("modes free and bonded")
+    return out if study.backbone is None else [*out, f"mode {study.backbone.mode} over amplitude"]
+
+
+def collect(
+    case: Case,
+    states: Sequence[LoadedCase],
+    bounds: tuple[Array, Array],
+    notes: Sequence[Note],
+    besides: Sequence[Beside] = (),
+) -> Result:
+    """Stack the states of a case into its result.
+
+    Args:
+        case, states: the case and its state under each load.
+        bounds: frequencies [Hz] with the faces apart and with them bonded.
+        notes: what is to be said beyond the notes of case and states.
+        besides: the same under other laws.
+    """
+    study, structure = case.study, case.structure
+    shapes = shapes_of(case, states)
+    steps, with_first = macs(case, states)
+    comparison, more = compared(case, states, shapes, steps)
+    if comparison is not None and besides:
+        comparison = replace(comparison, beside=np.stack([_predicted(b, comparison) for b in besides]))
+    lossless = not structure.predicts_loss
+    rigid = np.max([s.modes.frequencies[: case.rigid_count] for s in states], axis=0)
+    first = states[0].modes.frequencies[case.rigid_count]
+    every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more]
+    every += encounters(states, steps)
+    every += level_notes(case, [state.levels for state in states], lossless)
+    every += [*(note for b in besides for note in b.notes), *_closing_notes(study, rigid, first)]
+    way = structure.solver(study.modes.solver)
+    bolts, more = _bolts(case, states, shapes)
+    every += more
+    if isinstance(way, OverMpi):
+        every.append(Note(code="mpi", text=f"{way.summary}; no count checks for missed modes"))
+    result = Result(
+        title=study.title,
+        loads=case.loads,
+        free=bounds[0],
+        bonded=bounds[1],
+        rigid=rigid,
+        mac=with_first,
+        **_at_loads(states, lossless, bounds),
+        **_at_levels(case, states),
+        **_bonded_beyond(states, lossless),
+        **_at_points(states),
+        **_on_faces(structure, states),
+        **_outline(structure, shapes, states),
+        **_made_of(structure),
+        **beside_fields(besides, len(states), len(bounds[0])),
+        joints=tuple(j.name for j in structure.joints),
+        bolts=tuple(bolt.name for bolt in study.bolts),
+        unknowns=structure.mesh.unknowns,
+        solver=way if isinstance(way, str) else way.key,
+        factor_memory=max(s.modes.factorisation.memory for s in states),
+        damping=study.modes.damping,
+        tightening=() if study.order is None else tuple(study.bolts[i].name for i in study.order),
+        surfaces=tuple(surface.facts() for surface in case.surfaces),
+        laws=tuple(joint.law.model.facts() for joint in structure.joints),
+        sources=_sources(case),
+        notes=tuple(dict.fromkeys(every)),
+        response=_response(study, states),
+        comparison=comparison,
+        bolt_numbers=bolts,
+        **conductances(case, states),
+        provenance=provenance(study),
+    )
+    if case.hammer is None:
+        return result
+    full = next((s.test_response for s in states if s.test_response is not None), None)
+    return replace(result, hammer=case.hammer.beside(result, full))
+
+
+def _bolts(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Array]) -> tuple[BoltNumbers | None, list[Note]]:
+    try:
+        return bolt_numbers(case, states, shapes), []
+    except NotConverged as fault:
+        return None, [Note(code="bolt-numbers", text=f"no compliance and load factor of the bolts: {fault}")]
+
+
+def _stacked(rows: Sequence[Array | None]) -> Array | None:
+    kept = [row for row in rows if row is not None]
+    return np.stack(kept) if len(kept) == len(rows) else None
+
+
+def _predicted(beside: Beside, comparison: Comparison) -> Array:
+    """Frequencies [Hz] that another law predicts of the test's modes; NaN where it has no answer."""
+    if beside.case is not None:
+        case, states = beside.case, beside.states
+        found, _ = compared(case, states, shapes_of(case, states), macs(case, states)[0])
+        if found is not None:
+            return found.predicted
+    return np.full(comparison.frequencies.shape, np.nan)
+
+
+def _at_loads(states: Sequence[LoadedCase], lossless: bool, bounds: tuple[Array, Array]) -> dict[str, Any]:
+    """Fields of the result that have a value or a row for each load.
+
+    The ends of the range of a law lie between the frequencies of free and of bonded faces, as stiffness raises each of
+    them: where the basis of the ends misses that, the bound is the end.
+    """
+    low, high = (_stacked(rows) for rows in zip(*(s.law_range for s in states), strict=True))
+    return {
+        "frequencies": np.stack([s.damped.frequencies for s in states]),
+        "loss_factors": np.stack([np.where(lossless, np.nan, s.damped.loss_factors) for s in states]),
+        "loss_error": np.stack([s.damped.error for s in states]),
+        "low": None if low is None else np.maximum(low, bounds[0]),
+        "high": None if high is None else np.minimum(high, bounds[1]),
+        "outside_share": np.array([s.outside_share for s in states]),
+        "beyond_share": np.array([s.beyond_share for s in states]),
+        "bolt_forces": np.array([s.preload.bolt_forces for s in states]),
+        "imbalance": np.array([s.preload.imbalance for s in states]),
+        "newton_steps": np.array([s.preload.newton_steps for s in states]),
+    }
+
+
+def _at_levels(case: Case, states: Sequence[LoadedCase]) -> dict[str, Any]:
+    """Fields of the result that have a row for each level of acceleration; none where there are none."""
+    found = [one for state in states if (one := state.levels) is not None]
+    if len(found) < len(states):
+        return {}
+    stacked = {f"level_{name}": np.stack([getattr(one, name) for one in found]) for name in LEVEL_FIELDS}
+    return {"levels": np.array(case.study.modes.levels), **stacked}
+
+
+def _outline(structure: Structure, shapes: Sequence[Array], states: Sequence[LoadedCase]) -> dict[str, Any]:
+    """Fields of the result on the outer surface."""
+    outer, mass = structure.surface(), structure.vibrating[1]
+    lagging = [s.damped.scaled_shapes(mass)[1].T.reshape(len(s.damped.frequencies), -1, 3) for s in states]
+    return {
+        "outline": structure.mesh.points[outer.nodes],
+        "triangles": outer.triangles,
+        "part_of_triangle": outer.part_of_triangle,
+        "face_of_triangle": outer.face_of_triangle,
+        "faces": outer.faces,
+        "shapes": np.stack([shape[:, outer.nodes] for shape in shapes]),
+        "shapes_imaginary": np.stack([shape[:, outer.nodes] for shape in lagging]),
+    }
+
+
+def _made_of(structure: Structure) -> dict[str, Any]:
+    """Fields of the result that say what the structure is made of."""
+    bolts = structure.fitted_bolts
+    return {
+        "parts": tuple(structure.mesh.parts),
+        "part_masses": structure.part_masses,
+        "joint_faces": tuple(joint.faces for joint in structure.joints),
+        "supports": structure.supports,
+        "masses": structure.masses,
+        "bolt_seats": np.array([bolt.seats for bolt in bolts]).reshape(-1, 2, 3),
+        "bolt_diameters": np.array([bolt.bolt.diameter or np.nan for bolt in bolts]),
+        "bolt_extents": np.array(
+            [bolt.extent if isinstance(bolt, FittedBolt) else (np.nan, np.nan) for bolt in bolts]
+        ).reshape(-1, 2),
+    }
+
+
+def _on_faces(structure: Structure, states: Sequence[LoadedCase]) -> dict[str, Any]:
+    """Gap and slip at the points of the joints' springs."""
+
+    def at_springs(k: int, values: Array) -> Array:
+        joint, springs = structure.joints[k], states[0].springs[k]
+        return joint.interface.to_nodes(springs.interface, values) if joint.per_node else values
+
+    interfaces = [joint.interface for joint in structure.joints]
+    slips = [[np.linalg.norm(i.slip(s.preload.displacement), axis=1) for i in interfaces] for s in states]
+    return {
+        "gap": np.concatenate([at_springs(k, i.gap) for k, i in enumerate(interfaces)]),
+        "slip": np.stack([np.concatenate([at_springs(k, one) for k, one in enumerate(row)]) for row in slips]),
+    }
+
+
+def _at_points(states: Sequence[LoadedCase]) -> dict[str, Any]:
+    """Fields of the result at the points of the joints, and their sums over each joint."""
+    interfaces = [spring.interface for spring in states[0].springs]
+    totals = np.array([[spring.total() for spring in s.springs] for s in states])
+    return {
+        "points": np.concatenate([i.positions for i in interfaces]),
+        "weights": np.concatenate([i.weights for i in interfaces]),
+        "joint_of_point": np.concatenate([np.full(len(i.weights), k) for k, i in enumerate(interfaces)]),
+        "pressure": np.stack([np.concatenate([spring.pressure for spring in s.springs]) for s in states]),
+        "k_n": np.stack([np.concatenate([spring.k_n for spring in s.springs]) for s in states]),
+        "k_t": np.stack([np.concatenate([spring.k_t for spring in s.springs]) for s in states]),
+        "slipping": np.array([s.preload.slipping for s in states]),
+        "total_k_n": totals[:, :, 0],
+        "total_k_t": totals[:, :, 1],
+    }
+
+
+def _bonded_beyond(states: Sequence[LoadedCase], lossless: bool) -> dict[str, Any]:
+    """Frequencies and loss factors with what is beyond the end of a law bonded, where anything is at any load."""
+    if all(s.beyond is None for s in states):
+        return {}
+    losses = [(s.beyond or s.damped).loss_factors for s in states]
+    return {
+        "beyond_frequencies": np.stack([s.bonded_frequencies for s in states]),
+        "beyond_loss_factors": np.stack([np.where(lossless, np.nan, loss) for loss in losses]),
+    }
+
+
+def _response(study: Study, states: Sequence[LoadedCase]) -> Receptance | None:
+    found = [s.response for s in states if s.response is not None]
+    if study.response is None or not found:
+        return None
+    sides = {
+        f"{side}_{what}": np.array([pair[k] for pair in pairs])
+        for side, pairs in (("input", study.response.inputs), ("output", study.response.outputs))
+        for k, what in enumerate(("points", "directions"))
+    }
+    return Receptance(
+        frequencies=found[0].frequencies,
+        values=np.stack([one.values for one in found]),
+        error=np.array([one.error for one in found]),
+        bolt_forces=np.stack([one.bolt_forces for one in found]) if study.bolts else None,
+        **sides,
+    )
+
+
+def _closing_notes(study: Study, rigid: Array, first: float) -> list[Note]:
+    out = []
+    if study.uncertain is not None:
+        within = [column.key for column in study.uncertain.inputs if column.within]
+        taken = f"; of {', '.join(within)} the median is taken" if within else ""
+        text = (
+            f"the numbers under [uncertain] do not scatter here: this is the answer at those that the study "
+            f"gives{taken}; faying predict gives intervals"
+        )
+        out.append(Note(code="uncertain", text=text))
+    if len(rigid) and rigid.max() > NOT_ZERO * first:
+        text = (
+            f"a rigid-body motion comes out at {rigid.max():.2g} Hz instead of 0: rounding has cost the frequencies "
+            "digits, most those near it; look for parts or springs far stiffer than the rest"
+        )
+        out.append(Note(code="rigid", text=text))
+    if study.modes.damping == "viscous":
+        text = (
+            "the dampers are those of the JK paper, c = eta sqrt(M k) point by point: their sum grows with the square "
+            "root of the number of points, so loss factors depend on the mesh"
+        )
+        out.append(Note(code="viscous", text=text))
+    return out
+
+
+def _sources(case: Case) -> tuple[str, ...]:
+    study = case.study
+    used = sorted({study.parts[name] for name in study.parts})
+    lines = [f"material {name}: {study.materials[name].source or 'given in the study'}" for name in used]
+    lines += [f"contact law {j.law.model.name}: {j.law.model.source}" for j in case.structure.joints]
+    lines += [f"geometry: {study.geometry.file.name}"]
+    lines += [surface.source for surface in case.surfaces if surface.source]
+    if study.test is not None:
+        lines.append(f"{study.test.kind}: {study.test.source}")
+    if study.hammer is not None:
+        lines.append(f"test: {study.hammer.source or study.hammer.file.name}")
+    return tuple(dict.fromkeys(lines))

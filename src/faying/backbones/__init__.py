@@ -1,0 +1,1 @@
+"""Frequency and damping against amplitude, for a study."""

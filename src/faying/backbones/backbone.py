@@ -1,0 +1,457 @@
+"""From a study to the frequency and damping of a mode against its amplitude."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal, overload
+
+import numpy as np
+
+from faying.backbones.choice import chosen, friction_of, load_index, names
+from faying.backbones.result import Curve, collected
+from faying.backbones.store import CurveStore
+from faying.case.beside import changed, study_beside
+from faying.case.case import Case, checked_laws, law_reasons, read_for, surfaces_of
+from faying.case.preloads import settled
+from faying.errors import InputError
+from faying.fe.interface import Interface
+from faying.joint.attachments import nearest_node
+from faying.joint.shared_modes import modes_of
+from faying.joint.springs import Springs
+from faying.joint.support_check import check_motions
+from faying.measured.mac import mac
+from faying.microslip.epmc import EpmcCurve, EpmcPoint
+from faying.microslip.levels import cut_laws
+from faying.microslip.microslip import Microslip
+from faying.microslip.slip_basis import SlipBasis
+from faying.misuse import checked_call
+from faying.numerics.damped import damped_modes
+from faying.numerics.modes import Modes
+from faying.progress import Report
+from faying.result.backbone import Backbone
+from faying.study.keys.backbone import BackboneChoice, Point, laws
+from faying.study.keys.beside import BesideChoice
+from faying.study.keys.law import LawChoice
+from faying.study.part_folder import fingerprint
+from faying.study.study import Study
+from faying.typing import Array
+
+EXTRA_MODES = 14  # real modes beyond the one that is followed, in its basis
+SPRINGS = 32  # of the law's curve at a point
+FEW = 16  # springs with which the basis is trained
+SAMPLES = 64  # instants of a cycle
+TRAINED = 2.5  # decades below the last level in which the basis is trained,
+EACH = 0.5  # in steps of so many
+SPENT = 0.05  # residual, in energy, at which a basis is spent
+STILL = 1e-3  # of the greatest motion: a point that moves less says nothing of the mode
+
+STEPS = 1000  # of its progress
+
+
+@overload
+def backbone(
+    study: Study | str | Path,
+    mode: int | None = ...,
+    friction: float | None = ...,
+    amplitude: tuple[float, float] | None = ...,
+    at: Point | None = ...,
+    harmonics: int | None = ...,
+    *,
+    load: float | None = ...,
+    rest_damping: float | Literal["law"] | None = ...,
+    slip: Literal["microslip", "coulomb"] | None = ...,
+    law: str | None = ...,
+    out: str | Path | None = ...,
+    report: Report | None = ...,
+) -> Backbone: ...
+
+
+@overload
+def backbone(
+    study: Study | str | Path,
+    mode: int | None = ...,
+    friction: Sequence[float] = ...,
+    amplitude: tuple[float, float] | None = ...,
+    at: Point | None = ...,
+    harmonics: int | None = ...,
+    *,
+    load: float | None = ...,
+    rest_damping: float | Literal["law"] | None = ...,
+    slip: Literal["microslip", "coulomb"] | None = ...,
+    law: str | Sequence[str] | None = ...,
+    out: str | Path | None = ...,
+    report: Report | None = ...,
+) -> tuple[Backbone, ...]: ...
+
+
+@checked_call
+def backbone(
+    study: Study | str | Path,
+    mode: int | None = None,
+    friction: float | Sequence[float] | None = None,
+    amplitude: tuple[float, float] | None = None,
+    at: Point | None = None,
+    harmonics: int | None = None,
+    *,
+    load: float | None = None,
+    rest_damping: float | Literal["law"] | None = None,
+    slip: Literal["microslip", "coulomb"] | None = None,
+    law: str | Sequence[str] | None = None,
+    out: str | Path | None = None,
+    report: Report | None = None,
+) -> Backbone | tuple[Backbone, ...]:
+    """Follow one mode of a study from rest to large amplitudes: frequency and damping of its slipping joints.
+
+    What is left out is taken from [backbone] of the study, or its default.
+
+    Args:
+        study: A Study or the path of its TOML file.
+        mode: Elastic mode, from 1.
+        friction: Coefficient [-] of all joints, 0 to 10; that of each joint in the study where left out. A list gives a
+            tuple of curves, from one basis.
+        amplitude: First and last acceleration amplitude [m/s2]; (0.1, 100) by default. The curve may end before.
+        at: Point [m] whose acceleration that is; where the mode moves most by default.
+        harmonics: Highest harmonic of the motion, 3 by default; 1 is quick.
+        load: Preload of the first bolt [N], one of the study's; the greatest by default.
+        rest_damping: Ratio to critical [-] that is added to that of slip, or "law": what the laws lose without slip.
+        slip: "microslip" (default) cuts the law's curve into springs with sliders; "coulomb" takes one slider a point.
+        law: Contact law of all joints, such as "jk", in place of the study's. A list gives a tuple of curves, from one
+            basis; the study's own law keeps its parameters.
+        out: File (.nc) that the curve is written to. Finished steps are saved next to it until then: a computation
+            that was killed resumes where it stopped. With several curves, their files are numbered.
+        report: Called with a stage, the steps done, and how many there are.
+
+    Returns:
+        The curve, with its error bounds and the reason why it ends.
+
+    Raises:
+        InputError: No friction is given, the law has no tangential stiffness, there is no such mode or load.
+        NotConverged: The preload, the modes or the first point of the curve are not found.
+
+    Source:
+        Extended periodic motion concept: Krack 2015, doi:10.1016/j.compstruc.2015.03.008.
+    """
+    several = isinstance(law, Sequence) and not isinstance(law, str)
+    many = isinstance(friction, Sequence) or several
+    asked: dict[str, Any] = {"mode": mode, "amplitude": amplitude, "at": at, "harmonics": harmonics}
+    asked |= {"rest_damping": rest_damping, "slip": slip}
+    asked["laws"] = None if law is None else laws([law] if isinstance(law, str) else list(law), "law")
+    study = Study.read(study)
+    choice = chosen(study, friction, asked)
+    if not many and len(choice.friction) > 1:
+        given = ", ".join(f"{value:g}" for value in choice.friction)
+        raise InputError(f"[backbone] lists friction {given}: give one of them, or the list for a tuple of curves")
+    if not many and len(choice.laws) > 1:
+        given = ", ".join(one.model for one in choice.laws)
+        raise InputError(f"[backbone] lists the laws {given}: give one of them, or the list for a tuple of curves")
+    curves = backbones(
+        study, choice, loads=[len(study.loads) - 1 if load is None else load_index(study, load)], out=out, report=report
+    )
+    return curves if many else curves[0]
+
+
+def backbones(
+    study: Study,
+    choice: BackboneChoice,
+    *,
+    loads: Sequence[int] | None = None,
+    out: str | Path | None = None,
+    report: Report | None = None,
+) -> tuple[Backbone, ...]:
+    """Curves for every law and friction of a choice at some loads of a study (indices, all where None), from one basis.
+
+    Args, Raises: see `backbone`.
+    """
+    indices = list(range(len(study.loads))) if loads is None else list(loads)
+    frictions = friction_of(study, choice)
+    progress = _Progress(report, max(len(choice.laws), 1) * len(indices) * len(frictions))
+    progress.stage("surface and mesh", 0.0)
+    read = read_for(study, surfaces_of(study))
+    for law in choice.laws:
+        other = study_beside(study, _beside(study, law))
+        checked_laws(other, surfaces_of(other, read))  # raises, before the mesh
+    case = Case.of(study, read=read)
+    file = None if out is None else Path(out)
+    with CurveStore(file, fingerprint(study, choice, indices)) as store:
+        made = _curves(case, choice, indices, frictions, store, progress)
+        if file is not None:
+            for path, curve in zip(names(file, len(made)), made, strict=True):
+                curve.save(path)
+            store.finish()
+    return tuple(made)
+
+
+def backbones_of(case: Case, choice: BackboneChoice, *, report: Report | None = None) -> tuple[Backbone, ...]:
+    """Curves for every law and friction of a choice, at the greatest preload of a case that is ready to be solved.
+
+    Raises: see `backbone`.
+    """
+    frictions = friction_of(case.study, choice)
+    progress = _Progress(report, max(len(choice.laws), 1) * len(frictions))
+    with CurveStore(None, "") as store:
+        return tuple(_curves(case, choice, [len(case.study.loads) - 1], frictions, store, progress))
+
+
+def median_of(case: Case, choice: BackboneChoice) -> tuple[Array, Point]:
+    """Shape (unknowns,) at rest of the mode of a choice, at the last load of a case, and the point [m] observed.
+
+    Raises: see `backbone`.
+    """
+    one = _last(case, choice)
+    node, *_ = one.observed()
+    x, y, z = case.structure.mesh.points[node].tolist()
+    return one.basis.shape, (x, y, z)
+
+
+def curve_like(
+    case: Case, choice: BackboneChoice, friction: tuple[float, ...], shape: Array, *, least: float
+) -> Backbone:
+    """Follow the mode that has a shape, at the last load of a case; without error bounds, static cycle and notes.
+
+    Args:
+        case: Ready to be solved; its mesh is that of the shape.
+        choice: What is asked for, but for mode and friction.
+        friction: Coefficient of each joint [-].
+        shape: Of the mode at rest that is looked for (unknowns,).
+        least: MAC with that shape which the mode must have.
+
+    Raises:
+        InputError: No mode has this shape; else as `backbone`.
+        NotConverged: As `backbone`.
+    """
+    one = _last(case, choice)
+    basis = one.basis
+    alike = mac(shape, basis.modes.shapes[:, case.rigid_count :].T, basis.mass)[0]
+    nearest = int(np.argmax(alike))
+    if alike[nearest] < least:
+        raise InputError(
+            f"no mode has the shape of mode {choice.mode} of the median: the nearest has a MAC of {alike[nearest]:.2f}"
+        )
+    basis.mode = nearest + 1
+    one = replace(one, choice=replace(choice, mode=nearest + 1))
+    progress = _Progress(None, 1)
+    basis.begin()
+    one.train(friction, progress)
+    return collected(one.curve(friction, (), lambda count, point: None, progress), bounded=False)
+
+
+@dataclass
+class _Progress:
+    """Shares of the work: a fifth until the basis stands, the rest in equal parts for the curves."""
+
+    report: Report | None
+    curves: int
+    curve: int = 0
+
+    def stage(self, text: str, share: float) -> None:
+        if self.report is not None:
+            self.report(text, int(STEPS * 0.2 * share), STEPS)
+
+    def within(self, text: str, share: float) -> None:
+        if self.report is not None:
+            done = 0.2 + 0.8 * (self.curve + min(max(share, 0.0), 1.0)) / self.curves
+            self.report(text, int(STEPS * done), STEPS)
+
+
+def _curves(
+    case: Case,
+    choice: BackboneChoice,
+    indices: Sequence[int],
+    frictions: Sequence[tuple[float, ...]],
+    store: CurveStore,
+    progress: _Progress,
+) -> list[Backbone]:
+    cases = [_under(case, law) for law in choice.laws] or [case]
+    places = [(one, k) for one in cases for k in indices]
+    bases = _bases(places, choice, progress)
+    prepared = [
+        _Prepared(case=one, choice=choice, load=one.study.loads[k], basis=b)
+        for (one, k), b in zip(places, bases, strict=True)
+    ]
+    vectors = store.basis()
+    if vectors is not None:
+        bases[0].restore(vectors)
+    else:
+        bases[0].begin(lambda text: progress.stage(text, 0.5))
+        for other in bases[1:]:
+            other.take_modes()
+        for one in prepared:
+            for friction in frictions:
+                one.train(friction, progress)
+        store.keep_basis(bases[0].basis.vectors)
+    out = []
+    for one in prepared:
+        for friction in frictions:
+            number = progress.curve
+
+            def keep(count: int, point: EpmcPoint, number: int = number) -> None:
+                store.keep(number, count, point)
+
+            found = one.curve(friction, store.points(number), keep, progress)
+            out.append(collected(found))
+            progress.curve += 1
+    return out
+
+
+def _beside(study: Study, law: LawChoice) -> BesideChoice:
+    """A law on all joints, with the parameters that the study gives it where all of them have it already."""
+    own = {study.law_of(joint).kind.label: study.law_of(joint) for joint in study.joints}
+    return BesideChoice(name=law.model, law=own[law.kind.label] if set(own) == {law.kind.label} else law)
+
+
+def _under(case: Case, law: LawChoice) -> Case:
+    """The case under another law, with what there is to say of it."""
+    other = changed(case, _beside(case.study, law))
+    kept = [note for note in case.notes if note not in law_reasons(case.structure, case.surfaces)]
+    return replace(other, notes=(*kept, *law_reasons(other.structure, other.surfaces)))
+
+
+def _bases(places: Sequence[tuple[Case, int]], choice: BackboneChoice, progress: _Progress) -> list[SlipBasis]:
+    """The structure of each case under one of its loads, with one basis, which is empty yet."""
+    bases: list[SlipBasis] = []
+    before: Case | None = None
+    for case, index in places:
+        study, structure = case.study, case.structure
+        if case is not before:
+            problem, before = structure.assembly(solver=study.modes.solver), case
+        progress.stage(f"preload {study.loads[index] / 1e3:g} kN", 0.2)
+        preload = settled(case, index, problem)
+        springs = structure.springs(preload.pressures)
+        for joint, own in zip(structure.joints, springs, strict=True):
+            if not np.any(own.k_t > 0):
+                raise InputError(
+                    f"joint {joint.name!r}: {joint.law.model.name} has no tangential stiffness, so that nothing slips; "
+                    'set tangential = "mindlin", or take another law'
+                )
+        if bases:
+            bases.append(bases[0].under(structure, preload, springs))
+            continue
+        progress.stage("modes", 0.4)
+        bases.append(
+            SlipBasis(
+                structure=structure,
+                preload=preload,
+                springs=springs,
+                modes=_modes(case, springs, choice.mode),
+                mode=choice.mode,
+            )
+        )
+    return bases
+
+
+def _modes(case: Case, springs: Sequence[Springs[Interface]], mode: int) -> Modes:
+    most = int(np.count_nonzero(case.structure.vibrating[1].diagonal() > 0)) // 2
+    wanted = max(min(mode + EXTRA_MODES, most - case.rigid_count), 1)
+    modes, *_ = modes_of(case.modal, springs, case.rigid_count + wanted)
+    check_motions(case.structure, modes)
+    return modes
+
+
+def _last(case: Case, choice: BackboneChoice) -> "_Prepared":
+    """A case under its last load, with an empty basis."""
+    last = len(case.study.loads) - 1
+    (basis,) = _bases([(case, last)], choice, _Progress(None, 1))
+    return _Prepared(case=case, choice=choice, load=case.study.loads[last], basis=basis)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Prepared:
+    """A case under one load, ready for its curves."""
+
+    case: Case
+    choice: BackboneChoice
+    load: float
+    basis: SlipBasis
+
+    def laws(self, friction: Sequence[float], springs: int = SPRINGS) -> list[Microslip]:
+        """The microslip law of each joint under the preload."""
+        structure, preload = self.case.structure, self.basis.preload
+        if self.choice.slip != "coulomb":
+            return cut_laws(structure, preload, friction, springs)
+        return [
+            Microslip.coulomb(joint.law, -opening, friction=mu, gap=joint.interface.gap)
+            for joint, opening, mu in zip(structure.joints, preload.openings, friction, strict=True)
+        ]
+
+    def train(self, friction: Sequence[float], progress: _Progress) -> None:
+        """Make the basis fit the curve."""
+        _, _, observer = self.observed()
+        levels = self.choice.amplitude[1] * 10 ** -np.arange(0.0, TRAINED + EACH / 2, EACH)[::-1]
+        self.basis.train(
+            self.laws(friction, FEW),
+            lambda epmc: [level / epmc.level_of(1.0) for level in levels],
+            harmonics=min(self.choice.harmonics, 2),
+            samples=SAMPLES // 2,
+            observer=observer,
+            report=lambda text: progress.stage(text, 0.8),
+        )
+
+    def observed(self) -> tuple[int, Array, Array]:
+        """Node, direction (3,) and functional (unknowns,) of the motion that is given."""
+        mesh, shape = self.case.structure.mesh, self.basis.shape.reshape(-1, 3)
+        size = np.linalg.norm(shape, axis=1)
+        at = self.choice.at
+        node = int(np.argmax(size)) if at is None else nearest_node(mesh, at, "point of the backbone")
+        if size[node] < STILL * size.max():
+            most = ", ".join(f"{1e3 * x:.4g}" for x in mesh.points[np.argmax(size)])
+            raise InputError(
+                f"mode {self.choice.mode} hardly moves at this point ({size[node] / size.max():.1e} of its greatest "
+                f"motion); give another one, such as ({most}) mm, where it moves most"
+            )
+        direction = shape[node] / size[node]
+        functional = np.zeros(mesh.unknowns)
+        functional[3 * node : 3 * node + 3] = direction
+        return node, direction, functional
+
+    def rest_damping(self) -> float:
+        """Ratio to critical [-] that is added."""
+        if self.choice.rest_damping != "law":
+            return float(self.choice.rest_damping)
+        if not self.case.structure.predicts_loss:
+            raise InputError('rest_damping = "law": no law of this study predicts a loss; give a number such as 0.001')
+        return self.law_damping()
+
+    def law_damping(self) -> float:
+        """Half of the loss factor [-] that the laws give the mode at rest."""
+        basis, structure = self.basis, self.case.structure
+        stiffness, loss = structure.joined(basis.springs)
+        own = basis.modes_here()
+        found = damped_modes(own, stiffness, basis.mass, loss, rigid=structure.rigid_count, count=basis.mode)
+        return float(found.damping_ratios[basis.mode - 1])
+
+    def curve(
+        self,
+        friction: tuple[float, ...],
+        known: Sequence[EpmcPoint],
+        keep: Callable[[int, EpmcPoint], None],
+        progress: _Progress,
+    ) -> Curve:
+        """Follow the curve, from the points that are known."""
+        node, direction, observer = self.observed()
+        epmc = self.basis.epmc(self.laws(friction), harmonics=self.choice.harmonics, samples=SAMPLES, observer=observer)
+        low, high = self.choice.amplitude
+        residuals: list[float] = [self.basis.residual(epmc, point)[0] for point in known]
+
+        def found(point: EpmcPoint) -> str | None:
+            residuals.append(self.basis.residual(epmc, point)[0])
+            keep(len(residuals) - 1, point)
+            progress.within(f"{point.level:.3g} m/s2", 0.8 * np.log(point.level / low) / np.log(high / low))
+            if residuals[-1] > SPENT:
+                return f"the basis is spent: the full equations leave a residual of {residuals[-1]:.1%} in energy"
+            return None
+
+        line: EpmcCurve = epmc.follow(low, high, known=known, keep=found)
+        progress.within("error bounds", 0.85)
+        return Curve(
+            case=self.case,
+            choice=self.choice,
+            load=self.load,
+            friction=friction,
+            basis=self.basis,
+            epmc=epmc,
+            line=line,
+            residuals=residuals,
+            node=node,
+            direction=direction,
+            rest_damping=self.rest_damping(),
+        )

@@ -1,0 +1,1 @@
+"""A study made ready, and solved at each preload."""

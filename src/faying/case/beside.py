@@ -1,0 +1,122 @@
+"""The same structure under other laws and forms: what [[beside]] asks for."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from faying.case.case import Case, Progress, interface_of, joint_law, law_reasons, materials_at, surfaces_of
+from faying.case.engine import Engine
+from faying.case.solve import LoadedCase, solve
+from faying.errors import FayingError
+from faying.notes import Note
+from faying.numerics.solve import Released
+from faying.study.keys.beside import BesideChoice
+from faying.study.study import Study
+
+TOLD = ("open", "beyond-law", "outside-validity", "law-choice", "assumed")  # notes of the other law that are told
+
+
+@dataclass(frozen=True, kw_only=True)
+class Beside:
+    """A case under another law.
+
+    Args:
+        name: what tables call it.
+        case: the case with that law; None where it could not be made.
+        states: one for each load; empty where there was no answer.
+        notes: what there is to say of it.
+    """
+
+    name: str
+    case: Case | None
+    states: tuple[LoadedCase, ...]
+    notes: tuple[Note, ...]
+
+
+def solve_beside(case: Case, choice: BesideChoice, engine: Engine, progress: Progress) -> Beside:
+    """Solve a case under another law on all joints, at all loads, without meshing anew.
+
+    engine: that of the case under its own law.
+    """
+    done = progress.done
+    try:
+        other = changed(case, choice)
+        solver, loads = engine.of(other), range(len(case.study.loads))
+        states = tuple(_slim(solve(other, k, solver, progress, ranges=False)) for k in loads)
+    except FayingError as fault:
+        progress.done = done + 2 * len(case.study.loads)
+        text = f"alternative {choice.name}: no answer: {fault}"
+        return Beside(name=choice.name, case=None, states=(), notes=(Note(code="beside", text=text),))
+    notes = [*law_reasons(other.structure, other.surfaces), *(note for state in states for note in state.notes)]
+    told = tuple(
+        replace(note, text=f"alternative {choice.name}: {note.text}")
+        for note in notes
+        if note.code in TOLD and note not in case.notes
+    )
+    return Beside(name=choice.name, case=other, states=states, notes=tuple(dict.fromkeys(told)))
+
+
+def _slim(state: LoadedCase) -> LoadedCase:
+    """The state without its factorisation: what is beside needs none, and memory is short."""
+    factor = state.modes.factorisation
+    return replace(state, modes=replace(state.modes, factorisation=Released(name=factor.name, memory=factor.memory)))
+
+
+def study_beside(study: Study, choice: BesideChoice) -> Study:
+    """The study with another law, surface or form on all joints."""
+    joints = tuple(
+        replace(
+            joint,
+            law=choice.law or joint.law,
+            surface=choice.surface or joint.surface,
+            form=choice.form or joint.form,
+        )
+        for joint in study.joints
+    )
+    return replace(study, joints=joints, response=None, hammer=None)
+
+
+def changed(case: Case, choice: BesideChoice) -> Case:
+    """The case under another law or form, with the same mesh and what is assembled on it."""
+    study = study_beside(case.study, choice)
+    surfaces = surfaces_of(study, case.read)
+    mesh = case.structure.mesh
+    placed = []
+    for joint, old, surface in zip(study.joints, case.structure.joints, surfaces, strict=True):
+        law = joint_law(joint, study.law_of(joint), surface, *materials_at(study, mesh, joint))
+        interface = old.interface if choice.form is None else interface_of(study, mesh, joint, surface)[0]
+        placed.append(replace(old, law=law, scan_area=surface.scan_area, interface=interface))
+    structure = replace(case.structure, joints=tuple(placed))
+    return replace(case, study=study, structure=structure, surfaces=surfaces, hammer=None, test_points=None, notes=())
+
+
+def beside_fields(besides: Sequence[Beside], loads: int, modes: int) -> dict[str, Any]:
+    """Fields of the result for the other laws, NaN where one has no answer; none without any."""
+    if not besides:
+        return {}
+    nothing = np.full((loads, modes), np.nan)
+    alone = np.full(loads, np.nan)
+    rows: dict[str, list[Any]] = {
+        "beside_frequencies": [],
+        "beside_loss_factors": [],
+        "beside_beyond_frequencies": [],
+        "beside_outside_share": [],
+        "beside_beyond_share": [],
+        "beside_reach": [],
+    }
+    for beside in besides:
+        joints, states = () if beside.case is None else beside.case.structure.joints, beside.states
+        lossless = beside.case is None or not beside.case.structure.predicts_loss
+        found = [
+            np.stack([s.damped.frequencies for s in states]) if states else nothing,
+            nothing if lossless else np.stack([s.damped.loss_factors for s in states]),
+            np.stack([s.bonded_frequencies for s in states]) if states else nothing,
+            np.array([s.outside_share for s in states]) if states else alone,
+            np.array([s.beyond_share for s in states]) if states else alone,
+            min((joint.law.model.greatest_pressure for joint in joints), default=np.nan),
+        ]
+        for values, one in zip(rows.values(), found, strict=True):
+            values.append(one)
+    return {"beside": tuple(b.name for b in besides)} | {name: np.stack(values) for name, values in rows.items()}

@@ -1,0 +1,79 @@
+"""The frequencies of a structure with the faces of its joints apart, and with them bonded: its joints lie between."""
+
+from typing import Any
+
+import numpy as np
+
+from faying.case.beyond import stiff_as_bonded
+from faying.case.case import Case
+from faying.joint.shared_modes import modes_with
+from faying.joint.structure import bond, merged
+from faying.joint.support_check import RIGID_BELOW
+from faying.mpi.over_mpi import OverMpi
+from faying.notes import Note
+from faying.numerics.by_parts import PartByPart
+from faying.numerics.constraint import constrain
+from faying.typing import Array
+
+STIFFER = 40.0  # springs that are extrapolated to bonded faces, over those that stand for bonded ones
+
+
+def bounds(case: Case) -> tuple[Array, Array, list[Note]]:
+    """Frequencies [Hz] of the elastic modes with the faces of every joint apart, and with them bonded; notes.
+
+    Faces that match node for node have one answer, to 1e-8, under every solver: their unknowns become one, or, where
+    that is not possible, springs between them are extrapolated to rigid ones. Other faces get stiff springs and a note.
+    """
+    structure = case.structure
+    free = modes_with(case.modal, *structure.vibrating, rigid=structure.loose())
+    still = np.where(free.frequencies < RIGID_BELOW * case.shift_frequency, 0.0, free.frequencies)
+    return still[_elastic(case)], *_bonded(case)
+
+
+def _elastic(case: Case) -> slice:
+    return slice(case.rigid_count, case.rigid_count + case.study.modes.count)
+
+
+def _bonded(case: Case) -> tuple[Array, list[Note]]:
+    structure = case.structure
+    merge = structure.bonded()
+    if merge is None:
+        apart = [joint.name for joint in structure.joints if bond(structure.mesh, [joint.faces]) is None]
+        text = (
+            f"the faces of {', '.join(apart)} do not match node for node: the bonded modes use springs a thousand "
+            "times as stiff as the parts in place of bonded faces"
+        )
+        return _by_springs(case, 1.0), [Note(code="bonded-by-springs", text=text)]
+    if len(structure.fixed) or isinstance(structure.solver(case.study.modes.solver), PartByPart):
+        return _extrapolated(case), []
+    return _merged(case, merge), []
+
+
+def _merged(case: Case, merge: Any) -> Array:
+    """The unknowns of both faces of every joint are one; merge: as `Structure.bonded` gives it."""
+    structure = case.structure
+    K, M = (merged(matrix, merge) for matrix in structure.vibrating)
+    share = np.asarray(merge.sum(axis=0)).ravel()
+    rigid = (merge.T @ structure.rigid) / share[:, None]
+    way = structure.solver(case.study.modes.solver)
+    if isinstance(way, OverMpi):
+        points = (merge.T @ structure.mesh.points.ravel() / share).reshape(-1, 3)
+        way = OverMpi(points, way.processes)
+    return modes_with(case.modal, K, M, rigid=rigid, solver=way).frequencies[_elastic(case)]
+
+
+def _extrapolated(case: Case) -> Array:
+    """Springs of stiffness k and 2 k, without the error of squared frequencies that goes with 1/k."""
+    soft, stiff = (_by_springs(case, times) for times in (STIFFER, 2 * STIFFER))
+    return np.asarray(np.sqrt(2 * stiff**2 - soft**2))
+
+
+def _by_springs(case: Case, times: float) -> Array:
+    """Springs between the faces, so many times as stiff as those that stand for bonded faces."""
+    structure = case.structure
+    K, M = structure.vibrating
+    stiff = times * stiff_as_bonded(structure)
+    for joint in structure.joints:
+        springs = joint.interface.springs(*2 * (np.full(len(joint.interface.weights), stiff),))
+        K = K + constrain(springs, structure.fixed, 0.0)
+    return modes_with(case.modal, K, M, rigid=structure.rigid).frequencies[_elastic(case)]

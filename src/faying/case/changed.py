@@ -1,0 +1,66 @@
+"""Frequencies of a case with a few things changed, in one small basis, at no full solution."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from faying.case.case import Case
+from faying.case.solve import LoadedCase
+from faying.joint.joint_law import JointLaw
+from faying.reduction.reduce import Reduction
+from faying.reduction.together import Gapped, evaluate, train_together
+from faying.typing import Array
+
+TOLERANCE = 2e-4  # of a frequency, where what is changed moves one by a thousandth and more
+
+
+@dataclass(frozen=True, kw_only=True)
+class Changed:
+    """A case with other laws, gaps [m] (q,) and forces on all joints and bolts; factor: on the force of each bolt."""
+
+    laws: Sequence[JointLaw]
+    gaps: Sequence[Array]
+    factor: float = 1.0
+
+    @classmethod
+    def nothing(cls, case: Case) -> "Changed":
+        """The case as it is."""
+        joints = case.structure.joints
+        return cls(laws=[joint.law for joint in joints], gaps=[joint.interface.gap for joint in joints])
+
+
+def can_change(case: Case) -> bool:
+    """Whether small bases hold the case: no bolts tightened in order, viscous dampers, springs per node."""
+    ordered, viscous = case.study.order is not None, case.study.modes.damping == "viscous"
+    return not (ordered or viscous or any(joint.per_node for joint in case.structure.joints))
+
+
+def frequencies_of(case: Case, states: Sequence[LoadedCase], changes: Sequence[Changed]) -> list[Array]:
+    """Frequencies [Hz] (loads, m) of each change; the basis is made for the first and the last load of all of them.
+
+    Raises NotConverged where a change has no equilibrium.
+    """
+    if not changes:
+        return []
+    last, structure = states[-1], case.structure
+    reduction = Reduction.about(
+        structure,
+        factor=last.modes.factorisation,
+        reference=(last.modes.factorised + last.modes.shift * structure.vibrating[1]).tocsr(),
+        state=last.preload.displacement,
+        shapes=last.modes.shapes[:, case.rigid_count :],
+        count=case.study.modes.count,
+    )
+    friction = [joint.friction for joint in structure.joints]
+    forces = [np.array(case.study.forces(k)) for k in range(len(case.loads))]
+    every = [
+        [Gapped(laws=one.laws, forces=one.factor * force, friction=friction, gaps=one.gaps) for force in forces]
+        for one in changes
+    ]
+    ends = sorted({0, len(forces) - 1})
+    starts = train_together(reduction, [loads[k] for loads in every for k in ends], TOLERANCE)
+    return [
+        np.stack([evaluate(reduction, one, starts[len(ends) * number]).frequencies for one in loads])
+        for number, loads in enumerate(every)
+    ]

@@ -1,0 +1,82 @@
+"""Frequencies at both ends of what is not known of a joint and changes no pressure."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from faying.case.case import Case
+from faying.case.engine import Engine
+from faying.case.scatter import LEVELS, default, stated
+from faying.fe.interface import Interface
+from faying.joint.equilibrium import PreloadState
+from faying.joint.joint import FittedJoint
+from faying.joint.joint_law import JointLaw
+from faying.joint.springs import Springs
+from faying.typing import Array
+
+Pair = tuple[Array, Array]  # frequencies [Hz] at both ends of one number
+
+
+def ends_of(case: Case, preload: PreloadState, engine: Engine) -> dict[str, Pair]:
+    """Frequencies of one load at 5 and at 95 % of what changes no pressure: the scan's range, and k_t/k_n.
+
+    "contact": with each half of the points of the joints, for the error of the mesh.
+    """
+    joints, out = case.structure.joints, {}
+
+    def pair(laws: Sequence[tuple[JointLaw, JointLaw]]) -> Pair:
+        both = []
+        for k in (0, 1):
+            changed = tuple(replace(joint, law=pair[k]) for joint, pair in zip(joints, laws, strict=True))
+            both.append(engine.frequencies(replace(case.structure, joints=changed).springs(preload.pressures)))
+        return both[0], both[1]
+
+    laws = [joint.law for joint in joints]
+    if any(law.has_range for law in laws):
+        out["scan"] = pair(
+            [(replace(law, end="low"), replace(law, end="high")) if law.has_range else (law, law) for law in laws]
+        )
+    ratios = [ratios_of(case, joint) for joint in joints]
+    if case.study.modes.intervals and any(low < high for low, _, high in ratios):
+        out["k_t/k_n"] = pair(
+            [
+                (replace(law, tangential=low), replace(law, tangential=high)) if low < high else (law, law)
+                for law, (low, _, high) in zip(laws, ratios, strict=True)
+            ]
+        )
+    if case.study.modes.intervals and not any(joint.per_node for joint in joints):
+        springs = case.structure.springs(preload.pressures)
+        out["contact"] = (
+            engine.frequencies([half_of(one, 0) for one in springs]),
+            engine.frequencies([half_of(one, 1) for one in springs]),
+        )
+    return out
+
+
+def half_of(springs: Springs[Interface], which: int) -> Springs[Interface]:
+    """Every second point of a joint, from the first or from the second one, with twice its stiffness."""
+    twice = 2.0 * (np.arange(len(springs.k_n)) % 2 == which)
+    return replace(springs, k_n=twice * springs.k_n, k_t=twice * springs.k_t)
+
+
+def quantiles(case: Case, own: str, common: str, name: str) -> tuple[float, float, float]:
+    """5, 50 and 95 % of a number: as the study says of it or of all such numbers, else from the table."""
+    known = stated(case.study.uncertain)
+    low, middle, high = (known.get(own) or known.get(common) or default(name)).quantile(LEVELS)
+    return float(low), float(middle), float(high)
+
+
+def ratios_of(case: Case, joint: FittedJoint) -> tuple[float, float, float]:
+    """5, 50 and 95 % of k_t/k_n of a joint; three times the number that the study gives where that does not scatter."""
+    known, given = stated(case.study.uncertain), joint.law.tangential
+    own, common = f"joint.{joint.name}.tangential", "joint.tangential"
+    if isinstance(given, int | float) and own not in known and common not in known:
+        return float(given), float(given), float(given)
+    return quantiles(case, own, common, "k_t/k_n")
+
+
+def at_median_ratio(case: Case, joint: FittedJoint) -> JointLaw:
+    """The law of a joint with the median of k_t/k_n, where that scatters."""
+    low, middle, high = ratios_of(case, joint)
+    return replace(joint.law, tangential=middle) if low < high else joint.law

@@ -1,0 +1,128 @@
+"""Damping and frequency of every mode at levels of acceleration, with what is not known of friction and of rest."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from faying.case.case import Case
+from faying.errors import InputError
+from faying.joint.equilibrium import PreloadState
+from faying.joint.state import Vibration
+from faying.microslip.levels import AtLevels, LevelModel, cut_laws, level_model
+from faying.notes import Note
+from faying.typing import Array
+
+# coefficient of friction of faces of which nothing is said: 5 %, median and 95 % of a lognormal. Handbooks have 0.1 to
+# 0.6 for dry steel; the measured curve of the Brake-Reuss beam is met with 0.03
+FRICTION = (0.03, 0.12, 0.5)
+# damping ratio at rest of bolted structures of which nothing is measured: measured are 0.034 and 0.087 % on the
+# Brake-Reuss beam, 0.10 and 0.13 % on another of its kind by ring-down
+REST = (3e-4, 1e-3, 3e-3)
+MORE_MODES = 150  # of the basis, beyond those asked for, in which a mode is found again
+FEW_SPRINGS = 12  # into which a law is cut for the ends of friction: they differ by factors, this changes a hundredth
+
+
+@dataclass(frozen=True, kw_only=True)
+class LevelDamping:
+    """Modes (m,) at levels (l,), of one load.
+
+    Args:
+        frequencies: [Hz] (l, m), at the friction of the study or the median of its prior.
+        damping, low, high: ratio [-] (l, m), of slip and rest together: median, and both ends.
+        slip: of slip alone [-] (l, m), at the median.
+        error: of slip, of the iteration [-] (l, m).
+    """
+
+    frequencies: Array
+    damping: Array
+    low: Array
+    high: Array
+    slip: Array
+    error: Array
+
+
+def level_damping(case: Case, preload: PreloadState, found: Vibration, basis: Array) -> LevelDamping | None:
+    """Damping at the levels of a case under one preload.
+
+    Args:
+        case: the case.
+        preload: its equilibrium.
+        found: its modes at rest; a loss that the laws predict counts as damping at rest, else that has its prior.
+        basis: modes and directions near them (unknowns, m), orthonormal with the mass.
+
+    Returns:
+        None where no level is asked for, or where a law has no stiffness that slips.
+    """
+    structure, choice = case.structure, case.study.modes
+    if not choice.levels or any(joint.per_node for joint in structure.joints):
+        return None
+    given = [joint.friction for joint in structure.joints]
+    try:
+        model = level_model(structure, preload, basis, [FRICTION[1] if mu is None else mu for mu in given])
+    except InputError:
+        return None
+    model = model.lowest(min(basis.shape[1], case.rigid_count + choice.count + MORE_MODES))
+    middle = model.at(choice.levels, choice.count)
+    rest = (found.damped.loss_factors / 2,) * 3 if structure.predicts_loss else REST
+    # a loss at rest moves the complex modes as well
+    moved = found.damped.frequencies / found.modes.frequencies[case.rigid_count :][: choice.count]
+    ends = [middle, middle]
+    if any(mu is None for mu in given):
+        ends = [_with_friction(model, case, preload, mu) for mu in (FRICTION[2], FRICTION[0])]
+    slip = middle.damping
+    least, most = (choose(slip, choose(*(one.damping for one in ends))) for choose in (np.minimum, np.maximum))
+    # friction and rest are independent: the squares of their distances add, apart for each side
+    return LevelDamping(
+        frequencies=middle.frequencies * moved,
+        damping=slip + rest[1],
+        low=slip + rest[1] - np.hypot(slip - least, rest[1] - rest[0]),
+        high=slip + rest[1] + np.hypot(most - slip, rest[2] - rest[1]),
+        slip=slip,
+        error=middle.error,
+    )
+
+
+def _with_friction(model: LevelModel, case: Case, preload: PreloadState, friction: float) -> AtLevels:
+    """The same with another friction at the joints of which nothing is said, and laws cut into fewer springs."""
+    structure = case.structure
+    given = [friction if joint.friction is None else joint.friction for joint in structure.joints]
+    laws = cut_laws(structure, preload, given, FEW_SPRINGS)
+    joints = tuple(replace(joint, law=law) for joint, law in zip(model.slip.joints, laws, strict=True))
+    changed = replace(model, slip=replace(model.slip, joints=joints))
+    return changed.at(case.study.modes.levels, case.study.modes.count)
+
+
+def _why_none(case: Case) -> str:
+    """Why there is no damping at levels, and what to do."""
+    per_node = [joint.name for joint in case.structure.joints if joint.per_node]
+    if per_node:
+        return (
+            f"no damping at levels of acceleration: {', '.join(per_node)} has springs per node, which do not slip; "
+            "leave springs out of the joint"
+        )
+    laws = dict.fromkeys(joint.law.model.name for joint in case.structure.joints)
+    return (
+        f"no damping at levels of acceleration: under {' and '.join(laws)} a joint has no stiffness that slips, or all "
+        'of it is open; give joint.tangential a number, or "mindlin", or another law'
+    )
+
+
+def level_notes(case: Case, found: Sequence[LevelDamping | None], lossless: bool) -> list[Note]:
+    """What is assumed of friction and of rest."""
+    if not found or not case.study.modes.levels:
+        return []
+    if any(one is None for one in found):
+        return [Note(code="no-level-damping", text=_why_none(case))]
+    words = []
+    if any(joint.friction is None for joint in case.structure.joints):
+        words.append(f"friction {FRICTION[1]:g}, between {FRICTION[0]:g} and {FRICTION[2]:g} (joint.friction gives it)")
+    if lossless:
+        low, middle, high = (f"{100 * one:g}" for one in REST)
+        words.append(f"{middle} % at rest, between {low} and {high} %, as bolted structures have it")
+    if not words:
+        return []
+    text = (
+        f"damping at levels of acceleration assumes {' and '.join(words)}; a ring-down of the structure narrows it most"
+    )
+    return [Note(code="level-damping", text=text)]

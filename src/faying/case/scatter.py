@@ -1,0 +1,145 @@
+"""What scatters in a bolted structure where the study says nothing of it: how far, and where that is known from."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import hypot
+from typing import final
+
+import numpy as np
+
+from faying.bolt.tightening import TIGHTENING
+from faying.distribution import Distribution
+from faying.form.machining import ASSUMED
+from faying.study.keys.uncertain import DRAWS, Input, UncertainChoice
+from faying.study.study import Study
+
+LEVELS = np.array([0.05, 0.5, 0.95])
+ENDS = LEVELS[[0, 2]]
+SCORE = 1.6449  # standard deviations from the median to these ends
+OF_PARTS = ("E", "density")
+MESH_NOTED = 5e-3  # estimated error of a frequency by the mesh that is noted
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class Scatter:
+    """One thing that is not known.
+
+    Args:
+        distribution: of its value, or of a factor on it; None where a run has other ends for it.
+        source: where the distribution comes from.
+        remedy: how it can be known better; "" where it cannot.
+        left: of its spread, then [-].
+    """
+
+    distribution: Distribution | None = None
+    source: str
+    remedy: str = ""
+    left: float = 1.0
+
+
+TORQUE = TIGHTENING["torque wrench, friction estimated"]
+ELONGATION = TIGHTENING["elongation"]
+
+SCATTER = {
+    "scan": Scatter(
+        source="the range that the law states of what the scan resolves, its window and its hardness",
+        remedy="a larger, finer scan",
+        left=0.5,
+    ),
+    "law": Scatter(
+        distribution=Distribution(kind="lognormal", centre=1.0, spread=0.6),
+        source="a factor of 2.7 either way, as eight pairs of ground S45C faces of one roughness scatter (Ito, Modular "
+        "Design for Machine Tools, table 6-5); within a factor of 2.4 of ultrasound on hard ground steel",
+        remedy="measured stiffness of such faces",
+        left=0.3,
+    ),
+    "k_t/k_n": Scatter(
+        distribution=Distribution(kind="uniform", centre=0.55, spread=0.389),
+        source="0.2 to 0.9 from 5 to 95 %: 0.3 to 0.7 by ultrasound, Mindlin's 0.83 at most",
+        remedy="measured joint.tangential",
+        left=0.2,
+    ),
+    "waves": Scatter(
+        source="draws of the waves that the process leaves, or that are assumed",
+        remedy="measured form of the faces",
+        left=0.1,
+    ),
+    "preload": Scatter(
+        distribution=TORQUE.distribution,
+        source=TORQUE.source,
+        remedy="tighten by elongation",
+        left=ELONGATION.scatter / TORQUE.scatter,
+    ),
+    "mesh": Scatter(
+        source="functions one degree higher on edges and faces of the elements (doi:10.1137/0730048), half of the "
+        "points of the joints",
+        remedy="smaller elements",
+        left=0.35,
+    ),
+    "structure": Scatter(
+        distribution=Distribution(kind="normal", centre=1.0, spread=0.015),
+        source="Young's modulus of steel, coefficient of variation 0.03 (JCSS Probabilistic Model Code, part 3.2), of "
+        "which a frequency has half; common to all modes",
+        remedy="weigh and ring each part alone",
+        left=0.2,
+    ),
+    "mode": Scatter(
+        distribution=Distribution(kind="normal", centre=1.0, spread=0.01),
+        source="convention: dimensions, supports and what the model leaves out, each mode by itself",
+    ),
+}
+
+
+def default(name: str) -> Distribution:
+    """The distribution of an entry of `SCATTER` that has one."""
+    found = SCATTER[name].distribution
+    assert found is not None
+    return found
+
+
+def stated(choice: UncertainChoice | None) -> Mapping[str, Distribution]:
+    """What [uncertain] says, by its key."""
+    return {} if choice is None else {one.key: one.distribution for one in choice.inputs}
+
+
+def structure_sd(choice: UncertainChoice | None) -> float:
+    """Standard deviation of ln f that all modes share [-]: half of that of E and density where [uncertain] has them."""
+    spread: dict[str, float] = {}
+    for key, one in stated(choice).items():
+        kind = key.rsplit(".", 1)[-1]
+        if key.startswith("material.") and kind in OF_PARTS:
+            low, high = one.quantile(ENDS)
+            spread[kind] = max(spread.get(kind, 0.0), float(np.log(high / low)) / (2 * SCORE))
+    return hypot(*spread.values()) / 2 if spread else default("structure").spread
+
+
+def mode_sd(choice: UncertainChoice | None) -> float:
+    """Standard deviation of ln f of each mode by itself [-]: the discrepancy of [uncertain], else that of the table."""
+    given = None if choice is None else choice.discrepancy
+    return default("mode").spread if given is None else float(given.median)
+
+
+def discrepancy(choice: UncertainChoice) -> float:
+    """Standard deviation of ln f [-] that samples of a prediction lack: of a mode, and of parts that are certain."""
+    sampled = any(key.startswith("material.") and key.endswith(OF_PARTS) for key in stated(choice))
+    return hypot(mode_sd(choice), 0.0 if sampled else default("structure").spread)
+
+
+def assumed(study: Study) -> UncertainChoice:
+    """What scatters in a study that says nothing of it: stiffness of the joints, k_t/k_n, preloads, and waves."""
+    found = {"joint.stiffness": default("law")}
+    if not any(isinstance(joint.tangential, int | float) for joint in study.joints):
+        found["joint.tangential"] = default("k_t/k_n").within(0.01, 2.0, "()")[0]
+    for bolt in study.bolts:
+        found[f"bolt.{bolt.name}.factor"] = default("preload")
+    for joint in study.joints:
+        key = f"joint.{joint.name}.form.waviness"
+        if joint.form is None and ASSUMED.Wq is not None:
+            found[key] = Distribution(kind="lognormal", centre=ASSUMED.Wq, spread=0.4)
+        if joint.form is None or joint.form.waviness is not None:
+            found[f"{key}_seed"] = Distribution(kind="uniform", centre=DRAWS / 2, spread=DRAWS / 2)
+    units = {key: "m" if key.endswith("waviness") else "" for key in found}
+    return UncertainChoice(
+        inputs=tuple(Input(key=key, distribution=one, unit=units[key]) for key, one in found.items())
+    )

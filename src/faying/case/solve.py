@@ -1,0 +1,151 @@
+"""One load of a case: the preload of its joints, their springs, the modes and the response."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from faying.case.beyond import Beyond, bonded_beyond
+from faying.case.case import Case, Progress
+from faying.case.ends import Pair, ends_of
+from faying.case.engine import Engine
+from faying.case.level_damping import LevelDamping, level_damping
+from faying.case.response import LoadedStructure, ResponseAtLoad
+from faying.fe.interface import Interface
+from faying.joint.equilibrium import PreloadState
+from faying.joint.springs import Springs
+from faying.joint.state import Vibration, law_notes
+from faying.joint.strength import pressure_notes
+from faying.measured.model import FullResponse
+from faying.notes import Note
+from faying.numerics.damped import DampedModes
+from faying.numerics.modes import Modes
+from faying.typing import Array, Mask
+
+SOFTENED = (0.3, 0.1)  # of k_t: joints that slip
+SHAPE_ERROR = 1e-5  # of squared frequencies: shapes are then right to its root, and damping by slip to twice that
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadedCase:
+    """A case under one preload.
+
+    Args:
+        load: preload of the first bolt [N].
+        preload: the equilibrium of the joints.
+        springs: stiffness and loss of each joint at its points.
+        modes, damped: real modes with the springs, and complex modes with their loss.
+        response: what [response] asks for; test_response: that at the points of a hammer test.
+        beyond: what bonding the points beyond the end of their law makes of the modes; None where there are none.
+        notes: where a law leaves its validity range, and the like.
+        ends: frequencies [Hz] at 5 and 95 % of each doubt of the joints, by its name; None where none are asked for.
+        levels: damping at levels of acceleration; None where none is asked for, or no joint can slip.
+        outside_share, beyond_share: of the area of all joints [-], where their law is outside its validity range and
+            where the pressure exceeds its end.
+    """
+
+    load: float
+    preload: PreloadState
+    springs: tuple[Springs[Interface], ...]
+    modes: Modes
+    damped: DampedModes
+    response: ResponseAtLoad | None
+    test_response: FullResponse | None
+    beyond: Beyond | None
+    notes: tuple[Note, ...]
+    outside_share: float
+    beyond_share: float
+    levels: LevelDamping | None = None
+    ends: Mapping[str, Pair] | None = None
+
+    @property
+    def law_range(self) -> Pair | tuple[None, None]:
+        """Frequencies [Hz] (m,) at the ends of the range that the laws state; None twice where none states one."""
+        return (self.ends or {}).get("scan", (None, None))
+
+    @property
+    def bonded_frequencies(self) -> Array:
+        """Frequencies [Hz] (m,) with what is beyond the end of its law bonded."""
+        return self.damped.frequencies if self.beyond is None else self.beyond.frequencies
+
+
+def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges: bool = True) -> LoadedCase:
+    """Solve a case at one of its loads, counted from 0.
+
+    ranges: whether to find the frequencies at the ends of the laws' ranges. Raises InputError where a part is held by
+    nothing, NotConverged where the preload stops short.
+    """
+    study, structure = case.study, case.structure
+    load = study.loads[number]
+    progress.begin(f"preload {load / 1e3:g} kN")
+    preload = engine.preload(number)
+    springs = structure.springs(preload.pressures)
+    progress.begin(f"modes at {load / 1e3:g} kN")
+    found = engine.vibrate(springs)
+    modes, damped = found.modes, found.damped
+    loaded = LoadedStructure(
+        study=study,
+        structure=structure,
+        modes=modes,
+        damped=damped,
+        stiffness=found.stiffness,
+        mass=structure.vibrating[1],
+        loss=found.loss,
+    )
+    response, test_response, notes = _responses(case, number, loaded, progress)
+    beyond = bonded_beyond(case, load, springs, damped)
+    return LoadedCase(
+        load=load,
+        ends=ends_of(case, preload, engine) if ranges else None,
+        levels=_levels(case, preload, found, engine, springs) if ranges else None,
+        preload=preload,
+        springs=springs,
+        modes=modes,
+        damped=damped,
+        response=response,
+        test_response=test_response,
+        beyond=beyond,
+        notes=(
+            *notes,
+            *(() if beyond is None else beyond.notes),
+            *law_notes(structure, preload, load),
+            *pressure_notes(structure, preload.pressures, load),
+        ),
+        outside_share=_share(
+            springs, [~j.law.answer(s.pressure).valid for j, s in zip(structure.joints, springs, strict=True)]
+        ),
+        beyond_share=_share(springs, [j.past_end(s) for j, s in zip(structure.joints, springs, strict=True)]),
+    )
+
+
+def _levels(
+    case: Case, preload: PreloadState, found: Vibration, engine: Engine, springs: Sequence[Springs[Interface]]
+) -> LevelDamping | None:
+    """Damping at levels, in a basis with the modes of joints that slip: softened ones, exact enough for shapes."""
+    if not case.study.modes.levels:
+        return None
+    for share in SOFTENED:
+        engine.frequencies([replace(one, k_t=share * one.k_t) for one in springs], SHAPE_ERROR)
+    return level_damping(case, preload, found, engine.basis())
+
+
+def _responses(
+    case: Case, number: int, loaded: LoadedStructure, progress: Progress
+) -> tuple[ResponseAtLoad | None, FullResponse | None, list[Note]]:
+    """What [response] asks for and what the points of a hammer test need, at one of the loads, with notes."""
+    study, hammer = case.study, case.hammer
+    response = test_response = None
+    notes: list[Note] = []
+    if study.response is not None:
+        progress.begin(f"frequency response at {study.loads[number] / 1e3:g} kN")
+        response, more = loaded.response(study.response)
+        notes += more
+    if hammer is not None and case.test_points is not None and number == hammer.choice.load and hammer.has_frf:
+        progress.begin("frequency response at the points of the test")
+        test_response, more = hammer.response(loaded, case.test_points)
+        notes += more
+    return response, test_response, notes
+
+
+def _share(springs: Sequence[Springs[Interface]], masks: Sequence[Mask]) -> float:
+    """Share of the area of all joints where a mask of its points holds [-]."""
+    held = sum(float(s.interface.weights @ mask) for s, mask in zip(springs, masks, strict=True))
+    return held / sum(s.interface.area for s in springs)

@@ -1,0 +1,1 @@
+"""A joint laid on the model of another program."""

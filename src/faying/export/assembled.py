@@ -1,0 +1,113 @@
+"""The assembled matrices of a study at its first preload, or of files, for modes alone and for other solvers."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from faying.case.case import build
+from faying.decks.matrices import read_pair
+from faying.errors import ReadError
+from faying.files import together, write_arrays, write_text
+from faying.joint.support_check import checked_preload
+from faying.study.study import Study
+from faying.typing import Array, Index
+
+
+@dataclass(frozen=True, kw_only=True)
+class Assembled:
+    """Stiffness [N/m] and mass [kg] (n, n), sparse CSR; dofs (n, 2): node and direction; a frequency to shift by [Hz].
+
+    still: rigid motions that nothing resists, None where nobody has counted them; points: coordinates (n / 3, 3) [m] of
+    the nodes, where known.
+    """
+
+    stiffness: Any
+    mass: Any
+    dofs: Index
+    shift_frequency: float
+    source: str
+    still: int | None = None
+    points: Array | None = None
+
+    @classmethod
+    def of_study(cls, study: Study) -> "Assembled":
+        """Assemble a study with the springs of its joints at its first preload."""
+        structure = build(study)
+        assembly = structure.assembly(solver=study.modes.solver)
+        found = checked_preload(structure, assembly, study.forces(0), order=study.order)
+        stiffness, _ = structure.joined(structure.springs(found.pressures))
+        numbers = structure.mesh.numbers
+        dofs = np.column_stack([np.repeat(numbers, 3), np.tile([1, 2, 3], len(numbers))])
+        return cls(
+            stiffness=stiffness,
+            mass=structure.vibrating[1],
+            dofs=dofs,
+            still=structure.rigid_count,
+            shift_frequency=study.modes.shift_frequency or structure.shift_frequency,
+            source=study.title,
+            points=structure.mesh.points,
+        )
+
+    @classmethod
+    def of_files(
+        cls, stiffness: Path, mass: Path | None, *, stiffness_unit: str, mass_unit: str, points: Path | None = None
+    ) -> "Assembled":
+        """Read matrices of any program; see `faying.decks.matrices.read_pair`.
+
+        points: text with x y z [m] of each node, whose three unknowns follow each other.
+        """
+        K, M, dofs = read_pair(stiffness, mass, stiffness_unit=stiffness_unit, mass_unit=mass_unit)
+        return cls(
+            stiffness=K,
+            mass=M,
+            dofs=dofs,
+            shift_frequency=typical_frequency(K, M),
+            source=stiffness.name,
+            points=None if points is None else _points(points, K.shape[0]),
+        )
+
+    def write(self, folder: Path) -> list[Path]:
+        """Write stiffness.npz, mass.npz (SciPy), dofs.txt and where known points.txt, all or none of them."""
+        from scipy.sparse import csr_matrix
+
+        out = []
+        with together(folder, "give another with --export") as hidden:
+            for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
+                csr = csr_matrix(matrix)
+                arrays = {"format": b"csr", "shape": csr.shape}  # as scipy.sparse.save_npz has them
+                arrays |= {part: getattr(csr, part) for part in ("indices", "indptr", "data")}
+                out.append(write_arrays(hidden / f"{name}.npz", arrays, seal=False))
+            text = "\n".join(f"{node}.{axis}" for node, axis in self.dofs) + "\n"
+            out.append(write_text(hidden / "dofs.txt", text))
+            if self.points is not None:
+                text = "".join(f"{x:.17g} {y:.17g} {z:.17g}\n" for x, y, z in self.points.tolist())
+                out.append(write_text(hidden / "points.txt", text))
+        return [folder / file.name for file in out]
+
+
+def _points(path: Path, unknowns: int) -> Array:
+    """Coordinates (n / 3, 3) [m] of the nodes, from text. Raises ReadError where the file is none of n / 3 nodes."""
+    if not path.is_file():
+        raise ReadError(f"no file {path}")
+    try:
+        found = np.loadtxt(path, ndmin=2)
+    except ValueError as fault:
+        raise ReadError(f"{path} should have x y z [m] of a node in each line ({fault})") from None
+    if 3 * len(found) != unknowns or found.shape[1:] != (3,) or not np.all(np.isfinite(found)):
+        raise ReadError(
+            f"{path} has {len(found)} rows of {found.shape[1]} for {unknowns} unknowns; each node has a row x y z [m] "
+            "and three unknowns that follow each other"
+        )
+    return found
+
+
+def typical_frequency(stiffness: Any, mass: Any) -> float:
+    """A frequency [Hz] of the order of the first mode of a compact body: a wave of some ten bodies' length.
+
+    The mean of the diagonals gives the frequency of one element; a body of n unknowns is n^(1/3) elements across.
+    """
+    n = stiffness.shape[0]
+    element = np.sqrt(stiffness.diagonal().sum() / mass.diagonal().sum()) / (2 * np.pi)
+    return float(0.1 * element / np.cbrt(n))

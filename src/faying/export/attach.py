@@ -1,0 +1,370 @@
+"""A law laid on two faces of a user's own model: from mesh, study and pressure to the springs of the joint."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from faying import units
+from faying.case.case import checked_mesh, joint_law, structure_of, surfaces_of
+from faying.decks.deck import Contact, JointDeck
+from faying.decks.system import System
+from faying.errors import InputError
+from faying.fe.faces import face_centre
+from faying.fe.interface import Interface, join
+from faying.fe.mesh import Mesh
+from faying.joint.joint_law import JointLaw
+from faying.joint.loads import preload_index
+from faying.joint.pairs import NodePairs, consistent, lumped
+from faying.materials import Material
+from faying.misuse import checked_call
+from faying.notes import percent
+from faying.study.keys.geometry import GeometryChoice, mesh_of
+from faying.study.keys.joint import JointChoice
+from faying.study.pressure import read_pressure
+from faying.study.study import Study
+from faying.typing import Array
+
+SMALLEST, LARGEST = 1e-7, 10.0  # areas of a joint [m2] beyond which the unit is doubted
+TOUCHING = 1e-6  # of the structure's size: a gap above it is told
+UNKNOWN_FRICTION = 0.2
+VALID = "validity: the law is within its validity range everywhere"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Attachment:
+    """A joint on a model: its deck, the springs, their interface, area [m2], and what the user should know."""
+
+    deck: JointDeck
+    interface: Interface
+    materials: Mapping[str, Material]
+    notes: tuple[str, ...]
+
+    @property
+    def pairs(self) -> NodePairs:
+        """The springs between nodes."""
+        return self.deck.pairs
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything but the pairs themselves, in SI units."""
+        k_n, k_t = self.pairs.totals()
+        return {
+            "faces": list(self.deck.faces),
+            "pairs": len(self.pairs),
+            "lumped": self.pairs.lumped,
+            "area [m^2]": self.interface.area,
+            "total_k_n [N/m]": k_n,
+            "total_k_t [N/m]": k_t,
+            "facts": list(self.deck.facts),
+            "notes": list(self.notes),
+        }
+
+
+@checked_call
+def attach(
+    model: str | Path,
+    faces: tuple[str, str],
+    *,
+    unit: str,
+    study: Study,
+    pressure: str | Path,
+    joint: str | None = None,
+    preload: str | None = None,
+    tolerance: float | None = None,
+    coupling: Literal["auto", "nodes", "faces"] = "auto",
+    frequency: float | None = None,
+    damping: Literal["loss", "paper"] = "loss",
+    force_unit: str = "N",
+    any_size: bool = False,
+) -> Attachment:
+    """Lay the law of a study on two faces of a mesh file.
+
+    Args:
+        model: mesh file of Abaqus, CalculiX, Nastran, MAPDL, Gmsh or VTK.
+        faces: the rough face and the one that it meets.
+        unit: of the model's coordinates; no mesh file says.
+        study: gives surface, law and materials, and the bolts where they are solved.
+        pressure: a value with unit, a CSV file of node and pressure, or "solve" for the study's bolts on this mesh.
+        joint: which of the study's joints, by name; the one with these faces, or the only one, where None.
+        preload: with "solve", which of the study's preloads, as text with a unit.
+        tolerance: how far apart the faces may lie [m].
+        coupling: "nodes" (pair by pair), "faces" (springs per area, exact on any meshes) or what the meshes allow.
+        frequency: of viscous dampers that lose as much as the loss factor does [Hz].
+        damping: "paper" for the JK paper's dampers.
+        force_unit: unit of force of the model.
+        any_size: take a joint of any area.
+
+    Returns:
+        The joint, ready to be written.
+
+    Raises:
+        ReadError, InputError: files, faces that are missing, apart, turned the same way or of doubtful size, and
+            pressures that do not cover the face.
+    """
+    file = Path(model)
+    spec = _joint(study, faces, joint)
+    solving = str(pressure) == "solve"
+    geometry = GeometryChoice(mesh=file, unit=unit, sets=study.geometry.sets)
+    if solving:
+        moved = replace(
+            study,
+            geometry=geometry,
+            joints=tuple(replace(j, faces=faces, search_distance=tolerance) if j is spec else j for j in study.joints),
+        )
+        mesh = checked_mesh(moved)
+    else:
+        mesh = mesh_of(geometry)
+    interface = _interface(mesh, faces, tolerance, any_size, unit)
+    materials = _materials(study, mesh, faces)
+    notes = [*(note.text for note in mesh.notes), *_apart(mesh, faces, interface)]
+    if solving:
+        law, at_points, said = _solved(moved, mesh, faces, preload)
+    else:
+        law = _joint_law(study, spec, mesh, faces, materials)
+        at_points, said = read_pressure(pressure, mesh, faces, interface)
+    pairs, used = _pairs(interface, law, at_points, coupling)
+    if coupling == "auto" and not pairs.lumped:
+        notes.append(
+            "the meshes of the faces do not match: springs per area, exact, between all nodes that share an overlap; "
+            "some of them are negative"
+        )
+    area = pairs.area if pairs.lumped else interface.weights
+    flags = _flags(law, used, area)
+    system = System(unit, force_unit)
+    mean = float(area @ used / area.sum())
+    p, force = system.pressure, f"{force_unit}/{unit}2"
+    said = f"pressure: {said}; least {used.min() * p:.6g}, mean {mean * p:.6g}, greatest {used.max() * p:.6g} {force}"
+    head = f"Joint of {faces[0]} and {faces[1]} in {file.name}, written by Faying {version('faying')}"
+    deck = JointDeck(
+        pairs=pairs,
+        mesh=mesh,
+        faces=faces,
+        system=system,
+        facts=(head, *_facts(law, pairs, interface, system, said), *(flags or [VALID])),
+        viscous=_dampers(pairs, mesh, materials, frequency, paper=damping == "paper"),
+        paper=damping == "paper",
+        frequency=frequency,
+        first_element=_first_free(file),
+        contact=_contact(law, spec, float(used.max()), mean),
+    )
+    return Attachment(deck=deck, interface=interface, materials=materials, notes=tuple(dict.fromkeys([*notes, *flags])))
+
+
+def _facts(law: JointLaw, pairs: NodePairs, interface: Interface, system: System, pressure: str) -> tuple[str, ...]:
+    """What the head of a deck says of its joint."""
+    k_n, k_t = (total * system.stiffness for total in pairs.totals())
+    unit, force = system.length, system.force
+    sums = f"sum of normal springs {k_n:.8g}, of tangential springs {k_t:.8g} {force}/{unit}"
+    shares = (
+        "shares of the area after the diagonal of the consistent mass of the face (HRZ, doi:10.1002/eqe.4290040305)"
+        if pairs.lumped
+        else "springs per area, consistent with the shape functions of both faces: pairs within a face are negative"
+    )
+    return (
+        system.describe(),
+        f"law: {law.model.name}, {law.model.source}",
+        *([f"mates: {law.mates}"] if law.mates else []),
+        pressure,
+        f"area {interface.area * system.metre**2:.8g} {unit}2; {sums}",
+        shares,
+    )
+
+
+def _joint(study: Study, faces: tuple[str, str], name: str | None) -> JointChoice:
+    for spec in study.joints:
+        if spec.name == name or (name is None and set(spec.faces) == set(faces)):
+            return spec
+    if name is None and len(study.joints) == 1:
+        return study.joints[0]
+    names = ", ".join(repr(spec.name) for spec in study.joints)
+    raise InputError(f"the study has the joints {names}; say whose law to take with --joint NAME")
+
+
+def _interface(mesh: Mesh, faces: tuple[str, str], tolerance: float | None, any_size: bool, unit: str) -> Interface:
+    normals = [face_centre(mesh.points, mesh.face(name))[1] for name in faces]
+    if mesh.face_part[faces[0]] != mesh.face_part[faces[1]] and float(normals[0] @ normals[1]) > 0.5:
+        raise InputError(
+            f"faces {faces[0]!r} and {faces[1]!r} are turned the same way (normals {_vector(normals[0])} and "
+            f"{_vector(normals[1])}); a joint needs two that face each other: was the opposite side meant?"
+        )
+    interface = join(mesh, *faces, search_distance=tolerance)
+    if not any_size and not SMALLEST <= interface.area <= LARGEST:
+        raise InputError(
+            f"in {unit} the joint has {interface.area:.3g} m2; is that the unit of the model? Areas from "
+            f"{SMALLEST * 1e6:g} mm2 to {LARGEST:g} m2 are taken; if it is right, add --any-size"
+        )
+    return interface
+
+
+def _vector(v: Array) -> str:
+    return "(" + ", ".join(f"{x:.3g}" for x in np.round(v, 3) + 0.0) + ")"
+
+
+def _apart(mesh: Mesh, faces: tuple[str, str], interface: Interface) -> list[str]:
+    """What finds no partner, and how far the faces are apart."""
+    notes = []
+    for name, nodes, values in (
+        (faces[0], interface.first_nodes, interface.first_values),
+        (faces[1], interface.second_nodes, interface.second_values),
+    ):
+        every = mesh.face_nodes(name)
+        lost = mesh.numbers[np.setdiff1d(every, nodes[values != 0])]
+        if len(lost):
+            some = ", ".join(map(str, lost[:5])) + (", ..." if len(lost) > 5 else "")
+            notes.append(f"{len(lost)} of {len(every)} nodes of {name!r} have no partner within the tolerance: {some}")
+    gap = float(np.abs(interface.gap).max())
+    if gap > TOUCHING * mesh.size:
+        notes.append(
+            f"the faces lie up to {gap * 1e3:.3g} mm apart: springs between nodes that do not coincide resist a "
+            "rotation of the whole model"
+        )
+    return notes
+
+
+def _materials(study: Study, mesh: Mesh, faces: tuple[str, str]) -> dict[str, Material]:
+    """Material of every part: by the study's name for it, or the only one that the study uses."""
+    used = set(study.parts.values())
+    out = {}
+    for part in mesh.parts:
+        if part in study.parts:
+            out[part] = study.materials[study.parts[part]]
+        elif len(used) == 1:
+            out[part] = study.materials[next(iter(used))]
+        else:
+            raise InputError(
+                f"[part] of the study says nothing of {part!r}, which the model holds, and uses several materials; "
+                f"add [part.{part}]"
+            )
+    return out
+
+
+def _joint_law(
+    study: Study, spec: JointChoice, mesh: Mesh, faces: tuple[str, str], materials: Mapping[str, Material]
+) -> JointLaw:
+    surface = surfaces_of(replace(study, joints=(spec,)))[0]
+    rough, other = (materials[mesh.face_part[face]] for face in faces)
+    return joint_law(spec, study.law_of(spec), surface, rough, other)
+
+
+def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | None) -> tuple[JointLaw, Array, str]:
+    """JointLaw and pressure [Pa] at the points of the interface under the study's bolts."""
+    from faying.joint.support_check import checked_preload
+
+    loads = study.loads
+    number = 0
+    if preload is not None:
+        wanted = units.parse(preload, "N", name="--preload")
+        found = preload_index(loads, wanted)
+        if found is None:
+            raise InputError(f"--preload {preload}: the study has {_kilo(loads)}")
+        number = found
+    elif len(loads) > 1:
+        raise InputError(f"the study has the preloads {_kilo(loads)}; say which with --preload")
+    structure = structure_of(study, mesh, surfaces_of(study))
+    settled = checked_preload(
+        structure,
+        structure.assembly(solver=study.modes.solver),
+        study.forces(number),
+        order=study.order,
+    )
+    place = next(i for i, joint in enumerate(structure.joints) if joint.faces == faces)
+    return (
+        structure.joints[place].law,
+        settled.pressures[place],
+        f"of the study's bolts at {units.show(loads[number], 'N')}",
+    )
+
+
+def _kilo(loads: tuple[float, ...]) -> str:
+    return ", ".join(units.show(load, "N") for load in loads)
+
+
+def _pairs(interface: Interface, law: JointLaw, pressure: Array, coupling: str) -> tuple[NodePairs, Array]:
+    """Return the springs and the pressures [Pa] that they belong to."""
+    if coupling != "faces":
+        try:
+            nodes = interface.at_nodes()
+        except InputError:
+            if coupling == "nodes":
+                raise
+        else:
+            at_nodes = interface.to_nodes(nodes, pressure)
+            return lumped(nodes, (*law.stiffness(at_nodes), *law.loss(at_nodes)), at_nodes), at_nodes
+    return consistent(interface, (*law.stiffness(pressure), *law.loss(pressure))), pressure
+
+
+def _flags(law: JointLaw, pressure: Array, area: Array) -> list[str]:
+    """Where the law has left its validity range."""
+    out = []
+    model, total = law.model, float(area.sum())
+    beyond = pressure > model.greatest_pressure
+    if np.any(beyond):
+        out.append(
+            f"validity: on {float(area @ beyond) / total:.2%} of the joint the pressure exceeds the "
+            f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends; stiffness is held there"
+        )
+    for reason, share in law.outside_validity(pressure, area).items():
+        where = f"{model.name} is outside its validity range for {percent(share)} of the joint's stiffness"
+        out.append(f"validity: {where}: {reason}")
+    if not np.any(pressure > 0):
+        out.append("validity: the joint carries no pressure, so it has no stiffness")
+    return out
+
+
+def _dampers(
+    pairs: NodePairs, mesh: Mesh, materials: Mapping[str, Material], frequency: float | None, *, paper: bool
+) -> Array | None:
+    """Viscous dampers [N s/m]: the JK paper's, those that lose as much at a frequency [Hz], or none."""
+    if paper:
+        return _paper_dampers(pairs, mesh, materials)
+    return None if frequency is None else np.asarray(pairs.loss / (2 * np.pi * frequency))
+
+
+def _paper_dampers(pairs: NodePairs, mesh: Mesh, materials: Mapping[str, Material]) -> Array:
+    """Dampers c = eta sqrt(M k) [N s/m] (p, 3, 3) of the JK paper, M the whole mass."""
+    if not pairs.lumped:
+        raise InputError(
+            "the JK paper's dampers belong to pairs of nodes; the faces' meshes must match (coupling nodes)"
+        )
+    from faying.fe.elasticity import element_mass
+
+    mass = sum(
+        float(element_mass(mesh.points, cells, materials[part].density or 0.0).sum())
+        for part, blocks in mesh.parts.items()
+        for cells in blocks
+    )
+    k, lost = pairs.own(pairs.stiffness), pairs.own(pairs.loss)
+    eta = np.divide(lost, k, out=np.zeros_like(k), where=k > 0)
+    c = eta * np.sqrt(mass * k)
+    return np.asarray(np.einsum("pik,pi,pil->pkl", pairs.frames, c, pairs.frames))
+
+
+def _contact(law: JointLaw, spec: JointChoice, greatest: float, mean: float) -> Contact | None:
+    """Sample the law from a ten-thousandth of the end of the table, three times the greatest pressure."""
+    if mean <= law.least_pressure or spec.form is not None:
+        return None
+    end = min(law.model.greatest_pressure, 3 * greatest)
+    pressure = np.geomspace(max(1e-4 * end, law.least_pressure), end, 199)
+    approach = np.array([law.approach(float(p)) for p in pressure])
+    (k_n,), (k_t,) = law.stiffness(np.array([mean]))
+    (loss_n,), _ = law.loss(np.array([mean]))
+    return Contact(
+        approach=approach,
+        pressure=pressure,
+        k_n=float(k_n),
+        k_t=float(k_t),
+        loss_n=float(loss_n),
+        mean_pressure=mean,
+        friction=UNKNOWN_FRICTION if spec.friction is None else spec.friction,
+        given=spec.friction is not None,
+    )
+
+
+def _first_free(file: Path) -> int:
+    """A round number above those of all elements of the file."""
+    from faying.decks.meshfile import last_element
+
+    return (last_element(file) // 100_000 + 1) * 100_000 + 1

@@ -1,0 +1,51 @@
+"""Modes of parts that another program has assembled, with a joint added here."""
+
+from pathlib import Path
+
+import numpy as np
+
+from faying.decks.matrices import arranged, read_matrices
+from faying.errors import InputError
+from faying.export.attach import Attachment
+from faying.fe.elasticity import rigid_motions
+from faying.numerics.damped import DampedModes, damped_modes
+from faying.numerics.memory import check_modes
+from faying.numerics.modes import lowest_modes
+
+SPARE = 6  # modes beyond those asked for, for the basis of the complex ones
+STILL = 1e-9  # of the greatest energy of a rigid motion under an equal diagonal: below it nothing resists
+
+
+def modes_with_joint(
+    attachment: Attachment,
+    matrices: str | Path,
+    *,
+    stiffness_unit: str | None,
+    mass_unit: str | None,
+    mass: str | Path | None = None,
+    dofs: str | Path | None = None,
+    count: int = 10,
+    solver: str | None = None,
+) -> tuple[DampedModes, int]:
+    """Elastic modes, with loss factors, of stiffness and mass from a file (as `read_matrices` takes) and the joint.
+
+    The matrices must be those of the attachment's mesh, node by node. Returns the modes and how many rigid motions
+    nothing resists.
+    """
+    pairs, mesh = attachment.pairs, attachment.deck.mesh
+    read = read_matrices(matrices, stiffness_unit=stiffness_unit, mass_unit=mass_unit, mass=mass, dofs=dofs)
+    bare, M = arranged(read, mesh)
+    K, C = bare + pairs.matrix(), pairs.matrix(pairs.loss)
+    rigid = rigid_motions(mesh.points)
+    energy = np.einsum("ij,ij->j", rigid, K @ rigid)
+    still = int(np.count_nonzero(energy < STILL * np.einsum("ij,i,ij->j", rigid, K.diagonal(), rigid)))
+    if still not in (0, 6):
+        raise InputError(
+            f"the matrices leave {still} of the six rigid motions free; take them from the model without supports, or "
+            "held in all directions"
+        )
+    speeds = [(m.E / (m.density or np.inf)) ** 0.5 for m in attachment.materials.values()]
+    shift = 0.02 * max(speeds) / mesh.size
+    check_modes(count + still + SPARE, K.shape[0])
+    found = lowest_modes(K, M, count + still + SPARE, shift_frequency=shift, solver=solver)
+    return damped_modes(found, K, M, C, rigid=still, count=count), still

@@ -1,0 +1,223 @@
+"""One joint of a study as a 6 x 6 stiffness and loss between two points, with its error over frequency."""
+
+from dataclasses import dataclass
+from importlib.metadata import version
+from typing import Any, Literal
+
+import numpy as np
+
+from faying import units
+from faying.case.case import Case, Progress
+from faying.case.preloads import settled
+from faying.decks.deck import CondensedDeck
+from faying.decks.system import System
+from faying.errors import InputError
+from faying.export.condensed import CondensedJoint, condensed_modes
+from faying.joint.loads import preload_index
+from faying.joint.shared_modes import modes_of
+from faying.joint.support_check import check_motions
+from faying.measured.mac import mac
+from faying.progress import Report
+from faying.study.study import Study
+from faying.typing import Array
+
+LIKE = 0.5  # MAC by mass from which two modes are one
+CLOSE = 0.01  # error of a frequency up to which the condensed joint counts as right
+COUNTED = 2  # spare modes with the joint condensed, so that the last ones find a partner
+STAGES = 6
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Condensed:
+    """A joint of a study, condensed.
+
+    Args:
+        study: title of the study.
+        name, load: the joint, and the preload of the first bolt [N].
+        joint: the condensed joint.
+        points (2, 3): the point of the first face and that of the second [m].
+        frequencies [Hz] (m,), loss [-] (m,): of the elastic modes of the full model; loss to first order, of this
+            joint.
+        mean, rigid [Hz] (m,): of the same modes with the joint condensed and its points on the mean motions of the
+            faces, or on rigid faces; NaN where no mode is like it.
+        mean_loss [-] (m,): loss factors with mean ties.
+        lossless: the law of the joint predicts no loss.
+    """
+
+    study: str
+    name: str
+    load: float
+    joint: CondensedJoint
+    points: Array
+    frequencies: Array
+    loss: Array
+    mean: Array
+    rigid: Array
+    mean_loss: Array
+    lossless: bool
+
+    @property
+    def reach(self) -> float:
+        """Frequency [Hz] of the last mode of the full model up to which mean ties err by at most 1 %; 0 for none."""
+        good = np.abs(self.mean / self.frequencies - 1) <= CLOSE
+        count = len(good) if good.all() else int(np.argmin(good))
+        return float(self.frequencies[count - 1]) if count else 0.0
+
+    def deck(self, *, unit: str, force_unit: str = "N", nodes: tuple[int, int], element: int) -> CondensedDeck:
+        """The joint in the units of a model, ready to be written. Raises InputError for numbers that are no numbers."""
+        if min(nodes) < 1 or nodes[0] == nodes[1] or element < 1:
+            raise InputError(f"nodes {nodes[0]} and {nodes[1]}, element {element}: give two nodes, numbers from 1 on")
+        system = System(unit, force_unit)
+        stiffness, loss = self.joint.between(*self.points)
+        facts = (
+            f"Joint {self.name!r} of {self.study!r} at {self.load / 1e3:g} kN as one 6 x 6 stiffness between two "
+            f"points, written by Faying {version('faying')}",
+            system.describe(),
+            *(("the contact law predicts no loss: none is written",) if self.lossless else ()),
+            f"tie node {nodes[0]} to the first face and node {nodes[1]} to the second: by their mean motion (RBE3, "
+            "distributing coupling), right within 1 % "
+            + (f"up to {self.reach:.4g} Hz in the study, " if self.reach else "in no mode of the study, ")
+            + "too soft beyond; rigid ties (RBE2) are too stiff",
+        )
+        return CondensedDeck(
+            points=self.points,
+            nodes=nodes,
+            element=element,
+            stiffness=stiffness,
+            loss=loss,
+            system=system,
+            facts=facts,
+        )
+
+    def rows(self) -> list[list[str]]:
+        """One row per mode: the full model, and both ties with their errors."""
+        out = [
+            ["mode", "full [Hz]", "mean ties [Hz]", "error [%]", "rigid ties [Hz]", "error [%]", "loss", "mean ties"]
+        ]
+        for j, f in enumerate(self.frequencies):
+            cells = [str(j + 1), f"{f:.2f}"]
+            for value in (self.mean[j], self.rigid[j]):
+                cells += ["-", "-"] if np.isnan(value) else [f"{value:.2f}", f"{100 * (value / f - 1):+.3f}"]
+            if not self.lossless:
+                cells += [f"{self.loss[j]:.2e}", "-" if np.isnan(self.mean_loss[j]) else f"{self.mean_loss[j]:.2e}"]
+            out.append(cells)
+        return out
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything in SI units, for JSON; None in place of NaN."""
+
+        def plain(values: Array) -> list[float | None]:
+            return [None if np.isnan(v) else float(v) for v in values]
+
+        return {
+            "joint": self.name,
+            "load": {"unit": "N", "values": self.load},
+            "point": {"unit": "m", "values": self.joint.point.tolist()},
+            "stiffness": {"unit": "N/m, N, N m", "values": self.joint.stiffness.tolist()},
+            "loss": {"unit": "N/m, N, N m", "values": None if self.lossless else self.joint.loss.tolist()},
+            "points": {"unit": "m", "values": self.points.tolist()},
+            "frequencies": {"unit": "Hz", "values": plain(self.frequencies)},
+            "mean_ties": {"unit": "Hz", "values": plain(self.mean)},
+            "rigid_ties": {"unit": "Hz", "values": plain(self.rigid)},
+            "loss_factors": {"unit": "1", "values": None if self.lossless else plain(self.loss)},
+            "mean_ties_loss_factors": {"unit": "1", "values": None if self.lossless else plain(self.mean_loss)},
+            "reach": {"unit": "Hz", "values": self.reach},
+        }
+
+
+def condense(
+    study: Study,
+    *,
+    joint: str | None = None,
+    preload: str | None = None,
+    points: tuple[Array | None, Array | None] = (None, None),
+    report: Report | None = None,
+) -> Condensed:
+    """Solve a study at one preload and condense one of its joints.
+
+    Args:
+        study: the study.
+        joint: name of the joint; the only one where None.
+        preload: which of the study's preloads, as text with a unit; the greatest where None.
+        points: of the first face and of the second (3,) [m]; the centre of the joint's normal springs where None.
+        report: called as each stage begins.
+
+    Returns:
+        The joint, condensed, and the modes with and without that.
+
+    Raises:
+        InputError, ReadError: what the study gives cannot be used, no such joint or preload, an open joint.
+        NotConverged: an iteration stops short.
+    """
+    number, index = _joint(study, joint), _load(study, preload)
+    progress = Progress(STAGES + index, report)
+    case = Case.of(study, progress)
+    structure = case.structure
+    problem = structure.assembly(solver=study.modes.solver)
+    for k in range(index + 1):
+        progress.begin(f"preload {study.loads[k] / 1e3:g} kN")
+        state = settled(case, k, problem)
+    springs = structure.springs(state.pressures)
+    progress.begin("modes")
+    modes, *_ = modes_of(case.modal, springs)
+    check_motions(structure, modes)
+    made = CondensedJoint.of(springs[number])
+    elastic = slice(case.rigid_count, case.rigid_count + study.modes.count)
+    shapes, frequencies = modes.shapes[:, elastic], modes.frequencies[elastic]
+    lost = np.einsum("im,im->m", shapes, springs[number].loss() @ shapes)
+
+    def tied(tie: Literal["mean", "rigid"]) -> tuple[Array, Array]:
+        """Frequencies and loss factors of these modes with the joint condensed; NaN where none is like them."""
+        progress.begin(f"modes with {tie} ties")
+        other = condensed_modes(structure, springs, number, elastic.stop + COUNTED, tie=tie, solver=study.modes.solver)
+        at = _partners(shapes, other.shapes, structure.vibrating[1])
+        found, loss = (np.where(at < 0, np.nan, values[at]) for values in (other.frequencies, other.loss_factors))
+        return found, loss
+
+    mean, mean_loss = tied("mean")
+    rigid, _ = tied("rigid")
+    return Condensed(
+        study=study.title,
+        name=study.joints[number].name,
+        load=study.loads[index],
+        joint=made,
+        points=np.stack([made.point if p is None else p for p in points]),
+        frequencies=frequencies,
+        loss=lost / (2 * np.pi * frequencies) ** 2,
+        mean=mean,
+        rigid=rigid,
+        mean_loss=mean_loss,
+        lossless=not structure.joints[number].law.predicts_loss,
+    )
+
+
+def _joint(study: Study, name: str | None) -> int:
+    names = [one.name for one in study.joints]
+    if name is None and len(names) > 1:
+        raise InputError(f"the study has the joints {', '.join(map(repr, names))}; say which with --joint NAME")
+    if name is not None and name not in names:
+        raise InputError(f"no joint {name!r}; the study has {', '.join(map(repr, names))}")
+    return 0 if name is None else names.index(name)
+
+
+def _load(study: Study, preload: str | None) -> int:
+    if preload is None:
+        return len(study.loads) - 1
+    wanted = units.parse(preload, "N", name="--preload")
+    index = preload_index(study.loads, wanted)
+    if index is None:
+        loads = ", ".join(f"{load / 1e3:g} kN" for load in study.loads)
+        raise InputError(f"--preload {preload}: the study has {loads}")
+    return index
+
+
+def _partners(shapes: Array, others: Array, mass: Any) -> Array:
+    """For each shape (unknowns, m) the like one among others, as an index; -1 where none is."""
+    from scipy.optimize import linear_sum_assignment
+
+    like = mac(shapes.T, others.T, mass)
+    rows, columns = linear_sum_assignment(-like)
+    out = np.full(shapes.shape[1], -1)
+    good = like[rows, columns] >= LIKE
+    out[rows[good]] = columns[good]
+    return out

@@ -1,0 +1,1 @@
+"""How faces deviate from a plane: flatness, maps, crowns, waves."""

@@ -1,0 +1,186 @@
+"""Measured form: the gap between two faces, or the heights of one, laid on a joint as its gap before any load."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from faying.columns import Wanted, read_list
+from faying.errors import InputError
+from faying.form.face_axes import FaceAxes
+from faying.form.flatness import minimum_zone
+from faying.form.lonely import refuse_lonely
+from faying.misuse import checked_call, numbers
+from faying.typing import Array
+
+LISTS = (".csv", ".txt", ".dat", ".xyz", ".asc")  # endings of lists of points; all else is a scan
+MOST = 150  # places kept along each side of a scan: roughness is the law's, and is averaged out of the form
+
+
+@checked_call
+@dataclass(frozen=True, kw_only=True)
+class GapMap:
+    """Measured gaps between two faces, before any load.
+
+    Args:
+        places: (n, 2) [m], in the plane of the map.
+        gaps: (n,) [m]; NaN are left out.
+        origin: (3,) [m], where x = y = 0 lies in the structure.
+        x_axis, y_axis: directions (3,) of the map's axes.
+
+    Raises:
+        InputError: for fewer than four points with numbers, and for points on one line.
+    """
+
+    places: Array
+    gaps: Array
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    x_axis: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    y_axis: tuple[float, float, float] = (0.0, 1.0, 0.0)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "places", numbers(self.places, "places", "points", 2))
+        object.__setattr__(self, "gaps", numbers(self.gaps, "gaps", len(self.places)))
+        good = np.isfinite(self.gaps) & np.isfinite(self.places).all(axis=1)
+        if np.count_nonzero(good) < 4:
+            raise InputError(f"the map has {np.count_nonzero(good)} points with numbers; a map needs four or more")
+        spread = np.linalg.svd(self.places[good] - self.places[good].mean(axis=0), compute_uv=False)
+        if spread[1] < 1e-9 * spread[0]:
+            raise InputError("the points of the map lie on one line; a map covers an area, with x and y both varying")
+        object.__setattr__(self, "places", self.places[good])
+        object.__setattr__(self, "gaps", self.gaps[good])
+
+    def at(self, positions: Array) -> Array:
+        """Gap [m] at positions (q, 3) [m]: linear between the points of the map, the nearest point's outside them."""
+        from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
+
+        axes = np.stack([np.array(axis) / np.linalg.norm(axis) for axis in (self.x_axis, self.y_axis)])
+        if abs(axes[0] @ axes[1]) > 1e-6:
+            raise InputError("the axes of the map are not at right angles; give x_axis and y_axis that are")
+        local = (positions - np.array(self.origin)) @ axes.T
+        low, high = self.places.min(axis=0), self.places.max(axis=0)
+        outside = np.any((local < low - 0.25 * (high - low)) | (local > high + 0.25 * (high - low)), axis=1)
+        if outside.mean() > 0.2:
+            raise InputError(
+                f"{outside.mean():.0%} of the joint lies far from the map, which covers {_box(low, high)} while "
+                f"the joint lies at {_box(local.min(axis=0), local.max(axis=0))}; check origin, axes and units"
+            )
+        inside = LinearNDInterpolator(self.places, self.gaps)(local)
+        return np.asarray(np.where(np.isfinite(inside), inside, NearestNDInterpolator(self.places, self.gaps)(local)))
+
+
+def _box(low: Array, high: Array) -> str:
+    return " x ".join(f"{1e3 * a:.4g} to {1e3 * b:.4g} mm" for a, b in zip(low, high, strict=True))
+
+
+@checked_call
+@dataclass(frozen=True, kw_only=True)
+class FaceMap:
+    """Measured heights of one face, its form: the higher, the nearer to the other face.
+
+    Args:
+        places: Where the heights were measured (n, 2) [m], in the instrument's own axes; seen from outside the face x
+            goes to the right and y up, unless y_axis says otherwise.
+        heights: Heights out of the face (n,) [m]; NaN are left out. Tilt and offset are those of the instrument and do
+            not count: depths are taken from the upper plane of the minimum zone.
+        origin: Where x = y = 0 lies in the model (3,) [m]; None puts the middle of the map on the middle of the joint.
+        x_axis, y_axis: Directions of x and y in the model (3,); None takes the longer side of the joint as x, and the y
+            that an observer outside the face sees.
+
+    Raises:
+        InputError: Fewer than four points, or points on one line.
+    """
+
+    places: Array
+    heights: Array
+    origin: tuple[float, float, float] | None = None
+    x_axis: tuple[float, float, float] | None = None
+    y_axis: tuple[float, float, float] | None = None
+
+    def __post_init__(self) -> None:
+        checked = GapMap(places=self.places, gaps=self.heights)
+        object.__setattr__(self, "places", checked.places)
+        object.__setattr__(self, "heights", checked.gaps)
+
+    def placed(self, axes: FaceAxes, outward: Array) -> GapMap:
+        """Return the depths below the highest plane on a joint with these axes; outward (3,): normal of this face."""
+        if self.x_axis is None:
+            axes.check("a map without x_axis")
+        x = axes.x_axis if self.x_axis is None else np.array(self.x_axis)
+        y = np.cross(outward, x) if self.y_axis is None else np.array(self.y_axis)
+        origin = axes.origin
+        if self.origin is None:
+            middle = (self.places.min(axis=0) + self.places.max(axis=0)) / 2
+            origin = origin - (middle[0] * x / np.linalg.norm(x) + middle[1] * y / np.linalg.norm(y))
+        else:
+            origin = np.array(self.origin)
+        depth = minimum_zone(self.places, self.heights).depth(self.places, self.heights)
+        return GapMap(places=self.places, gaps=depth, origin=_three(origin), x_axis=_three(x), y_axis=_three(y))
+
+
+def _three(vector: Array) -> tuple[float, float, float]:
+    return float(vector[0]), float(vector[1]), float(vector[2])
+
+
+def read_gap_map(
+    path: Path,
+    *,
+    xy_unit: str | None,
+    gap_unit: str | None,
+    origin: tuple[float, float, float],
+    x_axis: tuple[float, float, float],
+    y_axis: tuple[float, float, float],
+) -> GapMap:
+    """Read three columns x, y, gap; a heading may name them in any order and state units, else both are given."""
+    wanted = (*_xy(xy_unit), Wanted(names=("gap",), unit="m", given=gap_unit, key="gap_unit"))
+    table = read_list(path, wanted, "a gap map has the columns x, y, gap")
+    refuse_lonely(table[:, :2], table[:, 2], path.name)
+    return GapMap(places=table[:, :2], gaps=table[:, 2], origin=origin, x_axis=x_axis, y_axis=y_axis)
+
+
+def _xy(unit: str | None) -> tuple[Wanted, Wanted]:
+    return (
+        Wanted(names=("x",), unit="m", given=unit, key="xy_unit"),
+        Wanted(names=("y",), unit="m", given=unit, key="xy_unit"),
+    )
+
+
+def read_heights(path: Path, *, xy_unit: str | None = None, z_unit: str | None = None) -> tuple[Array, Array]:
+    """Read measured form: places (n, 2) [m] and heights, or gaps, (n,) [m].
+
+    A file that ends in one of `LISTS` holds three columns x, y, z, anywhere; a heading may name them in any order and
+    state their units, else both are given. Any other is a scan, whose spikes are left out and which is averaged over
+    cells to at most `MOST` places along each side; units are given where it states none. Raises InputError and
+    ReadError.
+    """
+    if path.suffix.lower() in LISTS:
+        z = Wanted(names=("z", "height", "heights", "gap"), unit="m", given=z_unit, key="z_unit")
+        table = read_list(path, (*_xy(xy_unit), z), "a list of measured points has the columns x, y, z")
+        refuse_lonely(table[:, :2], table[:, 2], path.name)
+        return table[:, :2], table[:, 2]
+    from faying.surface.form import find_spikes, levelled
+    from faying.surface.read import read_scan
+
+    scan: Any = read_scan(path, xy_unit=xy_unit, z_unit=z_unit)
+    if scan.heights.ndim != 2:
+        raise InputError(f"{path.name} is a profile; the form of a face takes an areal scan or a list of points")
+    spikes = find_spikes(levelled(scan))
+    return _averaged(scan.with_heights(np.where(spikes, np.nan, scan.heights), "spikes left out"))
+
+
+def _averaged(scan: Any) -> tuple[Array, Array]:
+    """Places (n, 2) and mean heights (n,) of cells of a scan; cells without a known point are left out."""
+    rows, columns = (np.minimum(np.arange(n) * min(n, MOST) // n, MOST - 1) for n in scan.shape)
+    shape = rows[-1] + 1, columns[-1] + 1
+    cell = (rows[:, None] * shape[1] + columns[None, :]).ravel()
+    values = scan.heights.ravel()
+    known = np.isfinite(values)
+    y, x = np.divmod(np.arange(values.size), scan.shape[1])
+    count = np.bincount(cell[known], minlength=shape[0] * shape[1])
+    here = count > 0
+    means = [
+        np.bincount(cell[known], value[known], minlength=len(count))[here] / count[here]
+        for value in (x * scan.spacing[0], y * scan.spacing[1], values)
+    ]
+    return np.stack(means[:2], axis=1), means[2]

@@ -1,0 +1,235 @@
+"""Holes through parts, and rows of holes on one axis through several parts: where bolts go."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from faying.geometry.face_facts import FACING, FaceFacts, GeometryFacts
+from faying.typing import Array
+
+WHOLE = 0.95  # share of a turn from which the faces of a bore close
+BESIDE = 0.2  # of the radius: axes that lie farther apart are two
+LEVEL = 1e-6  # m: within which a plane begins where a bore ends
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Bore:
+    """A round hole in a part; two are the same only where they are one object.
+
+    Args:
+        part: the part.
+        radius: [m].
+        axis: unit direction (3,).
+        point: on the axis (3,) [m].
+        low, high: where it begins and ends, measured along the axis from the origin [m].
+        faces: numbers of its faces.
+        slot: of a slotted hole, from the axis of one end to that of the other (3,) [m]; its radius is half its width,
+            and its point lies half-way.
+    """
+
+    part: str
+    radius: float
+    axis: Array
+    point: Array
+    low: float
+    high: float
+    faces: tuple[int, ...]
+    slot: Array | None = None
+
+    def at(self, depth: float) -> Array:
+        """The point of the axis (3,) [m] at a depth [m]."""
+        return np.asarray(self.point + (depth - self.point @ self.axis) * self.axis)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Stack:
+    """Bores of different parts on one axis, one behind the other, from low to high; in each part the narrowest."""
+
+    bores: tuple[Bore, ...]
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The parts, from low to high."""
+        return tuple(bore.part for bore in self.bores)
+
+    @property
+    def axis(self) -> Array:
+        """Unit direction (3,)."""
+        return self.bores[0].axis
+
+    @property
+    def middle(self) -> Array:
+        """The point of the axis (3,) [m] in the middle of the stack: on the axis of a round hole, if there is one."""
+        round_ones = [bore for bore in self.bores if bore.slot is None]
+        return (round_ones or self.bores)[0].at((self.bores[0].low + self.bores[-1].high) / 2)
+
+
+def bores(facts: GeometryFacts) -> list[Bore]:
+    """The holes of all parts, round or slotted; halves and quarters of one cylinder are put together."""
+    out = []
+    for part in facts.parts:
+        left = [face for face in facts.by_part[part.name] if face.hole]
+        halves: list[list[FaceFacts]] = []
+        while left:
+            first = left[0]
+            same = [face for face in left if _one_cylinder(first, face)]
+            left = [face for face in left if face not in same]
+            axis = np.array(first.axis)
+            ends = [_ends(face, axis) for face in same]
+            low, high = min(a for a, _ in ends), max(b for _, b in ends)
+            turn = sum((face.turn or 0.0) * (b - a) for face, (a, b) in zip(same, ends, strict=True)) / (high - low)
+            if turn < WHOLE or first.radius is None:
+                halves += [same] if abs(turn - 0.5) < 1 - WHOLE else []
+                continue
+            out.append(
+                Bore(
+                    part=part.name,
+                    radius=first.radius,
+                    axis=axis,
+                    point=np.array(first.start),
+                    low=low,
+                    high=high,
+                    faces=tuple(face.number for face in same),
+                )
+            )
+        out += _slots(facts, part.name, halves)
+    return out
+
+
+def _slots(facts: GeometryFacts, part: str, halves: Sequence[Sequence[FaceFacts]]) -> list[Bore]:
+    """Slotted holes: two half cylinders of one radius and one length, joined by two planes along their axes."""
+    out: list[Bore] = []
+    used: set[int] = set()
+    for first, second in combinations(halves, 2):
+        one, two = first[0], second[0]
+        if used & {one.number, two.number} or one.radius is None or two.radius is None:
+            continue
+        axis = np.array(one.axis)
+        ends = np.array([_ends(one, axis), _ends(two, axis)])
+        arm = np.array(two.start) - np.array(one.start)
+        arm = arm - (arm @ axis) * axis
+        alike = abs(axis @ np.array(two.axis)) >= FACING and abs(one.radius - two.radius) <= 1e-4 * one.radius
+        near = [{number for face in half for number in face.neighbours} for half in (first, second)]
+        both = [facts.face(part, number).normal for number in near[0] & near[1]]
+        sides = sum(normal is not None and abs(np.array(normal) @ axis) < 1e-3 for normal in both)
+        if not alike or np.abs(ends[0] - ends[1]).max() > LEVEL or sides < 2 or not np.any(arm):
+            continue
+        used |= {one.number, two.number}
+        out.append(
+            Bore(
+                part=part,
+                radius=one.radius,
+                axis=axis,
+                point=np.array(one.start) + arm / 2,
+                low=float(ends[0, 0]),
+                high=float(ends[0, 1]),
+                faces=tuple(face.number for face in (*first, *second)),
+                slot=arm,
+            )
+        )
+    return out
+
+
+def rows(found: Sequence[Bore], *, reach: float) -> list[Stack]:
+    """Rows of bores on one axis, those of a single part among them.
+
+    Args:
+        found: the bores of all parts.
+        reach: distance between the end of one and the beginning of the next up to which they belong together [m]; two
+            diameters of the hole, if that is more, as across the gap between raised faces.
+    """
+    out = []
+    left = sorted(found, key=lambda bore: bore.slot is not None)  # a slot belongs to the round hole in its reach
+    while left:
+        first = left[0]
+        line = [bore for bore in left if _one_axis(first, bore)]
+        left = [bore for bore in left if bore not in line]
+        narrow: dict[str, Bore] = {}
+        for bore in line:
+            if bore.part not in narrow or bore.radius < narrow[bore.part].radius:
+                narrow[bore.part] = bore
+        row: list[Bore] = []
+        for bore in sorted(narrow.values(), key=lambda bore: bore.low):
+            before = [one for one in line if row and one.part == row[-1].part]
+            here = [one for one in line if one.part == bore.part]
+            far = max(reach, 4 * bore.radius)
+            if row and min(one.low for one in here) - max(one.high for one in before) > far:
+                out.append(Stack(bores=tuple(row)))
+                row = []
+            row.append(bore)
+        out.append(Stack(bores=tuple(row)))
+    return out
+
+
+def seat(facts: GeometryFacts, bore: Bore, *, top: bool) -> FaceFacts | None:
+    """The plane at the end of a bore that head or nut press on; None where there is none.
+
+    Args:
+        facts: of the geometry.
+        bore: the bore of the first or last part.
+        top: whether it is the end that lies farther along the axis.
+    """
+    outwards = bore.axis if top else -bore.axis
+    depth = bore.high if top else bore.low
+    beside = {other for number in bore.faces for other in facts.face(bore.part, number).neighbours}
+    near = beside | {other for number in beside for other in facts.face(bore.part, number).neighbours}  # past a chamfer
+    fitting = []
+    for number in near:
+        face = facts.face(bore.part, number)
+        if face.normal is None or np.array(face.normal) @ outwards < FACING:
+            continue
+        level = (np.array(face.centre) - bore.at(depth)) @ outwards
+        if -LEVEL <= level <= bore.radius:
+            fitting.append((number not in beside, level, number))
+    return facts.face(bore.part, min(fitting)[2]) if fitting else None
+
+
+def room_around(facts: GeometryFacts, face: FaceFacts, bore: Bore) -> float:
+    """Distance [m] from the axis of a bore to the nearest edge of a plane around it, the edge of the bore aside."""
+    corners = facts.triangles(face)
+    edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    keys = np.round(edges * 1e9).astype(np.int64)
+    order = np.lexsort((keys[:, 0, 2], keys[:, 0, 1], keys[:, 0, 0]))
+    edges, keys = edges[order], keys[order]
+    both = {(tuple(a), tuple(b)) for a, b in keys}
+    rim = np.array([edge for edge, (a, b) in zip(edges, keys, strict=True) if (tuple(b), tuple(a)) not in both])
+    start, along = rim[:, 0], rim[:, 1] - rim[:, 0]
+    point = bore.point + ((np.array(face.centre) - bore.point) @ bore.axis) * bore.axis
+    share = np.clip(np.einsum("ei,ei->e", point - start, along) / np.einsum("ei,ei->e", along, along), 0.0, 1.0)
+    away = np.linalg.norm(start + share[:, None] * along - point, axis=1)
+    ends = np.linalg.norm(rim - point, axis=2)
+    if bore.slot is not None:
+        shift = np.clip((rim - point) @ bore.slot / (bore.slot @ bore.slot), -0.5, 0.5)
+        ends = np.linalg.norm(rim - point - shift[..., None] * bore.slot, axis=2)
+    own = np.all(ends < 1.001 * ends.min(), axis=1)  # the edge of the bore, or of its chamfer
+    return float(away[~own].min()) if np.any(~own) else np.inf
+
+
+def _one_cylinder(one: FaceFacts, two: FaceFacts) -> bool:
+    assert one.radius is not None
+    assert two.radius is not None
+    axis, arm = np.array(one.axis), np.array(two.start) - np.array(one.start)
+    if abs(axis @ np.array(two.axis)) < FACING or abs(one.radius - two.radius) > 1e-4 * one.radius:
+        return False
+    if np.linalg.norm(arm - (arm @ axis) * axis) > 1e-3 * one.radius:
+        return False
+    (a, b), (c, d) = _ends(one, axis), _ends(two, axis)
+    return a <= d + LEVEL and c <= b + LEVEL
+
+
+def _ends(face: FaceFacts, axis: Array) -> tuple[float, float]:
+    assert face.length is not None
+    start = np.array(face.start)
+    ends = (start @ axis, (start + face.length * np.array(face.axis)) @ axis)
+    return float(min(ends)), float(max(ends))
+
+
+def _one_axis(one: Bore, two: Bore) -> bool:
+    arm = two.point - one.point
+    for slot in (one.slot, two.slot):
+        if slot is not None:  # a bolt may stand anywhere between the ends of a slot
+            arm = arm - float(np.clip(arm @ slot / (slot @ slot), -0.5, 0.5)) * slot
+    aside = float(np.linalg.norm(arm - (arm @ one.axis) * one.axis))
+    return bool(abs(one.axis @ two.axis) >= FACING and aside <= BESIDE * min(one.radius, two.radius))

@@ -1,0 +1,427 @@
+"""What the faces of a geometry are: planes and cylinders, holes and shafts, neighbours, and where parts touch."""
+
+from collections.abc import Container, Sequence
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property
+from itertools import combinations, pairwise
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from faying.fe.overlap import overlap
+from faying.geometry.cad import check_head, read_parts
+from faying.geometry.cad_process import Answer, ask
+from faying.notes import Note
+from faying.typing import Array, Index
+
+Point = tuple[float, float, float]
+FLAT = 1e-5  # of a face's size: how far its points lie from a plane that it counts as
+ROUND = 1e-4  # of the radius: how far they lie from a cylinder
+FACING = np.cos(np.deg2rad(1.0))  # faces that differ by less than a degree are parallel
+NEAR = 0.01  # of the size of the structure: faces farther apart do not belong together
+
+
+@dataclass(frozen=True, kw_only=True)
+class FaceFacts:
+    """One face of a part.
+
+    Args:
+        part: the part that it bounds.
+        number: its place among the faces of its part, from 1.
+        name: what the file calls it; "" where it does not.
+        kind: plane, cylinder or other.
+        area: [m2].
+        centre: centre of its area [m].
+        normal: outward unit normal of a plane; None of other kinds.
+        radius: of a cylinder [m].
+        axis: unit direction of a cylinder's axis.
+        start, length: the point on the axis at which the cylinder begins [m], and its length along the axis [m].
+        turn: the share of a whole turn that a cylinder goes round [-].
+        hole: whether the material is outside of a cylinder; None of other kinds.
+        neighbours: numbers of the faces of the same part with a common edge.
+    """
+
+    part: str
+    number: int
+    name: str
+    kind: Literal["plane", "cylinder", "other"]
+    area: float
+    centre: Point
+    normal: Point | None = None
+    radius: float | None = None
+    axis: Point | None = None
+    start: Point | None = None
+    length: float | None = None
+    turn: float | None = None
+    hole: bool | None = None
+    neighbours: tuple[int, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """The part and the number, for messages."""
+        return f"{self.part} {self.number}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class PartFacts:
+    """A part: name, volume [m3], area of all faces [m2], and the corners of the box around it [m]."""
+
+    name: str
+    volume: float
+    area: float
+    low: Point
+    high: Point
+
+    @property
+    def thickness(self) -> float:
+        """Twice the volume over the area [m]: the thickness of a wide plate."""
+        return 2 * self.volume / self.area
+
+
+@dataclass(frozen=True, kw_only=True)
+class Contact:
+    """Two faces of different parts that look at each other.
+
+    Args:
+        first, second: part and number of each face.
+        area: over which they face each other [m2].
+        gap: between them [m]; negative where they run into each other.
+    """
+
+    first: tuple[str, int]
+    second: tuple[str, int]
+    area: float
+    gap: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class GeometryFacts:
+    """Parts, faces and contacts of a geometry.
+
+    Args:
+        file: its name.
+        parts, faces, contacts: the facts.
+        distances: label of a point that was asked for -> distance [m] to each face of its part, by number.
+        overlaps: parts that have a volume in common, and where, in words.
+        notes: what the reader says of the file.
+        corners: triangles (t, 3, 3) [m] of all faces, normals outwards; curved faces by chords.
+        face_of: index (t,) in `faces` of each triangle.
+    """
+
+    file: str
+    parts: tuple[PartFacts, ...]
+    faces: tuple[FaceFacts, ...]
+    contacts: tuple[Contact, ...]
+    distances: dict[str, list[float]]
+    overlaps: tuple[str, ...]
+    notes: tuple[Note, ...]
+    corners: Array
+    face_of: Index
+
+    @cached_property
+    def by_part(self) -> dict[str, tuple[FaceFacts, ...]]:
+        """The faces of each part, in the order of their numbers."""
+        return {part.name: tuple(face for face in self.faces if face.part == part.name) for part in self.parts}
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the box around all parts [m]."""
+        low, high = (np.array([getattr(part, side) for part in self.parts]) for side in ("low", "high"))
+        return float(np.linalg.norm(high.max(axis=0) - low.min(axis=0)))
+
+    def face(self, part: str, number: int) -> FaceFacts:
+        """The face of a part by its number."""
+        return self.by_part[part][number - 1]
+
+    def triangles(self, face: FaceFacts) -> Array:
+        """Triangles (t, 3, 3) [m] of a face."""
+        return np.asarray(self.corners[self.face_of == self.faces.index(face)])
+
+    def without(self, parts: Container[str]) -> "GeometryFacts":
+        """The same geometry with some parts left out."""
+        left = np.array([face.part not in parts for face in self.faces])
+        rows = left[self.face_of]
+        return replace(
+            self,
+            parts=tuple(part for part in self.parts if part.name not in parts),
+            faces=tuple(face for face in self.faces if face.part not in parts),
+            contacts=tuple(c for c in self.contacts if c.first[0] not in parts and c.second[0] not in parts),
+            corners=self.corners[rows],
+            face_of=(np.cumsum(left) - 1)[self.face_of[rows]],
+        )
+
+
+def read_facts(
+    path: Path,
+    *,
+    points: dict[str, tuple[str, Sequence[float]]] | None = None,
+    overlaps: bool = False,
+    touching: bool = True,
+    leave_out: Sequence[str] = (),
+) -> GeometryFacts:
+    """Read what the faces of a STEP file are, in a process of its own.
+
+    Args:
+        path: the STEP file.
+        points: label -> (part, point [m]): the distance of each to the faces of its part is measured.
+        overlaps: whether parts are searched for common volumes, which takes the kernel a while.
+        touching: whether contacts are sought.
+        leave_out: names of parts that are not read.
+
+    Raises:
+        ReadError: the file cannot be read, or the kernel died on it.
+        InputError: there is no part to leave out, or none is left.
+    """
+    check_head(path)
+    request = {"path": str(path.resolve()), "points": points or {}, "overlaps": overlaps, "touching": touching}
+    request["leave_out"] = list(leave_out)
+    answer = ask(facts_answer, request, path=path)
+    facts = answer.facts
+    return GeometryFacts(
+        file=path.name,
+        parts=tuple(PartFacts(**_tuples(one)) for one in facts["parts"]),
+        faces=tuple(FaceFacts(**_tuples(one)) for one in facts["faces"]),
+        contacts=tuple(Contact(**_tuples(one)) for one in facts["contacts"]),
+        distances=facts["distances"],
+        overlaps=tuple(facts["overlaps"]),
+        notes=tuple(Note(**one) for one in facts["notes"]),
+        corners=answer.arrays["corners"],
+        face_of=answer.arrays["face_of"],
+    )
+
+
+def facts_answer(request: dict[str, Any]) -> Answer:
+    """Find what `read_facts` asks for; this runs in the process of its own."""
+    path = Path(request["path"])
+    held = read_parts(path).without(request["leave_out"])
+    found = facts_of(held.solids, held.names, path.name, request["points"], touching=request["touching"])
+    facts: dict[str, Any] = {
+        "parts": [asdict(part) for part in found.parts],
+        "faces": [asdict(face) for face in found.faces],
+        "contacts": [asdict(contact) for contact in found.contacts],
+        "distances": found.distances,
+        "overlaps": shared_volumes(held.solids, held.names) if request["overlaps"] else [],
+        "notes": [asdict(note) for note in held.notes],
+    }
+    return Answer(facts=facts, arrays={"corners": found.corners, "face_of": found.face_of})
+
+
+def facts_of(
+    solids: Sequence[Any],
+    names: Sequence[str],
+    file: str,
+    points: dict[str, tuple[str, Sequence[float]]],
+    *,
+    touching: bool = True,
+) -> GeometryFacts:
+    """The facts of solids [mm] in this process, which has the kernel; touching: whether contacts are sought."""
+    faces: list[FaceFacts] = []
+    parts, corners, owner = [], [], []
+    for solid, name in zip(solids, names, strict=True):
+        held = list(solid.faces)
+        tris, normals, of = _triangles(solid)
+        edges = [{hash(edge) for edge in face.edges} for face in held]
+        for k, face in enumerate(held):
+            mine = of == k
+            near = tuple(j + 1 for j in range(len(held)) if j != k and edges[j] & edges[k])
+            centre = 1e-3 * np.array([face.center.x, face.center.y, face.center.z])
+            shape = shape_of(tris[mine], normals[mine], 1e-6 * face.mass)
+            faces.append(
+                FaceFacts(
+                    part=name,
+                    number=k + 1,
+                    name=face.name or "",
+                    area=1e-6 * face.mass,
+                    centre=_point(centre),
+                    neighbours=near,
+                    **shape,
+                )
+            )
+            corners.append(tris[mine])
+            owner.append(np.full(np.count_nonzero(mine), len(faces) - 1))
+        low, high = _point(tris.min(axis=(0, 1))), _point(tris.max(axis=(0, 1)))
+        area = sum(1e-6 * face.mass for face in held)
+        parts.append(PartFacts(name=name, volume=1e-9 * solid.mass, area=area, low=low, high=high))
+    places, face_of = np.concatenate(corners), np.concatenate(owner)
+    distances = {label: _distances(label, part, at, solids, names) for label, (part, at) in points.items()}
+    return GeometryFacts(
+        file=file,
+        parts=tuple(parts),
+        faces=tuple(faces),
+        contacts=tuple(contacts(faces, places, face_of)) if touching else (),
+        distances=distances,
+        overlaps=(),
+        notes=(),
+        corners=places,
+        face_of=face_of,
+    )
+
+
+def _point(values: Any) -> Point:
+    x, y, z = (round(float(v), 12) + 0.0 for v in values)  # what is less is rounding
+    return x, y, z
+
+
+def _tuples(fields: dict[str, Any]) -> dict[str, Any]:
+    return {name: tuple(value) if isinstance(value, list) else value for name, value in fields.items()}
+
+
+def _triangles(solid: Any) -> tuple[Array, Array, Index]:
+    """Triangles (t, 3, 3) [m] of a solid's faces, unit normals at their corners, both outwards, and face (t,)."""
+    data = solid._webgui_data()["Bezier_trig_points"]  # the one way by which the kernel hands triangles on
+    places = np.array([np.reshape(block, (-1, 4)) for block in data[:3]])
+    normals = np.array([np.reshape(block, (-1, 3)) for block in data[3:]])
+    return (
+        1e-3 * places[:, :, :3].transpose(1, 0, 2),
+        normals.transpose(1, 0, 2),
+        places[0, :, 3].astype(np.int64),
+    )
+
+
+def _distances(label: str, part: str, at: Sequence[float], solids: Sequence[Any], names: Sequence[str]) -> list[float]:
+    """Distance [m] of a point to each face of a part; none where there is no such part, which the selector says."""
+    from netgen.occ import Pnt, Vertex
+
+    if part not in names:
+        return []
+    here = Vertex(Pnt(*(1e3 * x for x in at)))
+    return [1e-3 * face.Distance(here) for face in solids[names.index(part)].faces]
+
+
+def shape_of(corners: Array, normals: Array, area: float) -> dict[str, Any]:
+    """Kind of a face from its triangles (t, 3, 3) [m] and the unit normals at their corners, with its numbers."""
+    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    total = cross.sum(axis=0)
+    points = corners.reshape(-1, 3)
+    length = np.linalg.norm(total)
+    if length > 0:
+        normal = total / length
+        if np.ptp(points @ normal) < FLAT * np.sqrt(area):
+            return {"kind": "plane", "normal": _point(normal)}
+    weight = np.repeat(np.linalg.norm(cross, axis=1), 3)
+    across = normals.reshape(-1, 3)
+    spread, turn = np.linalg.eigh(np.einsum("p,pi,pj->ij", weight, across, across) / weight.sum())
+    if spread[0] > 1e-8 or spread[1] < 1e-6:
+        return {"kind": "other"}
+    axis = turn[:, 0] * (1 if turn[np.argmax(np.abs(turn[:, 0])), 0] > 0 else -1)
+    axis = np.where(np.abs(axis) < 1e-9, 0.0, axis)
+    flat = points @ turn[:, 1:]
+    system = np.column_stack([2 * flat, np.ones(len(flat))])
+    (x, y, rest), *_ = np.linalg.lstsq(system, (flat**2).sum(axis=1), rcond=None)
+    arm = flat - [x, y]
+    radius = float(np.sqrt(max(rest + x**2 + y**2, 0.0)))
+    if radius == 0 or np.abs(np.linalg.norm(arm, axis=1) - radius).max() > ROUND * radius:
+        return {"kind": "other"}
+    outwards = np.einsum("pi,pi->p", across @ turn[:, 1:], arm) / radius
+    if np.abs(np.abs(outwards) - 1).max() > 0.01:
+        return {"kind": "other"}
+    along = points @ axis
+    extent = float(np.ptp(along))
+    start = turn[:, 1:] @ np.array([x, y]) + along.min() * axis
+    return {
+        "kind": "cylinder",
+        "radius": radius,
+        "axis": _point(axis),
+        "start": _point(start),
+        "length": extent,
+        "turn": min(area / (2 * np.pi * radius * extent), 1.0) if extent else 0.0,
+        "hole": bool(outwards.mean() < 0),
+    }
+
+
+def contacts(faces: Sequence[FaceFacts], corners: Array, face_of: Index) -> list[Contact]:
+    """Faces of different parts that look at each other, the widest first.
+
+    Planes that are nearly parallel, and cylinders in cylinders of nearly their radius on one axis, no farther apart
+    than `NEAR` of the whole.
+    """
+    reach = NEAR * float(np.linalg.norm(np.ptp(corners.reshape(-1, 3), axis=0)))
+    order = np.argsort(face_of, kind="stable")
+    ends = np.searchsorted(face_of[order], np.arange(len(faces) + 1))
+    rows = [order[a:b] for a, b in pairwise(ends.tolist())]
+    low = np.array([corners[r].min(axis=(0, 1)) if len(r) else np.full(3, np.inf) for r in rows])
+    high = np.array([corners[r].max(axis=(0, 1)) if len(r) else np.full(3, -np.inf) for r in rows])
+    part = np.unique([face.part for face in faces], return_inverse=True)[1]
+    kind = np.array([("plane", "cylinder", "other").index(face.kind) for face in faces])
+    out = []
+    for i, one in enumerate(faces):
+        near = (np.arange(len(faces)) > i) & (part != part[i]) & (kind == kind[i]) & (kind < 2)
+        near &= np.all((low <= high[i] + reach) & (high >= low[i] - reach), axis=1)
+        for j in np.flatnonzero(near).tolist():
+            two = faces[j]
+            gap = _gap(one, two)
+            if gap is None or abs(gap) > reach:
+                continue
+            area = _facing_area(corners[rows[i]], corners[rows[j]], reach)
+            if area > 1e-6 * min(one.area, two.area):
+                out.append(Contact(first=(one.part, one.number), second=(two.part, two.number), area=area, gap=gap))
+    return sorted(out, key=lambda contact: -contact.area)
+
+
+def _gap(one: FaceFacts, two: FaceFacts) -> float | None:
+    """Distance [m] between two planes or cylinders that look at each other; None where they do not."""
+    if one.kind == "plane":
+        normal, other = np.array(one.normal), np.array(two.normal)
+        if normal @ other > -FACING:
+            return None
+        return float((np.array(two.centre) - np.array(one.centre)) @ (normal - other) / 2)
+    if one.hole == two.hole:
+        return None
+    hole, shaft = (one, two) if one.hole else (two, one)
+    assert hole.radius is not None
+    assert shaft.radius is not None
+    axis, arm = np.array(hole.axis), np.array(shaft.start) - np.array(hole.start)
+    aside = float(np.linalg.norm(arm - (arm @ axis) * axis))
+    if abs(axis @ np.array(shaft.axis)) < FACING or aside > abs(hole.radius - shaft.radius) + ROUND * hole.radius:
+        return None
+    gap = hole.radius - shaft.radius
+    return 0.0 if abs(gap) < ROUND * hole.radius else gap
+
+
+def _facing_area(first: Array, second: Array, reach: float) -> float:
+    """Area [m2] over which two sets of triangles face each other."""
+    points = np.concatenate([first, second]).reshape(-1, 3)
+    rows = np.arange(len(points)).reshape(-1, 3)
+    cut = overlap(points, (rows[: len(first)],), (rows[len(first) :],), search_distance=reach, degree=1)
+    return float(cut.weights.sum())
+
+
+def shared_volumes(solids: Sequence[Any], names: Sequence[str]) -> list[str]:
+    """Which parts have a volume in common, and where."""
+    found = []
+    for k, one in enumerate(solids):
+        for j in range(k):
+            if _apart(one, solids[j]):
+                continue
+            both = one * solids[j]
+            if both.mass > 1e-9 * one.mass:
+                low, high = both.bounding_box
+                size = " x ".join(f"{b - a:.3g}" for a, b in zip(low, high, strict=True))
+                centre = f"({both.center.x:.4g}, {both.center.y:.4g}, {both.center.z:.4g}) mm"
+                found.append(f"{names[j]!r} and {names[k]!r} share {size} mm about {centre}")
+    return found
+
+
+def _apart(one: Any, two: Any) -> bool:
+    (low, high), (bottom, top) = one.bounding_box, two.bounding_box
+    return any(a > d or c > b for a, b, c, d in zip(low, high, bottom, top, strict=True))
+
+
+def part_distance(path: Path) -> tuple[str, str, float] | None:
+    """The two parts of a STEP file that lie nearest to each other, and their distance [m]; None for a single part."""
+    found = ask(distance_answer, {"path": str(path.resolve())}, path=path).facts
+    return None if found is None else (found[0], found[1], float(found[2]))
+
+
+def distance_answer(request: dict[str, Any]) -> Answer:
+    """Find what `part_distance` asks for; this runs in the process of its own."""
+    held = read_parts(Path(request["path"]))
+    pairs = [
+        (1e-3 * held.solids[i].Distance(held.solids[j]), held.names[i], held.names[j])
+        for i, j in combinations(range(len(held.solids)), 2)
+    ]
+    if not pairs:
+        return Answer(facts=None)
+    distance, one, two = min(pairs)
+    return Answer(facts=[one, two, distance])

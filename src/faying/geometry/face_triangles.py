@@ -1,0 +1,51 @@
+"""The named faces of a geometry before there is a mesh, as triangles."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.fe.sides import Blocks
+from faying.geometry.face_facts import FaceFacts, GeometryFacts
+from faying.typing import Array, Index
+
+
+@dataclass(frozen=True, kw_only=True)
+class FaceTriangles:
+    """Named faces of parts, curved ones by chords; what a mesh says of its faces, it says too.
+
+    Args:
+        points: corners (n, 3) [m].
+        triangles: name of a face -> its triangles (t, 3), normals out of the part.
+        face_part: name of a face -> name of its part.
+        size: diagonal of the box around the whole [m].
+    """
+
+    points: Array
+    triangles: Mapping[str, Index]
+    face_part: Mapping[str, str]
+    size: float
+
+    @classmethod
+    def of(cls, facts: GeometryFacts, named: Mapping[str, tuple[FaceFacts, ...]]) -> "FaceTriangles":
+        """The triangles of the named faces; corners that coincide are one."""
+        keys = np.round(facts.corners.reshape(-1, 3) / (1e-9 * facts.size)).astype(np.int64)
+        _, first, place = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+        rows = place.reshape(-1, 3)
+        index = {(face.part, face.number): k for k, face in enumerate(facts.faces)}
+        triangles = {}
+        for name, faces in named.items():
+            mine = np.isin(facts.face_of, [index[face.part, face.number] for face in faces])
+            triangles[name] = rows[mine]
+        owner = {name: faces[0].part for name, faces in named.items()}
+        points = facts.corners.reshape(-1, 3)[first]
+        return cls(points=points, triangles=triangles, face_part=owner, size=facts.size)
+
+    def face(self, name: str) -> Blocks:
+        """Triangles of a named face. Raises InputError that lists the faces there are."""
+        if name not in self.triangles:
+            raise InputError(
+                f"no face is called {name!r}; the faces are {', '.join(map(repr, sorted(self.triangles)))}"
+            )
+        return (self.triangles[name],)

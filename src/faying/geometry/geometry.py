@@ -1,0 +1,332 @@
+"""From a STEP file with named solids and faces to a mesh, through netgen (LGPL) and its OpenCASCADE kernel.
+
+Names are those that the CAD program gave to solids, products and faces. A face without a name gets one by a selector.
+"""
+
+import json
+from collections.abc import Container, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from faying.cache import kept
+from faying.errors import InputError
+from faying.fe.elements import KINDS
+from faying.fe.mesh import Mesh, split_at_joints
+from faying.fe.straighten import straightened
+from faying.geometry.cad import CadParts, check_head, kernel, read_parts
+from faying.geometry.cad_process import Answer, ask
+from faying.geometry.face_facts import facts_of, shared_volumes
+from faying.geometry.selectors import Selector, chosen, from_plain, points_of
+from faying.memory import available
+from faying.notes import Note
+from faying.numerics.memory import guessed
+from faying.typing import Array, Index
+
+# tetrahedra per volume over edge^3, and unknowns per tetrahedron of second order: counted on blocks and on bolted
+# joints
+ELEMENTS, UNKNOWNS = 5.0, 4.5
+GRADING = 0.4  # growth of elements away from where they are fine
+TRIES = ((1.0, GRADING), (0.8, 0.3), (0.6, 0.2))  # size over that asked for, and grading, until the mesher has a mesh
+STORED = 2  # version of what the cache holds; it rises with any change of what this module makes of a file
+# netgen numbers the middle nodes by these edges; VTK, and so we, by those of its element
+_NETGEN_EDGES = {"tet10": ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)), "tri6": ((1, 2), (0, 2), (0, 1))}
+
+
+def _to_vtk(kind: str) -> list[int]:
+    edges = [_NETGEN_EDGES[kind].index((min(edge), max(edge))) for edge in KINDS[kind].edges]
+    return [*range(KINDS[kind].corners), *(KINDS[kind].corners + i for i in edges)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Request:
+    """What is asked of the CAD kernel; lengths [m]."""
+
+    path: str
+    size: float
+    local_size: Mapping[str, float]
+    selectors: Mapping[str, Any]
+    snap: float
+    leave_out: Sequence[str] = ()
+
+
+def mesh_step(
+    path: Path,
+    *,
+    size: float,
+    local_size: Mapping[str, float] | None = None,
+    faces: Mapping[str, Selector] | None = None,
+    snap: float = 0.0,
+    leave_out: Sequence[str] = (),
+    cache: Path | None = None,
+) -> Mesh:
+    """Mesh the solids of a STEP file with second-order tetrahedra, in a process of its own.
+
+    Args:
+        path: STEP file.
+        size: largest edge [m].
+        local_size: face name -> largest edge there [m].
+        faces: name to give -> which faces get it, beside the names of the file.
+        snap: faces of two parts that lie no farther apart than this count as touching [m].
+        leave_out: names of parts that are not meshed.
+        cache: folder that keeps the mesh for the next call; see `faying.cache.kept`.
+
+    Faces that two parts share come out matched node for node, one copy per part.
+
+    Raises:
+        ReadError: unreadable files, among them those on which the CAD kernel dies.
+        InputError: names that do not exist, selectors that fit no face or several, meshes beyond the memory.
+    """
+    check_head(path)
+    request = _Request(
+        path=str(path.resolve()),
+        size=size,
+        local_size=local_size or {},
+        selectors={label: asdict(one) for label, one in (faces or {}).items()},
+        snap=snap,
+        leave_out=list(leave_out),
+    )
+
+    def made() -> dict[str, Any]:
+        answer = ask(mesh_answer, asdict(request), path=path)
+        return {"facts": np.asarray(json.dumps(answer.facts)), **answer.arrays}
+
+    plain = asdict(replace(request, path=path.name)) | {"netgen": version("netgen-mesher"), "stored": STORED}
+    data = kept(made, cache, kind="mesh", key=json.dumps(plain, sort_keys=True), data=path.read_bytes())
+    facts = json.loads(data["facts"].item())
+    parts, owners = facts["parts"], facts["faces"]
+    return Mesh(
+        points=data["points"],
+        parts={name: (data[f"part{k}"],) for k, name in enumerate(parts)},
+        faces={name: (data[f"face{k}"],) for k, name in enumerate(owners)},
+        face_part=owners,
+        source=path.name,
+        notes=tuple(Note(**note) for note in facts["notes"]),
+    )
+
+
+def mesh_answer(request: dict[str, Any]) -> Answer:
+    """Mesh what `mesh_step` asks for; this runs in the process of its own, and whoever asked checks the mesh."""
+    return _mesh_here(_Request(**request))
+
+
+def _mesh_here(request: _Request) -> Answer:
+    path, size = Path(request.path), request.size
+    local_size = request.local_size
+    occ = kernel()
+    Glue = occ.Glue
+    held = read_parts(path).without(request.leave_out)
+    solids, names, notes = held.solids, held.names, held.notes
+    for solid, name in zip(solids, names, strict=True):
+        solid.name = name
+    _check_size(sum(solid.mass for solid in solids), size, path.name)
+
+    # gluing merges touching faces and keeps one of their names: remember the geometry of every named face
+    marks = [Mark(face.name, names[i], face) for i, solid in enumerate(solids) for face in solid.faces if face.name]
+    marks += _selected(held, request, {mark.name for mark in marks})
+    glued = Glue(solids) if len(solids) > 1 else solids[0]
+    parts = list(glued.solids)
+    if len(parts) != len(solids):
+        raise InputError(
+            f"{path.name}: parts run into each other, so that gluing makes {len(parts)} solids of {len(names)}: "
+            f"{'; '.join(shared_volumes(solids, names)) or ', '.join(names)}; parts may touch, not overlap"
+        )
+    for face in glued.faces:
+        face.name = ""
+    listed = list(glued.faces)
+    labels, cut = _labels(listed, marks)
+    for number, face in enumerate(listed):
+        face.name = f"{number}"
+    if cut:
+        sides = {solid.name: {int(face.name) for face in solid.faces} for solid in parts}
+        _label_pieces(glued, listed, sides, size, cut, labels)
+    found = {label for pairs in labels for label, _ in pairs}
+    for label, size_here in local_size.items():
+        if label not in found:
+            raise InputError(f"size of face {label!r}: the faces are {', '.join(sorted(found))}")
+        for face, pairs in zip(listed, labels, strict=True):
+            if any(label == have for have, _ in pairs):
+                face.maxh = size_here * 1e3
+
+    return _collect(_meshed(glued, size, path.name), [solid.name for solid in parts], labels, notes)
+
+
+def _meshed(glued: Any, size: float, name: str) -> Any:
+    """The mesh of netgen, with a second try at smaller elements where the first one gets none."""
+    from netgen.occ import OCCGeometry
+
+    fault: Exception | None = None
+    for times, grading in TRIES:
+        try:
+            mesh = OCCGeometry(glued).GenerateMesh(maxh=times * size * 1e3, grading=grading, quad_dominated=False)
+            mesh.SecondOrder()
+        except Exception as new:  # NgException, which netgen's Python does not name
+            fault = fault or new
+            continue
+        return mesh
+    raise InputError(
+        f"{name} cannot be meshed with size {size * 1e3:g} mm ({fault}); choose another size, or repair the geometry"
+    )
+
+
+def _selected(held: CadParts, request: _Request, taken: Container[str]) -> list["Mark"]:
+    """Marks of the faces that the selectors mean. Raises InputError where one takes a name that the file gives."""
+    selectors = {label: from_plain(fields) for label, fields in request.selectors.items()}
+    again = [label for label in selectors if label in taken]
+    if again:
+        raise InputError(f"face {again[0]!r}: the file has a face of this name already; choose another name")
+    if not selectors:
+        return []
+    touching = any(selector.touching is not None for selector in selectors.values())
+    name = Path(request.path).name
+    facts = facts_of(held.solids, held.names, name, points_of(selectors), touching=touching)
+    out = []
+    for label, selector in selectors.items():
+        faces = list(held.solids[held.names.index(selector.part)].faces) if selector.part in held.names else []
+        found = chosen(label, selector, facts, snap=request.snap)
+        out += [Mark(label, selector.part, faces[face.number - 1]) for face in found]
+    return out
+
+
+def _check_size(volume: float, size: float, name: str) -> None:
+    """Raise InputError where a mesh of edges `size` [m] in a volume [mm3] is more than the memory takes."""
+    elements = ELEMENTS * volume * 1e-9 / size**3
+    unknowns = int(UNKNOWNS * elements)
+    needed, free = guessed(unknowns), available()
+    if free is not None and needed > free:
+        least = size * (needed / free) ** 0.25  # memory grows as unknowns^(4/3), so as size^-4
+        raise InputError(
+            f"{name}: edges of {size * 1e3:g} mm make about {elements:,.0f} elements and {unknowns:,} unknowns, whose "
+            f"factorisation takes {needed / 1e9:.3g} GB; {free / 1e9:.3g} GB are free: take {least * 1e3:.2g} mm or "
+            f"more"
+        )
+
+
+def _signature(face: Any) -> Array:
+    """Return the centre and the root of the area of a face [mm]: what tells faces apart before and after gluing."""
+    centre = face.center
+    return np.array([centre.x, centre.y, centre.z, face.mass**0.5])
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A named face of the file: name, part, shape."""
+
+    name: str
+    part: str
+    face: Any
+
+
+Labels = list[list[tuple[str, str]]]
+
+
+def _labels(faces: Sequence[Any], marks: Sequence[Mark]) -> tuple[Labels, list[Mark]]:
+    """The (name, part) of every original face that lies where a glued one lies, and the originals that none does."""
+    places = np.array([_signature(face) for face in faces])
+    close = 1e-6 * float(np.ptp(places, axis=0).max())
+    labels: Labels = [[] for _ in faces]
+    cut = []
+    for mark in marks:
+        # a face that two solids share is listed once for each of them
+        found = np.flatnonzero(np.linalg.norm(places - _signature(mark.face), axis=1) < close)
+        for number in found:
+            labels[number].append((mark.name, mark.part))
+        if not len(found):
+            cut.append(mark)
+    return labels, cut
+
+
+def _label_pieces(
+    glued: Any, listed: Sequence[Any], sides: Mapping[str, set[int]], size: float, marks: Sequence[Mark], labels: Labels
+) -> None:
+    """Give (name, part) to the pieces into which gluing has cut faces: where two faces overlap only in part.
+
+    sides: numbers of the glued faces that bound each part. A piece bounds the part and lies on the face, which points
+    on it tell, those of a mesh of the surfaces. Raises InputError where the pieces do not make up the face.
+    """
+    from netgen.meshing import MeshingStep
+    from netgen.occ import OCCGeometry, Pnt, Vertex
+
+    mesh = OCCGeometry(glued).GenerateMesh(maxh=size * 1e3, perfstepsend=MeshingStep.MESHSURFACE)
+    points = np.asarray(mesh.Coordinates(), float)
+    tris = mesh.Elements2D().NumPy()
+    close = 1e-6 * float(np.ptp(points, axis=0).max())
+    regions = {int(name): number for number, name in enumerate(mesh.GetRegionNames(dim=2), 1)}
+    for mark in marks:
+        area = 0.0
+        for number in sides[mark.part] & regions.keys():
+            nodes = tris["nodes"][tris["index"] == regions[number]][:, :3].astype(np.int64) - 1
+            here = points[np.unique(nodes)]
+            if len(here) and all(mark.face.Distance(Vertex(Pnt(*p))) < close for p in here):
+                labels[number].append((mark.name, mark.part))
+                area += listed[number].mass
+        if not np.isclose(area, mark.face.mass, rtol=1e-4):
+            raise InputError(
+                f"face {mark.name!r} of part {mark.part!r} ({mark.face.mass:.6g} mm2) comes out as {area:.6g} mm2 "
+                "where the parts touch; do they overlap? Else split it in the CAD program where they meet"
+            )
+
+
+def _collect(mesh: Any, parts: list[str], labels: Labels, notes: Sequence[Note]) -> Answer:
+    points = np.asarray(mesh.Coordinates(), float) * 1e-3
+    tets = mesh.Elements3D().NumPy()
+    cells = tets["nodes"][:, :10].astype(np.int64)[:, _to_vtk("tet10")] - 1
+    domain = tets["index"].astype(np.int64) - 1
+    corners = points[cells[:, :4]]
+    if np.mean(np.linalg.det(corners[:, 1:] - corners[:, :1])) < 0:
+        cells = cells[:, [1, 0, 2, 3, 4, 6, 5, 8, 7, 9]]
+    middle = points[cells[:, 4:]] - (points[cells[:, [0, 1, 0, 0, 1, 2]]] + points[cells[:, [1, 2, 2, 3, 3, 3]]]) / 2
+    if np.median(np.abs(middle)) > 1e-6 * np.ptp(points):
+        raise InputError("the mesher numbers the middle nodes of tetrahedra in an unknown order")
+
+    tris = mesh.Elements2D().NumPy()
+    face_of = tris["index"].astype(np.int64)
+    names = mesh.GetRegionNames(dim=2)
+    triangles: dict[str, Index] = {}
+    owner: dict[str, int] = {}
+    face_part: dict[str, str] = {}
+    for number in range(1, len(names) + 1):
+        for label, part in labels[int(names[number - 1])]:
+            tri = tris["nodes"][face_of == number][:, :6].astype(np.int64)[:, _to_vtk("tri6")] - 1
+            face_part[label] = part
+            owner[label] = parts.index(part)
+            triangles[label] = np.concatenate([triangles[label], tri]) if label in triangles else tri
+    points, straight, flat = straightened(points, cells)
+    if np.any(flat):
+        middles = 1e3 * points[cells[flat][:3, :4]].mean(axis=1)
+        places = ", ".join(f"({', '.join(f'{x:.4g}' for x in middle)})" for middle in middles)
+        raise InputError(
+            f"{np.count_nonzero(flat)} elements have no volume, at {places} mm; give the faces there a smaller size "
+            "(geometry.face_size), or remove slivers there in the CAD program"
+        )
+    if straight:
+        text = f"{straight} elements that round faces folded over have straight edges"
+        notes = [*notes, Note(code="straightened", text=text)]
+    new_points, new_cells, faces = split_at_joints(points, cells, domain, triangles, owner)
+    blocks = {name: new_cells[domain == i] for i, name in enumerate(parts)}
+    for label, tri in faces.items():
+        faces[label] = _outward(new_points, tri, blocks[face_part[label]])
+    facts = {"parts": parts, "faces": face_part, "notes": [asdict(note) for note in notes]}
+    arrays = {f"part{k}": blocks[name] for k, name in enumerate(parts)}
+    arrays |= {f"face{k}": faces[name] for k, name in enumerate(face_part)}
+    return Answer(facts=facts, arrays={"points": new_points} | arrays)
+
+
+def _outward(points: Any, tri: Index, cells: Index) -> Index:
+    """Turn triangles so that their normals leave the part: the fourth corner of the element lies behind."""
+    faces = np.sort(cells[:, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]].reshape(-1, 3), axis=1)
+    opposite = cells[:, [3, 2, 1, 0]].reshape(-1)
+    n = len(points)
+    key = (faces[:, 0] * n + faces[:, 1]) * n + faces[:, 2]
+    order = np.argsort(key)
+    want = np.sort(tri[:, :3], axis=1)
+    place = np.searchsorted(key[order], (want[:, 0] * n + want[:, 1]) * n + want[:, 2])
+    behind = points[opposite[order[place]]] - points[tri[:, 0]]
+    normal = np.cross(points[tri[:, 1]] - points[tri[:, 0]], points[tri[:, 2]] - points[tri[:, 0]])
+    inward = np.einsum("ij,ij->i", normal, behind) > 0
+    turned = tri.copy()
+    turned[inward] = tri[inward][:, [1, 0, 2, 3, 5, 4]]
+    return turned

@@ -1,0 +1,89 @@
+"""What the named faces of a mesh are, in the words of the facts of CAD faces."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from faying.fe.faces import face_centre
+from faying.fe.mesh import Mesh
+from faying.fe.sides import skin, triangles_of
+from faying.geometry.face_facts import FaceFacts, GeometryFacts, PartFacts, contacts, shape_of
+from faying.typing import Array
+
+
+def mesh_facts(mesh: Mesh, points: Mapping[str, tuple[str, Sequence[float]]] | None = None) -> GeometryFacts:
+    """Return the facts of a mesh; its faces are those with a name, numbered part by part in the order of the file.
+
+    Args:
+        mesh: the mesh.
+        points: label -> (part, point [m]): the distance of each to the faces of its part is measured.
+    """
+    faces: list[FaceFacts] = []
+    corners, owner, parts = [], [], []
+    for part in mesh.parts:
+        named = [name for name in mesh.faces if mesh.face_part[name] == part]
+        nodes = {name: set(mesh.face_nodes(name).tolist()) for name in named}
+        for k, name in enumerate(named):
+            centre, _, area = face_centre(mesh.points, mesh.face(name))
+            tris = mesh.points[triangles_of(mesh.face(name))]
+            cross = np.cross(tris[:, 1] - tris[:, 0], tris[:, 2] - tris[:, 0])
+            normals = np.repeat((cross / np.linalg.norm(cross, axis=1)[:, None])[:, None], 3, axis=1)
+            near = tuple(j + 1 for j, other in enumerate(named) if j != k and len(nodes[name] & nodes[other]) > 1)
+            x, y, z = (float(v) for v in centre)
+            faces.append(
+                FaceFacts(
+                    part=part,
+                    number=k + 1,
+                    name=name,
+                    area=area,
+                    centre=(x, y, z),
+                    neighbours=near,
+                    **shape_of(tris, normals, area),
+                )
+            )
+            corners.append(tris)
+            owner.append(np.full(len(tris), len(faces) - 1))
+        parts.append(_part(mesh, part))
+    places = np.concatenate(corners) if corners else np.zeros((0, 3, 3))
+    face_of = np.concatenate(owner) if owner else np.zeros(0, dtype=np.int64)
+    distances = {
+        label: [distance_to(np.array(at), places[face_of == k]) for k, face in enumerate(faces) if face.part == part]
+        for label, (part, at) in (points or {}).items()
+    }
+    return GeometryFacts(
+        file=mesh.source,
+        parts=tuple(parts),
+        faces=tuple(faces),
+        contacts=tuple(contacts(faces, places, face_of)) if len(places) else (),
+        distances=distances,
+        overlaps=(),
+        notes=mesh.notes,
+        corners=places,
+        face_of=face_of,
+    )
+
+
+def _part(mesh: Mesh, part: str) -> PartFacts:
+    outer = mesh.points[triangles_of(skin(mesh.parts[part], len(mesh.points)))]
+    x, y, z = outer.transpose(1, 0, 2)
+    volume = float(np.einsum("ti,ti->", x, np.cross(y, z))) / 6
+    area = float(np.linalg.norm(np.cross(y - x, z - x), axis=1).sum()) / 2
+    low, high = (tuple(float(v) for v in side) for side in (outer.min(axis=(0, 1)), outer.max(axis=(0, 1))))
+    return PartFacts(name=part, volume=volume, area=area, low=low, high=high)  # type: ignore[arg-type]
+
+
+def distance_to(point: Array, corners: Array) -> float:
+    """Distance [m] of a point to the nearest of some triangles (t, 3, 3)."""
+    a, b, c = corners.transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    above = np.einsum("ti,ti->t", point - a, normal)
+    foot = point - above[:, None] * normal
+    inside = np.ones(len(a), dtype=bool)
+    least = np.full(len(a), np.inf)
+    for start, end in ((a, b), (b, c), (c, a)):
+        along = end - start
+        inside &= np.einsum("ti,ti->t", np.cross(along, foot - start), normal) >= 0
+        share = np.clip(np.einsum("ti,ti->t", point - start, along) / np.einsum("ti,ti->t", along, along), 0, 1)
+        least = np.minimum(least, np.linalg.norm(point - start - share[:, None] * along, axis=1))
+    return float(np.where(inside, np.abs(above), least).min())

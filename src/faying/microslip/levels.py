@@ -1,0 +1,183 @@
+"""Frequency and damping of modes at levels of acceleration: a mode is marched through one cycle of slip.
+
+The mode at rest moves the sliders of every joint to and fro. What they dissipate is the damping, and the first harmonic
+of their traction gives secant stiffnesses, under which the mode is found again, until frequency and damping settle.
+The mean opening and the harmonics up to the third are corrected once in a pass; `backbone` solves them all together.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from faying.joint.equilibrium import PreloadState
+from faying.joint.structure import Structure
+from faying.microslip.microslip import Microslip
+from faying.microslip.slip_model import SlipModel, slip_joints
+from faying.numerics.product import product
+from faying.typing import Array
+
+PASSES = 12
+SETTLED = 1e-4  # relative change of the squared frequency, and a tenth of that of the damping, that ends the passes
+HARMONICS = 3  # highest of the motion that follows the first one
+# error of the damping over the root of the relative change of the squared frequency: a shape changes by that root, of
+# which the basis misses a part; covers the difference to harmonic balance on blocks, plates and a beam
+OF_SHAPE = 0.2
+MET = 0.1  # of its square: how near the speed of a harmonic may come to that of a mode
+SLIGHT = 1e-5  # relative change of the squared frequency that needs no second pass
+STILL = 1e-3  # of the greatest motion of a joint's points: what moves less keeps its stiffness at rest
+SAMPLES = 32  # instants of a cycle
+SPRINGS = 32  # into which a law is cut at each point
+
+
+@dataclass(frozen=True, kw_only=True)
+class AtLevels:
+    """Frequency and damping by slip of modes (m,) at levels (l,).
+
+    Args:
+        frequencies: [Hz] (l, m).
+        damping: ratio of slip [-] (l, m).
+        error: of the damping, over it [-] (l, m): its change in the last pass, and what the basis may miss of a shape.
+    """
+
+    frequencies: Array
+    damping: Array
+    error: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class LevelModel:
+    """A structure with joints that slip, in a basis.
+
+    Args:
+        slip: the parts in the basis (m,) and the joints in it.
+        vectors: the basis at the nodes (unknowns, m).
+        rigid: how many of its lowest modes are rigid motions.
+    """
+
+    slip: SlipModel
+    vectors: Array
+    rigid: int
+
+    def lowest(self, count: int) -> "LevelModel":
+        """The same on its lowest modes (count,), rigid ones included."""
+        _, shapes = self.slip.modes
+        shapes = shapes[:, :count]
+        return replace(self, slip=self.slip.turned(shapes), vectors=self.vectors @ shapes)
+
+    def at(self, levels: Sequence[float], count: int) -> AtLevels:
+        """The lowest elastic modes, so many, at each level: acceleration [m/s2] of the point that moves most."""
+        found = np.array([[self._mode(level, self.rigid + k) for k in range(count)] for level in levels])
+        frequency, damping, error = np.moveaxis(found, 2, 0)
+        return AtLevels(frequencies=frequency, damping=damping, error=error)
+
+    def _mode(self, level: float, number: int) -> tuple[float, float, float]:
+        """Frequency [Hz], damping of slip and its change in the last pass, of one mode."""
+        speeds, shapes = self.slip.modes
+        speed, shape = float(speeds[number]), shapes[:, number]
+        rest, damping, error = shape, 0.0, 0.0
+        motion = np.zeros((1 + 2 * HARMONICS, len(shape)))
+        for done in range(PASSES):
+            amplitude = level / speed**2 / self._greatest(shape)
+            motion[1] = amplitude * shape
+            forces = self.slip.forces(motion, derivative=False, samples=SAMPLES)
+            cycles = forces.cycles
+            lost = sum(float(j.weights @ c.dissipated) for j, c in zip(self.slip.joints, cycles, strict=True))
+            before, damping = damping, max(lost, 0.0) / (2 * np.pi * speed**2 * amplitude**2)
+            error = abs(damping - before) / damping if damping > 0 else 0.0
+            change = self._change(motion, cycles)
+            self._follow(motion, forces.force, speed, damping)
+            squared = speed**2
+            softer = float(shape @ change @ shape)  # of the squared frequency, to first order
+            if done == 0 and abs(softer) < SLIGHT * squared:
+                speed, error = float(np.sqrt(squared + softer)), abs(softer) / squared
+                break
+            speed, shape = self._under(change, rest)
+            if abs(speed**2 - squared) < SETTLED * squared and error < 10 * SETTLED:
+                break
+        softened = max(1 - (speed / float(speeds[number])) ** 2, 0.0)
+        return speed / (2 * np.pi), damping, error + OF_SHAPE * float(np.sqrt(softened))
+
+    def _follow(self, motion: Array, force: Array, speed: float, damping: float) -> None:
+        """Correct a motion in place by what it leaves of its equations: mean, lag and higher harmonics.
+
+        Args:
+            motion, force: of the cycle (1 + 2H, m) [m], [N]; the cosine of the first harmonic stays.
+            speed, damping: circular frequency of the mode [rad/s] and its ratio [-]: negative damping keeps it going.
+        """
+        speeds, shapes = self.slip.modes
+        squares, shapes = speeds[self.rigid :] ** 2, shapes[:, self.rigid :]
+        for harmonic in range(HARMONICS + 1):
+            driven = (harmonic * speed) ** 2
+            rows = [0] if harmonic == 0 else [2] if harmonic == 1 else [2 * harmonic - 1, 2 * harmonic]
+            left = force[rows] - driven * motion[rows] @ self.slip.mass
+            if harmonic == 1:
+                left = left + 2 * damping * driven * motion[1:2] @ self.slip.mass
+            stiff = squares - driven
+            # a mode whose own speed is near that of the harmonic is left out
+            flexible = np.where(np.abs(stiff) > MET * driven, 1 / np.where(stiff == 0, 1.0, stiff), 0.0)
+            motion[rows] -= (left @ shapes * flexible) @ shapes.T
+
+    def _greatest(self, shape: Array) -> float:
+        """The greatest displacement of a node in a shape."""
+        moved = (self.vectors @ shape).reshape(-1, 3)
+        return float(np.sqrt(np.einsum("ni,ni->n", moved, moved).max()))
+
+    def _change(self, motion: Array, cycles: Sequence[Any]) -> Array:
+        """What secant stiffnesses change of the stiffness at rest, in the basis (m, m)."""
+        out = np.zeros_like(self.slip.stiffness)
+        for joint, cycle in zip(self.slip.joints, cycles, strict=True):
+            u, t = joint.motion(motion)[1], cycle.traction[1]
+            rest = joint.at_rest[1]
+            change = np.zeros_like(rest)
+            size = float(np.linalg.norm(u, axis=1).max())
+            for axes in ([0], [1, 2]):
+                square = np.einsum("qi,qi->q", u[:, axes], u[:, axes])
+                moves = square > (STILL * size) ** 2
+                k = np.einsum("qi,qi->q", t[:, axes], u[:, axes])[moves] / square[moves]
+                for axis in axes:
+                    change[moves, axis, axis] = k - rest[moves, axis, axis]
+            out += joint.projected(change)
+        return out
+
+    def _under(self, change: Array, rest: Array) -> tuple[float, Array]:
+        """Circular frequency and shape of the mode that is most like that at rest."""
+        from scipy.linalg import eigh
+
+        squared, shapes = eigh(self.slip.linear + change, self.slip.mass)
+        like = np.abs(shapes.T @ self.slip.mass @ rest)
+        number = int(np.argmax(like))
+        return float(np.sqrt(max(squared[number], 0.0))), shapes[:, number]
+
+
+def cut_laws(structure: Structure, preload: PreloadState, friction: Sequence[float], springs: int) -> list[Microslip]:
+    """The law of each joint under a preload, cut into so many springs with sliders; friction: coefficient of each.
+
+    Raises InputError as `Microslip.cut`.
+    """
+    return [
+        Microslip.cut(joint.law, -opening, friction=mu, springs=springs, gap=joint.interface.gap)
+        for joint, opening, mu in zip(structure.joints, preload.openings, friction, strict=True)
+    ]
+
+
+def level_model(structure: Structure, preload: PreloadState, vectors: Array, friction: Sequence[float]) -> LevelModel:
+    """A structure under its preload in a basis, ready to be marched.
+
+    Args:
+        structure: with joints whose laws have a tangential stiffness.
+        preload: its equilibrium under the bolts.
+        vectors: the basis (unknowns, m), orthonormal with the mass: modes and directions near them.
+        friction: coefficient [-] of each joint, 0 or more.
+
+    Raises:
+        InputError: a law without stiffness, or a joint that is wholly open.
+    """
+    interfaces = [joint.interface for joint in structure.joints]
+    relatives = [np.asarray(interface.relative @ vectors) for interface in interfaces]
+    laws = cut_laws(structure, preload, friction, SPRINGS)
+    joints = slip_joints(interfaces, preload.displacement, laws, relatives)
+    parts = vectors.T @ product(structure.vibrating[0], vectors)
+    slip = SlipModel(stiffness=(parts + parts.T) / 2, mass=np.eye(vectors.shape[1]), joints=joints)
+    return LevelModel(slip=slip, vectors=vectors, rigid=structure.rigid_count)

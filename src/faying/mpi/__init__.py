@@ -1,0 +1,1 @@
+"""Modes over several processes: partition, multigrid, and the scripts that each process runs."""

@@ -1,0 +1,1 @@
+"""Small bases in which a joint changes at little cost."""

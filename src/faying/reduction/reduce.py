@@ -1,0 +1,436 @@
+"""Makes the small bases of a structure of which only the joints change.
+
+PreloadState, roughness and contact model act on the faying faces alone, so one factorisation serves every variant. The
+basis of each problem (equilibrium, vibration) starts from a reference state and is enriched by what that factorisation
+makes of the residual of a variant, until the residual says that the variant is solved. The estimate of the error is
+that of the residual in the energy norm of the reference. What the variants trained on need of the basis for vibration
+is kept, most needed first, so that its leading part is a coarser basis: the difference between the two is the cheap
+estimate that every evaluation carries.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, Self
+
+import numpy as np
+
+from faying.errors import NotConverged
+from faying.joint.equilibrium import PreloadState, StickSlip
+from faying.joint.joint_law import JointLaw
+from faying.joint.springs import Springs, stacked, unstacked
+from faying.joint.structure import Structure
+from faying.joint.support_check import check_motions, checked_preload
+from faying.numerics.basis import Basis
+from faying.numerics.constraint import constrain
+from faying.numerics.modes import lowest_modes
+from faying.numerics.shifted import Shifted
+from faying.numerics.single import factorise_roughly
+from faying.numerics.solve import Factorisation
+from faying.reduction.needs import for_modes, for_states, padded
+from faying.reduction.part_shares import PartShares, ReducedShares, Scales
+from faying.reduction.reduced import ReducedModel, ReducedMotion, Variant
+from faying.typing import Array
+
+FEW_STEPS = 60  # enrichments of one variant after which something else must be wrong
+EXTRA_MODES = 25  # real modes of the reference beyond those wanted: they speed the enrichment of the highest ones
+# the force balance enters a frequency through k(p), to first order; the modes enter by the square of their error
+STATIC_SHARE = 15.0
+LEFT_OUT = 0.1  # of the tolerance of an eigenvalue: energy of a direction of the basis for vibration that is not taken
+
+
+def pressed(traces: Sequence[Any], laws: Sequence[JointLaw], found: PreloadState) -> float:
+    """Root of the energy [sqrt(J)], twice, of the joints' normal springs under their pressures.
+
+    What the parts and a bolt's shank store beside it says nothing of how exact the pressures are.
+    """
+    total = 0.0
+    for trace, law, p in zip(traces, laws, found.pressures, strict=True):
+        k_n = np.where(p > 0, law.stiffness(p)[0], 1.0)
+        total += float(trace.weights @ (p**2 / k_n))
+    return float(np.sqrt(total))
+
+
+def real_parts(values: Any) -> list[Array]:
+    """Real and imaginary part; the real one alone where the other is zero."""
+    return [values.real, values.imag] if np.any(values.imag) else [np.asarray(values.real)]
+
+
+class Reduction:
+    """Bases for equilibrium and vibration of one structure, grown from variants; `model` is what evaluates others."""
+
+    def __init__(
+        self, structure: Structure, *, factor: Factorisation, reference: Any, shares: PartShares | None = None
+    ) -> None:
+        """Empty bases about a factorised reference.
+
+        reference (n, n): stiffness + joints + shift x mass, of which `factor` is the factorisation; shares: of the
+        parts whose stiffness and mass variants may scale.
+        """
+        from scipy.linalg import cholesky, solve_triangular
+
+        self.stiffness, self.mass = structure.vibrating
+        self.stiffness_static = constrain(structure.standing, structure.fixed, 0.0)
+        self.traces, self.factor, self.reference = [joint.interface for joint in structure.joints], factor, reference
+        self.fixed, mass, rigid = structure.fixed, self.mass, structure.rigid
+        self.loads = structure.loads.copy()
+        self.loads[self.fixed] = 0.0
+        if rigid.shape[1]:
+            root = cholesky(rigid.T @ (mass @ rigid))
+            rigid = solve_triangular(root, rigid.T, trans="T").T
+        motions: dict[str, Any] = {"rigid": rigid, "rigid_momentum": np.asarray(mass @ rigid)}
+        self.shares, more = shares, (() if shares is None else shares.standing)
+        self.static = Basis(
+            reference=reference,
+            operators=(self.stiffness_static, *more),
+            traces=self.traces,
+            rows=[self.loads.T],
+            **motions,
+        )
+        more = () if shares is None else (*shares.stiffness, *shares.mass)
+        self._pushed = [] if shares is None else [np.asarray(share @ rigid).T for share in shares.mass]
+        self.dynamic = Basis(
+            reference=reference,
+            operators=(self.stiffness, mass, *more),
+            traces=self.traces,
+            rows=self._pushed,
+            **motions,
+        )
+        # springs (4, points of all joints) of the reference, with its shift
+        self._reference: tuple[Array, float] | None = None
+        # modes of the variants trained on, in the basis for vibration as it was then: real and imaginary parts
+        self._needed: list[Array] = []
+        # equilibria of variants, over their energy, in the basis for equilibrium as it was then
+        self._states: list[Array] = []
+        self.trained = self.learnt = 0  # number of variants that the bases have been made to fit, and are compressed by
+
+    @classmethod
+    def about(
+        cls,
+        structure: Structure,
+        *,
+        factor: Factorisation,
+        reference: Any,
+        state: Array,
+        shapes: Array,
+        count: int,
+        shares: PartShares | None = None,
+    ) -> Self:
+        """Start from a solution of the reference.
+
+        factor, reference, shares: of the empty bases; state (n,): a displacement in equilibrium; shapes (n, m): elastic
+        modes at the reference, more than the `count` that is asked for.
+        """
+        made = cls(structure, factor=factor, reference=reference, shares=shares)
+        made.static.add(state[:, None])
+        made.static.add(factor.solve(np.asfortranarray(made.loads)))
+        made.dynamic.add(shapes)
+        made._project(count, made.dynamic.vectors.shape[1])
+        return made
+
+    def _project(self, count: int, coarse: int) -> None:
+        """Make `model` of the bases as they are."""
+        self.model = ReducedModel(
+            weights=[trace.weights for trace in self.traces],
+            gaps=[trace.gap for trace in self.traces],
+            static_stiffness=self.static.small[0],
+            static_loads=self.static.seen[0].T,
+            static_relative=self.static.relative,
+            dynamic_stiffness=self.dynamic.small[0],
+            dynamic_mass=self.dynamic.small[1],
+            dynamic_relative=self.dynamic.relative,
+            count=count,
+            coarse=coarse,
+            shares=self._reduced_shares(),
+        )
+
+    def arrays(self) -> dict[str, Array]:
+        """All that `resumed` needs beside the structure, to be kept in a file; of bases that `of` has begun."""
+        assert self._reference is not None
+        return {
+            "count": np.array(self.model.count),
+            "coarse": np.array(self.model.coarse),
+            "static": self.static.vectors,
+            "dynamic": self.dynamic.vectors,
+            "reference": self._reference[0],
+            "shift": np.array(self._reference[1]),
+            "needed": padded(self._needed, self.dynamic.vectors.shape[1]),
+            "states": padded(self._states, self.static.vectors.shape[1]),
+            "trained": np.array(self.trained),
+            "learnt": np.array(self.learnt),
+        }
+
+    @classmethod
+    def resumed(
+        cls,
+        structure: Structure,
+        kept: Mapping[str, Array],
+        *,
+        solver: str | None = None,
+        shares: PartShares | None = None,
+    ) -> Self:
+        """The bases that `arrays` has given, their reference factorised again."""
+        springs = unstacked(kept["reference"], [joint.interface for joint in structure.joints])
+        shifted = Shifted(
+            stiffness=structure.joined(springs)[0], mass=structure.vibrating[1], shift=float(kept["shift"])
+        )
+        factor = factorise_roughly(shifted, rigid=structure.rigid, solver=solver)
+        made = cls(structure, factor=factor, reference=shifted.whole(), shares=shares)
+        made._reference = kept["reference"], float(kept["shift"])
+        made.static.append(kept["static"])
+        made.dynamic.append(kept["dynamic"])
+        made._needed, made._states = [kept["needed"]], [kept["states"]]
+        made.trained, made.learnt = int(kept["trained"]), int(kept["learnt"])
+        made._project(int(kept["count"]), int(kept["coarse"]))
+        return made
+
+    def _reduced_shares(self) -> ReducedShares | None:
+        """The shares of the parts in both bases."""
+        if self.shares is None:
+            return None
+        count = len(self.shares.parts)
+        return ReducedShares(
+            standing=np.stack(self.static.small[1:]),
+            stiffness=np.stack(self.dynamic.small[2 : 2 + count]),
+            mass=np.stack(self.dynamic.small[2 + count :]),
+            cross=np.stack(self.dynamic.seen),
+            corner=np.stack([momentum @ self.dynamic.rigid for momentum in self._pushed]),
+        )
+
+    def probe(self, rows: Any) -> tuple[Array, Array]:
+        """What sparse rows (k, n) see of the basis for vibration (k, d) and of the rigid motions (k, r)."""
+        return np.asarray(rows @ self.dynamic.vectors), np.asarray(rows @ self.dynamic.rigid)
+
+    @classmethod
+    def of(
+        cls,
+        structure: Structure,
+        laws: Sequence[JointLaw],
+        forces: Array,
+        *,
+        count: int,
+        shift_frequency: float | None = None,
+        solver: str | None = None,
+        shares: PartShares | None = None,
+    ) -> Self:
+        """Solve one variant of a structure in full, its bolts pulled at once, and start from that.
+
+        laws: the law of each joint; forces [N] (bolts,); count: elastic modes wanted; shares: of the parts that
+        variants may scale, which this one does not. Raises InputError where a part is held by nothing.
+        """
+        joints = tuple(replace(joint, law=law) for joint, law in zip(structure.joints, laws, strict=True))
+        structure = replace(structure, joints=joints)
+        found = checked_preload(structure, structure.assembly(solver=solver), [float(f) for f in forces])
+        shift = shift_frequency or structure.shift_frequency
+        _, mass = structure.vibrating
+        springs = structure.springs(found.pressures)
+        joined, _ = structure.joined(springs)
+        rigid_count = structure.rigid_count
+        modes = lowest_modes(joined, mass, rigid_count + count + EXTRA_MODES, shift_frequency=shift, solver=solver)
+        check_motions(structure, modes)
+        shifted = Shifted(stiffness=joined, mass=mass, shift=modes.shift)
+        made = cls.about(
+            structure,
+            factor=factorise_roughly(shifted, rigid=structure.rigid, solver=solver),
+            reference=shifted.whole(),
+            state=found.displacement,
+            shapes=modes.shapes[:, rigid_count:],
+            count=count,
+            shares=shares,
+        )
+        made._reference = stacked(springs), modes.shift
+        return made
+
+    def refresh(self, coarse: int | None = None) -> None:
+        """Make `model` anew, under the gaps and scales that it has."""
+        old = self.model
+        self._project(old.count, old.coarse if coarse is None else coarse)
+        self.model = replace(self.model, gaps=old.gaps, scales=old.scales)
+
+    def _scaled(self, matrix: Any, shares: Sequence[Any], kind: int, x: Any) -> Any:
+        """Product of a matrix of the structure with x, its parts scaled; kind: 0 for stiffness, 1 for mass."""
+        out = matrix @ x
+        for scales, share in zip(self.model.scales or (), shares, strict=False):
+            if scales[kind] != 1:
+                out = out + (scales[kind] - 1) * (share @ x)
+        return out
+
+    def static_residual(
+        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], found: PreloadState
+    ) -> Array:
+        """What an equilibrium leaves of the forces [N] (n,)."""
+        u = self.static.vectors @ found.displacement
+        shares = () if self.shares is None else self.shares.standing
+        residual = self.loads @ forces - self._scaled(self.stiffness_static, shares, 0, u)
+        for trace, law, limit, p, relative in zip(
+            self.traces, laws, friction, found.pressures, self.static.relative, strict=True
+        ):
+            slip = (relative @ found.displacement).reshape(-1, 3)[:, 1:]
+            grip = StickSlip(
+                k_t=law.stiffness(p)[1], limit=None if limit is None else limit * p, anchor=np.zeros_like(slip)
+            )
+            local = np.concatenate([-p[:, None], grip.shear(slip)], axis=1) * trace.weights[:, None]
+            residual = residual - trace.relative.T @ local.ravel()
+        residual[self.fixed] = 0.0
+        return np.asarray(residual)
+
+    def static_error(
+        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], found: PreloadState
+    ) -> tuple[float, Array]:
+        """Error of an equilibrium in energy over that of the joints' springs [-], and what would mend it (n,)."""
+        residual = self.static_residual(laws, forces, friction, found)
+        answer = self.factor.solve(residual)
+        return float(np.sqrt(np.maximum(residual @ answer, 0.0)) / pressed(self.traces, laws, found)), answer
+
+    def train_static(
+        self,
+        laws: Sequence[JointLaw],
+        forces: Array,
+        friction: Sequence[float | None],
+        tolerance: float,
+        start: Array | None = None,
+    ) -> PreloadState:
+        """Enrich until the equilibrium of a variant is right to `tolerance` in energy; return it."""
+        error = np.inf
+        for _ in range(FEW_STEPS):
+            found = self.model.equilibrium_from(laws, forces, friction, start)
+            error, mend = self.static_error(laws, forces, friction, found)
+            if error < tolerance:
+                return found
+            start = found.displacement
+            self.static.add(mend[:, None])
+            self.refresh()
+        raise NotConverged(
+            f"reduction: {FEW_STEPS} enrichments leave the preload wrong by {error:.1e}; raise the tolerance"
+        )
+
+    def modal_error(
+        self, laws: Sequence[JointLaw], pressures: Sequence[Array], tolerance: float = 0.0, which: Any = slice(None)
+    ) -> tuple[Array, Array]:
+        """Estimated relative error of the complex eigenvalues (m,) of a variant, and what would mend it (n, k).
+
+        The square of the residual in the energy norm: eigenvalues err by the square of their vectors. What would mend
+        it is for the modes whose error exceeds the tolerance, real and imaginary parts where there is loss. which: of
+        the modes, all of them where not given.
+        """
+        springs = self.model.springs(laws, pressures)
+        values, vectors, _ = self.model.modes(springs, slight=0.0)  # no basis mends what first order leaves
+        values, vectors = values[which], vectors[:, which]
+        momentum = self.model.matrices[2] @ vectors
+        size = np.abs(values) * np.abs(np.einsum("ij,ij->j", vectors.conj(), momentum))
+        parts = real_parts(self.modal_residual(springs, values, vectors))
+        solved = [self.factor.solve(np.asfortranarray(part)) for part in parts]
+        energy = sum(np.einsum("ij,ij->j", part, answer) for part, answer in zip(parts, solved, strict=True))
+        error = np.asarray(energy / size)
+        poor = error > tolerance
+        return error, np.concatenate([answer[:, poor] / np.sqrt(size[poor]) for answer in solved], axis=1)
+
+    def modal_residual(self, springs: Sequence[Springs[ReducedMotion]], values: Any, vectors: Any) -> Any:
+        """What complex eigenvalues (m,) and vectors (d, m) of a variant leave of the equations of motion (n, m)."""
+        lossy = any(np.any(d.loss_n) or np.any(d.loss_t) for d in springs)
+        if not lossy:
+            values, vectors = values.real, vectors.real
+        parts = np.concatenate(real_parts(vectors), axis=1) if lossy else vectors
+        x = self.dynamic.vectors @ parts  # real, so that the products with the matrices are
+        stiffness, mass = ((), ()) if self.shares is None else (self.shares.stiffness, self.shares.mass)
+        force = self._scaled(self.stiffness, stiffness, 0, x)
+        if self.model.scales is not None and self.model.shares is not None:
+            x = x + self.dynamic.rigid @ (self.model.shares.motion(self.model.scales) @ parts)
+        moved = self._scaled(self.mass, mass, 1, x)
+        if parts.shape[1] > vectors.shape[1]:
+            force, moved = (both[:, : len(values)] + 1j * both[:, len(values) :] for both in (force, moved))
+        residual = force - moved * values
+        for trace, relative, d in zip(self.traces, self.dynamic.relative, springs, strict=True):
+            n, t = trace.weights * d.k_n, trace.weights * d.k_t
+            if lossy:
+                n, t = n * (1 + 1j * d.loss_n), t * (1 + 1j * d.loss_t)
+            share = np.stack([n, t, t], axis=1).reshape(-1, 1)
+            residual = residual + trace.relative.T @ (share * (relative @ vectors))
+        residual[self.fixed] = 0.0
+        return np.asarray(residual)
+
+    def frequency_error(
+        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], found: PreloadState, count: int
+    ) -> float:
+        """Estimated relative error of the first frequencies [-], by what modes and equilibrium leave in the equations.
+
+        Of the equilibrium that is what the frequencies change by under the pressures that one correction gives.
+        """
+        modal, _ = self.modal_error(laws, found.pressures, np.inf, slice(count))
+        _, mend = self.static_error(laws, forces, friction, found)
+        moved = [(trace.relative @ mend)[::3] for trace in self.traces]
+        mended = [law.pressure(-gap - by)[0] for law, gap, by in zip(laws, found.openings, moved, strict=True)]
+        old, new = (self.model.modes(self.model.springs(laws, p))[0].real for p in (found.pressures, mended))
+        return float(modal.max() + np.abs(new / old - 1)[:count].max()) / 2  # of a square of a frequency
+
+    def train_dynamic(self, laws: Sequence[JointLaw], pressures: Sequence[Array], tolerance: float) -> None:
+        """Enrich until all modes of a variant are right; tolerance: of the complex eigenvalues."""
+        poor: Any = np.arange(self.model.count)
+        for _ in range(FEW_STEPS):
+            error, mend = self.modal_error(laws, pressures, tolerance, poor)
+            poor = poor[error > tolerance]  # the others only gain by what is added
+            if not len(poor):
+                return
+            new = self.dynamic.add(mend, least=LEFT_OUT * tolerance)
+            self.refresh()
+            if not new:
+                raise NotConverged(f"reduction: the modes stay wrong by {error.max():.1e} and nothing improves them")
+        raise NotConverged(
+            f"reduction: {FEW_STEPS} enrichments do not bring a mode to {tolerance:.0e}; ask for fewer modes"
+        )
+
+    def train(
+        self,
+        laws: Sequence[JointLaw],
+        forces: Array,
+        friction: Sequence[float | None],
+        *,
+        tolerance: float,
+        start: Array | None = None,
+        gaps: Sequence[Array] | None = None,
+        scales: Scales | None = None,
+    ) -> Array:
+        """Make the bases fit one variant; tolerance: relative error of a frequency; start: see `ReducedModel.evaluate`.
+
+        gaps: of the joints before any load [m] (q,), those of the model where None; scales: of the parts. The model has
+        both from then on. Returns the coefficients from which a like variant may start.
+        """
+        self.model = self.model.with_gaps(gaps).with_scales(scales)
+        found = self.train_static(laws, forces, friction, STATIC_SHARE * tolerance, start)
+        self.train_dynamic(laws, found.pressures, 2 * tolerance)
+        _, vectors, _ = self.model.modes(self.model.springs(laws, found.pressures))
+        self._note(laws, found, vectors)
+        self.trained += 1
+        return found.displacement
+
+    def _note(self, laws: Sequence[JointLaw], found: PreloadState, vectors: Any) -> None:
+        """Keep in mind what a variant needs of the bases as they are."""
+        self._states.append(found.displacement[:, None] / pressed(self.traces, laws, found))
+        self._needed += real_parts(vectors / np.linalg.norm(vectors, axis=0))
+
+    def learn(self, laws: Sequence[JointLaw], found: Variant) -> None:
+        """Keep in mind what a variant needs that was evaluated in the bases as they are: they are compressed by it."""
+        self._note(laws, found.preload, found.shapes)
+        self.learnt += 1
+
+    def compress(self, tolerance: float) -> None:
+        """Keep of the bases what variants need, most needed first.
+
+        None of those that were learnt may lose more than the tolerance lets it: a frequency by the energy of what is
+        left out of its mode, an equilibrium by that of its displacement.
+        """
+        columns = padded(self._needed, self.dynamic.vectors.shape[1])
+        states = padded(self._states, self.static.vectors.shape[1])
+        turned = for_states(states, STATIC_SHARE * tolerance, self.learnt)
+        if turned is not None:
+            self.static.turn(turned)
+            self._states = [turned.T @ states]
+        rotation, coarse = for_modes(columns, tolerance, learnt=self.learnt > 0)
+        self.dynamic.turn(rotation)
+        self._needed = [rotation.T @ columns]
+        self.refresh(max(coarse, self.model.count))
+
+    def evaluate(
+        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None = None
+    ) -> Variant:
+        """Modes under one law per joint and one force per bolt [N] (b,); see `ReducedModel.evaluate`."""
+        return self.model.evaluate(laws, forces, friction, start)

@@ -1,0 +1,119 @@
+"""Bases for several variants of a structure at once: their corrections are solved and added in one block."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from faying.errors import NotConverged
+from faying.joint.equilibrium import PreloadState
+from faying.joint.joint_law import JointLaw
+from faying.reduction.reduce import FEW_STEPS, LEFT_OUT, STATIC_SHARE, Reduction, pressed, real_parts
+from faying.reduction.reduced import ReducedModel, Variant
+from faying.typing import Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gapped:
+    """One variant: the law of each joint, force of each bolt [N] (b,), friction and gap [m] (q,) of each joint."""
+
+    laws: Sequence[JointLaw]
+    forces: Array
+    friction: Sequence[float | None]
+    gaps: Sequence[Array]
+
+    def model(self, reduction: Reduction) -> ReducedModel:
+        """The bases as they are, with the gaps of this variant; the reduction has them from then on."""
+        reduction.model = reduction.model.with_gaps(self.gaps)
+        return reduction.model
+
+
+def train_together(reduction: Reduction, variants: Sequence[Gapped], tolerance: float) -> list[Array]:
+    """Make the bases fit several variants, which costs less than one after the other.
+
+    A factor is read once for the corrections of all, and each block of new directions is projected once.
+
+    Args:
+        reduction: the bases, which grow.
+        variants: what they are made for.
+        tolerance: relative error of a frequency.
+
+    Returns:
+        The coefficients of each equilibrium, from which like variants may start.
+
+    Raises:
+        NotConverged: a variant has no equilibrium, or its error does not fall.
+    """
+    found = _train_static(reduction, variants, STATIC_SHARE * tolerance)
+    _train_dynamic(reduction, variants, found, 2 * tolerance)
+    return [state.displacement for state in found]
+
+
+def evaluate(reduction: Reduction, variant: Gapped, start: Array | None = None) -> Variant:
+    """Modes of one variant in the bases as they are; start: coefficients of a like equilibrium."""
+    return variant.model(reduction).evaluate(variant.laws, variant.forces, variant.friction, start)
+
+
+def _train_static(reduction: Reduction, variants: Sequence[Gapped], tolerance: float) -> list[PreloadState]:
+    """Grow the basis for equilibrium until every variant is right to `tolerance` in energy; their equilibria."""
+    found: dict[int, PreloadState] = {}
+    poor = list(range(len(variants)))
+    for _ in range(FEW_STEPS):
+        residuals = []
+        for k in poor:
+            one, start = variants[k], found[k].displacement if k in found else None
+            found[k] = one.model(reduction).equilibrium_from(one.laws, one.forces, one.friction, start)
+            residuals.append(reduction.static_residual(one.laws, one.forces, one.friction, found[k]))
+        right = np.asfortranarray(np.stack(residuals, axis=1))
+        answers = reduction.factor.solve(right)
+        work = np.maximum(np.einsum("ij,ij->j", right, answers), 0.0)
+        sizes = np.array([pressed(reduction.traces, variants[k].laws, found[k]) for k in poor])
+        far = np.sqrt(work) / sizes >= tolerance
+        poor = [k for k, is_far in zip(poor, far, strict=True) if is_far]
+        if not poor:
+            return [found[k] for k in range(len(variants))]
+        reduction.static.add(answers[:, far])
+        reduction.refresh()
+    raise NotConverged(f"reduction: {FEW_STEPS} enrichments leave {len(poor)} equilibria wrong; raise the tolerance")
+
+
+def _train_dynamic(
+    reduction: Reduction, variants: Sequence[Gapped], found: Sequence[PreloadState], tolerance: float
+) -> None:
+    """Grow the basis for vibration until all modes of every variant are right; tolerance: of the eigenvalues."""
+    poor: list[Any] = [np.arange(reduction.model.count)] * len(variants)
+    for _ in range(FEW_STEPS):
+        left = [
+            (k, *_residual(reduction, variants[k], found[k], poor[k])) for k in range(len(variants)) if len(poor[k])
+        ]
+        right = np.asfortranarray(np.concatenate([part for _, parts, _ in left for part in parts], axis=1))
+        answers = reduction.factor.solve(right)
+        energy = np.einsum("ij,ij->j", right, answers)
+        mends, at = [], 0
+        for k, parts, size in left:
+            spans = [slice(at + i * len(size), at + (i + 1) * len(size)) for i in range(len(parts))]
+            far = np.sum([energy[span] for span in spans], axis=0) / size > tolerance
+            mends += [answers[:, span][:, far] / np.sqrt(size[far]) for span in spans]
+            poor[k] = poor[k][far]
+            at += len(parts) * len(size)
+        mends = [mend for mend in mends if mend.shape[1]]
+        if not mends:
+            return
+        if not reduction.dynamic.add(np.concatenate(mends, axis=1), least=LEFT_OUT * tolerance):
+            raise NotConverged("reduction: some modes stay wrong and nothing improves them")
+        reduction.refresh()
+    raise NotConverged(
+        f"reduction: {FEW_STEPS} enrichments do not bring a mode to {tolerance:.0e}; ask for fewer modes"
+    )
+
+
+def _residual(reduction: Reduction, variant: Gapped, found: PreloadState, which: Any) -> tuple[list[Array], Array]:
+    """What some modes of a variant leave (n, m), real and imaginary part where there is loss, and their size (m,)."""
+    model = variant.model(reduction)
+    springs = model.springs(variant.laws, found.pressures)
+    values, vectors, _ = model.modes(springs, slight=0.0)
+    values, vectors = values[which], vectors[:, which]
+    momentum = model.matrices[2] @ vectors
+    size = np.abs(values) * np.abs(np.einsum("ij,ij->j", vectors.conj(), momentum))
+    return real_parts(reduction.modal_residual(springs, values, vectors)), size

@@ -1,0 +1,1 @@
+"""From a STEP file to a study, and what a study is checked for."""

@@ -1,0 +1,345 @@
+"""What can be said of a study in seconds, before anything is meshed or solved: faults, notes, what a run will need."""
+
+import re
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import Literal
+
+from faying.bolt.bolt import Bolt, BoltPlace, each_in_its_place
+from faying.bolt.solid_bolt import SolidBolt
+from faying.case.case import SIZES, name_faults
+from faying.case.places import named_points, on_structure
+from faying.errors import FayingError, InputError
+from faying.fe.mesh import Mesh
+from faying.fe.quality import quality
+from faying.geometry.face_facts import FaceFacts, GeometryFacts, read_facts
+from faying.geometry.face_triangles import FaceTriangles
+from faying.geometry.mesh_facts import mesh_facts
+from faying.geometry.selectors import TOUCHING, chosen, points_of
+from faying.joint.joint import each_pair_once
+from faying.joint.strength import SolidPlace, bolt_notes, material_notes
+from faying.joint.structure import seat_apart
+from faying.memory import available
+from faying.notes import Note
+from faying.progress import duration
+from faying.setup.bolt_names import MOST_NAMES, grouped
+from faying.setup.expected import Expected, unknowns_of
+from faying.setup.lines import key_of, line_of, lines_of
+from faying.setup.reach import law_findings
+from faying.setup.sketch import Sketch
+from faying.study.keys.geometry import mesh_of
+from faying.study.keys.reader import StudyFaults
+from faying.study.study import Study
+from faying.units import show
+
+Level = Literal["ok", "note", "fault"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """One thing that was looked at.
+
+    Args:
+        level: ok, note or fault; with a fault the run would stop.
+        code: what was looked at.
+        text: what was found, and what to do about it.
+        key: of the study that it concerns; "" where it is none.
+        line: of the study's text on which the key stands, from 1.
+    """
+
+    level: Level
+    code: str
+    text: str
+    key: str = ""
+    line: int | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Checked:
+    """All findings on a study, faults first within each thing looked at, and what a run is expected to need."""
+
+    findings: tuple[Finding, ...]
+    expected: Expected | None = None
+
+    @property
+    def faults(self) -> tuple[Finding, ...]:
+        """The findings with which a run would stop."""
+        return tuple(one for one in self.findings if one.level == "fault")
+
+
+@dataclass
+class _Findings:
+    lines: Mapping[str, int]
+    out: list[Finding] = field(default_factory=list)
+
+    def add(self, level: Level, code: str, text: str, key: str = "") -> None:
+        """Add one finding, once."""
+        found = Finding(level=level, code=code, text=text, key=key, line=line_of(key, self.lines))
+        if found not in self.out:
+            self.out.append(found)
+
+    def tried(self, code: str, key: str, work: Callable[[], None]) -> bool:
+        """Do some work; what it refuses is a fault. Returns whether it was done."""
+        try:
+            work()
+        except FayingError as fault:
+            self.add("fault", code, str(fault), key)
+            return False
+        return True
+
+
+def check(path: str | Path) -> Checked:
+    """Look at a study file without meshing or solving: its keys, names, contacts, bolts, seats, laws and size.
+
+    Args:
+        path: the study file.
+
+    Returns:
+        Every finding; nothing is raised for faults of the study.
+
+    Raises:
+        ReadError: there is no such file.
+    """
+    file = Path(path)
+    text = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
+    found = _Findings(lines_of(text))
+    study = _read(file, found)
+    if study is None:
+        return Checked(findings=tuple(found.out))
+    found.add("ok", "keys", f"keys, units and files of {file.name}")
+    facts, mesh = _geometry(study, found)
+    if facts is None:
+        return Checked(findings=tuple(found.out))
+    named = _named(study, facts, found)
+    before = len(found.out)
+    for key, fault in name_faults(study, list(facts.by_part), {name: some[0].part for name, some in named.items()}):
+        found.add("fault", "names", fault, key)
+    expected = _expected(study, facts, named, mesh, found)
+    if len(found.out) > before and any(one.level == "fault" for one in found.out):
+        return Checked(findings=tuple(found.out), expected=expected)
+    found.add("ok", "names", f"{len(facts.parts)} parts and {len(named)} named faces of {facts.file}")
+    sketch = Sketch(
+        study=study,
+        facts=facts,
+        named=named,
+        mesh=FaceTriangles.of(facts, named),
+        materials={name: study.materials[study.parts[name]] for name in facts.by_part},
+        fitted_bolts=(),
+    )
+    _contacts(sketch, found)
+    for key, what, point in named_points(study):
+        found.tried("point", key, partial(on_structure, what, point, mesh or facts))
+    sketch = _bolts(sketch, found)
+    for level, code, words, key in law_findings(sketch):
+        found.add(level, code, words, key)
+    return Checked(findings=tuple(found.out), expected=expected)
+
+
+def _read(file: Path, found: _Findings) -> Study | None:
+    try:
+        return Study.read(file)
+    except StudyFaults as faults:
+        for line in faults.lines:
+            found.add("fault", "keys", line, key_of(line, found.lines))
+    except InputError as fault:
+        if not file.is_file():
+            raise
+        found.out.append(Finding(level="fault", code="toml", text=str(fault), line=_toml_line(file)))
+    return None
+
+
+def _toml_line(file: Path) -> int | None:
+    """The line at which a file stops being TOML."""
+    try:
+        tomllib.loads(file.read_text(encoding="utf-8", errors="replace"))
+    except (ValueError, RecursionError) as fault:  # nested without end, a number of thousands of digits
+        at = re.search(r"at line (\d+)", str(fault))
+        return int(at[1]) if at else None
+    return None
+
+
+def _geometry(study: Study, found: _Findings) -> tuple[GeometryFacts | None, Mesh | None]:
+    """Facts of the geometry, and the mesh where the study names one that is ready."""
+    spec = study.geometry
+    points = points_of(spec.face)
+    try:
+        if spec.mesh is not None:
+            mesh = mesh_of(spec)
+            _notes(found, (*mesh.notes, *quality(mesh).notes), "geometry.mesh")
+            return mesh_facts(mesh, points), mesh
+        facts = read_facts(spec.file, points=points, overlaps=True, leave_out=spec.leave_out)
+    except FayingError as fault:
+        found.add("fault", "geometry", str(fault), "geometry.mesh" if spec.mesh is not None else "geometry.step")
+        return None, None
+    _notes(found, facts.notes, "geometry.step")
+    for overlap in facts.overlaps:
+        text = f"{overlap}; parts may touch, not overlap: correct it in the CAD program"
+        found.add("fault", "overlap", text, "geometry.step")
+    if not SIZES[0] <= facts.size <= SIZES[1]:
+        text = f"the structure measures {facts.size:.4g} m from corner to corner; is the unit of its geometry right?"
+        found.add("note", "size", text, "geometry.step")
+    return facts, None
+
+
+def _notes(found: _Findings, notes: tuple[Note, ...], key: str) -> None:
+    for note in notes:
+        found.add("note", note.code, note.text, key)
+
+
+def _named(study: Study, facts: GeometryFacts, found: _Findings) -> dict[str, tuple[FaceFacts, ...]]:
+    """Faces by name: those of the file, and those that selectors mean."""
+    named: dict[str, tuple[FaceFacts, ...]] = {}
+    for face in facts.faces:
+        if face.name:
+            named[face.name] = (*named.get(face.name, ()), face)
+    if study.geometry.mesh is not None:
+        return named  # a mesh has them all
+    taken = set(named)
+    for label, selector in study.geometry.face.items():
+        key = _selector_key(study, label)
+        if label in taken:
+            text = f"face {label!r}: the file has a face of this name already; choose another name"
+            found.add("fault", "selector", text, key)
+            continue
+
+        def select(label: str = label) -> None:
+            named[label] = chosen(label, study.geometry.face[label], facts, snap=study.geometry.snap)
+
+        if not found.tried("selector", key, select) and selector.part in facts.by_part:
+            named[label] = facts.by_part[selector.part][:1]  # so that its name is no second fault
+    return named
+
+
+def _selector_key(study: Study, label: str) -> str:
+    """Where a selector stands: under [geometry.face], or in place of a name."""
+    named = [(f"joint[{joint.number}].faces", joint) for joint in (*study.joints, *study.bonds)]
+    for key, item in (*named, *((f"bolt[{k}].faces", bolt) for k, bolt in enumerate(study.bolts, 1))):
+        if label in item.faces and label in (f"{item.name} first", f"{item.name} second"):
+            return key
+    if label.endswith("]") and label.split("[")[0] in ("support", "mass"):
+        return f"{label}.face"
+    return f"geometry.face.{label}"
+
+
+def _expected(
+    study: Study,
+    facts: GeometryFacts,
+    named: Mapping[str, tuple[FaceFacts, ...]],
+    mesh: Mesh | None,
+    found: _Findings,
+) -> Expected:
+    spec = study.geometry
+    key = "geometry.mesh" if mesh is not None else "geometry.size"
+    for name in spec.face_size:
+        if name not in named:
+            known = ", ".join(sorted(named))
+            text = f"size of face {name!r}: the faces are {known}"
+            found.add("fault", "names", text, f"geometry.face_size.{name}")
+    unknowns = mesh.unknowns if mesh is not None else unknowns_of(facts, spec.size, spec.face_size, named)
+    expected = Expected.of(study, unknowns)
+    free = available()
+    about = "" if mesh is not None else "about "
+    text = f"{about}{unknowns:,} unknowns, {expected.memory / 1e9:.2g} GB, {duration(max(expected.seconds, 1.0))}"
+    if free is not None and expected.memory > free:
+        text += f"; {free / 1e9:.2g} GB are free: mesh more coarsely, or see docs on solvers for larger machines"
+        found.add("fault" if expected.memory > 2 * free else "note", "expected", text, key)
+    else:
+        found.add("ok", "expected", text, key)
+    return expected
+
+
+def _contacts(sketch: Sketch, found: _Findings) -> None:
+    """Whether the faces of each joint meet, and how far apart they lie."""
+    spec, size = sketch.study.geometry, sketch.facts.size
+    every = sorted((*sketch.study.joints, *sketch.study.bonds), key=lambda joint: joint.number)
+    joints = {joint.name: joint.faces for joint in every}
+    found.tried("contact", "joint", lambda: each_pair_once(joints))
+    for joint in every:
+        key = f"joint[{joint.number}].faces"
+        parts = [sketch.mesh.face_part[face] for face in joint.faces]
+        if parts[0] == parts[1]:
+            text = f"faces {joint.faces[0]!r} and {joint.faces[1]!r} are both on part {parts[0]!r}; a joint needs two"
+            found.add("fault", "contact", text, key)
+            continue
+        meets = sketch.contacts(joint.faces)
+        if not meets:
+            names = f"{joint.faces[0]!r} and {joint.faces[1]!r}"
+            text = f"joint {joint.name!r}: its faces {names} do not look at each other"
+            if any(face.kind == "other" for name in joint.faces for face in sketch.named[name]):
+                found.add("note", "contact", f"{text} as far as planes and cylinders show; they are curved", key)
+            else:
+                text += f" within {show(0.01 * size, 'm')}; `faying faces` lists what does"
+                found.add("fault", "contact", text, key)
+            continue
+        widest = max(abs(contact.gap) for contact in meets)
+        area = 1e6 * sum(contact.area for contact in meets)
+        reach = joint.search_distance or 0.01 * size
+        if joint.bonded and widest > max(TOUCHING * size, spec.snap):
+            text = f"joint {joint.name!r} is bonded, but its faces are {show(widest, 'm')} apart"
+            found.add("fault", "contact", f"{text}; move a part, or give geometry.snap", key)
+        elif joint.bonded:
+            text = f"joint {joint.name!r}: its faces are bonded over {area:.4g} mm2"
+            found.add("ok", "contact", text, key)
+        elif widest > reach:
+            text = f"joint {joint.name!r}: its faces are {show(widest, 'm')} apart, more than {show(reach, 'm')}"
+            found.add("fault", "contact", f"{text}; move a part, or give search_distance", key)
+        elif widest > max(TOUCHING * size, spec.snap):
+            where = ", ".join(f"{1e3 * x:.4g}" for x in sketch.facts.face(*meets[0].first).centre)
+            text = f"joint {joint.name!r}: a gap of {show(widest, 'm')} between its faces about ({where}) mm stays open"
+            found.add(
+                "note", "gap", f"{text} until bolts close it; geometry.snap of as much counts it as touching", key
+            )
+        else:
+            found.add("ok", "contact", f"joint {joint.name!r}: its faces touch over {area:.4g} mm2", key)
+
+
+def _bolts(sketch: Sketch, found: _Findings) -> Sketch:
+    """Bolts in their places: seats that look away from each other, axes in their holes, forces that they bear."""
+    places: list[BoltPlace | SolidPlace] = []
+    met = {face for joint in sketch.study.joints for face in joint.faces}
+    met |= {support.face for support in sketch.study.supports}
+    well: dict[str, list[tuple[str, str]]] = {}  # what is said -> bolts and keys of which it is
+    for k, bolt in enumerate(sketch.study.bolts, 1):
+
+        def place(bolt: Bolt | SolidBolt = bolt) -> None:
+            if isinstance(bolt, SolidBolt):
+                places.append(SolidPlace.of(bolt, sketch.mesh))
+            else:
+                places.append(bolt.placed(sketch.mesh))
+
+        if not found.tried("bolt", f"bolt[{k}].{'at' if bolt.at else 'faces'}", place):
+            continue
+        if isinstance(bolt, SolidBolt) and (apart := seat_apart(bolt, met)):
+            found.add("fault", "bolt", apart, f"bolt[{k}].faces")
+            continue
+        made = places[-1]
+        length = show(made.length, "m")
+        if isinstance(made, SolidPlace):
+            text = f"bolt {bolt.name!r} is the part {bolt.part!r} and clamps {length}"
+            found.add("ok", "bolt", text, f"bolt[{k}].part")
+            continue
+        ring = "whole faces" if made.ring is None else f"a ring of {' to '.join(show(d, 'm') for d in made.ring)}"
+        well.setdefault(f"{length} between seats that are {ring}", []).append((bolt.name, f"bolt[{k}].faces"))
+        _notes(found, made.notes, f"bolt[{k}].seat")
+    for words, some in well.items():
+        many = len(some) > MOST_NAMES
+        who = f"{grouped([name for name, _ in some])} clamp" if many else ""
+        for name, key in some[:1] if many else some:
+            found.add("ok", "bolt", f"{who or f'bolt {name!r} clamps'} {words}", key)
+    found.tried("bolt", "bolt", lambda: each_in_its_place([one for one in places if isinstance(one, BoltPlace)]))
+    sketch = replace(sketch, fitted_bolts=tuple(places))
+    keys = {bolt.name: f"bolt[{k}].preload" for k, bolt in enumerate(sketch.study.bolts, 1)}
+    _notes(found, tuple(material_notes(sketch)), "part")
+    for note in bolt_notes(sketch):
+        key = next((key for name, key in keys.items() if note.text.startswith(f"bolt {name!r}")), "bolt")
+        found.add("note", note.code, note.text, key)
+    return sketch
+
+
+def by_level(checked: Checked) -> Iterator[Finding]:
+    """Faults, then notes, then what is well."""
+    for level in ("fault", "note", "ok"):
+        yield from (one for one in checked.findings if one.level == level)

@@ -1,0 +1,156 @@
+"""Parts of a geometry that are fasteners: bolts that can be meshed, and those that are left out of the mesh."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from faying.geometry.face_facts import Contact, FaceFacts, GeometryFacts
+from faying.typing import Array
+
+SLENDER = 1.5  # shank diameters from its axis, beyond which a part with a shank is no bolt (a spigot of a flange, say)
+NUT = 1.25, 2.5  # shank diameters: the farthest that a nut reaches from the axis, and how long it is at most
+TIGHT = 1e-2  # of the radius: gap between shank and hole below which they fit without play
+
+Side = tuple[str, int]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshedBolt:
+    """A part that is a bolt with its nut: the part, its shank, and its faces under the head and at the nut."""
+
+    part: str
+    shank: FaceFacts
+    head: FaceFacts
+    nut: FaceFacts
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fasteners:
+    """What parts of a geometry are fasteners.
+
+    Args:
+        meshed: bolts that can be meshed.
+        dowels, others: parts that are left out: dowels; bolts, studs and nuts that beams stand for.
+        shanks: part and number of the faces of holes in which a meshed bolt or a dowel runs.
+    """
+
+    meshed: tuple[MeshedBolt, ...] = ()
+    dowels: tuple[str, ...] = ()
+    others: tuple[str, ...] = ()
+    shanks: frozenset[Side] = field(default_factory=frozenset)
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Parts that the mesh leaves out."""
+        return (*self.dowels, *self.others)
+
+    @property
+    def remarks(self) -> list[str]:
+        """What there is to say of the parts that are left out."""
+        out = []
+        if self.dowels:
+            out.append(
+                f"{listed(self.dowels)}: dowels. A dowel is no bolt: it has no preload and carries shear alone. Left "
+                "out of the mesh (geometry.leave_out); to count its stiffness take it out of that list and give its "
+                "wall a [[joint]] with bonded = true for each hole, which holds it along its axis, too"
+            )
+        if self.others:
+            out.append(
+                f"{listed(self.others)}: bolts, studs or nuts without one flat face under the head and one at the nut. "
+                "Left out of the mesh (geometry.leave_out); beams stand for those whose holes are found"
+            )
+        return out
+
+
+def listed(names: Iterable[str], most: int = 4) -> str:
+    """Names in quotes, the first few."""
+    every = [repr(name) for name in names]
+    return ", ".join(every[:most]) + (f" and {len(every) - most} more" if len(every) > most else "")
+
+
+def find_fasteners(facts: GeometryFacts, joints: Sequence[Contact]) -> Fasteners:
+    """Tell which parts are fasteners.
+
+    Args:
+        facts: of the geometry.
+        joints: the planes that touch.
+    """
+    pairs = [
+        (facts.face(*one), facts.face(*two), contact.gap)
+        for contact in facts.contacts
+        for one, two in ((contact.first, contact.second), (contact.second, contact.first))
+        if facts.face(*one).kind == "cylinder" and not facts.face(*one).hole
+    ]
+    meshed, dowels, others = [], [], []
+    shafts: list[FaceFacts] = []
+    for part in facts.parts:
+        mine = [pair for pair in pairs if pair[0].part == part.name]
+        if not mine or _reach(facts, part.name, mine[0][0])[0] > 2 * SLENDER * (mine[0][0].radius or 0.0):
+            continue
+        shank = mine[0][0]
+        low, high = _pressed(facts, joints, shank)
+        if len(low) == len(high) == 1:
+            head = max((low[0], high[0]), key=lambda face: face.area)
+            nut = high[0] if head is low[0] else low[0]
+            meshed.append(MeshedBolt(part=part.name, shank=shank, head=head, nut=nut))
+            continue
+        tight = {hole.part for _, hole, gap in mine if gap <= TIGHT * (shank.radius or 0.0)}
+        if not low and not high and len(tight) > 1 and not _nuts(facts, mine):
+            dowels.append(part.name)
+        else:
+            others.append(part.name)
+            shafts.append(shank)
+    nuts = [hole.part for shank, hole, gap in pairs if shank in shafts and _is_nut(facts, shank, hole, gap)]
+    owners = {*(bolt.part for bolt in meshed), *dowels}
+    return Fasteners(
+        meshed=tuple(meshed),
+        dowels=tuple(dowels),
+        others=tuple(dict.fromkeys((*others, *nuts))),
+        shanks=frozenset((hole.part, hole.number) for shank, hole, _ in pairs if shank.part in owners),
+    )
+
+
+def _pressed(
+    facts: GeometryFacts, joints: Sequence[Contact], shank: FaceFacts
+) -> tuple[list[FaceFacts], list[FaceFacts]]:
+    """Flat faces of a bolt that press on other parts: those that look along its axis, and those that look back.
+
+    The ends of the shank do not count, such as that of a dowel on the bottom of its hole.
+    """
+    axis = np.array(shank.axis)
+    sides = [side for contact in joints for side in (contact.first, contact.second) if side[0] == shank.part]
+    pressed = [face for side in dict.fromkeys(sides) if _beyond(facts, face := facts.face(*side), shank)]
+    low = [face for face in pressed if face.normal is not None and np.array(face.normal) @ axis > 0.99]
+    high = [face for face in pressed if face.normal is not None and np.array(face.normal) @ axis < -0.99]
+    return low, high
+
+
+def _beyond(facts: GeometryFacts, face: FaceFacts, shank: FaceFacts) -> bool:
+    """Whether a face reaches farther from the axis than the shank does."""
+    assert shank.radius is not None
+    arm = facts.triangles(face).reshape(-1, 3) - np.array(shank.start)
+    axis = np.array(shank.axis)
+    return bool(np.linalg.norm(arm - np.outer(arm @ axis, axis), axis=1).max() > (1 + TIGHT) * shank.radius)
+
+
+def _nuts(facts: GeometryFacts, pairs: Sequence[tuple[FaceFacts, FaceFacts, float]]) -> bool:
+    return any(_is_nut(facts, shank, hole, gap) for shank, hole, gap in pairs)
+
+
+def _is_nut(facts: GeometryFacts, shank: FaceFacts, hole: FaceFacts, gap: float) -> bool:
+    """Whether the part of a hole is a nut on a shank: small, and without play."""
+    assert shank.radius is not None
+    reach, length = _reach(facts, hole.part, shank)
+    diameter = 2 * shank.radius
+    return gap <= TIGHT * shank.radius and reach <= NUT[0] * diameter and length <= NUT[1] * diameter
+
+
+def _reach(facts: GeometryFacts, part: str, shank: FaceFacts) -> tuple[float, float]:
+    """How far a part reaches from the axis of a shank, and its length along it [m]."""
+    numbers = [k for k, face in enumerate(facts.faces) if face.part == part]
+    points: Array = facts.corners[np.isin(facts.face_of, numbers)].reshape(-1, 3)
+    axis = np.array(shank.axis)
+    arm = points - np.array(shank.start)
+    depth = arm @ axis
+    return float(np.linalg.norm(arm - np.outer(depth, axis), axis=1).max()), float(np.ptp(depth))

@@ -1,0 +1,322 @@
+"""Bolts that the holes of a geometry ask for: through bolts, screws, countersunk screws, bolts in T-slots."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from faying.bolt.threads import CLEARANCE_HOLES, HEADS, PINS, WASHERS, is_tapped, size_for_hole
+from faying.geometry.bores import Bore, Stack, bores, room_around, rows, seat
+from faying.geometry.face_facts import Contact, FaceFacts, GeometryFacts
+from faying.geometry.seats import Countersink, countersink, lips
+from faying.setup.fasteners import Fasteners, listed
+from faying.typing import Array
+from faying.units import show
+
+CHORDS = 1.02  # by so much a round edge is wider than its chords
+WIDEST = 1.1e-3 * CLEARANCE_HOLES[max(CLEARANCE_HOLES)][2]  # m: wider holes are for no bolt that is known here
+SUNK = 1.6  # nominal diameters from which a cone at the mouth of a hole is a countersink, and no chamfer
+ALIKE = 1e-3  # of a radius: holes that differ by less have one diameter
+PLACES = 3  # rows of holes whose places a remark says
+
+
+@dataclass(frozen=True, kw_only=True)
+class FoundBolt:
+    """A bolt: what it presses on, before faces have names.
+
+    Args:
+        axis: unit direction (3,).
+        parts: what it clamps.
+        head, end: the faces under the head, and those at the nut or of the thread.
+        words: what these faces are called.
+        size: nominal diameter [mm]; None where it is not known.
+        at: point on the axis [m]; None where a tapped hole or a meshed bolt says it.
+        ring: inner and outer diameter of the seat [m]; None for a meshed bolt.
+        part: the part that it is, if it is one.
+        remark: where size and ring come from.
+    """
+
+    axis: Array
+    parts: tuple[str, ...]
+    head: tuple[FaceFacts, ...]
+    end: tuple[FaceFacts, ...]
+    words: tuple[str, str] = ("seat", "seat")
+    size: int | None = None
+    at: tuple[float, float, float] | None = None
+    ring: tuple[float, float] | None = None
+    part: str | None = None
+    remark: str = ""
+
+
+@dataclass
+class LeftOut:
+    """Rows of holes that take no bolt: why, with the places [m] of all for which the same is to be said."""
+
+    places: dict[tuple[str, str], list[Array]] = field(default_factory=dict)
+
+    def add(self, stack: Stack, why: str) -> None:
+        """Note a row of holes."""
+        widths = ", ".join(f"{2e3 * bore.radius:.4g} mm in {bore.part!r}" for bore in stack.bores)
+        self.places.setdefault((widths, why), []).append(stack.middle)
+
+    @property
+    def remarks(self) -> Iterator[str]:
+        """One line for all that are alike."""
+        for (widths, why), places in self.places.items():
+            where = ", ".join(f"({', '.join(f'{1e3 * x:.4g}' for x in place)})" for place in places[:PLACES])
+            more = f" and {len(places) - PLACES} more" if len(places) > PLACES else ""
+            many = f"{len(places)} rows of holes" if len(places) > 1 else "holes"
+            yield f"{many} about {where}{more} mm ({widths}) {why}"
+
+
+def found_bolts(facts: GeometryFacts, fasteners: Fasteners, joints: Sequence[Contact], out: LeftOut) -> list[FoundBolt]:
+    """The bolts of a geometry: parts that are bolts, and rows of holes that take one.
+
+    Args:
+        facts: of the parts that are not left out.
+        fasteners: parts that are bolts.
+        joints: the planes that touch.
+        out: takes the rows of holes that have no bolt.
+    """
+    found = [_meshed(facts, bolt.part, bolt.shank, bolt.head, bolt.nut, joints) for bolt in fasteners.meshed]
+    solid = {bolt.part for bolt in fasteners.meshed}
+    holes = [bore for bore in bores(facts) if bore.part not in solid]
+    met = {side for contact in joints for side in (contact.first, contact.second)}
+    for stack in rows(holes, reach=0.01 * facts.size):
+        taken = any((bore.part, number) in fasteners.shanks for bore in stack.bores for number in bore.faces)
+        if taken or 2 * min(bore.radius for bore in stack.bores) > WIDEST:
+            continue  # a meshed bolt or a dowel is there, or it is a pipe, a bearing
+        bolt = _in_slot(facts, stack) or (_in_row(facts, stack, out) if len(stack.bores) > 1 else None)
+        if bolt is not None:
+            found.append(bolt)
+        elif len(stack.bores) == 1 and _opens(facts, stack.bores[0], met):
+            out.add(stack, "end at a joint, where no hole and no slot of another part takes a bolt: left out")
+    return found
+
+
+def _meshed(
+    facts: GeometryFacts, part: str, shank: FaceFacts, head: FaceFacts, nut: FaceFacts, joints: Sequence[Contact]
+) -> FoundBolt:
+    assert shank.radius is not None
+    wide = 2e3 * shank.radius
+    size = round(wide) if abs(wide - round(wide)) < 0.05 and round(wide) in WASHERS else None
+    clamped = {
+        other[0]
+        for contact in facts.contacts
+        for mine, other in ((contact.first, contact.second), (contact.second, contact.first))
+        if mine[0] == part
+    }
+    return FoundBolt(
+        axis=np.array(shank.axis),
+        parts=tuple(sorted(clamped)),
+        head=(head,),
+        end=(nut,),
+        words=("head", "nut"),
+        size=size,
+        part=part,
+        remark=f"the part {part!r} is the bolt",
+    )
+
+
+def _opens(facts: GeometryFacts, bore: Bore, met: set[tuple[str, int]]) -> bool:
+    """Whether a clearance hole ends at a face that another part touches."""
+    near = {other for number in bore.faces for other in facts.face(bore.part, number).neighbours}
+    return size_for_hole(2 * bore.radius) is not None and any((bore.part, number) in met for number in near)
+
+
+def _in_slot(facts: GeometryFacts, stack: Stack) -> FoundBolt | None:
+    """A bolt whose nut, or head, pulls the lips of a T-slot beyond the end of a row of clearance holes."""
+    sizes = {size_for_hole(2 * bore.radius) for bore in stack.bores}
+    size = sizes.pop()
+    if sizes or size is None:
+        return None
+    hole = 2 * max(bore.radius for bore in stack.bores)
+    outer = WASHERS[size] / 1e3
+    ends = {True: stack.bores[-1], False: stack.bores[0]}
+    for top, bore in ends.items():
+        found = lips(facts, bore, top=top, shank=size / 1e3, ring=(hole, outer))
+        under = seat(facts, ends[not top], top=not top) if found else None
+        if not found or under is None:
+            continue
+        room = 2 * CHORDS * room_around(facts, under, ends[not top])
+        outer, why = _outer(size, room)
+        owner = found[0].part
+        return FoundBolt(
+            axis=stack.axis,
+            parts=(*stack.parts, owner),
+            head=(under,),
+            end=tuple(face for face in found if face.part == owner),
+            words=("seat", "lips"),
+            size=size,
+            at=_at(stack),
+            ring=(round(hole, 9), outer),
+            remark=(
+                f"M{size} for a hole of {show(hole, 'm')} (ISO 273), in a T-slot of {owner!r}; "
+                f"seats: from the hole to the diameter {why}, on the lips as far as they reach"
+            ),
+        )
+    return None
+
+
+def _in_row(facts: GeometryFacts, stack: Stack, out: LeftOut) -> FoundBolt | None:
+    """The bolt of a row of holes through several parts; None, noted in `out`, where none fits."""
+    found = _size(stack)
+    low, high = stack.bores[0], stack.bores[-1]
+    dowel = _like_dowels(stack)
+    ends = seat(facts, low, top=False), seat(facts, high, top=True)
+    if found is None or (dowel and None in ends):
+        out.add(stack, DOWELS if dowel else "are clearance holes of no common bolt (M3 to M24, ISO 273): left out")
+        return None
+    size, tapped = found
+    sunk: dict[bool, Countersink] = {}
+    for top, bore in ((False, low), (True, high)):
+        cone = countersink(facts, bore, top=top)
+        if cone is not None and 1e3 * cone.outer >= SUNK * size:
+            sunk[top] = cone
+    if tapped is not None:
+        end, top = (high, True) if tapped is low else (low, False)
+        under = seat(facts, end, top=top)
+        if top in sunk:
+            return _screw(facts, stack, (end, sunk[top].faces), tapped, size, sunk[top].outer)
+        if under is not None:
+            return _screw(facts, stack, (end, (under,)), tapped, size, None)
+        out.add(stack, "have no flat face for a head: left out")
+        return None
+    for top, cone in sunk.items():
+        nut = ends[not top]
+        if nut is not None:
+            return _sunk(stack, cone.faces, nut, size, cone.outer)
+    if ends[0] is None or ends[1] is None:
+        out.add(stack, "have no flat face for head or nut at an end (a blind hole?): left out")
+        return None
+    return _through(facts, stack, (ends[0], ends[1]), size)
+
+
+DOWELS = (
+    "have one diameter, as those of dowels. A dowel is no bolt: it has no preload and carries shear alone. Left out; "
+    "to count its stiffness draw the pin as a part and give its wall a [[joint]] with bonded = true for each hole, "
+    "which holds it along its axis, too"
+)
+
+
+def _like_dowels(stack: Stack) -> bool:
+    """Whether holes have one diameter, which is that of a pin (ISO 2338)."""
+    wide = [2e3 * bore.radius for bore in stack.bores]
+    return max(wide) - min(wide) <= ALIKE * wide[0] and any(abs(wide[0] - pin) <= ALIKE * pin for pin in PINS)
+
+
+def _size(stack: Stack) -> tuple[int, Bore | None] | None:
+    """Nominal diameter [mm] of the bolt of a row of holes, and the hole that is its thread; None where none fits."""
+    sizes = [size_for_hole(2 * bore.radius) for bore in stack.bores]
+    ends = [(stack.bores[-1], sizes[:-1]), (stack.bores[0], sizes[1:])]
+    if sizes[0] is not None and len(set(sizes)) == 1:
+        return sizes[0], None
+    for end, others in ends:
+        if others[0] is not None and len(set(others)) == 1 and is_tapped(2 * end.radius, others[0]):
+            return others[0], end
+    return None
+
+
+def _outer(size: int, room: float) -> tuple[float, str]:
+    """Outer diameter [m] of the seat of a bolt of a size [mm] in a room [m] around its axis, and where it is from."""
+    washer, head = WASHERS[size] / 1e3, HEADS[size] / 1e3
+    outer, why = (washer, "of its washer, ISO 7089") if washer <= room else (head, "of its head, ISO 4762")
+    if outer > room:
+        why += f", although the face ends {show(room / 2, 'm')} from the axis"
+    return outer, why
+
+
+def _at(stack: Stack) -> tuple[float, float, float]:
+    x, y, z = (round(float(v), 9) + 0.0 for v in stack.middle)
+    return x, y, z
+
+
+def _screw(
+    facts: GeometryFacts,
+    stack: Stack,
+    head: tuple[Bore, tuple[FaceFacts, ...]],
+    tapped: Bore,
+    size: int,
+    sunk: float | None,
+) -> FoundBolt:
+    """A screw into a tapped hole; head: the hole under its head, and the faces that it presses; sunk: as of `_sunk`."""
+    bore, under = head
+    why = "seat: from the hole to the diameter of its head, ISO 4762" if sunk is None else "a countersunk head"
+    return FoundBolt(
+        axis=stack.axis,
+        parts=stack.parts,
+        head=under,
+        end=tuple(facts.face(tapped.part, number) for number in tapped.faces),
+        words=("seat" if sunk is None else "countersink", "thread"),
+        size=size,
+        ring=(round(2 * bore.radius, 9), HEADS[size] / 1e3 if sunk is None else round(sunk, 9)),
+        remark=(
+            f"M{size} for {_hole(bore)} (ISO 273), screwed into the hole of "
+            f"{show(2 * tapped.radius, 'm')} in {tapped.part!r}; {why}"
+        ),
+    )
+
+
+def _sunk(stack: Stack, cone: tuple[FaceFacts, ...], nut: FaceFacts, size: int, outer: float) -> FoundBolt:
+    """A countersunk screw with a nut; outer: diameter [m] at the wide end of the cone."""
+    hole = 2 * min(bore.radius for bore in stack.bores)
+    return FoundBolt(
+        axis=stack.axis,
+        parts=stack.parts,
+        head=cone,
+        end=(nut,),
+        words=("countersink", "seat"),
+        size=size,
+        at=_at(stack),
+        ring=(round(hole, 9), round(outer, 9)),
+        remark=f"M{size} for a hole of {show(hole, 'm')} (ISO 273); countersunk head, and a nut on a ring as wide",
+    )
+
+
+def _through(facts: GeometryFacts, stack: Stack, ends: tuple[FaceFacts, FaceFacts], size: int) -> FoundBolt:
+    last = (stack.bores[0], stack.bores[-1])
+    widest = max(last, key=lambda bore: (bore.slot is not None, bore.radius))
+    room = 2 * CHORDS * min(room_around(facts, end, bore) for end, bore in zip(ends, last, strict=True))
+    outer, why = _outer(size, room)
+    pin = "" if not _like_dowels(stack) else "; take the bolt out if the holes are those of a dowel"
+    return FoundBolt(
+        axis=stack.axis,
+        parts=stack.parts,
+        head=(ends[0],),
+        end=(ends[1],),
+        size=size,
+        at=_at(stack),
+        ring=(round(2 * widest.radius, 9), outer),
+        remark=f"M{size} for {_hole(widest)} (ISO 273); seat: from the hole to the diameter {why}{pin}",
+    )
+
+
+def _hole(bore: Bore) -> str:
+    wide = show(2 * bore.radius, "m")
+    return f"a hole of {wide}" if bore.slot is None else f"a slot {wide} wide"
+
+
+def clamped_along(found: Sequence[FoundBolt], one: str, two: str) -> list[Array]:
+    """Axes of the bolts that clamp two parts together."""
+    return [bolt.axis for bolt in found if one in bolt.parts and two in bolt.parts]
+
+
+def shoulders(facts: GeometryFacts, joints: Sequence[Contact], found: Sequence[FoundBolt]) -> list[Contact]:
+    """Faces that touch along the bolts of their two parts, as the shoulder of a stepped lap: no bolt presses them."""
+    out = []
+    for contact in joints:
+        axes = clamped_along(found, contact.first[0], contact.second[0])
+        normal = np.array(facts.face(*contact.first).normal)
+        if axes and max(abs(float(normal @ axis)) for axis in axes) < 0.5:
+            out.append(contact)
+    return out
+
+
+def shoulder_remark(contacts: Sequence[Contact]) -> str:
+    """What there is to say of shoulders."""
+    pairs = dict.fromkeys((contact.first[0], contact.second[0]) for contact in contacts)
+    between = "; ".join(listed(pair) for pair in pairs)
+    return (
+        f"{len(contacts)} pairs of faces that touch along the bolts of {between} (shoulders, registers) are no joints, "
+        "since no bolt presses them: left out; add a [[joint]] if they do carry load"
+    )

@@ -1,0 +1,285 @@
+"""The study that `faying new` writes from a STEP file: what was found, what is assumed, and each of it said."""
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from faying.errors import InputError
+from faying.files import together, write_atomically, write_text
+from faying.geometry.face_facts import read_facts
+from faying.geometry.selectors import AXES, Selector
+from faying.materials import CATALOGUE
+from faying.setup.bolt_names import grouped
+from faying.setup.proposal import GRADE, SHARE, BoltProposal, Proposal, propose
+from faying.setup.template import SCHEMA, surface
+from faying.units import show
+
+STEEL = "S355"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answers:
+    """What a user says beyond what the geometry tells; what is left out is assumed and said.
+
+    Args:
+        materials: part -> material of the catalogue; steel where a part is left out.
+        preload: force of every bolt [N]; 70 % of the proof load of class 8.8 where None.
+        scan: scan of one face; a synthetic milled surface where None.
+    """
+
+    materials: Mapping[str, str] = field(default_factory=dict)
+    preload: float | None = None
+    scan: Path | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Written:
+    """The files that were written, and what was assumed, in the order of the study."""
+
+    files: tuple[Path, ...]
+    proposal: Proposal
+    assumed: tuple[str, ...]
+
+
+def find(step: Path) -> Proposal:
+    """Read a STEP file and propose what its study may hold. Raises ReadError and InputError as `propose`."""
+    return propose(read_facts(step), step)
+
+
+def write(proposal: Proposal, step: Path, out: Path, answers: Answers, *, force: bool = False) -> Written:
+    """Write the study, and the synthetic scan with it where no scan is given; all files or none.
+
+    Args:
+        proposal: from `find`.
+        step: the STEP file.
+        out: the study file.
+        answers: what the user says.
+        force: whether files that exist are replaced.
+
+    Raises:
+        InputError: a file exists, a material is unknown, or nothing can be written there.
+    """
+    unknown = [name for name in answers.materials.values() if name not in CATALOGUE]
+    if unknown:
+        raise InputError(f'material "{unknown[0]}" is not in the catalogue; there are {", ".join(CATALOGUE)}')
+    if answers.scan is not None and not answers.scan.is_file():
+        raise InputError(f"no scan {answers.scan}")
+    made = [out.name] if answers.scan is not None else [out.name, scan_name(out)]
+    there = [out.parent / name for name in made if (out.parent / name).exists()]
+    if there and not force:
+        raise InputError(f"{there[0]} exists already; name another study with --out, or replace it with --force")
+    text, assumed = study_text(proposal, step, out, answers)
+    with together(out.parent, "give another place with --out") as folder:
+        write_text(folder / out.name, text)
+        if answers.scan is None:
+            write_atomically(folder / scan_name(out), surface)
+    return Written(files=tuple(out.parent / name for name in made), proposal=proposal, assumed=tuple(assumed))
+
+
+def scan_name(out: Path) -> str:
+    """The name of the synthetic scan of a study file."""
+    return f"{out.stem}-surface.x3p"
+
+
+def study_text(proposal: Proposal, step: Path, out: Path, answers: Answers) -> tuple[str, list[str]]:
+    """The text of the study, and what it assumes."""
+    assumed: list[str] = []
+    blocks = [
+        _head(proposal, step, out),
+        _geometry(proposal, _relative(step, out)),
+        _parts(proposal, answers, assumed),
+        _surface(out, answers, assumed),
+        _joints(proposal),
+        *(_bolt(bolt, answers) for bolt in proposal.bolts),
+        "" if proposal.bolts else NO_BOLT,
+        SUPPORT,
+        "[modes]\ncount = 10                     # elastic modes\n",
+    ]
+    assumed += _assumed_of_bolts(proposal.bolts, answers)
+    assumed.append("no support: the structure is free")
+    return "\n".join(block for block in blocks if block), [*assumed, *proposal.remarks]
+
+
+NO_BOLT = """# No bolt was found in the geometry. Name the two faces that head and nut press on (see `faying faces`).
+# [[bolt]]
+# name = "bolt 1"
+# faces = [{ part = "upper", normal = "+z" }, { part = "lower", normal = "-z" }]
+# at = ["0 mm", "0 mm", "0 mm"]  # a point on its axis
+# seat = ["9 mm", "16 mm"]       # inner and outer diameter of what head and nut press on
+# diameter = "8 mm"
+# material = "S355"
+# preload = "14.9 kN"
+"""
+SUPPORT = """# Assumed: the structure is free. A face that is held:
+# [[support]]
+# face = { part = "PART", normal = "-x" }
+"""
+
+
+def _head(proposal: Proposal, step: Path, out: Path) -> str:
+    lines = [
+        SCHEMA,
+        f"# Written by faying new from {_plain(step.name)}. Lines marked ASSUMED are guesses: make them yours.",
+        f"# Look at it with: faying check {_plain(out.name)}; run it with: faying run {_plain(out.name)}",
+        *(f"# Note: {_plain(remark)}" for remark in proposal.remarks),
+        f"title = {_quoted(step.stem)}",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def _geometry(proposal: Proposal, step: str) -> str:
+    elements = f"about {proposal.unknowns:,} unknowns"
+    lines = [
+        "[geometry]",
+        f"step = {_quoted(step)}",
+        f'size = "{show(proposal.size, "m")}"  # largest element: {elements}',
+    ]
+    if proposal.snap:
+        lines.append(f'snap = "{show(proposal.snap, "m")}"  # ASSUMED: gaps of the CAD model up to this are none')
+    if proposal.left_out:
+        listed = ", ".join(map(_quoted, proposal.left_out))
+        lines.append(f"leave_out = [{listed}]  # parts of the file that are not meshed")
+    if proposal.faces:
+        lines.append(f"[geometry.face]  # names for faces; `faying faces {_plain(step)}` lists all of them")
+    lines += [f"{_quoted(name)} = {selector_text(one)}" for name, one in proposal.faces.items()]
+    return "\n".join([*lines, ""])
+
+
+def selector_text(selector: Selector) -> str:
+    """A selector as the study writes it."""
+    words = [f"part = {_quoted(selector.part)}"]
+    if selector.touching is not None:
+        words.append(f"touching = {_quoted(selector.touching)}")
+    if selector.normal is not None:
+        word = next((w for w, axis in AXES.items() if axis == selector.normal), None)
+        words.append(f"normal = {_quoted(word) if word else list(selector.normal)}")
+    if selector.number is not None:
+        numbers = list(selector.numbers)
+        words.append(f"number = {numbers if len(numbers) > 1 else numbers[0]}")
+    return "{ " + ", ".join(words) + " }"
+
+
+def _parts(proposal: Proposal, answers: Answers, assumed: list[str]) -> str:
+    lines = [f"# The catalogue has {', '.join(CATALOGUE)}; [material.NAME] describes one of your own."]
+    guessed = []
+    for part in proposal.facts.parts:
+        material = answers.materials.get(part.name)
+        lines.append(f"[part.{_quoted(part.name)}]")
+        lines.append(f"material = {_quoted(material or STEEL)}{'' if material else '  # ASSUMED'}")
+        guessed += [] if material else [part.name]
+    if guessed:
+        assumed.append(f"{STEEL} steel for {', '.join(guessed)}")
+    return "\n".join([*lines, ""])
+
+
+def _surface(out: Path, answers: Answers, assumed: list[str]) -> str:
+    if answers.scan is None:
+        scan = scan_name(out)
+        assumed.append(f"the surface {scan}, a synthetic milled finish of 1 um rms height, on both faces: scan yours")
+        mark = "  # ASSUMED: synthetic, milled, 1 um rms height; put the scan of your face here"
+    else:
+        scan, mark = _relative(answers.scan, out), ""
+        assumed.append("the other face of each joint is alike but unrelated (surface.counter)")
+    lines = [
+        "# The rough surface: the scan of one face, laid on every joint. [joint.surface] gives one to a joint alone.",
+        "[surface]",
+        f"scan = {_quoted(scan)}{mark}",
+        'counter = "same"  # ASSUMED: the other face is alike but unrelated; "smooth", or the file of its own scan',
+        "",
+        "[law]",
+        'model = "auto"  # the contact solved on the scan, or the law nearest to it; `faying models` lists others',
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def _joints(proposal: Proposal) -> str:
+    lines = []
+    for joint in proposal.joints:
+        gap = f", {show(joint.gap, 'm')} apart" if abs(joint.gap) > 1e-9 else ""
+        lines += [
+            "[[joint]]",
+            f"name = {_quoted(joint.name)}",
+            f"faces = [{', '.join(map(_quoted, joint.faces))}]  # {1e6 * joint.area:.4g} mm2{gap}",
+            "",
+        ]
+    return "\n".join(lines)
+
+
+def _bolt(bolt: BoltProposal, answers: Answers) -> str:
+    lines = [f"[[bolt]]  # {_plain(bolt.remark)}", f"name = {_quoted(bolt.name)}"]
+    lines.append(f"faces = [{', '.join(map(_quoted, bolt.faces))}]")
+    if bolt.part is not None:
+        lines.append(f"part = {_quoted(bolt.part)}")
+        lines += [f'thread = "M{bolt.size}"', f'grade = "{GRADE}"  # ASSUMED'] if bolt.size else []
+    else:
+        assert bolt.ring is not None
+        inner, outer = (show(d, "m") for d in bolt.ring)
+        if bolt.at is not None:
+            lines.append(f"at = [{', '.join(_quoted(_mm(x)) for x in bolt.at)}]")
+        lines += [
+            f'seat = ["{inner}", "{outer}"]',
+            f'diameter = "{bolt.size} mm"',
+            f"material = {_quoted(STEEL)}",
+            f'grade = "{GRADE}"  # ASSUMED',
+        ]
+    if answers.preload is not None:
+        lines.append(f'preload = "{show(answers.preload, "N", digits=6)}"')
+    elif bolt.preload is not None:
+        lines.append(f'preload = "{show(bolt.preload, "N")}"  # ASSUMED: {_share()}')
+    else:
+        lines.append('# preload = "10 kN"  # give the force; its thread is not known')
+    return "\n".join([*lines, ""])
+
+
+def _share() -> str:
+    return f"{SHARE:.0%} of the proof load of class {GRADE}, ISO 898-1"
+
+
+def _assumed_of_bolts(bolts: Sequence[BoltProposal], answers: Answers) -> list[str]:
+    """What is assumed of the bolts; those that are alike have one line."""
+    groups: dict[str, list[str]] = {}
+    for bolt in bolts:
+        groups.setdefault(bolt.remark, []).append(bolt.name)
+    for bolt in bolts:
+        if answers.preload is None and bolt.preload is not None:
+            groups.setdefault(f"{show(bolt.preload, 'N')}, {_share()}", []).append(bolt.name)
+        elif answers.preload is None:
+            groups.setdefault("no preload; its thread is not known: give one", []).append(bolt.name)
+    return [f"{grouped(names)}: {words}" for words, names in groups.items()]
+
+
+def _mm(length: float) -> str:
+    return f"{1e3 * length:.9g} mm"
+
+
+def _relative(file: Path, out: Path) -> str:
+    """The name of a file as the study names it: relative to the study's folder."""
+    return Path(os.path.relpath(file.resolve(), out.resolve().parent)).as_posix()
+
+
+def _plain(text: str) -> str:
+    """Text on one line, for comments: a comment with a line break would begin a line of the study."""
+    return "".join(letter if letter.isprintable() else " " for letter in text)
+
+
+def _quoted(text: str) -> str:
+    """Text as TOML writes it."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def summary(written: Written, study: Path) -> Sequence[str]:
+    """What the terminal shows: what was found, what was assumed, and what to do next."""
+    found = written.proposal
+    plural = "s" * (len(found.bolts) != 1)
+    parts = f"{len(found.facts.parts)} parts"
+    parts += f" and {len(found.left_out)} more that are not meshed" if found.left_out else ""
+    return [
+        f"found: {parts}, {len(found.joints)} joint{'s' * (len(found.joints) != 1)}, {len(found.bolts)} bolt{plural}",
+        *(f"assumed: {line}" for line in written.assumed),
+        f"written: {', '.join(str(file) for file in written.files)}",
+        f"next: faying check {study}, then faying run {study}",
+    ]

@@ -1,0 +1,246 @@
+"""A study proposed from CAD facts: joints where parts touch, bolts where holes line up, a size of mesh."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import floor, log10
+from pathlib import Path
+
+import numpy as np
+
+from faying.bolt.threads import Fastener, Thread
+from faying.errors import InputError
+from faying.geometry.face_facts import Contact, GeometryFacts, PartFacts, part_distance
+from faying.geometry.selectors import TOUCHING, Selector
+from faying.memory import available
+from faying.numerics.memory import guessed
+from faying.setup.expected import unknowns_of
+from faying.setup.face_names import FaceNames
+from faying.setup.fasteners import find_fasteners, listed
+from faying.setup.found_bolts import FoundBolt, LeftOut, clamped_along, found_bolts, shoulder_remark, shoulders
+from faying.units import show
+
+GRADE, SHARE = "8.8", 0.7  # of the bolts, and the share of the proof load that they are tightened to
+ACROSS = 2  # elements across the thinnest part
+MOST = 300_000  # unknowns beyond which the mesh is proposed coarser
+LEAST = 1e-3  # share of a face's area from which a contact counts
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointProposal:
+    """Two faces that meet: their names in the study, the gap between them [m] and the area [m2]."""
+
+    name: str
+    faces: tuple[str, str]
+    gap: float
+    area: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoltProposal:
+    """A bolt through a row of holes, or a part that is a bolt.
+
+    Args:
+        name: what tables call it.
+        faces: names of the seats; of a meshed bolt, of its faces under head and nut.
+        size: nominal diameter [mm]; None where it is not known.
+        at: point on the axis [m]; None where a tapped hole says it.
+        ring: inner and outer diameter of the seat [m].
+        part: the part that it is, if it is one.
+        remark: where size and ring come from.
+    """
+
+    name: str
+    faces: tuple[str, str]
+    size: int | None = None
+    at: tuple[float, float, float] | None = None
+    ring: tuple[float, float] | None = None
+    part: str | None = None
+    remark: str = ""
+
+    @property
+    def preload(self) -> float | None:
+        """70 % of the proof load of class 8.8 [N], three digits; None where the size is not known."""
+        if self.size is None:
+            return None
+        force = SHARE * Fastener(thread=Thread.coarse(self.size * 1e-3), grade=GRADE).proof_load
+        return rounded(force, 3)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Proposal:
+    """What a study of a geometry may be.
+
+    Args:
+        facts: of the geometry.
+        faces: name -> selector, of faces that the file does not name.
+        joints, bolts: what was found.
+        size: largest element [m].
+        snap: gap up to which faces count as touching [m]; 0 where all touch.
+        left_out: parts of the file that the mesh leaves out; `facts` does not hold them.
+        remarks: what was assumed, and what was left out.
+    """
+
+    facts: GeometryFacts
+    faces: dict[str, Selector]
+    joints: tuple[JointProposal, ...]
+    bolts: tuple[BoltProposal, ...]
+    size: float
+    snap: float
+    left_out: tuple[str, ...]
+    remarks: tuple[str, ...]
+
+    @property
+    def unknowns(self) -> int:
+        """Unknowns of the mesh, as counted on other structures."""
+        return unknowns_of(self.facts, self.size)
+
+
+def propose(facts: GeometryFacts, path: Path) -> Proposal:
+    """Propose joints, bolts and a mesh for a geometry.
+
+    Args:
+        facts: what `read_facts` says of it.
+        path: the STEP file, to measure how far parts lie apart.
+
+    Raises:
+        InputError: a single part, or no parts that touch.
+    """
+    if len(facts.parts) < 2:
+        raise InputError(f"{facts.file} holds one part, {facts.parts[0].name!r}; a joint needs two that touch")
+    fasteners = find_fasteners(facts, _joints(facts))
+    facts = facts.without(fasteners.left_out)
+    alone = _alone(facts, path)
+    facts = facts.without(alone)
+    contacts = _joints(facts)
+    left = LeftOut()
+    bolts = found_bolts(facts, fasteners, contacts, left)
+    apart = _apart(facts, contacts, bolts)
+    aside = shoulders(facts, contacts, bolts)
+    contacts = [contact for contact in contacts if contact not in aside and contact not in apart]
+    close = TOUCHING * facts.size
+    widest = max(abs(contact.gap) for contact in contacts)
+    snap = 0.0 if widest <= close else rounded(1.01 * widest, 2, up=True)
+    names = FaceNames(facts, snap)
+    joints = _named_joints(facts, contacts, names)
+    remarks = [f"faces up to {show(widest, 'm')} apart are taken for touching (geometry.snap)"] if snap else []
+    remarks += fasteners.remarks
+    if alone:
+        remarks.append(f"{listed(alone)}: no flat face touches another part; left out of the mesh (geometry.leave_out)")
+    if apart:
+        gap = show(max(contact.gap for contact in apart), "m")
+        text = f"{len(apart)} pairs of faces up to {gap} apart, which no bolt closes, are no joints: left out; add a "
+        remarks.append(text + "[[joint]] if they do meet")
+    remarks += [shoulder_remark(aside)] if aside else []
+    remarks += left.remarks
+    if not bolts:
+        remarks.append("no bolt was found: fill in [[bolt]] by hand before you run the study")
+    size, words = mesh_size(facts, {bolt.part for bolt in bolts})
+    remarks.append(words)
+    return Proposal(
+        facts=facts,
+        faces=names.selectors,
+        joints=joints,
+        bolts=tuple(_named(bolt, k, names) for k, bolt in enumerate(bolts, 1)),
+        size=size,
+        snap=snap,
+        left_out=(*fasteners.left_out, *alone),
+        remarks=tuple(remarks),
+    )
+
+
+def _named_joints(facts: GeometryFacts, contacts: Sequence[Contact], names: FaceNames) -> tuple[JointProposal, ...]:
+    joints = []
+    for k, contact in enumerate(contacts, 1):
+        word = "joint" if len(contacts) == 1 else f"joint {k}"
+        pair = [facts.face(*side) for side in (contact.first, contact.second)]
+        faces = [names.of(one, word, other.part) for one, other in zip(pair, reversed(pair), strict=True)]
+        joints.append(JointProposal(name=word, faces=(faces[0], faces[1]), gap=contact.gap, area=contact.area))
+    return tuple(joints)
+
+
+def _named(bolt: FoundBolt, number: int, names: FaceNames) -> BoltProposal:
+    return BoltProposal(
+        name=f"bolt {number}",
+        faces=(names.of_several(bolt.head, bolt.words[0]), names.of_several(bolt.end, bolt.words[1])),
+        size=bolt.size,
+        at=bolt.at,
+        ring=bolt.ring,
+        part=bolt.part,
+        remark=bolt.remark,
+    )
+
+
+def rounded(value: float, digits: int, *, up: bool = False) -> float:
+    """A value to so many digits, the nearest or the next above."""
+    step: float = 10.0 ** (floor(log10(value)) - digits + 1)
+    return round((np.ceil(value / step) if up else round(value / step)) * step, 15)
+
+
+def _joints(facts: GeometryFacts) -> list[Contact]:
+    """Planes that touch; where two parts touch nowhere, those that nearly do."""
+    close = TOUCHING * facts.size
+    plane = [
+        one
+        for one in facts.contacts
+        if facts.face(*one.first).kind == "plane"
+        and one.area >= LEAST * min(facts.face(*one.first).area, facts.face(*one.second).area)
+    ]
+    touching = [one for one in plane if abs(one.gap) <= close]
+    met = {frozenset((one.first[0], one.second[0])) for one in touching}
+    near = [one for one in plane if frozenset((one.first[0], one.second[0])) not in met and one.gap > 0]
+    least = {frozenset((one.first[0], one.second[0])): np.inf for one in near}
+    for one in near:
+        pair = frozenset((one.first[0], one.second[0]))
+        least[pair] = min(least[pair], one.gap)
+    near = [one for one in near if one.gap <= least[frozenset((one.first[0], one.second[0]))] + close]
+    return [*touching, *near]
+
+
+def _apart(facts: GeometryFacts, contacts: Sequence[Contact], bolts: Sequence[FoundBolt]) -> list[Contact]:
+    """Faces that only nearly touch, of parts that no bolt clamps together and that other parts touch."""
+    close = TOUCHING * facts.size
+    touched = {side[0] for one in contacts if abs(one.gap) <= close for side in (one.first, one.second)}
+    return [
+        one
+        for one in contacts
+        if abs(one.gap) > close
+        and {one.first[0], one.second[0]} <= touched
+        and not clamped_along(bolts, one.first[0], one.second[0])
+    ]
+
+
+def _alone(facts: GeometryFacts, path: Path) -> tuple[str, ...]:
+    """Parts of which no flat face touches another part. Raises InputError where that holds for all."""
+    contacts = _joints(facts)
+    if not contacts:
+        apart = part_distance(path)
+        assert apart is not None
+        raise InputError(
+            f"{facts.file}: no flat faces of two parts touch; the nearest parts are {apart[0]!r} and {apart[1]!r}, "
+            f"{show(apart[2], 'm')} apart. Move them together in the CAD program, or check what `faying faces` lists"
+        )
+    joined = {part for contact in contacts for part in (contact.first[0], contact.second[0])}
+    return tuple(part.name for part in facts.parts if part.name not in joined)
+
+
+def mesh_size(facts: GeometryFacts, bolts: set[str | None]) -> tuple[float, str]:
+    """Largest element [m], and why: two across the thinnest part, more where memory or time would not do."""
+    plates = [part for part in facts.parts if part.name not in bolts]
+    thin = min(plates, key=_thickness)
+    size = rounded(_thickness(thin) / ACROSS, 2)
+    why = f"{ACROSS} elements across {thin.name!r}, which is about {show(_thickness(thin), 'm', digits=3)} thick"
+    free, widest = available(), _thickness(thin)
+    while size < widest:
+        unknowns = unknowns_of(facts, size)
+        if unknowns <= MOST and (free is None or guessed(unknowns) <= free / 2):
+            break
+        size = min(rounded(1.1 * size, 2), widest)
+        why = "coarser than two elements across the thinnest part, for memory and time; try a finer one, too"
+    return size, f"mesh of {show(size, 'm')}: {why}"
+
+
+def _thickness(part: PartFacts) -> float:
+    """The least side of the box around a part, or twice volume over area where it is much less than a plate's."""
+    low, high = np.array(part.low), np.array(part.high)
+    least, mean = float((high - low).min()), part.thickness
+    return least if mean > least / 2 else mean

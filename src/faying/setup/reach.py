@@ -1,0 +1,194 @@
+"""How far the laws of a study reach beside the pressures that its bolts will make."""
+
+from collections.abc import Iterator, Sequence
+from math import pi
+from typing import Any, Literal
+
+import numpy as np
+
+from faying.bolt.bolt import BoltPlace
+from faying.bolt.vdi2230 import cone_pressure
+from faying.case.case import surfaces_of
+from faying.contact.build import AUTO
+from faying.contact.half_space import HalfSpace
+from faying.contact.law import ContactLaw
+from faying.contact.mates import line_of
+from faying.errors import FayingError, InputError
+from faying.joint.clamping import BESIDE, seat_ring
+from faying.joint.joint_law import JointLaw
+from faying.joint.strength import SolidPlace
+from faying.materials import Material
+from faying.setup.load_shares import WIDE, Share, load_shares
+from faying.setup.sketch import Sketch
+from faying.study.keys.joint import JointChoice
+from faying.study.keys.surface import Surface
+from faying.typing import Array
+from faying.units import show
+
+Line = tuple[Literal["ok", "note", "fault"], str, str, str]
+
+
+def law_findings(sketch: Sketch) -> Iterator[Line]:
+    """Level, code, text and key of what there is to say of the surface and the law of each joint."""
+    study = sketch.study
+    key = "surface" if study.surface is not None else "joint[1].surface"
+    try:
+        surfaces = surfaces_of(study)
+    except FayingError as fault:
+        yield "fault", "surface", str(fault), key
+        return
+    for surface in dict.fromkeys(surfaces):
+        for text in surface.warnings:
+            yield "note", "surface", text, key
+    through = {joint.name: _through(sketch, joint) for joint in study.joints}
+    areas = {joint.name: sum(c.area for c in sketch.contacts(joint.faces)) for joint in study.joints}
+    pairs = {joint.name: joint.faces for joint in study.joints}
+    shares = load_shares(sketch.mesh, pairs, through, areas)
+    for joint, surface in zip(study.joints, surfaces, strict=True):
+        at = f"joint[{joint.number}].law" if joint.law is not None else "law"
+        parts = [sketch.mesh.face_part[face] for face in joint.faces]
+        rough, other = (sketch.materials[part] for part in parts)
+        try:
+            reach, name, law = law_reach(sketch, joint, surface, rough, other)
+        except FayingError as fault:
+            yield "fault", "law", f"joint {joint.name!r}: {fault}", at
+            continue
+        if surface.faces is not None:
+            pair = study.law_of(joint).pair(rough, other)
+            yield "ok", "mates", f"joint {joint.name!r}: {line_of(surface.faces, pair)}", at
+        yield from _beside(sketch, shares[joint.name], joint, reach, name, law)
+        yield from _form(sketch, joint.number, joint)
+
+
+def _form(sketch: Sketch, k: int, joint: JointChoice) -> Iterator[Line]:
+    """A form that is too high for any rectangle on the face, which a run refuses with the face's own sides."""
+    if joint.form is None:
+        return
+    corners = sketch.mesh.points[np.unique(sketch.mesh.triangles[joint.faces[0]])]
+    longest = float(np.linalg.norm(np.ptp(corners, axis=0)))
+    try:
+        joint.form.check_heights(longest, longest)
+    except InputError as fault:
+        yield "fault", "form", f"joint {joint.name!r}: {fault}", f"joint[{k}].form"
+
+
+def law_reach(
+    sketch: Sketch, joint: JointChoice, surface: Surface, rough: Material, other: Material
+) -> tuple[float | None, str, ContactLaw | None]:
+    """Pressure [Pa] at which the law of a joint ends, None where only the solved contact tells; its name; the law.
+
+    A contact that is solved on the scan is not solved here, so that there is no law yet; a pair that yields ends it at
+    a share of the hardness. Raises InputError where the law cannot be made, or has no stiffness.
+    """
+    choice = sketch.study.law_of(joint)
+    pair = choice.pair(rough, other)
+    scan = None if surface.rough is None else surface.rough.scan
+    solved = choice.kind.label == AUTO
+    if scan is not None and (solved or choice.kind.law is HalfSpace):
+        if not np.isfinite(pair.hardness):
+            return None, "half-space", None
+        given: dict[str, Any] = {} if solved else dict(choice.given)
+        return HalfSpace(scan=scan, pair=pair, **given).asked[1], "half-space", None
+    made = choice.make(surface, rough, other)
+    law = JointLaw(model=made.law, tangential=joint.tangential, nu=rough.nu)
+    law.check()
+    return made.law.greatest_pressure, made.law.name, made.law
+
+
+def _beside(
+    sketch: Sketch, bolts: Sequence[Share], joint: JointChoice, reach: float | None, name: str, law: ContactLaw | None
+) -> Iterator[Line]:
+    """The mean and the rim pressure of a joint at the greatest preload beside the reach of its law."""
+    key = f"joint[{joint.number}].faces"
+    area = sum(contact.area for contact in sketch.contacts(joint.faces))
+    if not area:
+        return
+    seated = sum(
+        place.bolt.preload[-1]
+        for place in sketch.fitted_bolts
+        if isinstance(place, SolidPlace) and place.bolt.preload and {*place.bolt.faces} & {*joint.faces}
+    )
+    force = seated + sum(one.share * one.place.bolt.preload[-1] for one in bolts)
+    if not force:
+        text = f"joint {joint.name!r}: no bolt runs through it; only the parts' bending can press it together"
+        yield "note", "unclamped", text, key
+        return
+    mean = force / area
+    if law is not None and law.least_pressure <= mean <= law.greatest_pressure:
+        for reason, mask in law.at_pressure(mean).reasons.items():
+            if np.any(mask):
+                text = f"joint {joint.name!r}: {name} is outside its validity range at the mean pressure: {reason}"
+                yield "note", "validity", text, key
+    rims = [
+        tuple(one.rise * pressure for pressure in pressures)
+        for one in bolts
+        if (pressures := _rim(sketch, one, area / len(bolts))) is not None
+    ]
+    text = f"joint {joint.name!r}: {show(force, 'N')} on {1e6 * area:.4g} mm2 press {show(mean, 'Pa', digits=3)} on it"
+    highest = mean
+    if rims:
+        cone, highest = (max(column) for column in zip(*rims, strict=True))
+        text += f" on average, about {show(cone, 'Pa', digits=3)} under a bolt and {show(highest, 'Pa', digits=3)} "
+        text += "at its hole (cone of VDI 2230)"
+    if reach is None:
+        yield "ok", "pressure", f"{text}; how far {name} reaches is known once it is solved", key
+    elif mean > reach:
+        text += (
+            f"; {name} ends at {show(reach, 'Pa', digits=3)}, below the mean: lower the preload, widen the joint, or "
+        )
+        yield "note", "law-reach", f"{text}take a law that reaches further (`faying models`)", key
+    elif highest > reach:
+        text += f"; {name} ends at {show(reach, 'Pa', digits=3)}: the result gives bounds where the pressure is higher"
+        yield "note", "law-reach", text, key
+    else:
+        yield "ok", "pressure", f"{text}; {name} reaches {show(reach, 'Pa', digits=3)}", key
+
+
+def _through(sketch: Sketch, joint: JointChoice) -> list[tuple[BoltPlace | SolidPlace, float]]:
+    """The bolts that clamp a joint, with the depth [m] of the joint below the head: within 1.5 seats of their axes."""
+    corners = _corners(sketch, joint)
+    out: list[tuple[BoltPlace | SolidPlace, float]] = []
+    for place in sketch.fitted_bolts:
+        if not place.bolt.preload:
+            continue
+        arm = corners - place.point
+        depth = arm @ place.axis
+        beside = np.linalg.norm(arm - np.outer(depth, place.axis), axis=1)
+        level = float(np.median(depth))
+        ring = seat_ring(sketch.mesh, place) if isinstance(place, BoltPlace) else None
+        within = _inside(corners, place) or (ring is not None and beside.min() <= BESIDE * ring[1])
+        if 0 < level < place.length and within:
+            out.append((place, level))
+    return out
+
+
+def _inside(corners: Array, place: BoltPlace | SolidPlace) -> bool:
+    """Whether the axis of a bolt runs within the box around the corners of a face, seen along the axis."""
+    helper = np.eye(3)[np.argmin(np.abs(place.axis))]
+    one = np.cross(place.axis, helper)
+    plane = np.stack([one / np.linalg.norm(one), np.cross(place.axis, one / np.linalg.norm(one))], axis=1)
+    flat = (corners - place.point) @ plane
+    return bool(np.all(flat.min(axis=0) <= 0) and np.all(flat.max(axis=0) >= 0))
+
+
+def _corners(sketch: Sketch, joint: JointChoice) -> Array:
+    """Corners (n, 3) [m] of the triangles of a joint's first face."""
+    return np.asarray(np.concatenate([sketch.mesh.points[rows.ravel()] for rows in sketch.mesh.face(joint.faces[0])]))
+
+
+def _rim(sketch: Sketch, one: Share, mine: float) -> tuple[float, float] | None:
+    """Mean pressure [Pa] in the cone of a bolt, and that at its hole; None where head and nut press no ring.
+
+    mine: its share of the area of a joint that alone takes its force [m2]; of several the cone is as wide as it will.
+    """
+    place = one.place
+    ring = None if isinstance(place, SolidPlace) else seat_ring(sketch.mesh, place)
+    if ring is None:
+        return None
+    hole, seat = ring
+    near = min(one.depth, place.length - one.depth)
+    outer = max(2 * float(np.sqrt(mine / pi + (hole / 2) ** 2)), seat) if one.share == 1 else WIDE * seat
+    try:
+        return cone_pressure(place.bolt.preload[-1], depth=near, length=place.length, seat=seat, hole=hole, outer=outer)
+    except FayingError:
+        return None

@@ -1,0 +1,1 @@
+"""Many preloads, surfaces and laws of one study."""

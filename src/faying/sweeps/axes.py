@@ -1,0 +1,184 @@
+"""The axes of a sweep: which quantity of a study varies, and over which values."""
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from faying import units
+from faying.contact.build import find
+from faying.contact.parameter import Parameter
+from faying.errors import InputError
+from faying.form.form import VARIED
+from faying.misuse import checked_call
+from faying.study.keys.surface import Surface
+from faying.study.keys.varied import MODEL, OWN, formed, swept
+from faying.study.study import Study
+from faying.sweeps.variation import Point, check_key
+
+MOST = 1_000_000  # points of a grid
+
+
+@dataclass(frozen=True, kw_only=True)
+class Axis:
+    """One quantity of the study and its values, SI floats or texts. unit: of the values, "" for plain numbers."""
+
+    key: str
+    unit: str
+    values: tuple[float | str, ...]
+
+    @property
+    def numeric(self) -> bool:
+        """Whether the values are numbers."""
+        return not any(isinstance(value, str) for value in self.values)
+
+    def read(self) -> str:
+        """What the axis spans, for people."""
+        first, last = self.values[0], self.values[-1]
+        if isinstance(first, str) or isinstance(last, str):
+            return f"{self.key} = {', '.join(map(str, self.values))}"
+        ends = (f"{v:g}" if not self.unit else units.show(v, self.unit) for v in (first, last))
+        return f"{self.key} = {' to '.join(ends)}, {len(self.values)} values"
+
+
+@checked_call
+def axis_of(text: str) -> Axis:
+    """Read `key=first:last:count`, `key=first:last:count:log` or `key=value,value,...`, quantities with units.
+
+    Raises InputError that shows the form, or says what a sweep can vary.
+    """
+    key, found, given = text.partition("=")
+    key = key.strip()
+    if not found or not given.strip():
+        raise InputError(
+            f'--set {text}: give key=first:last:count, for example surface.D=2.2:2.6:40 or bolt.preload="1 kN:20 kN:30"'
+        )
+    if key == MODEL:
+        return Axis(key=key, unit="", values=tuple(find(word).label for word in given.split(",")))
+    parameter = swept(key)
+    if parameter is None:
+        forms = f"joint.form.{{{', '.join(VARIED)}}}", "joint.NAME.form.SHAPE"
+        known = ", ".join(
+            (*OWN, "bolt.NAME.preload", "joint.NAME.stiffness", *forms, MODEL, "law.NAME (a parameter of the law)")
+        )
+        raise InputError(
+            f"--set {key}: a sweep varies what acts on the joints, and factors on the parts, which is {known}; "
+            "anything else takes a study of its own"
+        )
+    unit = parameter.unit if parameter.is_number else ""
+    words = given.split(":")
+    if len(words) in (3, 4):
+        count = words[2].strip()
+        if not count.isdigit() or not 2 <= int(count) <= MOST or words[3:] not in ([], ["log"]):
+            raise InputError(
+                f"--set {text}: after the two ends comes a whole number from 2 to {MOST:,}, and log if wanted"
+            )
+        first, last = (_number(parameter, word, key) for word in words[:2])
+        if first == last or (words[3:] and min(first, last) <= 0):
+            raise InputError(f"--set {text}: the ends must differ, and be positive for log")
+        spread = np.geomspace if words[3:] else np.linspace
+        return Axis(key=key, unit=unit, values=tuple(float(v) for v in spread(first, last, int(count))))
+    if len(words) == 1:
+        return Axis(key=key, unit=unit, values=tuple(_value(parameter, word, key) for word in given.split(",")))
+    raise InputError(f"--set {text}: give first:last:count, first:last:count:log, or values with commas between")
+
+
+def _value(parameter: Parameter, text: str, name: str) -> float | str:
+    value = parameter.read(text.strip(), name)
+    return value if isinstance(value, str) else float(value)  # type: ignore[arg-type]
+
+
+def _number(parameter: Parameter, text: str, name: str) -> float:
+    value = _value(parameter, text, name)
+    if isinstance(value, str):
+        raise InputError(f"{name}: {value!r} is a word; give words with commas between")
+    return value
+
+
+@dataclass(frozen=True, kw_only=True)
+class Grid:
+    """All combinations of the values of some axes, the last axis running fastest.
+
+    Raises InputError for an axis given twice, and for one that does not fit the study.
+    """
+
+    study: Study
+    surfaces: tuple[Surface, ...]
+    axes: tuple[Axis, ...]
+
+    def __post_init__(self) -> None:
+        keys = [axis.key for axis in self.axes]
+        if not keys or len(set(keys)) < len(keys):
+            raise InputError(f"a sweep needs each axis once; --set gave {', '.join(keys) or 'none'}")
+        if self.size > MOST:
+            raise InputError(f"the axes have {self.size:,} combinations; a sweep takes up to {MOST:,}")
+        for key in keys:
+            check_key(self.study, key, models=MODEL in keys, where=f"--set {key}")
+        if self.study.order is not None:
+            raise InputError("a sweep pulls all bolts at once; leave out [tightening], or run studies one by one")
+        self.point(0)
+        self.point(self.size - 1)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of values of each axis."""
+        return tuple(len(axis.values) for axis in self.axes)
+
+    @property
+    def size(self) -> int:
+        """Number of points."""
+        return int(np.prod(self.shape))
+
+    @property
+    def middle(self) -> int:
+        """Index of a point in the middle."""
+        return int(np.ravel_multi_index(tuple(n // 2 for n in self.shape), self.shape))
+
+    @property
+    def varies_form(self) -> bool:
+        """Whether an axis varies the form of the faces."""
+        return any(formed(axis.key.split(".")) for axis in self.axes)
+
+    @property
+    def varied_parts(self) -> tuple[str, ...]:
+        """Parts whose stiffness or mass varies."""
+        found = (axis.key.split(".") for axis in self.axes)
+        return tuple(dict.fromkeys(parts[1] for parts in found if parts[0] == "part"))
+
+    def point(self, index: int) -> Point:
+        """Return the study at one place of the grid."""
+        place = np.unravel_index(index, self.shape)
+        forces = np.array([bolt.preload[-1] for bolt in self.study.bolts])
+        point = Point(study=self.study, surfaces=self.surfaces, forces=forces)
+        for axis, i in zip(self.axes, place, strict=True):
+            point = point.with_value(axis.key, axis.values[i])
+        return point
+
+    def corners(self, most: int) -> list[int]:
+        """Indices of the grid's corners, at most so many, and every text value once.
+
+        A form opens and closes parts of the joint on its way, so that three values between its ends count, too.
+        """
+
+        def ends(axis: Axis) -> list[int]:
+            last = len(axis.values) - 1
+            if not axis.numeric:
+                return list(range(last + 1))
+            steps = 4 if formed(axis.key.split(".")) else 1
+            return sorted({round(k * last / steps) for k in range(steps + 1)})
+
+        found = [int(np.ravel_multi_index(place, self.shape)) for place in product(*map(ends, self.axes))]
+        if len(found) <= most:
+            return found
+        return sorted(np.random.default_rng(0).choice(found, most, replace=False).tolist())
+
+    def winding(self) -> list[int]:
+        """All indices on a path on which neighbours differ in one value by one place: each starts from the last."""
+        order = [()]  # type: list[tuple[int, ...]]
+        for size in self.shape:
+            order = [
+                (*head, i)
+                for k, head in enumerate(order)
+                for i in (range(size) if k % 2 == 0 else reversed(range(size)))
+            ]
+        return [int(np.ravel_multi_index(place, self.shape)) for place in order]

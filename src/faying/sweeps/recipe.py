@@ -1,0 +1,188 @@
+"""What makes the laws, forces, gaps and scales of one point of a sweep or of an ensemble."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from faying.case.case import Case, joint_law, materials_of
+from faying.form.face_axes import FaceAxes
+from faying.form.form import Form
+from faying.form.waviness import ScanWaves
+from faying.joint.joint_law import JointLaw
+from faying.joint.structure import Structure
+from faying.materials import Material
+from faying.reduction.part_shares import Scales
+from faying.study.keys.surface import Surface
+from faying.study.study import Study
+from faying.sweeps.variation import Point
+from faying.typing import Array
+
+LATELY = 32  # laws kept with their tables
+
+
+def contact_shares(weights: Array, laws: Sequence[JointLaw], pressures: Sequence[Array]) -> tuple[float, float]:
+    """Shares [-] of the joints' area that are open, and of what touches that is pressed beyond the end of its law.
+
+    weights (q,): area of all points [m2]; pressures [Pa]: of each joint.
+    """
+    p = np.concatenate(pressures)
+    ends = np.concatenate(
+        [np.full(len(q), law.model.greatest_pressure) for q, law in zip(pressures, laws, strict=True)]
+    )
+    touching = float(weights @ (p > 0))
+    return 1 - touching / float(weights.sum()), float(weights @ (p > ends)) / touching if touching else 0.0
+
+
+class Design(Protocol):
+    """Points at which a study is evaluated, by their index."""
+
+    @property
+    def study(self) -> Study:
+        """The study that they vary."""
+
+    @property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """The surface of each joint."""
+
+    @property
+    def size(self) -> int:
+        """Number of points."""
+
+    @property
+    def middle(self) -> int:
+        """A point in the middle of all."""
+
+    @property
+    def varies_form(self) -> bool:
+        """Whether the form of the faces varies."""
+
+    @property
+    def varied_parts(self) -> tuple[str, ...]:
+        """Parts whose stiffness or mass varies."""
+
+    def corners(self, most: int) -> list[int]:
+        """At most so many of the points that lie farthest out."""
+
+    def point(self, index: int) -> Point:
+        """The study at one point."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """Where a joint lies: its points (q, 3) [m] and their areas (q,) [m2], the gap of its geometry there (q,) [m], the
+    face's own axes, and what its scan says of waves."""
+
+    positions: Array
+    weights: Array
+    geometry: Array
+    axes: FaceAxes
+    scan: ScanWaves | None
+
+    @classmethod
+    def all(cls, structure: Structure, design: Design) -> "tuple[Place, ...]":
+        """The place of each joint; none where no form varies."""
+        if not design.varies_form:
+            return ()
+        out = []
+        for joint, choice, surface in zip(structure.joints, design.study.joints, design.surfaces, strict=True):
+            interface, form = joint.interface, choice.form
+            axes = FaceAxes.of(structure.mesh, joint.faces, interface, None if form is None else form.along)
+            place = cls(
+                positions=interface.positions,
+                weights=interface.weights,
+                geometry=np.zeros(len(interface.weights)),
+                axes=axes,
+                scan=surface.waves,
+            )
+            out.append(replace(place, geometry=interface.gap - place.gap(form)))
+        return tuple(out)
+
+    def gap(self, form: Form | None) -> Array:
+        """Gap [m] (q,) before any load with a form on the geometry."""
+        if form is None:
+            return self.geometry
+        return self.geometry + form.with_scan(self.scan).at(self.positions, self.axes, self.weights)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recipe:
+    """All that makes the laws and forces of a point: the design, and the materials that meet at each joint."""
+
+    design: Design
+    pairs: tuple[tuple[Material, Material], ...]
+    places: tuple["Place", ...] = ()  # of each joint, where its form varies; empty where none does
+    # laws made lately, with their tables: along an axis of preload they stay the same
+    _lately: dict[tuple[Any, ...], JointLaw] = field(default_factory=dict, repr=False, compare=False)
+    # the last point asked for, with the design that it is of
+    _points: dict[int, tuple[Design, Point]] = field(default_factory=dict, repr=False, compare=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"design": self.design, "pairs": self.pairs, "places": self.places, "_lately": {}, "_points": {}}
+
+    def _point(self, index: int) -> Point:
+        """The study at one point: asked for three times in turn, made once."""
+        known = self._points.get(index)
+        if known is not None and known[0] is self.design:
+            return known[1]
+        point = self.design.point(index)
+        self._points.clear()
+        self._points[index] = self.design, point
+        return point
+
+    def gaps(self, index: int) -> list[Array] | None:
+        """Gap [m] (q,) of each joint at one point; None where no form varies."""
+        if not self.places:
+            return None
+        joints = self._point(index).study.joints
+        return [place.gap(joint.form) for place, joint in zip(self.places, joints, strict=True)]
+
+    def laws(self, index: int) -> tuple[list[JointLaw], Array, list[float | None]]:
+        """Law of each joint, force of each bolt [N] and friction of each joint at one point."""
+        point = self._point(index)
+        laws = []
+        for number, (joint, surface) in enumerate(zip(point.study.joints, point.surfaces, strict=True)):
+            choice = point.study.law_of(joint)
+            key = (number, joint.tangential, repr(choice), repr(surface.rough and surface.rough.inputs))
+            if key not in self._lately:
+                if len(self._lately) >= LATELY:
+                    self._lately.pop(next(iter(self._lately)))
+                made = joint_law(joint, choice, surface, *self.pairs[number])
+                # asked hundreds of times, so that its table pays however few points the joint has
+                self._lately[key] = replace(made, few=0)
+            law, factor = self._lately[key], point.stiffness.get(joint.name, 1.0)
+            laws.append(law if factor == 1 else law.scaled(factor))
+        return laws, point.forces, [joint.friction for joint in point.study.joints]
+
+    def scales(self, index: int) -> Scales | None:
+        """Factors on the stiffness and the mass of each part that varies; None where none does."""
+        parts = self.design.varied_parts
+        if not parts:
+            return None
+        found = self._point(index).scales
+        return [found.get(part, (1.0, 1.0)) for part in parts]
+
+    def case(self, structure: Structure, index: int) -> Case:
+        """One point, ready to be solved in full at its one load.
+
+        structure: that of the design, of whose parts E and density are scaled where they vary.
+        """
+        point = self._point(index)
+        laws, forces, friction = self.laws(index)
+        joints = [
+            replace(joint, law=replace(law, few=JointLaw.few), friction=mu)  # inverted as a run inverts it
+            for joint, law, mu in zip(structure.joints, laws, friction, strict=True)
+        ]
+        for k, gap in enumerate(self.gaps(index) or ()):
+            joints[k] = replace(joints[k], interface=replace(joints[k].interface, gap=gap))
+        materials = structure.materials
+        if point.scales:
+            materials = materials_of(point.study, structure.mesh)
+            for part, (stiffness, mass) in point.scales.items():
+                solid = materials[part]
+                materials[part] = replace(solid, E=solid.E * stiffness, density=(solid.density or 0.0) * mass)
+        pulled = zip(point.study.bolts, forces.tolist(), strict=True)
+        study = replace(point.study, bolts=tuple(replace(bolt, preload=(force,)) for bolt, force in pulled))
+        structure = replace(structure, joints=tuple(joints), materials=materials)
+        return Case(study=study, structure=structure, surfaces=point.surfaces)

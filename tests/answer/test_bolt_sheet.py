@@ -1,0 +1,260 @@
+"""Sheets of the bolts of a study: every number from its printed inputs, what is missing, keys, page and command."""
+
+import json
+import tomllib
+from math import pi, sqrt, tan
+
+import numpy as np
+import pytest
+
+import faying
+from faying.answer.bolt_sheet import DEFAULT_WAY, bolt_sheet, choice_for
+from faying.answer.run import run
+from faying.cli.main import main
+from faying.output import bolt_sheet as shown
+from faying.study import Study
+from tests.helpers.studies import write
+
+BOLT = {"diameter": "8 mm", "material": "45 steel", "grade": "8.8", "preload": ["2 kN", "6 kN"]}
+SAID = {
+    "tightening_factor": 1.6,
+    "thread_friction": 0.10,
+    "head_friction": 0.14,
+    "slip_friction": 0.2,
+    "axial": ["-0.5 kN", "2 kN"],
+    "introduction": 0.5,
+    "transverse": "200 N",
+    "clamp": "300 N",
+    "thermal_loss": "150 N",
+    "embedding": "2 um",
+}
+# of every row, from the values of its inputs in SI units, written apart from the product
+HAND = {
+    "A_req": lambda v: v["F_V"] * (1 + v["s"]) / v["S_p"],
+    "alpha_A": lambda v: (1 + v["s"]) / (1 - v["s"]),
+    "F_KQ": lambda v: v["F_Q"] / v["mu_T"],
+    "F_Kreq": lambda v: max(v["F_KQ"], v["F_KP"]),
+    "Phi": lambda v: v["n"] / (1 + v["delta_S"] / v["delta_P"]),
+    "Phi_c": lambda v: v["n"] / (1 + v["delta_S"] / v["delta_Pc"]),
+    "F_Z": lambda v: v["f_Z"] / (v["delta_S"] + v["delta_P"]),
+    "F_Zlaw": lambda v: v["f_law"] / (v["delta_S"] + v["delta_P"]),
+    "F_Zd": lambda v: v["f_Zd"] / (v["delta_S"] + v["delta_P"]),
+    "dF_th": lambda v: v["F_th"],
+    "F_Mmin": lambda v: v["F_V"] - v["s"] * v["F_V"],
+    "F_Mreq": lambda v: v["F_Kreq"] + v["F_Ao"] - v["Phi"] * v["F_Ao"] + v["F_Zd"] + v["F_thd"],
+    "F_Mmax": lambda v: v["alpha_A"] * v["F_Mmin"],
+    "M_G": lambda v: v["F_Mmax"] * (0.16 * v["P"] + 0.58 * v["d_2"] * v["mu_G"]),
+    "sigma_redM": lambda v: mises(v["F_Mmax"] / (pi * v["d_0"] ** 2 / 4), 12 * v["M_G"] / (pi * v["d_0"] ** 3)),
+    "F_Smax": lambda v: v["F_Mmax"] + v["Phi"] * v["F_Ao"],
+    "sigma_redB": lambda v: mises(v["F_Smax"] / (pi * v["d_0"] ** 2 / 4), 8 * v["M_G"] / (pi * v["d_0"] ** 3)),
+    "sigma_ASV": lambda v: (127.5 / (v["d"] * 1e3) + 38.25) * 1e6,
+    "sigma_a": lambda v: v["Phi"] * (v["F_Ao"] - v["F_Au"]) / 2 / v["A_S"],
+    "p_M": lambda v: v["F_Mmax"] / v["A_p"],
+    "p_B": lambda v: v["F_Smax"] / v["A_p"],
+    "F_nut": lambda v: v["F_Mmax"],
+    "F_Vmin": lambda v: v["F_Mmin"] - v["F_Zd"] - v["F_thd"],
+    "F_PA": lambda v: v["F_Ao"] - v["Phi"] * v["F_Ao"],
+    "F_KRmin": lambda v: v["F_Vmin"] - v["F_PA"],
+    "F_KQs": lambda v: v["F_KQ"],
+    "tau_Q": lambda v: v["F_Q"] / v["A_S"],
+    "M_A": lambda v: v["F_V"] * (0.16 * v["P"] + 0.58 * v["d_2"] * v["mu_G"] + v["D_Km"] * v["mu_K"] / 2),
+}
+
+
+def mises(tension, shear):
+    return sqrt(tension**2 + 3 * shear**2)
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sheet")
+    write(folder / "study.toml")
+
+    def study(bolt=BOLT, **changes):
+        data = tomllib.loads((folder / "study.toml").read_text())
+        data["geometry"]["size"] = "12 mm"
+        data["geometry"].pop("face_size", None)
+        data["bolt"][0] |= bolt
+        data["modes"]["count"] = 2
+        return Study.from_dict(data | changes, folder=folder)
+
+    return study
+
+
+@pytest.fixture(scope="module")
+def full(made):
+    return bolt_sheet(made(bolt_sheet=SAID))
+
+
+@pytest.fixture(scope="module")
+def bare(made):
+    return bolt_sheet(made())
+
+
+def test_every_number_follows_from_its_printed_inputs(full):
+    (sheet,) = json.loads(json.dumps(full.to_dict(), allow_nan=False))["bolts"]
+    computed = 0
+    for row in sheet["rows"]:
+        values = {one["symbol"]: one["values"] for one in row["inputs"]}
+        symbol, value = row["quantity"]["symbol"], row["quantity"]["values"]
+        if None in values.values():
+            assert value is None, symbol
+            assert row["verdict"] == "not known", symbol
+            assert row["missing"], symbol
+            continue
+        assert value == pytest.approx(HAND[symbol](values), rel=1e-9), symbol
+        computed += 1
+        limit = row["limit"] and row["limit"]["values"]
+        if limit:
+            assert row["utilisation"] == pytest.approx(value / limit, rel=1e-12), symbol
+            assert row["verdict"] == ("exceeded" if value > limit else "ok"), symbol
+    assert computed == len(sheet["rows"]) - 2  # no scan: neither guide value nor law predicts an embedding
+
+
+def test_inputs_are_those_of_study_and_structure(made, full):
+    """Thread, strengths and seats by hand; compliances are those of a run at the same preload."""
+    (sheet,) = full.sheets
+    known = {one.symbol: one.value for row in sheet.rows for one in row.inputs} | {
+        row.limit.symbol: row.limit.value for row in sheet.rows if row.limit is not None
+    }
+    d, P = 8e-3, 1.25e-3
+    assert known["d_2"] == pytest.approx(d - 0.64952 * P)
+    assert known["d_0"] == pytest.approx(d - 0.938195 * P)
+    assert known["A_S"] == pytest.approx(pi / 4 * (d - 0.938195 * P) ** 2, rel=1e-9)
+    assert (known["R_p"], known["S_p"], known["R_p09"]) == (640e6, 580e6, 576e6)
+    assert known["s"] == pytest.approx(0.6 / 2.6)
+    assert (known["F_V"], known["F_Au"], known["F_Ao"], known["F_Q"], known["F_KP"]) == (6e3, -500, 2e3, 200, 300)
+    assert (known["mu_G"], known["mu_K"], known["mu_T"], known["n"], known["F_th"]) == (0.10, 0.14, 0.2, 0.5, 150)
+    assert known["D_Km"] == pytest.approx(12.5e-3, rel=0.03)  # the seats of the example: 9 and 16 mm
+    numbers = run(made()).bolt_numbers
+    assert known["delta_S"] == pytest.approx(numbers.compliance[-1, 0], rel=1e-9)
+    assert known["delta_P"] == pytest.approx(numbers.member_compliance[-1, 0], rel=1e-6)
+    assert known["A_p"] == pytest.approx(6e3 / numbers.seat_pressure[-1, 0], rel=1e-6)
+
+
+def test_what_is_not_said_is_not_known(bare):
+    (sheet,) = bare.sheets
+    for symbol, missing in (
+        ("F_Mreq", "bolt_sheet.axial"),
+        ("sigma_a", "bolt_sheet.axial"),
+        ("F_KQ", "bolt_sheet.transverse"),
+        ("F_Z", "a scan of each joint"),
+        ("F_Vmin", "bolt_sheet.embedding, or a scan of each joint"),
+        ("dF_th", "bolt_sheet.thermal_loss"),
+    ):
+        row = sheet.row(symbol)
+        assert row.verdict == "not known"
+        assert missing in row.missing
+    assert sheet.row("sigma_redM").verdict == "ok"
+    (scatter,) = sheet.row("alpha_A").inputs
+    assert DEFAULT_WAY in scatter.name
+    assert sheet.row("alpha_A").result.value == pytest.approx(1.28 / 0.72)
+    with pytest.raises(faying.InputError, match="no row 'x'; there are A_req, alpha_A"):
+        sheet.row("x")
+
+
+def test_text_and_page_hold_every_row(full, bare):
+    for found in (full, bare):
+        said, page = shown.terminal(found), shown.html(found)
+        for row in found.sheets[0].rows:
+            assert f"{row.result.symbol}: {row.result.name}" in said
+            assert shown.value_of(row.result) in said
+            assert row.step in page
+        assert page.count("<section") == 1
+        assert "not known: needs bolt_sheet.axial" in shown.terminal(bare)
+    assert "bolt, M8x1.25 8.8" in repr(full)
+
+
+def test_units_read_well(full):
+    (sheet,) = full.sheets
+    assert shown.value_of(sheet.row("A_req").result).endswith(" mm^2")
+    delta = next(one for one in sheet.row("Phi").inputs if one.symbol == "delta_S")
+    assert shown.value_of(delta) == f"{1e9 * delta.value:.4g} um/kN"
+    assert shown.value_of(sheet.row("M_A").result).endswith(" N m")
+    assert shown.value_of(None) == "-"
+
+
+def test_a_tapped_part_strips_by_its_shear_strength():
+    from faying.bolt.sheet_steps import engagement
+
+    d, P, tau, R = 8e-3, 1.25e-3, 200e6, 800e6
+    area, d_2 = pi / 4 * (d - 0.938195 * P) ** 2, d - 0.64952 * P
+    printed = R * area / (0.897 * tau * pi * d * (0.5 + (d - d_2) * tan(pi / 6) / P))
+    assert engagement(R_m=R, A_S=area, tau_B=tau, d=d, d_2=d_2, P=P) == pytest.approx(printed)
+
+
+def test_the_preload_is_chosen(made):
+    (small,) = bolt_sheet(made(bolt_sheet=SAID), "2 kN").sheets
+    assert small.row("F_Mmin").inputs[0].value == pytest.approx(2e3)
+    assert small.row("F_Mreq").verdict == "exceeded"  # embedding of 2 um costs most of it
+    with pytest.raises(faying.InputError, match="no preload of 5 kN; it has 2 kN, 6 kN"):
+        bolt_sheet(made(), "5 kN")
+
+
+def test_scatter_follows_the_way_of_tightening(made):
+    from faying.answer.bolt_sheet import _scatter
+
+    hydraulic = made(bolt_sheet={"tightening": "hydraulic"})
+    assert _scatter(hydraulic, "bolt", choice_for(hydraulic, "bolt"))[0] == 0.23
+    uncertain = made(
+        bolt=BOLT | {"preload": "6 kN"}, uncertain={"preload": {"tightening": "yield or angle controlled"}}
+    )
+    assert _scatter(uncertain, "bolt", choice_for(uncertain, "bolt"))[0] == pytest.approx(0.12, rel=1e-3)
+
+
+def test_a_bolt_has_its_own_table(made):
+    study = made(bolt_sheet=[{"bolt": "bolt", "axial": "1 kN"}, {"clamp": "2 kN"}])
+    assert choice_for(study, "bolt").axial == (0.0, 1e3)
+    assert choice_for(study, "another").clamp == 2e3
+    assert choice_for(made(), "bolt").axial is None
+
+
+@pytest.mark.parametrize(
+    ("table", "text"),
+    [
+        ({"bolt": "left"}, '"left" is no bolt; there are "bolt"'),
+        ({"tightening": "by hand"}, "is no way of tightening"),
+        ({"tightening": "feel", "tightening_factor": 2.0}, "both tightening and tightening_factor"),
+        ({"tightening_factor": 0.5}, "should be a number from 1 to 10"),
+        ({"axial": ["2 kN", "1 kN"]}, "the second load must be the greater"),
+        ({"axial": ["1 kN"]}, "the least and the greatest"),
+        ({"transverse": "-1 N"}, "should be 0 or more"),
+        ({"thread_friction": 0.0}, "should be a number from 0.02 to 1"),
+        ({"rolled": "never"}, "rolled"),
+        ([{"axial": "1 kN"}, {"clamp": "1 kN"}], "two tables name no bolt"),
+    ],
+)
+def test_faults_of_the_table(made, table, text):
+    with pytest.raises(faying.InputError, match=text):
+        made(bolt_sheet=table)
+
+
+def test_friction_of_the_bolt_counts_where_the_sheet_says_none(made):
+    from faying.answer.bolt_sheet import _tightening
+
+    rubbing = BOLT | {"thread_friction": 0.09, "head_friction": 0.11}
+    study = made(bolt=rubbing)
+    found = {q.symbol: q.value for q in _tightening(study, study.bolts[0], choice_for(study, "bolt"), 1e3)}
+    assert (found["mu_G"], found["mu_K"]) == (0.09, 0.11)
+    study = made(bolt=rubbing, bolt_sheet={"thread_friction": 0.2})
+    found = {q.symbol: q.value for q in _tightening(study, study.bolts[0], choice_for(study, "bolt"), 1e3)}
+    assert (found["mu_G"], found["mu_K"]) == (0.2, 0.11)
+
+
+def test_the_command_writes_text_page_and_json(made, tmp_path, capsys):
+    write(tmp_path / "study.toml")
+    text = (tmp_path / "study.toml").read_text()
+    bolt = 'diameter = "8 mm"\nmaterial = "45 steel"\ngrade = "8.8"\n'
+    text = text.replace('preload = ["2 kN", "6 kN"]', f'{bolt}preload = "6 kN"').replace(
+        'size = "8 mm"', 'size = "12 mm"'
+    )
+    text = text.replace('"upper.joint" = "4 mm"', '"upper.joint" = "12 mm"').replace("count = 6", "count = 2")
+    (tmp_path / "study.toml").write_text(text + '\n[bolt_sheet]\naxial = "2 kN"\n')
+    with pytest.raises(SystemExit) as end:
+        main(["bolts", str(tmp_path / "study.toml"), "--html", str(tmp_path / "sheet.html"), "--json"])
+    assert end.value.code in (0, None)
+    out = json.loads(capsys.readouterr().out)
+    assert out["files"] == [str(tmp_path / "sheet.html")]
+    (sheet,) = out["bolts"]
+    assert np.isclose(next(r for r in sheet["rows"] if r["quantity"]["symbol"] == "F_PA")["inputs"][1]["values"], 2e3)
+    assert "M8x1.25 8.8" in (tmp_path / "sheet.html").read_text()

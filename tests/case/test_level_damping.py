@@ -1,0 +1,141 @@
+"""Damping at levels of acceleration, in a run."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import faying
+from faying.answer.run import run
+from faying.case.level_damping import FRICTION, REST
+from faying.export import universal
+from faying.form.form import Form
+from faying.output import table
+from faying.study import Study
+from tests.helpers import studies
+
+PLATES = Path(__file__).parents[2] / "examples" / "plates-and-bolts" / "plates.toml"
+
+
+@pytest.fixture(scope="module")
+def fine(tmp_path_factory):
+    """Two blocks under JK."""
+    path = tmp_path_factory.mktemp("levels") / "study.toml"
+    studies.write(path)
+    text = path.read_text().replace("levels = []\n", "").replace('["2 kN", "6 kN"]', '"6 kN"')
+    path.write_text(text)
+    return Study.read(path)
+
+
+@pytest.fixture(scope="module")
+def study(fine):
+    """The same on a coarse mesh."""
+    sizes = {name: 2 * size for name, size in fine.geometry.face_size.items()}
+    geometry = replace(fine.geometry, size=2 * fine.geometry.size, face_size=sizes)
+    return replace(fine, geometry=geometry, modes=replace(fine.modes, count=4))
+
+
+@pytest.fixture(scope="module")
+def found(study):
+    return run(study)
+
+
+def test_every_mode_has_a_damping_with_both_ends(study, found):
+    assert found.levels == pytest.approx([0.1, 1.0, 10.0])
+    assert found.level_damping.shape == (1, 3, 4)
+    assert np.all(found.level_low <= found.level_damping)
+    assert np.all(found.level_damping <= found.level_high)
+    assert np.all(np.diff(found.level_slip, axis=1) >= -1e-12)
+    assert np.all(found.level_error < 0.02)
+    # the law has a loss of its own, which is that at rest
+    assert found.level_damping == pytest.approx(found.level_slip + found.loss_factors[:, None] / 2)
+
+
+def test_small_motions_have_the_frequency_at_rest_and_larger_ones_less(found):
+    assert found.level_frequencies[:, 0] == pytest.approx(found.frequencies, rel=1e-5)
+    assert np.all(found.level_frequencies[:, 2] <= found.frequencies * (1 + 1e-6))
+
+
+def test_a_friction_that_is_given_leaves_nothing_open(study, found):
+    joints = tuple(replace(joint, friction=FRICTION[1]) for joint in study.joints)
+    given = run(replace(study, joints=joints))
+    assert given.level_low == pytest.approx(given.level_high, rel=1e-12)
+    assert given.level_slip == pytest.approx(found.level_slip, rel=0.05, abs=1e-7)
+    assert not [note for note in given.notes if note.code == "level-damping"]
+    assert [note for note in found.notes if note.code == "level-damping"]
+
+
+def test_the_table_has_a_row_for_each_mode(found):
+    rows = table.damping(found)
+    assert [len(row) for row in rows] == [5] * 5
+    assert rows[1][1].count(" .. ") == 2
+
+
+def test_csv_and_universal_file_have_the_damping(found, tmp_path):
+    heads, first = (line.split(",") for line in found.csv_text().splitlines()[:2])
+    assert heads[-3:] == [f"damping ratio at {level} m/s2 [-]" for level in ("0.1", "1", "10")]
+    assert [float(value) for value in first[-3:]] == pytest.approx(found.level_damping[0, :, 0], rel=1e-7)
+    # where no law has a loss, the modes of data set 55 have that of the middle level
+    lossless = replace(found, loss_factors=np.full(found.loss_factors.shape, np.nan))
+    universal.write(lossless, tmp_path)
+    modes = faying.read_uff(tmp_path / "modes.uff").modes()
+    assert modes.loss_factors == pytest.approx(2 * found.level_damping[-1, 1], rel=1e-4)
+
+
+def test_springs_that_do_not_slip_have_a_note_in_place_of_damping(study):
+    joints = tuple(replace(joint, springs="per-node") for joint in study.joints)
+    bare = run(replace(study, joints=joints))
+    assert bare.level_damping is None
+    (note,) = [note for note in bare.notes if note.code == "no-level-damping"]
+    assert "springs per node" in note.text
+    assert note.severity == "limit"
+
+
+def test_no_levels_no_damping(study):
+    bare = run(replace(study, modes=replace(study.modes, levels=())))
+    assert bare.levels is None
+    assert not [note for note in bare.notes if note.code == "no-level-damping"]
+    assert table.damping(bare) == []
+    assert 0 < REST[0] < REST[1] < REST[2]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("mode", [3, 4])
+def test_levels_are_those_of_the_backbone(fine, mode):
+    """Harmonic balance with harmonics 0 to 3, on the same laws and points: half a per cent of a damping up to 0.3 %."""
+    joints = tuple(replace(joint, friction=0.2) for joint in fine.joints)
+    plan = replace(fine, joints=joints)
+    curve = faying.backbone(plan, mode, 0.2, (1.0, 100.0), rest_damping=0.0)
+    picked = [k for k in range(len(curve.acceleration)) if 1e-5 < curve.damping[k] < 3e-3][::4]
+    levels = tuple(float(curve.acceleration[k]) for k in picked)
+    found = run(replace(plan, modes=replace(plan.modes, levels=levels)))
+    slip = found.level_slip[0, :, mode - 1]
+    assert slip == pytest.approx(curve.damping[picked], rel=5e-3, abs=1e-7)
+    assert np.all(np.abs(slip / curve.damping[picked] - 1) < found.level_error[0, :, mode - 1] + 2e-3)
+    # the loss of the law at rest, which the curve leaves out, moves the complex mode by as much at every level
+    change = np.diff(found.level_frequencies[0, :, mode - 1])
+    assert change == pytest.approx(np.diff(curve.frequency[picked]), abs=1e-4 * curve.frequency[0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("mode", [1, 3, 4])
+def test_levels_are_those_of_the_backbone_on_lapped_plates(mode):
+    """Thin laps open and slip at single points: 1 % of the damping up to 100 m/s2, within the stated error."""
+    study = Study.read(PLATES)
+    sizes = {name: 1.6 * size for name, size in study.geometry.face_size.items()}
+    plan = replace(
+        study,
+        geometry=replace(study.geometry, size=1.6 * study.geometry.size, face_size=sizes),
+        bolts=tuple(replace(bolt, preload=bolt.preload[-1:]) for bolt in study.bolts),
+        joints=tuple(replace(joint, friction=0.2, form=Form()) for joint in study.joints),
+        modes=replace(study.modes, count=5, intervals=False),
+    )
+    curve = faying.backbone(plan, mode, 0.2, (1.0, 100.0), rest_damping=0.0)
+    picked = np.flatnonzero(curve.damping > 1e-6)[::3]
+    levels = tuple(float(curve.acceleration[k]) for k in picked)
+    found = run(replace(plan, modes=replace(plan.modes, levels=levels)))
+    slip, stated = found.level_slip[0, :, mode - 1], found.level_error[0, :, mode - 1]
+    assert slip == pytest.approx(curve.damping[picked], rel=0.01)
+    assert np.all(np.abs(slip / curve.damping[picked] - 1) < stated + 2e-3)
+    assert found.level_frequencies[0, :, mode - 1] == pytest.approx(curve.frequency[picked], rel=1e-4)

@@ -1,0 +1,103 @@
+"""Damping at levels of acceleration, against exact integrals, harmonic balance, and what scaling says."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from faying.microslip import levels
+from faying.microslip.epmc import Epmc
+from faying.microslip.levels import LevelModel
+from tests.helpers.slips import chain, describing, oscillator, slider
+
+IWAN = np.full(24, 1 / 24), np.geomspace(0.002, 1.0, 24) / 24
+
+
+def leveled(model):
+    """Coordinates are the x of a node each."""
+    size = len(model.mass)
+    vectors = np.zeros((3 * size, size))
+    vectors[::3] = np.eye(size)
+    return LevelModel(slip=model, vectors=vectors, rigid=0)
+
+
+@pytest.mark.parametrize(("stiffness", "limits"), [(1.0, 0.5), IWAN], ids=["Jenkins", "Iwan"])
+@pytest.mark.parametrize("level", [0.05, 1.0, 3.0, 10.0])
+def test_one_mass_has_the_exact_integral_of_the_hysteresis(stiffness, limits, level, monkeypatch):
+    monkeypatch.setattr(levels, "SAMPLES", 512)
+    monkeypatch.setattr(levels, "SETTLED", 1e-6)
+    monkeypatch.setattr(levels, "PASSES", 40)
+    monkeypatch.setattr(levels, "HARMONICS", 1)
+    found = leveled(oscillator(slider(stiffness, limits))).at([level], 1)
+    x = brentq(lambda x: (3 + describing(stiffness, limits, x)[0]) * x - level, 1e-6, 10)
+    in_phase, loss = describing(stiffness, limits, x)
+    assert 2 * np.pi * found.frequencies[0, 0] == pytest.approx(np.sqrt(3 + in_phase), rel=1e-4)
+    assert found.damping[0, 0] == pytest.approx(loss / (2 * np.pi * (3 + in_phase) * x**2), rel=1e-3, abs=1e-9)
+
+
+def test_the_error_that_is_stated_covers_what_few_passes_leave(monkeypatch):
+    monkeypatch.setattr(levels, "HARMONICS", 1)
+    model = oscillator(slider(*IWAN))
+    for level in (0.5, 2.0):
+        found = leveled(model).at([level], 1)
+        x = brentq(lambda x, level=level: (3 + describing(*IWAN, x)[0]) * x - level, 1e-6, 10)
+        in_phase, loss = describing(*IWAN, x)
+        exact = loss / (2 * np.pi * (3 + in_phase) * x**2)
+        assert abs(found.damping[0, 0] / exact - 1) < found.error[0, 0] + 0.01  # instants of the cycle: 1 %
+        assert found.error[0, 0] < 0.1
+
+
+@pytest.mark.parametrize("mode", [0, 1])
+def test_two_masses_agree_with_harmonic_balance(mode, monkeypatch):
+    monkeypatch.setattr(levels, "SAMPLES", 256)
+    monkeypatch.setattr(levels, "HARMONICS", 1)
+    model = chain([1.0, 0.7], [3.0, 2.0], slider(*IWAN))
+    found = leveled(model)
+    for amplitude in (0.02, 0.1, 0.4):
+        point = Epmc(model=model, mode=mode, harmonics=1, samples=256).solve(amplitude)
+        shape = np.abs(point.coordinates[1] + 1j * point.coordinates[2]).max()
+        level = point.frequency**2 * shape
+        frequency, damping, _ = found._mode(level, mode)
+        speed = 2 * np.pi * frequency
+        assert speed == pytest.approx(point.frequency, rel=2e-3)
+        assert damping == pytest.approx(point.damping, rel=0.05)
+
+
+def test_harmonics_bring_the_damping_nearer_to_harmonic_balance_with_harmonics(monkeypatch):
+    """The second mass vibrates near three times the first mode: its third harmonic is large."""
+    monkeypatch.setattr(levels, "SAMPLES", 256)
+    model = chain([1.0, 0.2], [3.0, 1.0], slider(*IWAN))
+    found = leveled(model)
+    misses = []
+    for harmonics in (1, 3):
+        monkeypatch.setattr(levels, "HARMONICS", harmonics)
+        miss = []
+        for amplitude in (0.1, 0.4):
+            point = Epmc(model=model, mode=0, harmonics=3, samples=256).solve(amplitude)
+            level = point.frequency**2 * np.abs(point.coordinates[1] + 1j * point.coordinates[2]).max()
+            frequency, damping, _ = found._mode(level, 0)
+            assert 2 * np.pi * frequency == pytest.approx(point.frequency, rel=3e-4)
+            miss.append(abs(damping / point.damping - 1))
+        misses.append(max(miss))
+    assert misses[1] < 0.5 * misses[0]
+
+
+def test_small_motions_lose_in_inverse_proportion_to_friction():
+    """Mindlin's partial slip: the loss of a cycle goes with the cube of the motion over the limit of friction."""
+    model = oscillator(slider(np.full(400, 1 / 400), np.linspace(0, 1, 400) / 400))
+    once, twice = (
+        leveled(replace(model, joints=(replace(model.joints[0], law=replace(model.joints[0].law, friction=mu)),)))
+        .at([0.4, 0.8], 1)
+        .damping[:, 0]
+        for mu in (1.0, 2.0)
+    )
+    assert once[1] / once[0] == pytest.approx(2, rel=0.1)
+    assert once[1] / twice[1] == pytest.approx(2, rel=0.1)
+
+
+def test_no_slip_is_no_damping():
+    model = chain([1.0, 0.7], [3.0, 2.0], replace(slider(1.0, 0.5), friction=1e9))
+    found = leveled(model).at([0.1, 10.0], 2)
+    assert np.all(found.damping < 1e-12)
+    assert 2 * np.pi * found.frequencies == pytest.approx(np.array([model.modes[0]] * 2), rel=1e-9)

@@ -1,0 +1,128 @@
+"""Assemblies of every kind of bolted joint, from a STEP file without names to a result, without an edit."""
+
+import json
+import re
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import faying
+from faying.answer.run import run
+from faying.cli.main import cli
+from faying.geometry.cad import read_parts
+from faying.setup import new
+from faying.study import Study
+from faying.units import si
+from tests.helpers import assemblies
+from tests.helpers.proposed import proposed
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kind:
+    """What an assembly has, counted by hand.
+
+    left_out: parts that are not meshed; bolts: how many, and of which size [mm]; seats: outer diameter of the seat
+    [mm]; size: of elements; rows: of joints, one behind the other, that carry the force of all bolts; says: what the
+    study says of it.
+    """
+
+    parts: int
+    joints: int
+    bolts: tuple[int, int]
+    seat: float
+    size: str
+    left_out: int = 0
+    rows: int = 1
+    says: tuple[str, ...] = ()
+
+
+KINDS = {
+    # heads: ISO 4762; washers: ISO 7089; a countersunk head ends where its cone does
+    "t_slots": Kind(parts=2, joints=2, bolts=(2, 8), seat=16, size="14 mm", says=("T-slot of 'base'",)),
+    "counterbored": Kind(parts=2, joints=1, bolts=(3, 8), seat=13, size="14 mm", says=("screwed into",)),
+    "countersunk": Kind(parts=2, joints=1, bolts=(2, 6), seat=13.2, size="10 mm", says=("a countersunk head",)),
+    "studded": Kind(
+        parts=2, joints=1, bolts=(2, 10), seat=16, size="14 mm", left_out=4, says=("'stud 1', 'stud 2', 'nut 1'",)
+    ),
+    "spacers": Kind(parts=6, joints=6, bolts=(2, 10), seat=20, size="12 mm", rows=3),
+    "stepped_lap": Kind(parts=2, joints=1, bolts=(2, 10), seat=20, size="15 mm", says=("(shoulders, registers)",)),
+    "segments": Kind(parts=5, joints=4, bolts=(8, 10), seat=20, size="16 mm", says=("up to 1 mm apart",)),
+    "cover": Kind(parts=2, joints=1, bolts=(4, 6), seat=12, size="12 mm", says=("A dowel is no bolt",)),
+    "channel": Kind(parts=2, joints=1, bolts=(2, 8), seat=16, size="14 mm", says=("for a slot 9 mm wide",)),
+}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("assemblies")
+
+
+@pytest.fixture(scope="module")
+def made(folder):
+    """Name -> the study of that assembly, written once."""
+
+    @cache
+    def of(name):
+        path = getattr(assemblies, name)(folder / f"{name}.step")
+        return path, proposed(path, KINDS[name].size)
+
+    return of
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_new_finds_parts_joints_and_bolts(made, name):
+    kind, study = KINDS[name], Study.read(made(name)[1])
+    assert len(study.parts) == kind.parts
+    assert len(study.geometry.leave_out) == kind.left_out
+    assert len(study.joints) == kind.joints
+    count, size = kind.bolts
+    assert [bolt.diameter for bolt in study.bolts] == pytest.approx([size * 1e-3] * count)
+    assert [bolt.seat[1] for bolt in study.bolts] == pytest.approx([kind.seat * 1e-3] * count)
+    written = made(name)[1].read_text()
+    for words in kind.says:
+        assert words in written
+
+
+def test_pins_as_parts_are_dowels(folder):
+    found = new.find(assemblies.cover(folder / "pins.step", pins_drawn=True))
+    assert found.left_out == ("pin 1", "pin 2")
+    assert len(found.bolts) == 4
+    (line,) = [remark for remark in found.remarks if "dowel" in remark]
+    assert line.startswith("'pin 1', 'pin 2': dowels. A dowel is no bolt")
+
+
+def checked(toml):
+    """The findings of `faying check`, none of which is a fault."""
+    done = CliRunner().invoke(cli, ["check", str(toml), "--json"], standalone_mode=False)
+    found = json.loads(done.output)
+    assert done.return_value == 0, found
+    return found["findings"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", KINDS)
+def test_run_carries_the_preload_between_free_and_bonded(made, name):
+    path, toml = made(name)
+    kind, study = KINDS[name], Study.read(toml)
+    findings = checked(toml)
+    found = run(study)
+    held = read_parts(path)
+    volumes = {part: 1e-9 * solid.mass for part, solid in zip(held.names, held.solids, strict=True)}
+    density = faying.CATALOGUE["S355"].density
+    expected = [volumes[part] * density for part in found.parts]
+    assert found.part_masses == pytest.approx(expected, rel=2e-3)
+    force = sum(bolt.preload[0] for bolt in study.bolts)
+    assert found.pressure[0] @ found.weights == pytest.approx(kind.rows * force, rel=1e-6)
+    for number, joint in enumerate(found.joints):
+        here = found.joint_of_point == number
+        mean = found.pressure[0][here] @ found.weights[here] / found.weights[here].sum()
+        (said,) = [
+            one["text"] for one in findings if one["text"].startswith(f"joint '{joint}'") and " press " in one["text"]
+        ]
+        pressure = si(re.search(r" press ([\d.]+ \w+) on it", said)[1], "Pa")
+        assert pressure == pytest.approx(mean, rel=0.3)
+    assert np.all(found.free <= found.frequencies[0] * (1 + 1e-6))
+    assert np.all(found.frequencies[0] <= found.bonded * (1 + 1e-6))

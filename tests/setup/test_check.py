@@ -1,0 +1,342 @@
+"""faying check: what it finds in studies with one thing wrong, and what it expects beside what a run finds."""
+
+import json
+import re
+from dataclasses import replace
+from math import pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import faying
+from faying.bolt.vdi2230 import cone_angle, cone_pressure
+from faying.case.case import Case, build
+from faying.case.places import _within
+from faying.cli.main import cli, main
+from faying.geometry.face_facts import read_facts
+from faying.geometry.geometry import mesh_step
+from faying.setup import new, template
+from faying.setup.check import check
+from faying.setup.expected import Expected, unknowns_of
+from faying.study import Study
+from tests.helpers.boxes import row
+from tests.helpers.laps import lapped
+from tests.helpers.meshfiles import STUDY, abaqus
+
+JOINED = 'faces = ["lower.joint", "upper.joint"]'
+
+
+@pytest.fixture(autouse=True)
+def read_once(monkeypatch):
+    """The facts of an unchanged file are those that were read."""
+    kept = KEPT
+
+    def facts(path, *, points=None, overlaps=False, leave_out=()):
+        key = path, path.stat().st_mtime_ns, str(points), overlaps, leave_out
+        if key not in kept:
+            kept[key] = read_facts(path, points=points, overlaps=overlaps, leave_out=leave_out)
+        return kept[key]
+
+    monkeypatch.setattr("faying.setup.check.read_facts", facts)
+
+
+KEPT = {}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Two named plates with three holes; their study with numbers of a surface in place of a scan."""
+    folder = tmp_path_factory.mktemp("check")
+    step = lapped(folder / "lap.step", names=("lower", "upper"))
+    text, _ = new.study_text(new.find(step), step, folder / "study.toml", new.Answers())
+    start, end = text.index("# The rough surface"), text.index("[[joint]]")
+    surface = '[surface]\nD = 2.39\nG = "1.53e-10 m"\nscan_area = "16 mm^2"\n\n[law]\nmodel = "jk"\n\n'
+    (folder / "study.toml").write_text(text[:start] + surface + text[end:])
+    return folder
+
+
+def looked(folder, *changes):
+    """The check of the study after replacements in its text."""
+    text = (folder / "study.toml").read_text()
+    for old, other in changes:
+        assert old in text
+        text = text.replace(old, other)
+    path = folder / "changed.toml"
+    path.write_text(text)
+    return check(path), text.splitlines()
+
+
+def test_a_sound_study(folder):
+    found, lines = looked(folder)
+    assert not found.faults
+    by_code = {one.code: one for one in found.findings}
+    assert by_code["contact"].level == "ok"
+    said = float(by_code["contact"].text.split("over ")[1].split()[0])
+    assert said == pytest.approx(4000 - 3 * pi * 4.5**2, rel=1e-3)
+    assert "22 mm between seats that are a ring of 9 mm to 16 mm" in by_code["bolt"].text
+    assert "faces = " in lines[by_code["contact"].line - 1]
+    assert found.expected.unknowns > 10_000
+
+
+@pytest.mark.parametrize(
+    ("old", "other", "code", "words", "line"),
+    [
+        ('size = "5 mm"', "size = 5", "keys", "geometry.size = 5", "size = 5"),
+        ('preload = "14.9 kN"', 'preload = "14.9 mm"', "keys", "bolt[1].preload", "preload"),
+        ('"upper.seat" = {', '"upper.seat" = { up = 3,', "keys", "up is not a key", '"upper.seat"'),
+        ('[part."upper"]', '[part."uper"]', "names", "[part] says nothing of 'upper'", "[part."),
+        ('normal = "+z"', "normal = [0, 1, 1]", "selector", "no face of 'upper' fits", '"upper.seat"'),
+        ('faces = ["lower.joint", "upper.joint"]', 'faces = ["lower.joint", "top"]', "names", "'top'", "faces = "),
+        (
+            'faces = ["lower.joint", "upper.joint"]',
+            'faces = ["lower.joint", "upper.seat"]',
+            "contact",
+            "do not look",
+            "f",
+        ),
+        (
+            'at = ["50 mm", "20 mm", "11 mm"]',
+            'at = ["53 mm", "20 mm", "11 mm"]',
+            "bolt",
+            "3 mm beside the centre",
+            "at =",
+        ),
+        ('model = "jk"', 'model = "gw"', "keys", "law", "["),
+        ("[modes]", "[modes", "toml", "is not TOML", "[modes"),
+    ],
+)
+def test_a_fault_is_found_where_it_stands(folder, old, other, code, words, line):
+    found, lines = looked(folder, (old, other))
+    fault = next(one for one in found.faults if words in one.text)
+    assert fault.code == code
+    assert line in lines[fault.line - 1]
+
+
+def test_what_check_refuses_run_refuses_and_says_alike(folder):
+    """One door: the words are those with which a run stops."""
+    for old, other in (
+        ('[part."upper"]', '[part."uper"]'),
+        ('at = ["50 mm", "20 mm", "11 mm"]', 'at = ["53 mm", "20 mm", "11 mm"]'),
+        ('normal = "+z"', "normal = [0, 1, 1]"),
+    ):
+        found, _ = looked(folder, (old, other), ('size = "5 mm"', 'size = "20 mm"'))
+        with pytest.raises(faying.InputError) as stopped:
+            faying.run(folder / "changed.toml")
+        first = found.faults[0].text.split(" lies ")[0].split(": it has")[0]
+        assert first in str(stopped.value)
+
+
+def test_gaps_overlaps_and_odd_bolts(tmp_path):
+    step = lapped(tmp_path / "gap.step", gap=0.2, names=("lower", "upper"))
+    new.write(new.find(step), step, tmp_path / "s.toml", new.Answers())
+    text = (tmp_path / "s.toml").read_text().replace('"lower.joint" = { part = "lower", touching = "upper" }', "")
+    text = text.replace('"upper.joint" = { part = "upper", touching = "lower" }', "").replace('snap = "210 um"', "")
+    text = text.replace('"lower.joint", "upper.joint"', '{part="lower", normal="+z"}, {part="upper", normal="-z"}')
+    (tmp_path / "s.toml").write_text(text)
+    gap = next(one for one in check(tmp_path / "s.toml").findings if one.code == "gap")
+    assert "a gap of 200 um between its faces about (50, 20, 10) mm" in gap.text
+    lapped(tmp_path / "gap.step", gap=-0.2, names=("lower", "upper"))
+    overlap = next(one for one in check(tmp_path / "s.toml").faults if one.code == "overlap")
+    assert "share 100 x 40 x 0.2 mm" in overlap.text
+
+
+def test_a_joint_or_a_bolt_twice_is_a_fault(tmp_path):
+    """As for run, which doubled stiffness and preload once."""
+    template.write(tmp_path / "s.toml")
+    text = (tmp_path / "s.toml").read_text()
+    joint = '[[joint]]\nname = "k"\nfaces = ["lower.joint", "upper.joint"]\n'
+    bolt = '[[bolt]]\nname = "c"\nfaces = ["upper.seat", "lower.seat"]\npreload = ["2 kN", "6 kN"]\n'
+    (tmp_path / "s.toml").write_text(text + joint + bolt)
+    told = " ".join(one.text for one in check(tmp_path / "s.toml").faults)
+    assert "joints 'joint' and 'k' join the same faces" in told
+    assert "bolts 'bolt' and 'c' run through one place" in told
+
+
+TABLES = {
+    "test": """[test]
+source = "s"
+direction = [0, 0, 1]
+points = [[{}]]
+frequencies = [["1 kHz"], ["1 kHz"]]
+""",
+    "response": """[response]
+from = "5 kHz"
+to = "20 kHz"
+points = 4
+[[response.input]]
+point = [{}]
+direction = [0, 0, 1]
+[[response.output]]
+point = [{}]
+direction = [0, 0, 1]
+""",
+    "mass": """[[mass]]
+mass = "1 g"
+point = [{}]
+""",
+    "backbone": """[backbone]
+mode = 1
+amplitude = ["1 m/s^2", "2 m/s^2"]
+at = [{}]
+""",
+}
+
+
+@pytest.mark.parametrize("table", TABLES)
+@pytest.mark.parametrize(
+    ("place", "near"),
+    [('"80 m", "0 mm", "0 mm"', False), ('"90 mm", "22 mm", "-50 mm"', False), ('"40 mm", "15 mm", "-15 mm"', True)],
+)
+def test_points_far_from_the_structure(tmp_path, table, place, near):
+    """In the words of `faying run`, which meshes first; check has no nodes and measures from the faces."""
+    template.write(tmp_path / "s.toml")
+    text = (tmp_path / "s.toml").read_text() + TABLES[table].replace("{}", place)
+    (tmp_path / "s.toml").write_text(text)
+    told = [one.text for one in check(tmp_path / "s.toml").faults]
+    assert near == (told == []), told
+    study = Study.read(tmp_path / "s.toml")
+    if near:
+        Case.of(study)
+        return
+    with pytest.raises(faying.InputError) as fault:
+        Case.of(study)
+    before, said, after = r"(?P<a>.*nearest node to )", told[0], r" mm away; (?P<b>.*)"
+    shapes = [re.match(before + r"(?P<p>\(.*?\) mm is) (?P<d>\S+)" + after, t) for t in (said, str(fault.value))]
+    assert shapes[0] is not None
+    assert [shapes[0][k] for k in "apb"] == [shapes[1][k] for k in "apb"]
+    assert float(shapes[0]["d"]) <= float(shapes[1]["d"]) <= 1.05 * float(shapes[0]["d"]) + 10
+
+
+def test_a_point_deep_inside_a_part_is_on_the_structure():
+    """A ball of chords: the middle is a radius from every face, and within; beside it is without."""
+    angle, turn = np.meshgrid(np.linspace(0, np.pi, 13), np.linspace(0, 2 * np.pi, 25), indexing="ij")
+    ball = np.stack([np.sin(angle) * np.cos(turn), np.sin(angle) * np.sin(turn), np.cos(angle)], axis=-1)
+    a, b, c, d = ball[:-1, :-1], ball[1:, :-1], ball[1:, 1:], ball[:-1, 1:]
+    corners = np.concatenate([np.stack(three, axis=2).reshape(-1, 3, 3) for three in ((a, b, c), (a, c, d))])
+    for x in (0.0, 0.3, 0.9):
+        assert _within(np.array([x, 0.1, 0.2]), corners)
+    for x in (1.05, 1.2, 40.0):
+        assert not _within(np.array([x, 0.1, 0.2]), corners)
+
+
+def test_the_mean_pressure_beside_the_end_of_the_law(folder):
+    """The forces of three bolts over the area that touches; JK ends below that at many times the preload."""
+    found, _ = looked(folder)
+    pressure = next(one for one in found.findings if one.code in ("pressure", "law-reach"))
+    mean = 3 * 14900 / ((4000 - 3 * pi * 4.5**2) * 1e-6)
+    assert f"press {mean / 1e6:.3g} MPa" in pressure.text
+    found, _ = looked(folder, ('"14.9 kN"', '"1490 kN"'))
+    beyond = next(one for one in found.findings if one.code == "law-reach")
+    assert "below the mean" in beyond.text
+    assert any(one.code == "beyond-proof" for one in found.findings)
+
+
+def test_the_pressure_of_a_cone_carries_the_force():
+    """Both profiles hold the force; the second by quadrature, and its edge is the cone of the guideline."""
+    F, depth, length, seat, hole, outer = 15e3, 10e-3, 22e-3, 16e-3, 9e-3, 60e-3
+    mean, rim = cone_pressure(F, depth=depth, length=length, seat=seat, hole=hole, outer=outer)
+    R, r = seat / 2 + depth * cone_angle(length, seat, outer), hole / 2
+    assert mean * pi * (R**2 - r**2) == pytest.approx(F)
+    s = np.linspace(r, R, 200_001)
+    assert np.trapezoid(rim * (R - s) / (R - r) * 2 * pi * s, s) == pytest.approx(F, rel=1e-8)
+    with pytest.raises(faying.InputError, match="narrower than the cone"):
+        cone_pressure(F, depth=0.0, length=length, seat=seat, hole=seat, outer=outer)
+
+
+# greatest pressure [MPa] of the runs, as docs/plates-and-bolts.md has them and tests/examples computes them
+@pytest.mark.parametrize(("name", "run"), [("sheets", 135), ("plates", 73), ("flanges", 64)])
+def test_the_pressure_at_a_hole_is_near_that_of_a_run(name, run):
+    """An estimate before the mesh, by a cone and a straight line: within a quarter, as stated."""
+    found = check(Path(__file__).parents[2] / "examples" / "plates-and-bolts" / f"{name}.toml")
+    assert not found.faults
+    said = next(one.text for one in found.findings if one.code == "pressure")
+    estimate = float(said.split(" at its hole")[0].split()[-2])
+    assert 0.95 * run < estimate < 1.25 * run
+
+
+@pytest.mark.parametrize(("size", "diameter"), [(5e-3, 9.0), (8e-3, 9.0), (6e-3, 5.5)])
+def test_unknowns_are_right_within_a_factor_of_two(tmp_path, size, diameter):
+    path = lapped(tmp_path / "lap.step", diameter=diameter)
+    found = mesh_step(path, size=size).unknowns
+    assert 0.5 < unknowns_of(read_facts(path), size) / found < 2
+
+
+# unknowns, loads, CPU seconds and greatest memory [GB] of `faying run` on one thread, the scan solved before
+COMMANDS = (
+    (31_971, 2, 25, 0.74),  # examples/plates-and-bolts/plates.toml
+    (61_710, 2, 48, 1.61),  # flanges.toml
+    (33_786, 2, 62, 0.89),  # examples/solid-bolt
+    (47_697, 1, 32, 1.03),  # stepped lap of tests/helpers/assemblies.py, as `new` meshes it
+    (42_603, 1, 38, 1.11),  # T-slots
+    (85_998, 1, 90, 2.62),  # counterbored
+    (369_342, 1, 360, 8.66),  # a column on T-slots, 8 x M12
+)
+
+
+@pytest.mark.parametrize(("unknowns", "loads", "seconds", "memory"), COMMANDS)
+def test_time_and_memory_are_those_of_commands(folder, unknowns, loads, seconds, memory):
+    """Memory within 1.5, time within 2: a solid bolt takes longer, thick plates less."""
+    study = Study.read(folder / "study.toml")
+    study = replace(study, bolts=tuple(replaced(bolt, loads) for bolt in study.bolts))
+    expected = Expected.of(study, unknowns)
+    assert 1 / 1.5 < expected.memory / (memory * 1e9) < 1.5
+    assert 1 / 2 < expected.seconds / seconds < 2
+
+
+def replaced(bolt, loads):
+    return replace(bolt, preload=(1e3,) * loads)
+
+
+def test_more_laws_loads_and_damping_take_longer(folder):
+    study = Study.read(folder / "study.toml")
+    base = Expected.of(study, 100_000).seconds
+    assert Expected.of(replace(study, modes=replace(study.modes, levels=())), 100_000).seconds < base
+    twice = replace(study, bolts=tuple(replaced(bolt, 2) for bolt in study.bolts))
+    assert Expected.of(twice, 100_000).seconds > base
+    assert Expected.of(study, 200_000).seconds > 2 * base
+
+
+def test_a_ready_mesh_is_checked_for_its_elements(tmp_path):
+    """Blocks of tetrahedra with four nodes, as another program writes them: said before anything is solved."""
+    mesh = row((0.06, 0.04), (6, 4), kinds=("tet4", "tet4"), width=0.02, height=0.02, sections=((3, 3), (3, 3)))
+    (tmp_path / "model.inp").write_text(abaqus(mesh))
+    (tmp_path / "s.toml").write_text(STUDY.replace("[modes]", '[law]\nmodel = "jk"\n[modes]'))
+    found = check(tmp_path / "s.toml")
+    assert not found.faults
+    assert any(one.code == "stiff-elements" for one in found.findings)
+    assert found.expected.unknowns == mesh.unknowns
+
+
+def test_the_command_exits_1_on_faults_and_0_on_notes(folder, capsys):
+    looked(folder, ('size = "5 mm"', "size = 5"))
+    for name, code in (("changed.toml", 1), ("study.toml", 0), ("none.toml", 1)):
+        with pytest.raises(SystemExit) as stop:
+            main(["check", str(folder / name)])
+        assert stop.value.code == code
+        out = capsys.readouterr()
+        assert max(map(len, out.out.splitlines()), default=0) <= 80 or str(folder) in out.out
+    assert "no file" in out.err
+
+
+def test_json_gives_lines_and_what_is_expected(folder):
+    out = json.loads(CliRunner().invoke(cli, ["check", str(folder / "study.toml"), "--json"]).output)
+    assert out["faults"] == 0
+    assert out["expected"]["memory"]["unit"] == "B"
+    bolt = next(one for one in out["findings"] if one["code"] == "bolt")
+    assert bolt["key"] == "bolt[1].faces"
+    assert "faces" in (folder / "study.toml").read_text().splitlines()[bolt["line"] - 1]
+
+
+def test_a_meshed_bolt_whose_nut_is_in_no_joint_is_refused_as_by_the_run(tmp_path):
+    example = Path(__file__).parents[2] / "examples" / "solid-bolt"
+    (tmp_path / "blocks-and-bolt.step").write_bytes((example / "blocks-and-bolt.step").read_bytes())
+    text = (example / "study.toml").read_text()
+    begin, end = text.index('[[joint]]\nname = "nut"'), text.index("[[bolt]]")
+    (tmp_path / "study.toml").write_text(text[:begin] + text[end:])
+    faults = [one.text for one in check(tmp_path / "study.toml").faults]
+    (fault,) = [text for text in faults if "in no joint" in text]
+    assert fault.startswith("bolt 'M8': its face 'bolt.nut' is in no joint; add a [[joint]]")
+    with pytest.raises(faying.InputError, match=re.escape(fault)):
+        build(Study.read(tmp_path / "study.toml"))

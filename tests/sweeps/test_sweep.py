@@ -1,0 +1,349 @@
+"""Sweeps against full runs, and what they leave on disk when they are interrupted."""
+
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray
+
+import faying
+from faying.answer.run import run
+from faying.case.case import surfaces_of
+from faying.form.form import Form
+from faying.joint.modal import ModesChoice
+from faying.reduction.reduce import Reduction
+from faying.study import Study, part_folder
+from faying.study.keys.law import LawChoice
+from faying.sweeps import sweep as module
+from faying.sweeps.axes import Grid, axis_of
+from faying.sweeps.recipe import Recipe
+from faying.sweeps.sweep import sweep
+from tests.helpers.cluster import cluster_of
+from tests.helpers.studies import write
+
+
+@pytest.fixture(scope="module")
+def plan(tmp_path_factory):
+    path = tmp_path_factory.mktemp("study") / "study.toml"
+    write(path)
+    study = Study.read(path)
+    bolts = tuple(replace(bolt, preload=bolt.preload[-1:]) for bolt in study.bolts)
+    sizes = {name: 1.6 * size for name, size in study.geometry.face_size.items()}
+    geometry = replace(study.geometry, size=1.6 * study.geometry.size, face_size=sizes)
+    return replace(study, bolts=bolts, geometry=geometry, modes=ModesChoice(count=5), test=None)
+
+
+AXES = ("surface.D=2.3:2.42:4", "bolt.preload=1 kN:3 kN:3")
+
+
+def axes(*texts):
+    return tuple(axis_of(text) for text in texts or AXES)
+
+
+@pytest.fixture(scope="module")
+def done(plan, tmp_path_factory):
+    return sweep(plan, axes(), tmp_path_factory.mktemp("sweep") / "out.nc")
+
+
+@pytest.mark.parametrize(
+    "place",
+    [(0, 0), pytest.param((1, 1), marks=pytest.mark.slow), (3, 2), pytest.param((2, 0), marks=pytest.mark.slow)],
+)
+def test_points_are_those_of_full_runs(plan, done, place):
+    D, force = (axis.values[i] for axis, i in zip(done.axes, place, strict=True))
+    full = run(
+        replace(plan, surface=replace(plan.surface, D=D), bolts=tuple(replace(b, preload=(force,)) for b in plan.bolts))
+    )
+    assert done.frequencies[place] == pytest.approx(full.frequencies[0], rel=1e-5)
+    assert done.loss_factors[place] == pytest.approx(full.loss_factors[0], rel=1e-2)
+    assert done.greatest_pressure[place] == pytest.approx(full.pressure.max(), rel=0.02)
+
+
+def test_pressure_grows_with_preload(done):
+    assert np.all(np.diff(done.greatest_pressure, axis=1) > 0)
+
+
+def test_the_file_holds_axes_and_values_with_units(done):
+    with xarray.open_dataset(done.path) as found:
+        assert found.frequencies.dims == ("surface_D", "bolt_preload", "mode")
+        assert np.array_equal(found.frequencies, done.frequencies, equal_nan=True)
+        assert found.bolt_preload.attrs["units"] == "N"
+        assert found.bolt_preload.values.tolist() == [1000.0, 2000.0, 3000.0]
+    assert not done.path.with_name("out.nc.part").exists()
+
+
+def test_an_interrupted_sweep_goes_on_where_it_stopped(plan, done, tmp_path, monkeypatch):
+    out = tmp_path / "out.nc"
+    monkeypatch.setattr(module, "CHUNK", 5)
+    calls = []
+    real = module.evaluate
+
+    def stops(model, recipe, indices):
+        calls.append(list(indices))
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        return real(model, recipe, indices)
+
+    monkeypatch.setattr(module, "evaluate", stops)
+    with pytest.raises(KeyboardInterrupt):
+        sweep(plan, axes(), out)
+    assert not out.exists()
+    monkeypatch.setattr(module, "evaluate", lambda *given: calls.append(list(given[2])) or real(*given))
+    monkeypatch.setattr(Reduction, "of", None)  # the bases are not made again
+    again = sweep(plan, axes(), out)
+    assert again.frequencies == pytest.approx(done.frequencies, rel=1e-6)
+    assert again.found == 5
+    assert sorted(i for call in calls[2:] for i in call) == sorted(set(range(12)) - set(calls[0]))
+
+
+@pytest.mark.slow
+def test_what_an_interruption_changes(plan, tmp_path, monkeypatch):
+    """Nothing, to the last bit: the chunks, and so the starts within them, are those of a sweep in one go."""
+    monkeypatch.setattr(module, "CHUNK", 3)
+    real, calls = module.evaluate, []
+    whole = sweep(plan, axes(), tmp_path / "whole.nc")
+
+    def stops(model, recipe, indices):
+        calls.append(list(indices))
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return real(model, recipe, indices)
+
+    monkeypatch.setattr(module, "evaluate", stops)
+    with pytest.raises(KeyboardInterrupt):
+        sweep(plan, axes(), tmp_path / "parts.nc")
+    monkeypatch.setattr(module, "evaluate", real)
+    # the first chunk is damaged: its points are evaluated again
+    damaged = tmp_path / "parts.nc.part" / "chunk-000000.npz"
+    damaged.write_bytes(damaged.read_bytes()[:-400])
+    parts = sweep(plan, axes(), tmp_path / "parts.nc")
+    assert parts.found == 3
+    for name in ("frequencies", "loss_factors", "estimate", "greatest_pressure"):
+        assert np.array_equal(getattr(parts, name), getattr(whole, name)), name
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="locks of POSIX")
+def test_two_sweeps_into_one_file(plan, tmp_path, monkeypatch):
+    def second(*given):
+        raise faying.InputError("the other was not kept out")
+
+    real = module.evaluate
+
+    def meanwhile(model, recipe, indices):
+        monkeypatch.setattr(module, "evaluate", second)
+        with pytest.raises(faying.InputError, match="another sweep is writing to .*out.nc.part; wait for it"):
+            sweep(plan, axes(), tmp_path / "out.nc")
+        monkeypatch.setattr(module, "evaluate", meanwhile)
+        return real(model, recipe, indices)
+
+    monkeypatch.setattr(module, "evaluate", meanwhile)
+    assert sweep(plan, axes(), tmp_path / "out.nc").path.is_file()
+
+
+def test_leftovers_of_another_sweep_are_refused(plan, tmp_path):
+    (tmp_path / "out.nc.part").mkdir()
+    with pytest.raises(faying.InputError, match=r"out.nc.part is what another sweep has left"):
+        sweep(plan, axes(), tmp_path / "out.nc")
+
+
+def test_a_half_made_by_another_version_is_refused(plan, tmp_path, monkeypatch):
+    """Its numbers may differ: the two halves of one sweep would come from two programs."""
+    out = tmp_path / "out.nc"
+
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "_begun", stopped)
+    monkeypatch.setattr(part_folder, "__version__", "0.0.9")
+    with pytest.raises(KeyboardInterrupt):
+        sweep(plan, axes(), out)
+    with pytest.raises(KeyboardInterrupt):  # it goes on with the version that began it
+        sweep(plan, axes(), out)
+    monkeypatch.setattr(part_folder, "__version__", "0.1.0")
+    with pytest.raises(faying.InputError, match=r"was begun by Faying 0.0.9, and this is 0.1.0, .* begin anew"):
+        sweep(plan, axes(), out)
+    assert (tmp_path / "out.nc.part").is_dir()  # it is not Faying's to throw away
+
+
+def test_processes_give_the_same(plan, done, tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "CHUNK", 6)
+    there = sweep(plan, axes(), tmp_path / "out.nc", jobs=2)
+    assert there.frequencies == pytest.approx(done.frequencies, rel=1e-6)
+
+
+def test_a_cluster_gives_the_same_when_a_worker_dies_half_way(plan, tmp_path, monkeypatch):
+    """To the last bit: each chunk begins anew, and libraries take one thread here and there."""
+    pytest.importorskip("distributed", reason="the extra dask is not installed")
+    monkeypatch.setattr(module, "CHUNK", 1)
+    real, bases = module._begun, []
+
+    def once(*given):
+        bases.extend([] if bases else [real(*given)])
+        return bases[0]
+
+    monkeypatch.setattr(module, "_begun", once)
+    here = sweep(plan, axes(), tmp_path / "here.nc")
+    told = []
+    with cluster_of(tmp_path, 2) as cluster:
+
+        def report(stage, done, total):
+            told.append(done)
+            if stage == "evaluations" and done == total // 2 and len(cluster.alive()) == 2:
+                cluster.kill("worker-0")
+
+        there = sweep(plan, axes(), tmp_path / "there.nc", dask=cluster.address, report=report)
+        assert cluster.alive() == ["worker-1"]
+    assert told[-12:] == list(range(1, 13))
+    for name in ("frequencies", "loss_factors", "estimate", "greatest_pressure", "open_share", "beyond_share"):
+        assert np.array_equal(getattr(there, name), getattr(here, name)), name
+
+
+def test_points_beyond_the_law_are_held_there_and_counted(plan, tmp_path):
+    found = sweep(plan, axes("bolt.preload=1 kN,2 kN,400 kN,800 kN"), tmp_path / "out.nc")
+    assert np.isfinite(found.frequencies).all()
+    assert found.beyond_share[1] == 0
+    assert found.beyond_share[3] > 0.5
+    assert found.to_dict()["beyond_law"] == np.count_nonzero(found.beyond_share > 0.1)
+    assert found.frequencies[3] == pytest.approx(found.frequencies[2], rel=0.02)  # no law rises there any more
+
+
+def test_values_of_an_axis():
+    assert axis_of("surface.D=2.2:2.6:5").values == pytest.approx((2.2, 2.3, 2.4, 2.5, 2.6))
+    assert axis_of("surface.G=1e-12 m:1e-10 m:3:log").values == pytest.approx((1e-12, 1e-11, 1e-10))
+    assert axis_of("bolt.left.preload=1 kN, 5 kN").values == (1000.0, 5000.0)
+    assert axis_of("law.model=jk,gw").values == ("JK", "GW")
+    assert axis_of("law.alpha=0.1:0.3:4").read() == "law.alpha = 0.1 to 0.3, 4 values"
+    assert axis_of("bolt.preload=1 kN:20 kN:30").read() == "bolt.preload = 1 kN to 20 kN, 30 values"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("surface.D", "give key=first:last:count"),
+        ("part.upper=1:2:3", "a sweep varies what acts on the joints"),
+        ("bolt.preload=1:20:30", "give the unit|unit"),
+        ("surface.D=2.2:2.6:1", "whole number from 2 to"),
+        ("surface.D=2.2:2.2:3", "ends must differ"),
+        ("surface.D=a,b", "should be a plain number"),
+        ("surface.D=2.2:2.6", "first:last:count"),
+    ],
+)
+def test_faults_of_an_axis(text, message):
+    with pytest.raises(faying.InputError, match=message):
+        axis_of(text)
+
+
+def test_faults_of_a_grid(plan):
+    surfaces = surfaces_of(plan)
+    for text, message in (
+        ("bolt.nobody.preload=1 kN,2 kN", "no bolt is called 'nobody'"),
+        ("surface.D=1.5:2.5:3", "must be between 2 and 3"),
+        ("bolt.preload=-1 kN:2 kN:3", "must be positive"),
+        ("joint.friction=-1:1:3", "friction = -1; it must be at least 0"),
+        ("joint.friction=0:1e9:3", "friction = 1000000000; it must be at least 0 and below"),
+        ("law.model=nope,jk", "no contact law 'nope'"),
+        ("law.counterbody=x", "counterbody = 'x'; allowed is"),
+        ("law.cutoff=0:1:3", "cutoff = 0; it must be between 0 and 1"),
+        ("surface.D=2.2:2.6:1000000000", "whole number from 2 to 1,000,000"),
+    ):
+        with pytest.raises(faying.InputError, match=message):
+            Grid(study=plan, surfaces=surfaces, axes=axes(text))
+    with pytest.raises(faying.InputError, match="each axis once"):
+        Grid(study=plan, surfaces=surfaces, axes=axes("surface.D=2.2:2.6:3", "surface.D=2.2:2.6:3"))
+
+
+def test_the_path_through_the_grid_meets_every_point_once_and_steps_to_neighbours(plan):
+    grid = Grid(study=plan, surfaces=surfaces_of(plan), axes=axes("surface.D=2.2:2.6:3", "law.alpha=0.1:0.3:4"))
+    path = grid.winding()
+    assert sorted(path) == list(range(12))
+    places = np.array(np.unravel_index(path, grid.shape)).T
+    assert np.all(np.abs(np.diff(places, axis=0)).sum(axis=1) == 1)
+
+
+def test_a_sweep_whose_middle_has_no_answer(plan, tmp_path, monkeypatch):
+    """The bases begin where there is an answer; the rest is NaN and told."""
+    made = Recipe.laws
+
+    def some(recipe, index):
+        if recipe.design.point(index).forces[0] > 3e3:
+            raise faying.InputError("no law here")
+        return made(recipe, index)
+
+    monkeypatch.setattr(Recipe, "laws", some)
+    swept = sweep(plan, axes("bolt.preload=2 kN,4 kN"), tmp_path / "out.nc")
+    assert np.all(np.isfinite(swept.frequencies[0]))
+    assert np.all(np.isnan(swept.frequencies[1]))
+    assert swept.reasons == {"no law here": 1}
+    with pytest.raises(faying.InputError, match="no law here"):
+        sweep(plan, axes("bolt.preload=4 kN,5 kN"), tmp_path / "none.nc")
+    assert not list(tmp_path.glob("none*"))
+
+
+def in_full(plan):
+    """The plan with a law given in full and no surface."""
+    options = {"density": 3e9, "radius": 60e-6, "sigma": 0.5e-6}
+    joints = tuple(replace(joint, tangential="mindlin") for joint in plan.joints)
+    return replace(plan, surface=None, joints=joints, law=LawChoice(model="gw-ke", given=options))
+
+
+@pytest.mark.slow
+def test_parameters_of_a_law_given_in_full(plan, tmp_path):
+    given = in_full(plan)
+    swept = sweep(given, axes("law.sigma=0.3 um:0.8 um:3", "bolt.preload=1 kN,3 kN"), tmp_path / "out.nc")
+    assert swept.axes[0].values == pytest.approx((0.3e-6, 0.55e-6, 0.8e-6))
+    law = replace(given.law, given={**given.law.given, "sigma": 0.55e-6})
+    full = run(replace(given, law=law, bolts=tuple(replace(b, preload=(3e3,)) for b in given.bolts)))
+    assert swept.frequencies[1, 1] == pytest.approx(full.frequencies[0], rel=1e-5)
+
+
+def test_laws_take_their_own_parameters_alone(plan):
+    given = in_full(plan)
+    with pytest.raises(faying.InputError, match="GW-KE has no parameter 'cutoff'; it has density, radius, sigma"):
+        Grid(study=given, surfaces=surfaces_of(given), axes=axes("law.cutoff=0.01,0.02"))
+    with pytest.raises(faying.InputError, match=r"no joint takes its law from \[surface\]; it would change nothing"):
+        Grid(study=given, surfaces=surfaces_of(given), axes=axes("surface.D=2.3,2.4"))
+    with pytest.raises(faying.InputError, match='gives "gw-ke" in full; other laws would lack their surface'):
+        Grid(study=given, surfaces=surfaces_of(given), axes=axes("law.model=jk,gw"))
+    with pytest.raises(faying.InputError, match="JK has no parameter 'sigma'"):
+        Grid(study=plan, surfaces=surfaces_of(plan), axes=axes("law.sigma=0.1 um,0.2 um"))
+
+
+def test_what_a_sweep_cannot_do(plan, tmp_path):
+    for changes, message in (
+        ({"modes": ModesChoice(damping="viscous")}, "hysteretic loss"),
+        ({"order": (0, 1)}, "pulls all bolts at once"),
+    ):
+        with pytest.raises(faying.InputError, match=message):
+            sweep(replace(plan, **changes), axes(), tmp_path / "out.nc")
+    with pytest.raises(faying.InputError, match="should end in .nc"):
+        sweep(plan, axes(), tmp_path / "out.csv")
+    with pytest.raises(faying.InputError, match="between 1e-10 and 1e-2"):
+        sweep(plan, axes(), tmp_path / "out.nc", tolerance=1.0)
+
+
+@pytest.mark.slow
+def test_a_sweep_over_the_crown_is_that_of_full_runs(plan, tmp_path):
+    """Hollow to crowned: the same frequencies as full solutions at places that were not trained on."""
+    key = "joint.form.crown_along"
+    plan = replace(plan, modes=ModesChoice(count=4))
+    swept = sweep(plan, axes(f"{key}=-6 um:20 um:27"), tmp_path / "out.nc")
+    assert np.isfinite(swept.frequencies).all()
+    assert np.abs(swept.frequencies[-1] / swept.frequencies[6] - 1).max() > 0.01  # 20 um beside flat
+    for i in (2, 15):
+        form = Form(crown_along=swept.axes[0].values[i])
+        full = run(replace(plan, joints=tuple(replace(joint, form=form) for joint in plan.joints)))
+        assert swept.frequencies[i] == pytest.approx(full.frequencies[0], rel=1e-5)
+        # the error of the frequencies allows that of w^2 (1 + i eta) 2e-5 of itself, and eta as much
+        assert swept.loss_factors[i] == pytest.approx(full.loss_factors[0], rel=1e-3, abs=5e-6)
+
+
+def test_axes_of_a_form(plan):
+    assert axis_of("joint.form.crown_along=0 um:30 um:31").values[10] == pytest.approx(1e-5)
+    assert axis_of("joint.form.seed=1,2,3").values == (1.0, 2.0, 3.0)
+    named = Grid(study=plan, surfaces=surfaces_of(plan), axes=axes(f"joint.{plan.joints[0].name}.form.twist=0 um,4 um"))
+    assert [named.point(i).study.joints[0].form.twist for i in (0, 1)] == pytest.approx([0, 4e-6])
+    with pytest.raises(faying.InputError, match="no joint is called 'x'; the joints are joint"):
+        Grid(study=plan, surfaces=surfaces_of(plan), axes=axes("joint.x.form.twist=0 um,4 um"))
+    with pytest.raises(faying.InputError, match=r"joint\.form\.\{crown_along, crown_across, twist"):
+        axis_of("joint.form.bump=0 um:3 um:4")
