@@ -13,7 +13,7 @@ ORDER = [
     {"errors"},
     {"units", "files", "memory", "typing", "notes", "progress"},
     {"checks"},
-    {"hardness", "misuse", "text", "heading"},
+    {"hardness", "misuse", "text", "heading", "typeset"},
     {"materials", "netcdf", "columns", "distribution", "cache", "style"},
     {"numerics", "surface"},
     {"mpi", "fe", "halfspace"},

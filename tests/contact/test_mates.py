@@ -181,7 +181,7 @@ def test_curves_are_drawn_with_their_names():
     axes = faying.Mates(SCAN, materials=PAIR).compare_plot(laws=["half-space", "jk", "gw-ke"])
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["half-space", "JK", "GW-KE"]
     assert axes.get_xlabel() == "nominal pressure [MPa]"
-    assert "MPa/um" in axes.get_ylabel()
+    assert "MPa/µm" in axes.get_ylabel()
     again = faying.Mates(SCAN, materials=PAIR).compare_plot(laws=["gw-ke"], quantity="area", ax=axes)
     assert again is axes
 

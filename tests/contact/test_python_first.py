@@ -76,25 +76,25 @@ def test_text_with_a_unit_counts_for_every_law():
 def test_a_law_draws_its_branches_by_name_and_its_area():
     law = MATES.law("half-space", points=5)
     stiff, area = law.plot([1e6, 1e7, 1e8])
-    assert labels(stiff)[:2] == ["k_n, unloading", "k_load, loading"]
-    assert (stiff.get_xlabel(), stiff.get_ylabel()) == ("nominal pressure [MPa]", "stiffness per area [MPa/um]")
+    assert labels(stiff)[:2] == [r"$k_\mathrm{n}$, unloading", r"$k_\mathrm{load}$, loading"]
+    assert (stiff.get_xlabel(), stiff.get_ylabel()) == ("nominal pressure [MPa]", "stiffness per area [MPa/µm]")
     assert (stiff.get_xscale(), stiff.get_yscale()) == ("log", "log")
     assert "area" in area.get_ylabel()
     drawn = {line.get_label(): line.get_xydata() for line in stiff.get_lines()}
     response = law.at_pressure([1e6, 1e7, 1e8])
     assert response.valid.any()
     shown = np.where(response.valid, response.k_n * 1e-12, np.nan)
-    np.testing.assert_allclose(drawn["k_n, unloading"][:, 1], shown)
+    np.testing.assert_allclose(drawn[r"$k_\mathrm{n}$, unloading"][:, 1], shown)
     loading = law.with_(stiffness="loading")
-    assert labels(loading.plot([1e6, 1e7])[0])[0] == "k_n, loading"
-    assert labels(JK.plot()[0])[0] == "k_n, loading and unloading"
+    assert labels(loading.plot([1e6, 1e7])[0])[0] == r"$k_\mathrm{n}$, loading"
+    assert labels(JK.plot()[0])[0] == r"$k_\mathrm{n}$, loading and unloading"
 
 
 def test_a_curve_is_thick_where_the_law_is_valid_alone():
     p = np.geomspace(1e3, JK.greatest_pressure * (1 - 1e-9), 40)
     valid = JK.at_pressure(p).valid
     assert 0 < valid.sum() < 40
-    thick = next(line for line in JK.plot(p)[0].get_lines() if line.get_label().startswith("k_n"))
+    thick = next(line for line in JK.plot(p)[0].get_lines() if line.get_label().startswith(r"$k_\mathrm{n}$"))
     assert np.array_equal(np.isfinite(thick.get_ydata()), valid)
 
 

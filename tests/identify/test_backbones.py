@@ -236,7 +236,7 @@ def test_measured_points_of_the_study_stand_over_the_bands(found, tmp_path):
     curves = replace(found.backbones, **measured)
     assert curves.measured.source == "points.csv"
     fig = drawing.backbones(replace(found, backbones=curves))
-    assert any(line.get_label() == "points" for line in fig.axes[0].lines)
+    assert "points" in fig.axes[0].get_legend_handles_labels()[1]
 
 
 def test_what_was_done_before_an_interruption_is_kept(plan, found, tmp_path, monkeypatch):

@@ -493,7 +493,7 @@ def test_loss_factors_are_written_read_and_shown(damped, tmp_path):
     assert said["test"][0][1] is None
     assert said["quantiles"]["0.5"][2][3] == pytest.approx(found.predicted_losses[1, 2, 3])
     _, _, loss = figure(found).axes
-    dots = [line.get_xdata() for line in loss.lines if line.get_marker() == "o"]
+    dots = [line.get_xdata() for line in loss.lines if line.get_marker() == "s"]
     assert np.array(dots) == pytest.approx(100 * (losses / found.predicted_losses[1] - 1), nan_ok=True)
 
 

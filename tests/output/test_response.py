@@ -51,7 +51,7 @@ def test_amplitude_is_accelerance_at_every_preload(result):
     r = (LINES[-1] / HZ) ** 2
     assert size[-1] == pytest.approx(r / (r - 1) / MASS, rel=1e-3)
     assert size[np.argmin(np.abs(LINES - 100))] == pytest.approx(1 / (MASS * LOSS), rel=1e-9)
-    assert axes.get_title() == "(40, 0, 0) mm along -y / (0, 0, 0) mm along z"
+    assert axes.get_title("left") == "(40, 0, 0) mm along -y, force at (0, 0, 0) mm along z"
     assert (axes.get_xlabel(), axes.get_yscale()) == ("frequency [Hz]", "log")
 
 

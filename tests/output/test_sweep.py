@@ -45,7 +45,7 @@ def test_change_along_one_axis_in_per_cent_with_units():
     for line in axes.lines:
         np.testing.assert_allclose(line.get_xdata(), [1, 2, 3, 4, 5])
         np.testing.assert_allclose(line.get_ydata(), [0, 1, 2, 3, 4], atol=1e-9)
-    assert axes.get_xlabel() == "bolt.preload [kN]"
+    assert axes.get_xlabel() == "preload [kN]"
     assert axes.get_xscale() == "linear"
 
 
@@ -54,7 +54,7 @@ def test_points_without_answer_are_left_out_and_do_not_serve_as_reference():
     sweep.frequencies[0] = np.nan
     axes = drawing.relative_change(ax(), sweep)
     np.testing.assert_allclose(axes.lines[0].get_ydata(), [np.nan, 0, 100 * (1.02 / 1.01 - 1)], atol=1e-9)
-    assert axes.get_xlabel() == "surface.G [pm]"
+    assert axes.get_xlabel() == "fractal roughness $G$ [pm]"
     assert axes.get_xscale() == "log"
 
 
@@ -63,7 +63,7 @@ def test_map_over_two_axes_has_the_first_along_x():
     axes = drawing.frequency_map(ax(), sweep, 1)
     values = axes.collections[0].get_array().reshape(2, 3)
     np.testing.assert_allclose(values, sweep.frequencies[..., 1].T)
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("surface.D [-]", "law.model")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("fractal dimension $D$", "contact law")
     assert [t.get_text() for t in axes.get_yticklabels()] == ["JK", "GW"]
 
 

@@ -101,7 +101,7 @@ def test_frequencies_of_a_model_are_not_headed_test():
         assert f"{heading} [Hz]" in column
         assert ("test [Hz]" in column) is (kind == "test")
         ax = structure.comparison(new_figure(3, 3).add_subplot(), one)
-        assert ax.get_ylabel() == f"error [% of the {heading}]"
+        assert ax.get_ylabel() == f"difference from the {heading} [%]"
         assert one.to_dict()["comparison"]["kind"] == kind
 
 

@@ -39,7 +39,7 @@ def test_spectrum_shows_the_fitted_law_over_its_band(rough):
     s = spectrum(prepared(rough).scan)
     ax = plot.power_spectrum(s, fits, axes())
     lines = {line.get_label(): line for line in ax.get_lines()}
-    f, law = lines[f"psd, D {fits['psd'].D:.3f}"].get_data()
+    f, law = lines[f"psd, $D$ {fits['psd'].D:.3f}"].get_data()
     assert (f[0], f[-1]) == pytest.approx((1 / fits["psd"].band[1], 1 / fits["psd"].band[0]))
     middle = np.interp(f[25], s.frequency, s.density)
     assert 0.5 < law[25] / middle < 2

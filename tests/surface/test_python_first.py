@@ -127,7 +127,7 @@ def test_a_scan_draws_a_map_with_its_holes_and_a_spectrum(rough):
 def test_the_line_of_a_fit_lies_on_the_spectrum_in_both_conventions(rough, convention):
     fit = rough.fractal(convention=convention)
     lines = {line.get_label(): line for line in fit.plot().get_lines()}
-    f, law = lines[f"psd, D {fit.D:.3f}"].get_data()
+    f, law = lines[f"psd, $D$ {fit.D:.3f}"].get_data()
     at, power = lines["spectrum"].get_data()
     inside = (at > f[0]) & (at < f[-1])
     ratio = power[inside] / np.exp(np.interp(np.log(at[inside]), np.log(f), np.log(law)))

@@ -167,13 +167,7 @@ def document(found: Any) -> dict[str, Any]:
 
 def draw(found: Any, path: str) -> None:
     """Write the stabilisation diagram over a fitted FRF."""
-    from matplotlib.figure import Figure
-
     from faying.measured import figure as measured
     from faying.style import save
 
-    fig = Figure(figsize=(9, 7.5), layout="constrained")
-    upper, lower = fig.subplots(2, 1)
-    measured.stabilisation(upper, found)
-    measured.frf_fit(lower, found)
-    save(fig, path)
+    save(measured.identified(found), path)

@@ -3,16 +3,17 @@
 from typing import Any
 
 from faying.halfspace.solution import HalfSpaceContact
+from faying.style import WIDE, drawing, new_panels
 
 # colours that stay apart in grey and for colour-blind eyes
-STATES = (("open", "#f2f2f2"), ("elastic", "#5aa9d6"), ("at hardness", "#8c1d18"))
+STATES = (("open", "#f2f2f2"), ("elastic", "#56b4e9"), ("at hardness", "#a03c00"))
 
 
 def _extent(contact: HalfSpaceContact) -> tuple[list[float], str]:
     """Sides of the map with a unit that suits them."""
     (ny, nx), (dx, dy) = contact.heights.shape, contact.spacing
     width, height = nx * dx, ny * dy
-    factor, unit = (1e3, "mm") if max(width, height) >= 1e-3 else (1e6, "um")
+    factor, unit = (1e3, "mm") if max(width, height) >= 1e-3 else (1e6, "µm")
     return [0.0, width * factor, 0.0, height * factor], unit
 
 
@@ -34,6 +35,7 @@ def _thick(mask: Any, shape: tuple[int, int], pixels: int) -> Any:
     return padded.reshape(rows, step[0], columns, step[1]).max(axis=(1, 3))
 
 
+@drawing
 def contact_map(ax: Any, contact: HalfSpaceContact, *, pixels: int = 1200) -> Any:
     """Draw into `ax` which points are open, in elastic contact and at hardness; the legend gives their shares [%]."""
     from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -54,13 +56,13 @@ def contact_map(ax: Any, contact: HalfSpaceContact, *, pixels: int = 1200) -> An
     if contact.hardness is None:
         shown = shown[:2]
     handles = [Patch(facecolor=c, edgecolor="0.5", label=f"{name} {100 * share:.3g} %") for name, c, share in shown]
-    ax.legend(
-        handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=3, frameon=False, handlelength=1.2
-    )
+    place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.24)}
+    ax.legend(handles=handles, ncols=2, handlelength=1.2, **place)
     _frame(ax, contact, unit, f"contact at {contact.pressure * 1e-6:.4g} MPa")
     return ax
 
 
+@drawing
 def pressure_map(ax: Any, contact: HalfSpaceContact, *, pixels: int = 1200) -> Any:
     """Draw into `ax` the pressure at every point [MPa], open points white, with a colour bar."""
     import numpy as np
@@ -80,11 +82,10 @@ def pressure_map(ax: Any, contact: HalfSpaceContact, *, pixels: int = 1200) -> A
     return ax
 
 
+@drawing
 def contact_figure(contact: HalfSpaceContact) -> Any:
     """Return a figure with the contact's states beside its pressures."""
-    from faying.style import new_panels
-
-    fig = new_panels(2, width=5.2, height=4.8)
+    fig = new_panels(2, width=WIDE / 2, height=3.6)
     left, right = fig.axes
     contact_map(left, contact)
     pressure_map(right, contact)

@@ -89,7 +89,7 @@ class HalfSpaceContact(Summary):
         from faying.halfspace.figure import contact_map, pressure_map
         from faying.style import axes_of
 
-        states, pressure = axes_of(axes, 2, width=5.2, height=4.8)
+        states, pressure = axes_of(axes, 2, height=3.6)
         contact_map(states, self)
         pressure_map(pressure, self)
         return [states, pressure]

@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from faying.identify.identification import Identification
-from faying.identify.prediction_figure import COLOURS
-from faying.style import axes_of, new_figure, plain
+from faying.style import COLOURS, WIDE, axes_of, drawing, load_colours, load_label, new_figure
+from faying.typeset import name_of
 from faying.typing import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@drawing
 def figure(found: Identification) -> Any:
     """Return the figure of an identification.
 
@@ -22,15 +23,16 @@ def figure(found: Identification) -> Any:
     where it was left out; and the same of loss factors where they were used.
     """
     heights = _heights(found)
-    fig = new_figure(6.3, 0.4 + sum(heights))
+    fig = new_figure(WIDE, 0.4 + sum(heights))
     _draw(list(fig.subplots(len(heights), 1, height_ratios=heights)), found)
     return fig
 
 
+@drawing
 def identification_axes(found: Identification, ax: Any = None) -> "list[Axes]":
     """Draw the same into axes, one for each panel."""
     heights = _heights(found)
-    axes = axes_of(ax, len(heights), width=6.3, height=max(heights), columns=1)
+    axes = axes_of(ax, len(heights), width=WIDE, height=max(heights), columns=1)
     _draw(axes, found)
     return axes
 
@@ -52,8 +54,8 @@ def _parts(found: Identification) -> list[tuple[Array, Array, str]]:
 
 def _heights(found: Identification) -> list[float]:
     """Heights of the panels [inches]."""
-    heights = [0.6 + 0.27 * len(found.names)]
-    return heights + [0.6 + 0.3 * found.test.shape[1] * len(found.loads) ** 0.5] * len(_parts(found))
+    heights = [0.6 + 0.22 * len(found.names)]
+    return heights + [0.6 + 0.24 * found.test.shape[1] * len(found.loads) ** 0.5] * len(_parts(found))
 
 
 def _parameters(ax: Any, found: Identification) -> None:
@@ -74,28 +76,29 @@ def _parameters(ax: Any, found: Identification) -> None:
         lw=2.2,
         label="after it",
     )
-    ax.set_yticks(y, [plain(f"{name} ({told:.2f})") for name, told in zip(names, found.told, strict=True)], fontsize=8)
-    ax.set_xlabel("5 to 95 % of the prior = 0 to 1; in brackets, sd after over sd before", fontsize=8)
+    ax.set_yticks(y, [f"{name_of(name)} ({told:.2f})" for name, told in zip(names, found.told, strict=True)])
+    ax.set_xlabel("5 to 95 % of the prior = 0 to 1; in brackets, sd after over sd before")
     ax.invert_yaxis()
     ax.grid(axis="x", alpha=0.3)
-    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize=8, frameon=False)
+    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
 
 
 def _beside_test(ax: Any, found: Identification, test: Array, predicted: Array, unit: str) -> None:
     """Predicted quantiles (3, load, mode) over their median, and what was measured (load, mode)."""
     low, middle, high = predicted
     loads, modes = found.loads, test.shape[1]
+    shades = load_colours(len(loads))
     for k, load in enumerate(loads):
         place = np.arange(modes) + (k - (len(loads) - 1) / 2) * 0.7 / len(loads)
-        colour = COLOURS[k % len(COLOURS)]
+        colour = shades[k]
         ends = [100 * (1 - low[k] / middle[k]), 100 * (high[k] / middle[k] - 1)]
-        label = f"{load / 1e3:g} kN" + (", left out" if found.left_out[k] else "")
+        label = load_label(load) + (", left out" if found.left_out[k] else "")
         ax.errorbar(np.zeros(modes), place, xerr=ends, fmt="|", color=colour, lw=2.2, ms=7, label=label)
         face = "white" if found.left_out[k] else colour
-        ax.plot(100 * (test[k] / middle[k] - 1), place, "o", ms=4.5, mfc=face, mec=colour, mew=1.3)
+        ax.plot(100 * (test[k] / middle[k] - 1), place, "s", ms=4, mfc=face, mec=colour, mew=1.3)
     last = [f"{value:.0f} {unit}" if unit else f"loss {value:.2g}" for value in middle[-1]]
     ax.set_yticks(range(modes), [f"{k + 1}: {text}" for k, text in enumerate(last)])
-    ax.set_xlabel("difference from the median [%]; bars 5 to 95 %, dots measured", fontsize=8)
+    ax.set_xlabel("difference from the median [%]; bars 5 to 95 %, squares measured")
     ax.invert_yaxis()
     ax.grid(axis="x", alpha=0.3)
-    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4, fontsize=8, frameon=False)
+    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)

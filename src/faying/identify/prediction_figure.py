@@ -1,5 +1,6 @@
 """Figures of a prediction: intervals beside the test, shares of the variance, the samples against each other."""
 
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -7,32 +8,46 @@ import numpy as np
 from faying.errors import InputError
 from faying.identify.prediction import LEVELS, Prediction
 from faying.result.backbone_figure import ROUNDING, factor_of, framed, marks
-from faying.style import axes_of, new_figure, plain, prefixed
+from faying.style import (
+    COLOURS,
+    COLUMN,
+    WIDE,
+    axes_of,
+    drawing,
+    headline,
+    load_colours,
+    load_label,
+    new_figure,
+    prefixed,
+    shared_legend,
+)
+from faying.typeset import name_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MOST_INPUTS = 6  # of the scatter matrix
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#999999", "#f0e442")  # Okabe and Ito
 
 
+@drawing
 def intervals(found: Prediction) -> Any:
     """Return the figure of the 5 to 95 % of each frequency over its median, one column a preload, the test as dots."""
     count = found.observed[0].shape[2]
-    fig = new_figure(6.3, 1.2 + 0.32 * count * len(found.loads) ** 0.5)
+    fig = new_figure(WIDE, max(2.1, 1.2 + 0.24 * count * len(found.loads) ** 0.5))
     _draw_intervals(fig.subplots(), found)
-    fig.legend(loc="outside lower center", ncols=4, fontsize=8, frameon=False)
+    fig.legend(loc="outside lower center", ncols=4)
     return fig
 
 
+@drawing
 def interval_axes(found: Prediction, ax: "Axes | None" = None) -> "Axes":
     """Draw the 5 to 95 % of each frequency over its median, and the test."""
     if not found.answered:
         raise InputError(f"no sample has an answer: {'; '.join(found.reasons)}")
     count = found.observed[0].shape[2]
-    (target,) = axes_of(ax, 1, width=6.3, height=1.2 + 0.32 * count * len(found.loads) ** 0.5)
+    (target,) = axes_of(ax, 1, width=WIDE, height=max(2.1, 1.2 + 0.24 * count * len(found.loads) ** 0.5))
     _draw_intervals(target, found)
-    target.legend(loc="best", fontsize=8)
+    target.legend(loc="best")
     return target
 
 
@@ -40,29 +55,31 @@ def _draw_intervals(ax: Any, found: Prediction) -> None:
     test, levels = found.observed[1], found.quantiles(LEVELS)
     low, middle, high = levels.frequencies if levels.paired is None or found.test is None else levels.paired
     count = len(found.loads)
+    shades = load_colours(count)
     for load in range(count):
         y = np.arange(middle.shape[1]) + (load - (count - 1) / 2) * 0.7 / count
-        colour = COLOURS[load % len(COLOURS)]
+        shade = shades[load]
         ends = [100 * (1 - low[load] / middle[load]), 100 * (high[load] / middle[load] - 1)]
-        label = f"{found.loads[load] / 1e3:g} kN"
-        ax.errorbar(np.zeros(len(y)), y, xerr=ends, fmt="|", color=colour, lw=2.2, ms=7, capsize=0, label=label)
-        ax.plot(100 * (test[load] / middle[load] - 1), y, "o", ms=5, mfc="white", mec=colour, mew=1.4)
+        label = load_label(found.loads[load])
+        ax.errorbar(np.zeros(len(y)), y, xerr=ends, fmt="|", color=shade, lw=2.2, ms=7, capsize=0, label=label)
+        ax.plot(100 * (test[load] / middle[load] - 1), y, "s", ms=4.5, mfc="white", mec=shade, mew=1.2)
     if np.isfinite(test).any():
-        ax.plot([], [], "o", ms=5, mfc="white", mec="0.3", mew=1.4, label="test")
+        ax.plot([], [], "s", ms=4.5, mfc="white", mec="0.3", mew=1.2, label="test")
     ax.set_yticks(range(middle.shape[1]), [f"{k + 1}: {middle[-1, k]:.0f} Hz" for k in range(middle.shape[1])])
     ax.invert_yaxis()
     ax.set_xlabel("difference from the median [%]; bars from 5 to 95 %")
     ax.set_ylabel("mode and its median")
     ax.grid(axis="x", alpha=0.3)
-    ax.set_title(plain(found.title), fontsize=10)
+    ax.set_title(headline(found.title))
 
 
+@drawing
 def tornado(found: Prediction) -> Any:
     """Return the figure of the shares of the variance of each mode at the last preload, first order and total."""
     shares, _ = found.shares()
     modes = len(shares.first)
     order = np.argsort(np.nanmean(shares.total, axis=0))[::-1]
-    fig = new_figure(6.3, 1.2 + 0.28 * modes)
+    fig = new_figure(WIDE, 1.3 + 0.22 * modes + 0.08 * len(found.names))
     ax = fig.subplots()
     left = np.zeros(modes)
     for rank, k in enumerate(order):
@@ -74,20 +91,29 @@ def tornado(found: Prediction) -> Any:
             height=0.7,
             color=COLOURS[rank % len(COLOURS)],
             hatch="//" if rank >= len(COLOURS) else None,
-            label=plain(found.names[k]),
+            label=name_of(found.names[k]),
         )
         left += width
     rest = np.clip(1 - left, 0, None)
-    ax.barh(range(modes), 100 * rest, left=100 * left, height=0.7, color="white", edgecolor="0.6", label="together")
+    ax.barh(
+        range(modes),
+        100 * rest,
+        left=100 * left,
+        height=0.7,
+        color="white",
+        edgecolor="0.6",
+        label="together, not one alone",
+    )
     ax.invert_yaxis()
     ax.set_yticks(range(modes), [str(k + 1) for k in range(modes)])
     ax.set(xlim=(0, 100), ylabel="mode" if found.paired is None else "test mode")
-    ax.set_xlabel(f"share of the variance at {found.loads[-1] / 1e3:g} kN [%]")
-    fig.legend(loc="outside lower center", ncols=2, fontsize=7.5, frameon=False)
-    ax.set_title(plain(found.title), fontsize=10)
+    ax.set_xlabel(f"share of the variance at {load_label(found.loads[-1])} [%]")
+    fig.legend(loc="outside lower center", ncols=2)
+    ax.set_title(headline(found.title))
     return fig
 
 
+@drawing
 def scatter_matrix(found: Prediction) -> Any:
     """Return the figure of the samples: the inputs that matter most against the frequencies at the last preload."""
     shares, _ = found.shares()
@@ -95,21 +121,24 @@ def scatter_matrix(found: Prediction) -> Any:
     frequencies = values[:, -1]
     modes = np.arange(min(3, frequencies.shape[1]))
     order = np.argsort(np.nanmean(shares.total[modes], axis=0))[::-1][:MOST_INPUTS]
-    fig = new_figure(1.6 * len(order) + 0.8, 1.5 * len(modes) + 0.6)
+    fig = new_figure(WIDE, 1.25 * len(modes) + 0.8)
     axes = fig.subplots(len(modes), len(order), sharex="col", sharey="row", squeeze=False)
     for row, mode in enumerate(modes):
         for column, k in enumerate(order):
             ax = axes[row, column]
             factor, unit = prefixed(found.values[:, k], found.inputs.columns[k].unit)
             ax.plot(found.values[:, k] / factor, frequencies[:, mode], ".", ms=2, color=COLOURS[0], alpha=0.5)
-            ax.tick_params(labelsize=7)
-            ax.locator_params(nbins=4)
+            ax.locator_params(nbins=3)
             if row == len(modes) - 1:
-                ax.set_xlabel(plain(found.names[k]) + (f"\n[{unit}]" if unit else ""), fontsize=7)
-        axes[row, 0].set_ylabel(f"mode {mode + 1} [Hz]", fontsize=8)
+                ax.set_xlabel(
+                    "\n".join(wrap(name_of(found.names[k]), 18, break_long_words=False))
+                    + (f"\n[{unit}]" if unit else "")
+                )
+        axes[row, 0].set_ylabel(f"mode {mode + 1} [Hz]")
     return fig
 
 
+@drawing
 def backbones(found: Prediction) -> Any:
     """Return the figure of the backbones: 5 to 95 % and the median of frequency and damping, measured points over them.
 
@@ -118,7 +147,7 @@ def backbones(found: Prediction) -> Any:
     curves = found.backbones
     if curves is None:
         raise InputError("this prediction has no backbones; ask for them with --backbones 32")
-    fig = new_figure(6.3, 6.2)
+    fig = new_figure(COLUMN, 4.8)
     upper, lower = fig.subplots(2, 1, sharex=True)
     a = curves.acceleration
     bands = curves.quantiles(LEVELS)
@@ -138,6 +167,6 @@ def backbones(found: Prediction) -> Any:
         framed(ax, quantity)
     at = ", ".join(f"{1e3 * x:.4g}" for x in curves.at)
     lower.set_xlabel(f"acceleration at ({at}) mm [m/s²]")
-    upper.set_title(f"{plain(found.title)}: mode {curves.mode}, {curves.preload / 1e3:g} kN", fontsize=10)
-    fig.legend(*upper.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=8, frameon=False)
+    upper.set_title(f"{headline(found.title)}: mode {curves.mode}, {load_label(curves.preload)}")
+    shared_legend(fig, [upper], 2)
     return fig

@@ -9,7 +9,7 @@ from faying.fe.face_map import joint_map
 from faying.fe.figure import axes_in_space, draw_faces, draw_shape, key_of
 from faying.joint.state import State, VibrationModes
 from faying.joint.structure import Structure
-from faying.style import axes_of, plain
+from faying.style import INK, axes_of, colour, drawing, percent, plain
 from faying.text import titled
 from faying.typing import Array, Index
 from faying.units import show
@@ -17,20 +17,26 @@ from faying.units import show
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+EDGE = 0.5  # share of contact at the edge of contact
+OPEN = "#e4e7ea"  # colour of what is open
+STRAIGHT = 0.9999  # least part of a normal along an axis for a face across that axis
 BOLT_ENDS = 0.3  # how far a bolt stands out of its seats as it is drawn, of its length
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class PressureMap:
-    """Pressure on a joint as it is drawn.
+class FaceMap:
+    """Pressure, or what else there is, on a joint as it is drawn.
 
     Args:
         places: (k, 3) [m].
         triangles: Between them (t, 3); None where only points are known.
-        values: Pressure [Pa] (k,).
-        most: Greatest pressure of the colours [Pa].
+        values: What is drawn, in SI units (k,).
+        most: Greatest value of the colours.
         areas: Area of each place [m2] (k,), where there are no triangles.
+        contact: Share of the area around each place that carries pressure (k,); from the pressure where left out.
         title: What stands above.
+        label: Of the colour bar.
+        unit: That of the label in SI.
     """
 
     places: Array
@@ -38,35 +44,73 @@ class PressureMap:
     values: Array
     most: float
     areas: Array | None = None
+    contact: Array | None = None
     title: str = ""
+    label: str = "pressure [MPa]"
+    unit: float = 1e6
 
-    def draw(self, ax: Any, *, bar: bool = True) -> Any:
-        """Draw it along the axes of the model; what carries nothing stays pale."""
-        across = int(np.argmin(np.ptp(self.places, axis=0)))  # the axis that the face lies across
-        x, y = (k for k in range(3) if k != across)
-        flat, values = self.places[:, [x, y]], self.values * 1e-6
-        most = max(self.most, 1e-300) * 1e-6
-        style: dict[str, Any] = {"cmap": _pale(), "vmin": 1e-6 * most, "vmax": most}
+    def paint(self, ax: Any) -> Any:
+        """Draw it on the face at one scale and return what a colour bar needs.
+
+        What is open stays pale, with a line at the edge of contact.
+        """
+        flat, names = in_plane(self.places)
+        values = self.values / self.unit
+        style: dict[str, Any] = {"cmap": "viridis", "vmin": 0.0, "vmax": max(self.most, 1e-300) / self.unit}
         if self.triangles is None:
             size = 2e5 * np.asarray(self.areas) / max(float(np.prod(np.ptp(flat, axis=0))), 1e-300)
-            drawn = ax.scatter(*(flat.T * 1e3), c=values, s=size, linewidths=0, rasterized=True, **style)
+            here = self.values > 0 if self.contact is None else self.contact > EDGE
+            drawn = ax.scatter(*(flat[here].T * 1e3), c=values[here], s=size[here], linewidths=0, **style)
         else:
             grid = (*(flat.T * 1e3), self.triangles)
             drawn = ax.tripcolor(*grid, values, shading="gouraud", rasterized=True, **style)
-        if bar:
-            ax.figure.colorbar(drawn, ax=ax, label="pressure [MPa]", shrink=0.8)
-        ax.set(aspect="equal", xlabel=f"{'xyz'[x]} [mm]", ylabel=f"{'xyz'[y]} [mm]", title=self.title)
-        ax.title.set_fontsize(10)
-        return ax
+            shut = self.values > 0 if self.contact is None else self.contact
+            _open_zone(ax, grid, np.asarray(shut, float))
+        ax.set(aspect="equal", xlabel=f"{names[0]} [mm]", ylabel=f"{names[1]} [mm]", title=self.title)
+        ax.spines[:].set_visible(False)
+        return drawn
 
 
-def _pale() -> Any:
-    """The colour map of the pressure: pale where there is none."""
-    from matplotlib import colormaps
+def _open_zone(ax: Any, grid: tuple[Any, ...], contact: Array) -> None:
+    """Cover what is open, a share of contact below one half, and draw the edge of contact as a line."""
+    if contact.min() >= EDGE:
+        return
+    if contact.max() <= EDGE:
+        ax.tripcolor(*grid, np.zeros(len(contact)), shading="gouraud", cmap=_one(OPEN), rasterized=True)
+        return
+    ax.tricontourf(*grid, contact, levels=[-1.0, EDGE], colors=[OPEN])
+    ax.tricontour(*grid, contact, levels=[EDGE], colors=[INK], linewidths=0.7)
 
-    return colormaps["viridis"].with_extremes(under="0.9")
+
+def _one(shade: str) -> Any:
+    """A colour map of one colour."""
+    from matplotlib.colors import ListedColormap
+
+    return ListedColormap([shade])
 
 
+def in_plane(places: Array) -> tuple[Array, tuple[str, str]]:
+    """Places (k, 3) of a nearly plane face in axes of that plane (k, 2), and what to call these axes.
+
+    A face across an axis of the model is drawn along the other two. A tilted one is drawn as it looks from above it,
+    its first axis as near to x, y or z as the plane allows.
+    """
+    middle = places.mean(axis=0)
+    normal = np.linalg.svd(places - middle, full_matrices=False)[2][-1]
+    across = int(np.argmax(np.abs(normal)))
+    if abs(normal[across]) > STRAIGHT:
+        x, y = (k for k in range(3) if k != across)
+        return places[:, [x, y]], ("xyz"[x], "xyz"[y])
+    first = np.eye(3)[int(np.argmin(np.abs(normal)))]
+    first = first - (first @ normal) * normal
+    first /= np.linalg.norm(first)
+    second = np.cross(normal, first)
+    second *= np.sign(second[int(np.argmax(np.abs(second)))])
+    name = "xyz"[int(np.argmin(np.abs(normal)))]
+    return (places - middle) @ np.stack([first, second], axis=1), (f"along {name}", "across")
+
+
+@drawing
 def pressure_axes(state: State, joint: int, ax: "Axes | None" = None) -> "Axes":
     """Draw the pressure on a joint of a state, shaded over the elements of its first face."""
     structure, springs = state.structure, state.springs[joint]
@@ -75,21 +119,29 @@ def pressure_axes(state: State, joint: int, ax: "Axes | None" = None) -> "Axes":
     points = structure.mesh.points[outer.nodes]
     weights, pressure = springs.interface.weights, springs.pressure
     values = joint_map(
-        points, outer.triangles[here], springs.interface.positions, weights, {"pressure": pressure[None]}
+        points,
+        outer.triangles[here],
+        springs.interface.positions,
+        weights,
+        {"pressure": pressure[None], "contact": (pressure[None] > 0).astype(float)},
     )
     share = float(weights @ (pressure <= 0) / weights.sum())
-    drawn = PressureMap(
+    drawn = FaceMap(
         places=points[values.parents].mean(axis=1),
         triangles=values.triangles,
         values=values.fields["pressure"][0],
+        contact=values.fields["contact"][0],
         most=max(float(s.pressure.max()) for s in state.springs),
-        title=f"{plain(found.name)}, {state.load}: open on {share:.0%}",
+        title=f"{plain(found.name)}, {state.load}: {percent(share)} open",
     )
     (target,) = axes_of(ax, 1)
-    drawn.draw(target)
+    width, height = np.ptp(in_plane(drawn.places)[0], axis=0)
+    place: Any = "bottom" if height < 0.7 * width else "right"
+    target.figure.colorbar(drawn.paint(target), ax=target, label=drawn.label, location=place, shrink=0.9, pad=0.02)
     return target
 
 
+@drawing
 def mode_axes(modes: VibrationModes, mode: int, ax: "Axes | None" = None) -> "Axes":
     """Draw the shape of a mode, counted from 0."""
     target: Any = axes_in_space(ax)
@@ -98,11 +150,12 @@ def mode_axes(modes: VibrationModes, mode: int, ax: "Axes | None" = None) -> "Ax
     draw_shape(target, structure.mesh.points[nodes], triangles, modes.shapes[mode][nodes])
     zeta = modes.damping[mode]
     damping = "" if np.isnan(zeta) else f", damping ratio {zeta:.2g}"
-    target.set_title(f"mode {mode + 1}: {show(modes.frequencies[mode], 'Hz')}{damping}", fontsize=9)
+    target.set_title(f"mode {mode + 1}: {show(modes.frequencies[mode], 'Hz')}{damping}")
     out: Axes = target
     return out
 
 
+@drawing
 def structure_axes(structure: Structure, ax: "Axes | None" = None) -> "Axes":
     """Draw the parts, with the faces of joints, seats of bolts and supports in colours of their own."""
     target: Any = axes_in_space(ax)
@@ -112,7 +165,7 @@ def structure_axes(structure: Structure, ax: "Axes | None" = None) -> "Axes":
 
     def paint(kind: str, name: str, faces: tuple[str, ...]) -> str:
         label = titled(kind, name)
-        key[label] = f"C{len(key) % 10}"
+        key[label] = colour(len(key))
         for face in faces:
             colours.setdefault(outer.faces.index(face), key[label])
         return key[label]
@@ -124,11 +177,11 @@ def structure_axes(structure: Structure, ax: "Axes | None" = None) -> "Axes":
         paint("support", support.face, (support.face,))
     points = structure.mesh.points[outer.nodes]
     draw_faces(target, points, outer.triangles, outer.face_of_triangle, colours, alpha=0.4)
-    for fitted, colour in zip(structure.fitted_bolts, of_bolt, strict=True):
+    for fitted, shade in zip(structure.fitted_bolts, of_bolt, strict=True):
         start, end = fitted.seats
         out = BOLT_ENDS * (end - start)
         line = np.stack([start - out, end + out]) * 1e3
-        target.plot(*line.T, color=colour, lw=2.5)
-    key_of(target, dict(list(key.items())[:10]))
+        target.plot(*line.T, color=shade, lw=2.5)
+    key_of(target, dict(list(key.items())[:8]))
     drawn: Axes = target
     return drawn

@@ -7,9 +7,8 @@ from faying.output.table import Rows
 from faying.result import Result
 from faying.result.result import preload_slope
 from faying.result.score import Score
+from faying.result.shape_names import part_and_axis
 from faying.typing import Array
-
-BOTH = 0.6  # of the greater motion that the other parts must have for "all"
 
 
 def answer(result: Result) -> Rows:
@@ -47,16 +46,7 @@ def _damping(result: Result, mode: int) -> list[str]:
 
 def moves(result: Result, mode: int) -> str:
     """Which part moves most at the greatest preload, and along which axis."""
-    shape = result.shapes[-1, mode].astype(float)
-    part_of_node = np.zeros(len(shape), dtype=int)
-    if result.part_of_triangle is not None:
-        part_of_node[result.triangles.ravel()] = np.repeat(result.part_of_triangle, 3)
-    parts = [np.sqrt(np.mean(shape[part_of_node == k] ** 2, axis=0)) for k in range(len(result.parts))]
-    sizes = np.array([np.linalg.norm(one) for one in parts])
-    axis = "xyz"[int(np.argmax(np.sum(np.square(parts), axis=0)))] if parts else ""
-    if len(parts) < 2 or np.sort(sizes)[0] > BOTH * sizes.max():
-        return f"{'all' if len(parts) != 2 else 'both'}, {axis}" if len(parts) > 1 else axis
-    return f"{result.parts[int(np.argmax(sizes))]}, {axis}"
+    return ", ".join(filter(None, part_and_axis(result, mode)))
 
 
 def limit(result: Result) -> str:

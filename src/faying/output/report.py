@@ -10,14 +10,15 @@ from faying import __version__
 from faying.files import write_text
 from faying.notes import FIRST_NOTES, TITLES, by_severity, grave
 from faying.output import page, report_measured
+from faying.output.figures import narrowing
 from faying.output.report_curves import backbone_curves, response_curves
 from faying.output.scene import of_result, pages, to_text
 from faying.output.sections import Section, sections
-from faying.result import Result, interval_figure
+from faying.result import Result, interval_figure, level_figure
 from faying.result import backbone_figure as backbone
 from faying.result import figure as structure
 from faying.result import response_figure as response
-from faying.style import new_figure, uncollected
+from faying.style import WIDE, drawing, new_figure, uncollected
 
 
 def html(result: Result, pictures: dict[str, str] | None = None) -> str:
@@ -150,6 +151,10 @@ MAPS = (
     "narrower than an element are flattened, and the table of joints has the greatest value at any point. Motion is "
     "relative to the greatest of the mode."
 )
+SHAPES = (
+    "Mode shapes at the greatest preload, drawn at one scale; colour is the motion over the greatest of the mode. "
+    "Names: what most of the motion is, in slices across the longest side, or the part that moves most and its axis."
+)
 MOVING = ("modes", "pressure")  # figures that the view stands for on a screen
 TEST = "test_"  # the figures of the hammer test begin with it
 
@@ -165,11 +170,11 @@ class ReportFigure:
 
 def _on_axes(draw: Callable[[Any, Result], Any]) -> Callable[[Result], Any]:
     def drawn(result: Result) -> Any:
-        fig = new_figure(7.0, 4.2)
+        fig = new_figure(WIDE, 3.2)
         draw(fig.add_subplot(), result)
         return fig
 
-    return drawn
+    return drawing(drawn)
 
 
 FIGURES = {
@@ -179,23 +184,44 @@ FIGURES = {
         "Right: what makes the interval, in shares of its variance.",
         applies=lambda result: result.interval is not None,
     ),
+    "narrowing": ReportFigure(
+        draw=narrowing.narrowing,
+        caption="How much narrower the intervals would get if one thing were known better: bar, the median mode; dots, "
+        "each mode.",
+        applies=lambda result: result.interval is not None,
+    ),
     "frequencies": ReportFigure(
-        draw=_on_axes(structure.frequencies),
-        caption="Frequency against preload, relative to the bonded value of each mode.",
+        draw=structure.frequencies,
+        caption="Frequency of each mode against preload. Band: 5 to 95 % of all that is not known, where the study "
+        "asks for intervals, else the range that the law states. Dotted, where it lies near: faces bonded.",
     ),
     "comparison": ReportFigure(
         draw=_on_axes(structure.comparison),
-        caption="Error against the test.",
+        caption="Difference of computed and published frequencies from the test. Bars: 5 to 95 % of the computed.",
         applies=lambda result: result.comparison is not None,
     ),
+    "damping": ReportFigure(
+        draw=level_figure.damping_levels,
+        caption="Damping ratio of each mode at levels of acceleration, at the greatest preload: slip in the joints and "
+        "the damping at rest.",
+        applies=lambda result: result.levels is not None and result.level_damping is not None,
+    ),
     "pressure": ReportFigure(
-        draw=structure.pressures, caption="Pressure on each joint at the least and the greatest preload."
+        draw=structure.pressures,
+        caption="Pressure on the first face of each joint at the least and the greatest preload. Grey: open; the line "
+        "is the edge of contact.",
+    ),
+    "slip": ReportFigure(
+        draw=structure.slips,
+        caption="Tangential displacement of the second face against the first while the bolts are tightened. Grey: "
+        "open.",
+        applies=lambda result: result.slip is not None and float(result.slip.max()) > 0,
     ),
     "law": ReportFigure(
-        draw=structure.law_curves,
+        draw=_on_axes(structure.law_curves),
         caption="Stiffness per area over the pressures that the joints reach at the greatest preload.",
     ),
-    "modes": ReportFigure(draw=structure.mode_shapes, caption="Mode shapes at the greatest preload."),
+    "modes": ReportFigure(draw=structure.mode_shapes, caption=SHAPES),
     "backbones": ReportFigure(
         draw=lambda result: backbone.figure(result.backbones),
         caption="Frequency and damping ratio against amplitude, with the static cycle as circles.",

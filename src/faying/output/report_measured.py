@@ -9,7 +9,7 @@ from faying.files import write_text
 from faying.measured.compare import ModalComparison
 from faying.output.page import BITMAPS, curves, document, saved, table
 from faying.output.scene.text import packed_curves
-from faying.style import new_figure
+from faying.style import COLUMN, WIDE, drawing, new_figure
 
 CAPTIONS = {
     "mac": "MAC of the modes of the test against those of the model, at the points of the test. Pairs are framed.",
@@ -19,17 +19,18 @@ CAPTIONS = {
 MOST_FRFS = 4
 
 
+@drawing
 def figures(comparison: ModalComparison) -> dict[str, Any]:
     """Return the figures of a comparison by name; FRFs only where there are some."""
     from faying.measured import figure as measured
 
     t, m = comparison.mac.shape
-    mac = new_figure(2.6 + 0.42 * m, 1.8 + 0.42 * t)
+    mac = new_figure(WIDE if m > 8 else COLUMN, 1.5 + min(max(0.3 * t, 1.0), 4.0))
     measured.mac_map(mac.add_subplot(), comparison)
     out = {"mac": mac}
     if comparison.frf is not None:
         pairs = comparison.frf.measured[:MOST_FRFS]
-        fig = new_figure(8.0, 2.9 * len(pairs))
+        fig = new_figure(WIDE, 2.3 * len(pairs))
         for k, (o, i) in enumerate(pairs):
             measured.frf_overlay(fig.add_subplot(len(pairs), 1, k + 1), comparison, o, i)
         out["frf"] = fig

@@ -8,7 +8,18 @@ import numpy as np
 
 from faying.measured.ring_down import MeasuredBackbone
 from faying.result.backbone import Backbone
-from faying.style import axes_of, new_figure, plain
+from faying.style import (
+    COLUMN,
+    axes_of,
+    colour,
+    drawing,
+    headline,
+    legend_above,
+    load_label,
+    new_figure,
+    plain,
+    plain_numbers,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,16 +39,18 @@ def label(curve: Backbone, curves: Sequence[Backbone]) -> str:
     return ", ".join(parts)
 
 
+@drawing
 def panel(ax: Any, curves: Sequence[Backbone], quantity: str, measured: Sequence[MeasuredBackbone] = ()) -> Any:
     """Draw frequency [Hz] or damping [%] of curves over acceleration, the static cycle as circles.
 
-    quantity: "frequency" or "damping". Measured points, those of the curves' study first, are crosses.
+    quantity: "frequency" or "damping". Measured points, those of the curves' study first, are hollow,
+    with bars of 95 % where standard errors are known.
     """
     own = curves[0].measured
     measured = [*([] if own is None else [own]), *measured]
     factor = factor_of(quantity)
     for k, curve in enumerate(curves):
-        color = f"C{k % 10}"
+        color = colour(k)
         ax.plot(
             curve.acceleration,
             factor * getattr(curve, quantity),
@@ -64,16 +77,20 @@ def panel(ax: Any, curves: Sequence[Backbone], quantity: str, measured: Sequence
 
 
 def marks(ax: Any, points: MeasuredBackbone, quantity: str, k: int) -> None:
-    """Draw measured points, marked as the k-th of their kind."""
-    known = np.isfinite(getattr(points, quantity))
-    ax.plot(
+    """Draw measured points, marked as the k-th of their kind, with 95 % intervals where standard errors are known."""
+    values, error = getattr(points, quantity), getattr(points, f"{quantity}_error")
+    known, factor = np.isfinite(values), factor_of(quantity)
+    ends = 1.96 * factor * error[known]
+    ax.errorbar(
         points.acceleration[known],
-        factor_of(quantity) * getattr(points, quantity)[known],
-        "xv+s"[k % 4],
+        factor * values[known],
+        yerr=np.nan_to_num(ends) if np.isfinite(ends).any() else None,
+        fmt="sv^x"[k % 4],
         color="0.25",
-        ms=4.5,
-        mew=1.1,
-        mfc="none",
+        ms=3.5,
+        mew=1.0,
+        mfc="white",
+        elinewidth=0.8,
         label=plain(Path(points.source).stem if points.source else "measured"),
     )
 
@@ -86,7 +103,7 @@ def factor_of(quantity: str) -> float:
 def framed(ax: Any, quantity: str) -> Any:
     """Scales, grid and names of the axes."""
     ax.set_xscale("log")
-    _readable(ax.xaxis)
+    plain_numbers(ax.xaxis)
     ax.grid(which="major", alpha=0.3)
     ax.grid(which="minor", alpha=0.1)
     if quantity == "frequency":
@@ -94,20 +111,11 @@ def framed(ax: Any, quantity: str) -> Any:
         ax.ticklabel_format(axis="y", useOffset=False)
         return ax
     ax.set(ylabel="damping ratio [%]", yscale="log")
-    _readable(ax.yaxis)
+    plain_numbers(ax.yaxis)
     return ax
 
 
-def _readable(axis: Any) -> None:
-    """Plain numbers on a logarithmic axis."""
-    from matplotlib.ticker import FuncFormatter, NullFormatter
-
-    low, high = axis.get_view_interval()
-    number = FuncFormatter(lambda value, _: f"{value:g}")
-    axis.set_major_formatter(number)
-    axis.set_minor_formatter(number if high < 30 * low else NullFormatter())
-
-
+@drawing
 def figure(curves: Sequence[Backbone], measured: Sequence[MeasuredBackbone] = ()) -> Any:
     """Return the figure of curves of one mode: frequency above, damping below, over the same acceleration.
 
@@ -115,37 +123,39 @@ def figure(curves: Sequence[Backbone], measured: Sequence[MeasuredBackbone] = ()
         curves: of one mode, at one point.
         measured: points to lay over them.
     """
-    fig = new_figure(6.3, 6.2)
+    fig = new_figure(COLUMN, 4.6)
     upper, lower = fig.subplots(2, 1, sharex=True)
     panel(upper, curves, "frequency", measured)
     panel(lower, curves, "damping", measured)
     first = curves[0]
     at = ", ".join(f"{1e3 * x:.4g}" for x in first.at)
     lower.set_xlabel(f"acceleration at ({at}) mm [m/s²]")
-    upper.set_title(f"{plain(first.title)}: mode {first.mode}", fontsize=10)
-    upper.legend(fontsize=8)
+    fig.suptitle(f"{headline(first.title)}: mode {first.mode}")
+    legend_above(upper, 1)
     return fig
 
 
+@drawing
 def backbone_axes(curve: Backbone, ax: Any = None) -> "list[Axes]":
     """Draw frequency and damping of a curve, one axes each."""
-    axes = axes_of(ax, 2, width=4.6, height=3.6)
+    axes = axes_of(ax, 2, width=COLUMN, height=2.7)
     at = ", ".join(f"{1e3 * x:.4g}" for x in curve.at)
     for one, quantity in zip(axes, ("frequency", "damping"), strict=True):
         panel(one, [curve], quantity)
         one.set_xlabel(f"acceleration at ({at}) mm [m/s²]")
-    axes[0].set_title(f"{plain(curve.title)}: mode {curve.mode}, {curve.preload / 1e3:g} kN", fontsize=9)
-    axes[0].legend(fontsize=8)
+    axes[1].set_title(f"{headline(curve.title)}: mode {curve.mode}, {load_label(curve.preload)}")
+    legend_above(axes[0], 1)
     return axes
 
 
+@drawing
 def measured(points: MeasuredBackbone) -> Any:
     """Return the figure of measured points alone: frequency above, damping below."""
-    fig = new_figure(6.3, 6.2)
+    fig = new_figure(COLUMN, 4.6)
     upper, lower = fig.subplots(2, 1, sharex=True)
     for ax, quantity in ((upper, "frequency"), (lower, "damping")):
         marks(ax, points, quantity, 0)
         framed(ax, quantity)
     lower.set_xlabel("acceleration [m/s²]")
-    upper.set_title(plain(points.source) or "free decay", fontsize=10)
+    fig.suptitle(plain(Path(points.source).name) or "free decay")
     return fig

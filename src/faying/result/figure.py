@@ -1,174 +1,275 @@
-"""Figures of a bolted structure: pressure on the joint, frequencies against preload, mode shapes."""
+"""Figures of a bolted structure: pressure and slip on joints, frequencies against preload, the test, mode shapes."""
 
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from faying.fe.figure import draw_shape
-from faying.joint.figure import PressureMap
+from faying.fe.figure import draw_shape_flat, frame_of, moved_by
+from faying.joint.figure import FaceMap, in_plane
 from faying.result.maps import joint_map_of
 from faying.result.result import Result
-from faying.style import axes_of, new_figure, plain
+from faying.result.shape_names import shape_name
+from faying.style import (
+    COLOURS,
+    INK,
+    SMALL,
+    SOFT,
+    TALLEST,
+    WIDE,
+    axes_of,
+    colour,
+    drawing,
+    legend_above,
+    load_colours,
+    load_label,
+    new_figure,
+    percent,
+    plain,
+    shared_legend,
+)
+from faying.text import listed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+TEST_MARK: dict[str, Any] = {"mfc": "white", "mec": "black", "ms": 4.5, "mew": 1.1, "ls": "none"}
+FACE_FIELDS = {"pressure": ("pressure [MPa]", 1e6), "slip": ("slip [µm]", 1e-6)}
+NEAR = 1.0  # how far a bonded frequency may lie above the curves to be drawn, of the height of the curves
 
-def pressure_map(ax: Any, result: Result, load: int = -1, joint: int = 0, *, bar: bool = True) -> Any:
-    """Draw the pressure [MPa] on one joint at one load along the axes of the model; no contact stays pale.
 
-    The colours span all loads and joints. Values are shaded over the elements, as `faying.fe.face_map` says; of a
-    result of an earlier version, whose file has no faces, points are drawn.
+@drawing
+def face_map(ax: Any, result: Result, field: str, load: int = -1, joint: int = 0) -> Any:
+    """Draw pressure or slip on one joint at one load, on its face at one scale, and return what a colour bar needs.
+
+    The colours span all loads and joints; what is open stays pale, and a line marks the edge of contact. Values are
+    shaded over the elements, as `faying.fe.face_map` says; of a result of an earlier version, whose file has no faces,
+    points are drawn.
     """
     here = result.joint_of_point == joint
-    found = joint_map_of(result, joint)
+    found = joint_map_of(result, joint, contact=True)
+    every = getattr(result, field)
     share = float(result.weights[here] @ (result.pressure[load][here] <= 0) / result.weights[here].sum())
-    return PressureMap(
+    label, unit = FACE_FIELDS[field]
+    return FaceMap(
         places=result.points[here] if found is None else result.outline[found.parents].mean(axis=1),
         triangles=None if found is None else found.triangles,
-        values=result.pressure[load][here] if found is None else found.fields["pressure"][load],
-        most=float(result.pressure.max()),
+        values=every[load][here] if found is None else found.fields[field][load],
+        contact=(result.pressure[load][here] > 0).astype(float) if found is None else found.fields["contact"][load],
+        most=float(every.max()),
         areas=result.weights[here],
-        title=f"{plain(result.joints[joint])}, {result.loads[load] / 1e3:g} kN: open on {share:.0%}",
-    ).draw(ax, bar=bar)
+        label=label,
+        unit=unit,
+        title=f"{plain(result.joints[joint])}, {load_label(result.loads[load])}: {percent(share)} open",
+    ).paint(ax)
 
 
-def frequencies(ax: Any, result: Result, modes: int = 8) -> Any:
-    """Draw frequency against preload, each mode relative to its bonded value; free bounds lie far below and are
-    listed."""
-    load = result.loads * 1e-3
-    count = min(modes, len(result.bonded))
+def pressures(result: Result) -> Any:
+    """Return a figure of the pressure on each joint at the least and the greatest preload."""
+    return _faces(result, "pressure")
+
+
+def slips(result: Result) -> Any:
+    """Return a figure of the slip in each joint at the least and the greatest preload."""
+    return _faces(result, "slip")
+
+
+@drawing
+def _faces(result: Result, field: str) -> Any:
+    loads = sorted({0, len(result.loads) - 1})
+    tall = []
+    for joint in range(len(result.joints)):
+        flat, _ = in_plane(result.points[result.joint_of_point == joint])
+        across, up = np.ptp(flat, axis=0)
+        tall.append(float(np.clip(up / across, 0.15, 1.6)) if across > 0 else 1.0)
+    width = (WIDE - 0.8) / len(loads) - 0.55
+    heights = [0.75 + width * one for one in tall]
+    fig = new_figure(WIDE, min(sum(heights), TALLEST * len(heights)))
+    axes = fig.subplots(len(result.joints), len(loads), squeeze=False, height_ratios=heights)
+    painted = [
+        face_map(axes[joint, column], result, field, load, joint)
+        for joint in range(len(result.joints))
+        for column, load in enumerate(loads)
+    ]
+    for column in range(1, len(loads)):
+        for ax in axes[:, column]:
+            ax.set_ylabel("")
+    fig.colorbar(painted[0], ax=list(axes.flat), label=FACE_FIELDS[field][0], fraction=0.04, pad=0.015, aspect=18)
+    return fig
+
+
+@drawing
+def frequencies(result: Result) -> Any:
+    """Return a figure of every mode's frequency against preload, with its band and the test."""
+    count = len(result.bonded)
+    columns = min(4, count)
+    rows = -(-count // columns)
+    fig = new_figure(WIDE, min(0.7 + 1.45 * rows, 0.7 + TALLEST))
+    axes = fig.subplots(rows, columns, squeeze=False, sharex=True)
+    for ax in axes.flat[count:]:
+        ax.set_visible(False)
     for mode in range(count):
-        ratio = result.frequencies[:, mode] / result.bonded[mode]
-        bounds = result.free[mode], result.frequencies[-1, mode], result.bonded[mode]
-        ax.plot(
-            load,
-            ratio,
-            "o-",
-            color=f"C{mode % 10}",
-            ms=4,
-            lw=1.4,
-            label=f"{mode + 1}: {' / '.join(f'{f:.0f}' for f in bounds)} Hz",
-        )
-    ax.axhline(1, color="k", lw=0.8, ls="--")
-    ax.set(
-        xlabel="preload per bolt [kN]",
-        ylabel="frequency / bonded frequency [-]",
-        title="free / predicted at the last load / bonded",
-    )
-    ax.legend(fontsize=7, loc="best")
-    ax.grid(alpha=0.3)
-    return ax
+        _against_preload(axes.flat[mode], result, mode)
+        axes.flat[mode].tick_params(labelbottom=mode + columns >= count)
+    fig.supxlabel("preload of each bolt [kN]")
+    fig.supylabel("frequency [Hz]")
+    shared_legend(fig, axes.flat[:count])
+    return fig
 
 
+@drawing
 def frequency_axes(result: Result, modes: int, ax: Any = None) -> "list[Axes]":
     """Draw frequency [Hz] against preload [kN], one axes for each of the first modes, with bands and the test."""
-    axes = axes_of(ax, modes, width=3.4, height=2.7, columns=3)
-    load = result.loads * 1e-3
+    axes = axes_of(ax, modes, width=WIDE / 3, height=1.9, columns=3)
     for mode, one in enumerate(axes):
-        if result.interval_low is not None:
-            _band(one, load, result.interval_low, result.interval_high, mode, "C0", "5 to 95 %")
-        else:
-            _band(one, load, result.low, result.high, mode, "C0", "range of the law")
-        one.plot(load, result.frequencies[:, mode], "o-", color="C0", ms=4, lw=1.4, label="Faying")
-        for k, name in enumerate(result.beside):
-            if result.beside_frequencies is not None:
-                one.plot(
-                    load, result.beside_frequencies[k, :, mode], ".--", color=f"C{k + 3}", lw=1.0, label=plain(name)
-                )
-        c = result.comparison
-        if c is not None:
-            found = c.modes == mode
-            rows, columns = np.nonzero(found)
-            style: dict[str, Any] = {"mfc": "none", "mec": "0.2", "ms": 6, "mew": 1.2}
-            one.plot(load[rows], c.frequencies[rows, columns], "o", label=c.reference, **style)
-        one.set_title(f"mode {mode + 1}, bonded {result.bonded[mode]:.1f} Hz", fontsize=9)
-        one.set(xlabel="preload per bolt [kN]", ylabel="frequency [Hz]")
-        one.ticklabel_format(axis="y", useOffset=False)
-        one.grid(alpha=0.3)
-    axes[0].legend(fontsize=7)
+        _against_preload(one, result, mode)
+        one.set(xlabel="preload of each bolt [kN]", ylabel="frequency [Hz]")
+    if ax is None:
+        shared_legend(axes[0].figure, axes)
+    else:
+        axes[0].legend()
     return axes
 
 
-def _band(ax: Any, load: Any, low: Any, high: Any, mode: int, color: str, label: str) -> None:
-    """The band between two frequencies (load, mode), as bars where there is one load."""
-    if low is None or high is None:
-        return
-    if len(load) > 1:
-        ax.fill_between(load, low[:, mode], high[:, mode], color=color, alpha=0.18, lw=0, label=label)
+def _against_preload(ax: Any, result: Result, mode: int) -> None:
+    """One mode: band, curve of the study, other laws, the test, and bonded faces where they lie near."""
+    load, f = result.loads * 1e-3, result.frequencies[:, mode]
+    if result.interval_low is not None and result.interval_high is not None:
+        ends = result.interval_low[:, mode], result.interval_high[:, mode]
+        _band(ax, load, *ends, label="5 to 95 %")
+    elif result.low is not None and result.high is not None:
+        ends = result.low[:, mode], result.high[:, mode]
+        _band(ax, load, *ends, label="range of the law")
     else:
-        ax.vlines(load, low[:, mode], high[:, mode], color=color, alpha=0.35, lw=6, label=label)
+        ends = f, f
+    ax.plot(load, f, "o-" if len(load) > 1 else "D", color=COLOURS[0], ms=3, label="computed")
+    for k, name in enumerate(result.beside):
+        if result.beside_frequencies is not None:
+            of_law = result.beside_frequencies[k, :, mode]
+            ax.plot(load, of_law, ".--", color=colour(k + 2), ms=4, lw=1.0, label=plain(name))
+    c = result.comparison
+    if c is not None:
+        rows, columns = np.nonzero(c.modes == mode)
+        if len(rows):
+            ax.plot(load[rows], c.frequencies[rows, columns], "s", label=c.reference, **TEST_MARK)
+    low, high = float(np.min(ends)), float(np.max(ends))
+    if high < result.bonded[mode] <= high + NEAR * max(high - low, 1e-3 * high) or low <= result.bonded[mode] <= high:
+        ax.axhline(result.bonded[mode], color=SOFT, ls=":", lw=1.0, label="faces bonded")
+    ax.set_title(f"mode {mode + 1}", pad=3)
+    ax.grid(alpha=0.3)
+    ax.margins(x=0.08, y=0.12)
+    ax.locator_params(axis="y", nbins=4)
 
 
+def _band(ax: Any, load: Any, low: Any, high: Any, *, label: str) -> None:
+    """The band between two frequencies (load,), as a bar where there is one load."""
+    if len(load) > 1:
+        ax.fill_between(load, low, high, color=COLOURS[0], alpha=0.18, lw=0, label=label)
+    else:
+        ax.vlines(load, low, high, color=COLOURS[0], alpha=0.35, lw=6, label=label)
+
+
+@drawing
 def comparison(ax: Any, result: Result) -> Any:
-    """Draw the error of prediction and of the published model against the test, mode by mode."""
+    """Draw the difference of study and published model from the test, one mark a mode and load.
+
+    A bar is 5 to 95 % of the study about its own frequency.
+    """
     c = result.comparison
     if c is None:
         ax.text(0.5, 0.5, "no reference in this study", ha="center", va="center")
         return ax
     modes = np.arange(1, c.frequencies.shape[1] + 1)
+    shades = load_colours(len(result.loads))
     for row, load in enumerate(result.loads):
+        place = modes + (row - (len(result.loads) - 1) / 2) * 0.62 / len(result.loads)
         error = 100 * (c.predicted[row] / c.frequencies[row] - 1)
-        ax.plot(modes, error, "o-", color=f"C{row}", label=f"Faying, {load / 1e3:g} kN")
+        ax.errorbar(
+            place,
+            error,
+            yerr=_ends(result, row),
+            fmt="o",
+            ms=4,
+            color=shades[row],
+            elinewidth=2.0,
+            capsize=0,
+            label=f"computed, {load_label(load)}",
+        )
         if c.published is not None:
             theirs = 100 * (c.published[row] / c.frequencies[row] - 1)
-            ax.plot(modes, theirs, "x:", color=f"C{row}", label=f"{plain(c.published_name)}, {load / 1e3:g} kN")
-    ax.axhline(0, color="k", lw=0.8)
-    ax.set(xlabel=f"mode of the {c.reference}", ylabel=f"error [% of the {c.reference}]", xticks=modes)
-    ax.legend(fontsize=7)
+            ax.plot(place, theirs, "x", ms=5, color=shades[row], label=f"{plain(c.published_name)}, {load_label(load)}")
+    ax.axhline(0, color=INK, lw=0.8)
+    ax.set(xlabel=f"mode of the {c.reference}", ylabel=f"difference from the {c.reference} [%]", xticks=modes)
+    ax.set_xlim(0.5, len(modes) + 0.5)
+    ax.grid(axis="y", alpha=0.3)
+    legend_above(ax, 2 if c.published is not None else 4)
+    return ax
+
+
+def _ends(result: Result, row: int) -> Any:
+    """How far 5 and 95 % lie from the study's frequencies, in % of the test (2, test mode); None without intervals."""
+    c = result.comparison
+    if c is None or result.interval_low is None or result.interval_high is None:
+        return None
+    modes = np.maximum(c.modes[row], 0)
+    low = c.predicted[row] - result.interval_low[row, modes]
+    high = result.interval_high[row, modes] - c.predicted[row]
+    return np.clip(np.nan_to_num(100 * np.stack([low, high]) / c.frequencies[row]), 0, None)
+
+
+@drawing
+def mode_shapes(result: Result, load: int = -1) -> Any:
+    """Return a sheet of all mode shapes at one load, in frames of one size and scale.
+
+    Above each: frequency, name of the shape, and damping where the result has it.
+    """
+    count = len(result.bonded)
+    shapes = [result.shapes[load, mode].astype(float) for mode in range(count)]
+    frame = frame_of([result.outline, *(moved_by(result.outline, shape)[0] for shape in shapes)])
+    wide, high = frame[1] - frame[0]
+    tall = float(high / wide)
+    columns = min(count, 6 if tall > 1.2 else 5 if tall > 0.6 else 4)
+    rows = -(-count // columns)
+    words = [shape_words(result, mode, load) for mode in range(count)]
+    above = 0.06 + 0.145 * max(text.count("\n") + 1 for text in words)
+    height = min(WIDE / columns * tall, 2.1, TALLEST / rows - above)
+    fig = new_figure(WIDE, rows * (height + above))
+    axes = fig.subplots(rows, columns, squeeze=False)
+    for mode in range(rows * columns):
+        ax = axes.flat[mode]
+        ax.set_axis_off()
+        if mode < count:
+            draw_shape_flat(ax, result.outline, result.triangles, shapes[mode], frame=frame)
+            ax.set_title(words[mode], fontsize=SMALL, pad=2)
+    return fig
+
+
+def shape_words(result: Result, mode: int, load: int = -1) -> str:
+    """Return what stands above a mode shape: frequency, name and damping, one a line."""
+    lines = [f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz", plain(shape_name(result, mode, load))]
+    if result.levels is not None and result.level_damping is not None:
+        k = len(result.levels) // 2
+        lines.append(rf"$\zeta$ {100 * result.level_damping[load, k, mode]:.2g} % at {result.levels[k]:g} m/s²")
+    elif np.isfinite(result.loss_factors[load, mode]):
+        lines.append(rf"$\eta$ {100 * result.loss_factors[load, mode]:.2g} %")
+    return "\n".join(filter(None, lines))
+
+
+@drawing
+def law_curves(ax: Any, result: Result) -> Any:
+    """Draw the stiffness of the joints' points against their pressure at the greatest load, open points left out."""
+    pressure = result.pressure[-1]
+    groups: dict[str, list[int]] = {}
+    for joint, (surface, law) in enumerate(zip(result.surfaces, result.laws, strict=True)):
+        groups.setdefault(repr((surface, law)), []).append(joint)
+    for k, joints in enumerate(groups.values()):
+        here = np.isin(result.joint_of_point, joints) & (pressure > 1e-3 * pressure.max())
+        order = np.argsort(pressure[here])
+        whose = f", {plain(listed([result.joints[j] for j in joints], 3))}" if len(groups) > 1 else ""
+        for values, line, symbol in ((result.k_n, "-", "n"), (result.k_t, "--", "t")):
+            stiffness = values[-1][here][order] * 1e-12
+            label = rf"$k_\mathrm{{{symbol}}}${whose}"
+            ax.plot(pressure[here][order] * 1e-6, stiffness, line, color=colour(k), label=label)
+    ax.set(xscale="log", yscale="log", xlabel="pressure [MPa]", ylabel="stiffness per area [MPa/µm]")
+    legend_above(ax, 2)
     ax.grid(alpha=0.3)
     return ax
-
-
-def pressures(result: Result) -> Any:
-    """Return a figure of the pressure on each joint at the least and the greatest preload."""
-    loads = sorted({0, len(result.loads) - 1})
-    wide = [result.points[result.joint_of_point == joint] for joint in range(len(result.joints))]
-    spans = [np.sort(np.ptp(points, axis=0)) for points in wide]
-    tall = max((float(min(one[1] / one[2], 1.0)) if one[2] > 0 else 1.0) for one in spans)
-    fig = new_figure(5.2 * len(loads), (1.1 + 3.6 * max(tall, 0.3)) * len(result.joints))
-    for joint in range(len(result.joints)):
-        for column, load in enumerate(loads):
-            ax = fig.add_subplot(len(result.joints), len(loads), joint * len(loads) + column + 1)
-            pressure_map(ax, result, load, joint, bar=column == len(loads) - 1)
-    return fig
-
-
-def mode_shape(ax: Any, result: Result, mode: int, load: int = -1) -> Any:
-    """Draw one mode shape on 3-D axes, deformed, coloured by the size of its motion."""
-    draw_shape(ax, result.outline, result.triangles, result.shapes[load, mode])
-    ax.set_title(
-        f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz"
-        + ("" if np.isnan(eta := result.loss_factors[load, mode]) else f", loss {eta:.1e}"),
-        fontsize=9,
-    )
-    return ax
-
-
-def mode_shapes(result: Result, modes: int = 8, load: int = -1) -> Any:
-    """Return a figure of the first mode shapes."""
-    count = min(modes, len(result.bonded))
-    columns = min(4, count)
-    rows = -(-count // columns)
-    x, y, z = np.ptp(result.outline, axis=0)
-    fig = new_figure(2.6 * columns, float(np.clip(2.6 * z / max(np.hypot(x, y), 1e-12), 1.5, 2.9) + 0.3) * rows)
-    for mode in range(count):
-        mode_shape(fig.add_subplot(rows, columns, mode + 1, projection="3d"), result, mode, load)
-    return fig
-
-
-def law_curves(result: Result) -> Any:
-    """Return k_n, k_t of the joints' points against pressure, open points left out, at the greatest load."""
-    fig = new_figure(7.0, 4.2)
-    ax = fig.add_subplot()
-    pressure = result.pressure[-1]
-    for joint, name in enumerate(result.joints):
-        here = (result.joint_of_point == joint) & (pressure > 1e-3 * pressure.max())
-        order = np.argsort(pressure[here])
-        p = pressure[here][order] * 1e-6
-        ax.plot(p, result.k_n[-1][here][order] * 1e-12, "-", color=f"C{joint}", label=f"{plain(name)}: k_n")
-        ax.plot(p, result.k_t[-1][here][order] * 1e-12, "--", color=f"C{joint}", label=f"{plain(name)}: k_t")
-    ax.set(xscale="log", yscale="log", xlabel="pressure [MPa]", ylabel="stiffness per area [MPa/um]")
-    ax.legend(fontsize=8)
-    ax.grid(alpha=0.3, which="both")
-    return fig

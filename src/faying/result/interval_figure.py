@@ -6,24 +6,25 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.result.score import Score
-from faying.style import new_figure
+from faying.style import COLOURS, WIDE, drawing, legend_above, load_label, new_figure
+from faying.typeset import typeset
 
 if TYPE_CHECKING:
     from faying.result.result import Result
 
-# Okabe and Ito, one for each thing that is not known, so that it keeps its colour from figure to figure
-COLOURS = {
-    "scan": "#0072b2",
-    "law": "#56b4e9",
-    "k_t/k_n": "#cc79a7",
-    "waves": "#009e73",
-    "preload": "#f0e442",
-    "structure": "#999999",
+# one colour for each thing that is not known, so that it keeps its colour from figure to figure
+SOURCES = {
+    "scan": COLOURS[0],
+    "law": COLOURS[5],
+    "k_t/k_n": COLOURS[3],
+    "waves": COLOURS[2],
+    "preload": COLOURS[4],
+    "structure": COLOURS[7],
     "mode": "#d9d9d9",
 }
-NAMES = {"k_t/k_n": "$k_t/k_n$"}
 
 
+@drawing
 def intervals(result: "Result") -> Any:
     """Return the figure of the intervals at the greatest preload.
 
@@ -34,32 +35,42 @@ def intervals(result: "Result") -> Any:
     if interval is None or result.interval_low is None or result.interval_high is None:
         raise InputError("the result has no intervals; run it with [modes] intervals = true")
     count = len(result.bonded)
-    fig = new_figure(7.0, 1.6 + 0.24 * count)
+    fig = new_figure(WIDE, 1.2 + 0.21 * count)
     left, right = fig.subplots(1, 2, sharey=True, gridspec_kw={"width_ratios": (1.35, 1)})
     value, y = result.frequencies[-1], np.arange(count)
     low, high = (100 * (end[-1] / value - 1) for end in (result.interval_low, result.interval_high))
-    left.barh(y, high - low, left=low, height=0.55, color="#56b4e9", alpha=0.55, lw=0, label="5 to 95 %")
+    left.barh(y, high - low, left=low, height=0.55, color=COLOURS[0], alpha=0.3, lw=0, label="5 to 95 %")
     left.plot(np.zeros(count), y, "|", color="black", ms=9, mew=1.4, label="as computed")
-    left.plot(100 * (result.bonded / value - 1), y, "|", color="#d55e00", ms=9, mew=1.2, label="faces bonded")
+    left.plot(100 * (result.bonded / value - 1), y, "|", color=COLOURS[1], ms=9, mew=1.4, label="faces bonded")
     _test(left, result)
-    most = 1.6 * max(float(np.abs(low).max()), float(np.abs(high).max()))
-    left.set_xlim(-most, most)
+    shown = _shown(left, low, high)
+    far = [k for k in range(count) if 100 * (result.bonded[k] / value[k] - 1) > shown[1]]
+    if far:
+        left.plot([shown[1]] * len(far), far, ">", color=COLOURS[1], ms=4, clip_on=False)
+    left.set_xlim(shown)
     left.set_yticks(y, [f"{k + 1}: {f:.0f} Hz" for k, f in enumerate(value)])
     left.invert_yaxis()
     left.set_xlabel("difference from the value as computed [%]")
-    left.set_ylabel(f"mode at {result.loads[-1] / 1e3:g} kN")
+    left.set_ylabel(f"mode at {load_label(result.loads[-1])}")
     left.grid(axis="x", alpha=0.3)
     before = np.zeros(count)
     for name, share in zip(interval.sources, 100 * interval.shares[:, -1], strict=True):
-        right.barh(y, share, left=before, height=0.55, color=COLOURS[name], lw=0, label=NAMES.get(name, name))
+        right.barh(y, share, left=before, height=0.55, color=SOURCES[name], lw=0, label=typeset(name))
         before = before + share
     right.set_xlim(0, 100)
     right.set_xlabel("share of the variance [%]")
-    for ax, columns in ((left, 2), (right, 3)):
-        ax.legend(
-            loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns, fontsize=8, frameon=False, columnspacing=1.0
-        )
+    for ax, columns in ((left, 2), (right, 4)):
+        legend_above(ax, columns)
     return fig
+
+
+def _shown(ax: Any, low: Any, high: Any) -> tuple[float, float]:
+    """Ends of the axis of differences: the bars and the test, with some room; bonded faces may lie beyond."""
+    marks = [line.get_xdata() for line in ax.get_lines() if line.get_label() == "test"]
+    least = min(float(low.min()), *(float(np.min(one)) for one in marks), -1e-9)
+    most = max(float(high.max()), *(float(np.max(one)) for one in marks), 1e-9)
+    room = 0.08 * (most - least)
+    return least - room, most + room
 
 
 def _test(ax: Any, result: "Result") -> None:
@@ -70,4 +81,4 @@ def _test(ax: Any, result: "Result") -> None:
     at = [k for k in range(score.test.shape[1]) if np.isfinite(score.test[-1, k])]
     modes = c.modes[-1, at]
     miss = 100 * (score.test[-1, at] / result.frequencies[-1, modes] - 1)
-    ax.plot(miss, modes, "o", ms=5, mfc="white", mec="black", mew=1.3, label="test")
+    ax.plot(miss, modes, "s", ms=4.5, mfc="white", mec="black", mew=1.1, label="test")

@@ -6,8 +6,11 @@ from faying.fe.face_map import FaceValues, joint_map
 from faying.result.result import Result
 
 
-def joint_map_of(result: Result, joint: int) -> FaceValues | None:
-    """Values on the first face of a joint; None where the result does not say which triangles those are."""
+def joint_map_of(result: Result, joint: int, *, contact: bool = False) -> FaceValues | None:
+    """Values on the first face of a joint; None where the result does not say which triangles those are.
+
+    contact: whether the share of the area around each place that carries pressure is one of them.
+    """
     if result.face_of_triangle is None or joint >= len(result.joint_faces):
         return None
     name = result.joint_faces[joint][0]
@@ -20,4 +23,6 @@ def joint_map_of(result: Result, joint: int) -> FaceValues | None:
     values = {name: rows[:, at] for name, rows in fields.items() if rows is not None}
     if result.gap is not None and np.ptp(result.gap) > 1e-9 * float(np.ptp(result.outline)):
         values["gap"] = result.gap[None, at]
+    if contact:
+        values["contact"] = (result.pressure[:, at] > 0).astype(float)
     return joint_map(result.outline, result.triangles[here], result.points[at], result.weights[at], values)

@@ -5,31 +5,36 @@ from typing import Any
 import numpy as np
 
 from faying.result.result import Result
-from faying.style import new_figure
+from faying.style import COLUMN, SMALL, TALLEST, WIDE, drawing, legend_above, load_colours, load_label, new_figure
+
+WRITTEN = 6  # modes at most for which the values of MAC stand in the map
 
 
 def _curves(ax: Any, result: Result, output: int, input: int, of: Any) -> None:
     response = result.response
     assert response is not None
     f = response.frequencies
-    for k, (load, receptance) in enumerate(zip(result.loads, response.values, strict=True)):
+    shades = load_colours(len(result.loads))
+    for load, receptance, shade in zip(result.loads, response.values, shades, strict=True):
         values = -((2 * np.pi * f) ** 2) * receptance[:, output, input]
-        ax.plot(f, of(values), color=f"C{k % 10}", lw=1.1, label=f"{load / 1e3:g} kN")
+        ax.plot(f, of(values), color=shade, lw=1.0, label=load_label(load))
     ax.set(xlabel="frequency [Hz]", xlim=(f[0], f[-1]))
     ax.grid(alpha=0.3)
 
 
+@drawing
 def amplitude(ax: Any, result: Result, output: int = 0, input: int = 0) -> Any:
     """Draw the size of the accelerance between an output and an input of the response, at every preload."""
     _curves(ax, result, output, input, np.abs)
     assert result.response is not None
     (at, along), (place, push) = result.response.outputs[output], result.response.inputs[input]
     ax.set(yscale="log", ylabel="|accelerance| [m/s²/N]")
-    ax.set_title(f"{words(at, along)} / {words(place, push)}", fontsize=9)
-    ax.legend(fontsize=7)
+    legend_above(ax, 4)
+    ax.set_title(f"{words(at, along)}, force at {words(place, push)}", loc="left", pad=18)
     return ax
 
 
+@drawing
 def phase(ax: Any, result: Result, output: int = 0, input: int = 0) -> Any:
     """Draw the phase of the accelerance, -180 to 180 degrees, at every preload; broken where it wraps around."""
 
@@ -38,7 +43,7 @@ def phase(ax: Any, result: Result, output: int = 0, input: int = 0) -> Any:
         return np.where(np.abs(np.diff(degrees, prepend=degrees[0])) > 180, np.nan, degrees)
 
     _curves(ax, result, output, input, angle)
-    ax.set(ylabel="phase [deg]", ylim=(-190, 190), yticks=range(-180, 181, 90))
+    ax.set(ylabel="phase [°]", ylim=(-190, 190), yticks=range(-180, 181, 90))
     return ax
 
 
@@ -52,11 +57,12 @@ def words(point: Any, axis: Any) -> str:
     return f"({', '.join(f'{1e3 * v:.4g}' for v in point)}) mm along {name}"
 
 
+@drawing
 def responses(result: Result, most: int = 4) -> Any:
     """Return a figure of the first pairs of output and input: amplitude, with the phase below it."""
     assert result.response is not None
     pairs = list(np.ndindex(*result.response.values.shape[2:]))[:most]
-    fig = new_figure(8.0, 4.6 * len(pairs))
+    fig = new_figure(WIDE, min(3.4 * len(pairs), 1.3 * TALLEST))
     axes = fig.subplots(2 * len(pairs), 1, squeeze=False, height_ratios=[2, 1] * len(pairs))[:, 0]
     for k, (o, i) in enumerate(pairs):
         amplitude(axes[2 * k], result, o, i)
@@ -64,35 +70,34 @@ def responses(result: Result, most: int = 4) -> Any:
     return fig
 
 
+@drawing
 def mac_between_loads(ax: Any, result: Result, load: int = -1) -> Any:
     """Draw the MAC of the modes at the first preload (rows) with those at another (columns)."""
     table = result.mac[load]
     image = ax.imshow(table, cmap="Blues", vmin=0, vmax=1, aspect="equal")
-    ax.figure.colorbar(image, ax=ax, label="MAC [-]", shrink=0.8)
-    for row, column in np.ndindex(table.shape):
-        if table[row, column] >= 0.005:
-            ax.text(
-                column,
-                row,
-                f"{table[row, column]:.2f}",
-                ha="center",
-                va="center",
-                fontsize=5,
-                color="white" if table[row, column] > 0.6 else "0.3",
-                in_layout=False,
-            )
+    ax.figure.colorbar(image, ax=ax, label="MAC", shrink=0.8)
+    if len(table) <= WRITTEN:
+        for row, column in np.ndindex(table.shape):
+            if table[row, column] >= 0.005:
+                shade = "white" if table[row, column] > 0.6 else "0.2"
+                text = f"{table[row, column]:.2f}"
+                ax.text(column, row, text, ha="center", va="center", fontsize=SMALL, color=shade, in_layout=False)
     count = range(len(table))
-    ax.set_xticks(count, [str(k + 1) for k in count], fontsize=7)
-    ax.set_yticks(count, [str(k + 1) for k in count], fontsize=7)
-    ax.set(xlabel=f"mode at {result.loads[load] / 1e3:g} kN", ylabel=f"mode at {result.loads[0] / 1e3:g} kN")
+    step = 1 if len(table) <= 10 else 2
+    ax.set_xticks(count[::step], [str(k + 1) for k in count[::step]])
+    ax.set_yticks(count[::step], [str(k + 1) for k in count[::step]])
+    ax.spines[:].set_visible(False)
+    ax.set(xlabel=f"mode at {load_label(result.loads[load])}", ylabel=f"mode at {load_label(result.loads[0])}")
     return ax
 
 
+@drawing
 def macs(result: Result, most: int = 4) -> Any:
     """Return a figure of the MAC between the first preload and the last of the others."""
     loads = range(1, len(result.loads))[-most:]
-    size = 1.8 + 0.32 * len(result.bonded)
-    fig = new_figure(size * len(loads), size * 0.85)
+    columns = min(2, len(loads))
+    rows = -(-len(loads) // columns)
+    fig = new_figure((COLUMN, WIDE)[columns - 1], 2.9 * rows)
     for column, load in enumerate(loads):
-        mac_between_loads(fig.add_subplot(1, len(loads), column + 1), result, load)
+        mac_between_loads(fig.add_subplot(rows, columns, column + 1), result, load)
     return fig

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.style import axes_of, new_figure, plain, save
+from faying.style import COLOURS, SMALL, WIDE, axes_of, colour, drawing, new_figure, plain, save
 from faying.surface.convention import density
 from faying.surface.form import Prepared, prepared
 from faying.surface.fractal import FractalFit
 from faying.surface.scan import Profile, Scan
 from faying.surface.spectrum import Spectrum, spectrum
+from faying.typeset import unit
 from faying.units import show
 
 if TYPE_CHECKING:
@@ -29,11 +30,12 @@ def _unit(value: float) -> tuple[float, str]:
     return _PREFIXES[-1]
 
 
+@drawing
 def height_map(scan: Scan, ax: Any) -> Any:
     """Draw the heights as a map; colours span the central 98 % of the heights."""
     factor, name = _unit(max(scan.size))
     low, high = np.nanquantile(scan.heights, [0.01, 0.99])
-    scale, unit = _unit(float(high - low))
+    scale, tall = _unit(float(high - low))
     image = ax.imshow(
         scan.heights / scale,
         origin="lower",
@@ -43,36 +45,47 @@ def height_map(scan: Scan, ax: Any) -> Any:
         vmax=high / scale,
         interpolation="nearest",
     )
-    ax.figure.colorbar(image, ax=ax, label=f"height [{unit}]", shrink=0.85)
+    ax.figure.colorbar(image, ax=ax, label=f"height [{tall}]", shrink=0.85)
     ax.set_xlabel(f"x [{name}]")
     ax.set_ylabel(f"y [{name}]")
     return ax
 
 
+@drawing
 def profile(scan: Profile, ax: Any) -> Any:
     """Draw a line of heights."""
     factor, name = _unit(scan.length)
-    scale, unit = _unit(float(np.nanmax(np.abs(scan.heights))))
-    ax.plot(np.arange(len(scan.heights)) * scan.spacing / factor, scan.heights / scale, lw=0.7)
+    scale, tall = _unit(float(np.nanmax(np.abs(scan.heights))))
+    ax.plot(np.arange(len(scan.heights)) * scan.spacing / factor, scan.heights / scale, lw=0.7, color=COLOURS[0])
     ax.set_xlabel(f"x [{name}]")
-    ax.set_ylabel(f"height [{unit}]")
+    ax.set_ylabel(f"height [{tall}]")
     ax.margins(x=0)
     return ax
 
 
+@drawing
 def power_spectrum(of: Spectrum, fits: Mapping[str, FractalFit | str], ax: Any, *, name: str = "scan") -> Any:
-    """Draw the power per radial frequency with the law of each fit over its band; wavelengths along the top."""
+    """Draw the power per radial frequency with the law of each fit over its band; wavelengths along the top.
+
+    Where there are several fits, their colours are those of `estimators`.
+    """
+    from matplotlib.ticker import NullFormatter
+
     ax.loglog(of.frequency, of.density, ".", ms=3, color="0.55", label=name)
-    for method, fit in fits.items():
+    for k, (method, fit) in enumerate(fits.items()):
         if isinstance(fit, str) or not (fit.G > 0 and 2 < fit.D < 3):
             continue
         f = np.geomspace(1 / fit.band[1], 1 / fit.band[0], 50)
-        ax.loglog(f, density(fit.D, fit.G, fit.c) * f ** (2 * fit.D - 7), lw=1.6, label=f"{method}, D {fit.D:.3f}")
+        law = density(fit.D, fit.G, fit.c) * f ** (2 * fit.D - 7)
+        ax.loglog(f, law, lw=1.6, color=colour(k), label=f"{method}, $D$ {fit.D:.3f}")
     ax.set_xlabel("frequency [1/m]")
     ax.set_ylabel("power per frequency [m³]")
     top = ax.secondary_xaxis("top", functions=(_inverse, _inverse))
     top.set_xlabel("wavelength [m]")
-    ax.legend(fontsize="small", loc="upper right")
+    for axis in (ax.xaxis, top.xaxis, ax.yaxis):
+        axis.set_minor_formatter(NullFormatter())
+    if len(fits) < 2:
+        ax.legend(loc="best")
     return ax
 
 
@@ -81,6 +94,7 @@ def _inverse(x: Any) -> Any:
         return 1 / np.asarray(x, float)
 
 
+@drawing
 def overview_of(scan: Scan | Profile, axes: Any, *, degree: int) -> "list[Axes]":
     """Draw levelled heights and their spectrum for `plot` of a scan or profile; missing points stay blank."""
     ready = prepared(scan, degree=degree)
@@ -90,41 +104,44 @@ def overview_of(scan: Scan | Profile, axes: Any, *, degree: int) -> "list[Axes]"
         height_map(holes, heights)
     else:
         profile(holes, heights)
-    heights.set_title(f"{plain(Path(scan.source).name)}, levelled", fontsize="medium")
+    heights.set_title(f"{plain(Path(scan.source).name)}, levelled")
     power_spectrum(spectrum(ready.scan), {}, power, name="spectrum")
     return [heights, power]
 
 
+@drawing
 def fit_plot(fit: FractalFit, ax: Any) -> "Axes":
     """Draw the spectrum, the band of a fit shaded, its power law in the band and thin beyond it."""
     if fit.drawn is None:
         raise InputError("this fit was made from numbers alone and has no spectrum to draw; make it with fit_fractal")
-    (axes,) = axes_of(ax, 1, width=6.4, height=4.6)
+    (axes,) = axes_of(ax, 1, width=WIDE, height=3.6)
     of = fit.drawn if isinstance(fit.drawn, Spectrum) else spectrum(fit.drawn)
     source = "both scans, summed" if isinstance(fit.drawn, Spectrum) else Path(fit.drawn.source).name
-    axes.axvspan(1 / fit.band[1], 1 / fit.band[0], color="C0", alpha=0.1, lw=0, label="band of the fit")
+    axes.axvspan(1 / fit.band[1], 1 / fit.band[0], color=COLOURS[0], alpha=0.1, lw=0, label="band of the fit")
     power_spectrum(of, {fit.method: fit}, axes, name="spectrum")
     if fit.G > 0 and 2 < fit.D < 3:
         law = density(fit.D, fit.G, fit.c) * of.frequency ** (2 * fit.D - 7)
-        axes.loglog(of.frequency, law, "--", color="0.3", lw=0.8, zorder=1)
+        axes.plot(of.frequency, law, "--", color="0.3", lw=0.8, zorder=1)
     (low, high), (least, most) = fit.D_interval, fit.G_interval
     axes.set_title(
-        f"{plain(source)}: D {fit.D:.3f} ({low:.3f} to {high:.3f}), "
-        f"G {show(fit.G, 'm', digits=3)} ({show(least, 'm', digits=3)} to {show(most, 'm', digits=3)})",
-        fontsize="small",
+        f"{plain(source)}: $D$ {fit.D:.3f} ({low:.3f} to {high:.3f}), $G$ "
+        + unit(f"{show(fit.G, 'm', digits=3)} ({show(least, 'm', digits=3)} to {show(most, 'm', digits=3)})"),
+        fontsize=SMALL,
     )
     return axes
 
 
+@drawing
 def estimators(fits: Mapping[str, FractalFit | str], ax: Any) -> Any:
     """Draw D of every estimator with its 95 % interval."""
     good = [(name, fit) for name, fit in fits.items() if not isinstance(fit, str)]
-    for row, (_, fit) in enumerate(good):
-        ax.plot(fit.D_interval, (row, row), lw=2, color="C0")
-        ax.plot(fit.D, row, "o", color="C0")
+    for row, (name, fit) in enumerate(good):
+        shade = colour(list(fits).index(name))
+        ax.plot(fit.D_interval, (row, row), lw=2, color=shade)
+        ax.plot(fit.D, row, "o", color=shade)
     ax.set_yticks(range(len(good)), [name for name, _ in good])
     ax.set_ylim(len(good) - 0.5, -0.5)
-    ax.set_xlabel("surface dimension D, 95 % interval")
+    ax.set_xlabel("surface dimension $D$, 95 % interval")
     ax.grid(axis="x", alpha=0.3)
     return ax
 
@@ -134,18 +151,24 @@ def overview(scan: Scan | Profile, ready: Prepared, fits: Mapping[str, FractalFi
 
     Raises InputError for a suffix that matplotlib does not know or a folder that cannot be written.
     """
-    figure = new_figure(11, 7.5)
+    return save(overview_figure(scan, ready, fits), path)
+
+
+@drawing
+def overview_figure(scan: Scan | Profile, ready: Prepared, fits: Mapping[str, FractalFit | str]) -> Any:
+    """Return the figure of map (or line), a profile, the spectrum and the estimators of a scan."""
+    figure = new_figure(WIDE, 5.6)
     axes = figure.subplots(2, 2)
     if isinstance(scan, Scan):
         height_map(ready.scan, axes[0, 0])
         profile(ready.scan.profile("x", scan.shape[0] // 2), axes[0, 1])
-        axes[0, 1].set_title("middle row, levelled", fontsize="medium")
+        axes[0, 1].set_title("middle row, levelled")
     else:
         profile(scan, axes[0, 0])
-        axes[0, 0].set_title("as read", fontsize="medium")
+        axes[0, 0].set_title("as read")
         profile(ready.scan, axes[0, 1])
-        axes[0, 1].set_title("levelled", fontsize="medium")
+        axes[0, 1].set_title("levelled")
     power_spectrum(spectrum(ready.scan), fits, axes[1, 0])
     estimators(fits, axes[1, 1])
     figure.suptitle(plain(Path(scan.source).name))
-    return save(figure, path)
+    return figure

@@ -7,7 +7,7 @@ import numpy as np
 from faying.asperity_fe.drive import AsperityCase
 from faying.asperity_fe.result import AsperityResult
 from faying.materials import RIGID, ContactPair
-from faying.style import new_panels
+from faying.style import WIDE, colour, drawing, new_panels
 
 LAWS = ("KogutEtsion", "JacksonGreen", "LinLin", "ZhaoMaiettaChang", "JK")
 
@@ -28,6 +28,7 @@ def laws_of(case: AsperityCase) -> dict[str, Any]:
     return laws
 
 
+@drawing
 def curves(axes: Any, case: AsperityCase, result: AsperityResult) -> None:
     """Draw force and area, over displacement, into two axes: computed, with bounds, and the published laws."""
     history = result.history
@@ -36,10 +37,10 @@ def curves(axes: Any, case: AsperityCase, result: AsperityResult) -> None:
     top = int(np.argmax(history.displacement))
     for ax, name, scale, label in (
         (axes[0], "force", 1e3, "force [mN]"),
-        (axes[1], "area", 1e12, "contact area [um2]"),
+        (axes[1], "area", 1e12, "contact area [µm²]"),
     ):
         for i, (law, model) in enumerate(laws_of(case).items()):
-            ax.plot(fine * 1e9, getattr(model.at(fine), name) * scale, color=f"C{i + 1}", lw=1.2, label=law)
+            ax.plot(fine * 1e9, getattr(model.at(fine), name) * scale, color=colour(i), lw=1.2, label=law)
         value = getattr(history, name) * scale
         ax.plot(d[: top + 1] * 1e9, value[: top + 1], "k-", lw=2, label="finite elements")
         if top < len(d) - 1:
@@ -49,9 +50,9 @@ def curves(axes: Any, case: AsperityCase, result: AsperityResult) -> None:
             ax.fill_between(d[: top + 1] * 1e9, low, high, color="0.8", label="between nodes")
         ax.set(xlabel="displacement [nm]", ylabel=label, xlim=(0, None), ylim=(0, None))
         ax.grid(alpha=0.3)
-        ax.legend(fontsize=7)
 
 
+@drawing
 def stresses(fig: Any, ax: Any, case: AsperityCase, result: AsperityResult) -> None:
     """Draw the von Mises stress over the yield strength of the cap near the contact."""
     from matplotlib.collections import PolyCollection
@@ -72,9 +73,9 @@ def stresses(fig: Any, ax: Any, case: AsperityCase, result: AsperityResult) -> N
         xlim=(0, reach * 1e6),
         ylim=((case.h_a - 1.2 * reach) * 1e6, (case.h_a + 0.1 * reach) * 1e6),
         aspect="equal",
-        xlabel="radius [um]",
+        xlabel="radius [µm]",
         title=f"at {result.history.displacement[-1] * 1e9:.4g} nm",
-        ylabel="height [um]",
+        ylabel="height [µm]",
     )
     if not case.substrate.is_rigid:
         ax.axhline(0.0, color="white", lw=0.8, ls=":")
@@ -82,9 +83,13 @@ def stresses(fig: Any, ax: Any, case: AsperityCase, result: AsperityResult) -> N
     fig.colorbar(drawn, ax=ax, label=label, shrink=0.8)
 
 
+@drawing
 def overview(case: AsperityCase, result: AsperityResult) -> Any:
     """Return a figure: force, area, and the stress at the last step."""
-    fig = new_panels(3, width=4.6, height=3.9)
-    curves(fig.axes[:2], case, result)
-    stresses(fig, fig.axes[2], case, result)
+    fig = new_panels(2, 2, width=WIDE / 2, height=2.6)
+    *drawn, stress, last = fig.axes
+    curves(drawn, case, result)
+    stresses(fig, stress, case, result)
+    last.set_axis_off()
+    last.legend(*drawn[1].get_legend_handles_labels(), loc="center")
     return fig

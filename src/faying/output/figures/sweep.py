@@ -6,9 +6,21 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.style import check_figure, new_figure, prefixed
+from faying.style import (
+    COLOURS,
+    COLUMN,
+    WIDE,
+    check_figure,
+    colour,
+    drawing,
+    new_figure,
+    plain,
+    plain_numbers,
+    prefixed,
+)
 from faying.sweeps.axes import Axis
 from faying.sweeps.files import Sweep
+from faying.typeset import name_of
 
 MAPS = 4
 
@@ -25,28 +37,20 @@ def check(path: str | Path, axes: int) -> None:
 def _scale(axis: Axis) -> tuple[Any, str, bool]:
     """Values to draw, the label with the unit, and whether they are spaced by a factor; texts count from 0."""
     if not axis.numeric:
-        return np.arange(len(axis.values), dtype=float), axis.key, False
+        return np.arange(len(axis.values), dtype=float), name_of(axis.key), False
     values = np.array(axis.values, dtype=float)
     factor, unit = prefixed(values, axis.unit)
     spaced = len(values) > 2 and values.min() > 0
     log = bool(spaced and np.ptp(np.diff(np.log(values))) < 1e-6 * abs(np.log(values[-1] / values[0])))
-    return values / factor, f"{axis.key} [{unit or '-'}]", log
-
-
-def _plain(axis: Any, values: Any) -> None:
-    """Ticks of a logarithmic axis as plain numbers; those between the tens only where there are few tens."""
-    from matplotlib.ticker import FuncFormatter, NullFormatter
-
-    plain = FuncFormatter(lambda value, _: f"{value:g}")
-    axis.set_major_formatter(plain)
-    axis.set_minor_formatter(plain if values.max() < 10 * values.min() else NullFormatter())
+    return values / factor, name_of(axis.key) + (f" [{unit}]" if unit else ""), log
 
 
 def _ticks(axis: Axis, place: Any) -> None:
     if not axis.numeric:
-        place(range(len(axis.values)), [str(v) for v in axis.values])
+        place(range(len(axis.values)), [plain(str(v)) for v in axis.values])
 
 
+@drawing
 def relative_change(ax: Any, sweep: Sweep) -> Any:
     """Draw each mode's frequency along the one axis, relative to its first value that has an answer [%]."""
     axis = sweep.axes[0]
@@ -61,22 +65,22 @@ def relative_change(ax: Any, sweep: Sweep) -> Any:
             x,
             100 * (f / first - 1),
             marker=".",
-            color=f"C{mode % 10}",
-            ls=("-", "--")[mode // 10 % 2],
-            lw=1.3,
+            color=colour(mode),
+            ls=("-", "--", "-.")[mode // len(COLOURS) % 3] if axis.numeric else "none",
             ms=3.5,
             label=f"{mode + 1}: {first:.1f} to {last:.1f} Hz",
         )
     ax.set(xlabel=label, ylabel="change of frequency [%]")
     if log:
         ax.set_xscale("log")
-        _plain(ax.xaxis, x)
+        plain_numbers(ax.xaxis)
     _ticks(axis, ax.set_xticks)
-    ax.legend(fontsize=7, loc="best", title="mode", title_fontsize=7)
+    ax.legend(title="mode", loc="center left", bbox_to_anchor=(1.0, 0.5))
     ax.grid(alpha=0.3)
     return ax
 
 
+@drawing
 def frequency_map(ax: Any, sweep: Sweep, mode: int = 0) -> Any:
     """Draw one mode's frequency [Hz] over two axes; points without an answer stay grey."""
     (x, across, x_log), (y, up, y_log) = (_scale(axis) for axis in sweep.axes[:2])
@@ -86,25 +90,27 @@ def frequency_map(ax: Any, sweep: Sweep, mode: int = 0) -> Any:
     ax.set_facecolor("0.85")
     ax.figure.colorbar(drawn, ax=ax, label="frequency [Hz]", shrink=0.9)
     ax.set(xlabel=across, ylabel=up, title=f"mode {mode + 1}")
-    for values, log, scale, axis_of in ((x, x_log, ax.set_xscale, ax.xaxis), (y, y_log, ax.set_yscale, ax.yaxis)):
+    ax.locator_params(axis="x", nbins=4) if not x_log else None
+    for log, scale, axis_of in ((x_log, ax.set_xscale, ax.xaxis), (y_log, ax.set_yscale, ax.yaxis)):
         if log:
             scale("log")
-            _plain(axis_of, values)
+            plain_numbers(axis_of)
     for axis, place in zip(sweep.axes, (ax.set_xticks, ax.set_yticks), strict=False):
         _ticks(axis, place)
     return ax
 
 
+@drawing
 def figure(sweep: Sweep) -> Any:
     """Return the figure of a sweep: changes along one axis, or maps of modes 1 to 4 over two."""
     if len(sweep.axes) == 1:
-        fig = new_figure(7.0, 4.4)
+        fig = new_figure(WIDE, max(3.0, 0.7 + 0.17 * sweep.frequencies.shape[-1]))
         relative_change(fig.add_subplot(), sweep)
         return fig
     count = min(MAPS, sweep.frequencies.shape[-1])
     columns = min(2, count)
     rows = -(-count // columns)
-    fig = new_figure(4.8 * columns, 3.7 * rows)
+    fig = new_figure(WIDE if columns > 1 else COLUMN, 2.6 * rows)
     for mode in range(count):
         frequency_map(fig.add_subplot(rows, columns, mode + 1), sweep, mode)
     return fig

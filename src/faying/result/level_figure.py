@@ -1,0 +1,71 @@
+"""The figure of damping against level: each mode, with the band of what is not known of slip."""
+
+from typing import Any
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.result.result import Result
+from faying.style import (
+    COLOURS,
+    TALLEST,
+    WIDE,
+    colour,
+    drawing,
+    load_label,
+    new_figure,
+    plain_numbers,
+    shared_legend,
+)
+
+
+@drawing
+def damping_levels(result: Result, load: int = -1) -> Any:
+    """Return the figure of the damping ratio of every mode at levels of acceleration, low to high as a band.
+
+    Raises InputError for a result without levels.
+    """
+    if result.levels is None or result.level_damping is None:
+        raise InputError("the result has no damping at levels; run it with [modes] levels")
+    count = result.level_damping.shape[2]
+    columns = min(4, count)
+    rows = -(-count // columns)
+    fig = new_figure(WIDE, min(0.7 + 1.45 * rows, 0.7 + TALLEST))
+    axes = fig.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+    for ax in axes.flat[count:]:
+        ax.set_visible(False)
+    for mode in range(count):
+        damping_of(axes.flat[mode], result, mode, load)
+        axes.flat[mode].tick_params(labelbottom=mode + columns >= count)
+        axes.flat[mode].set_title(f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz", pad=3)
+    fig.supxlabel(f"peak acceleration where the mode moves most [m/s²], at {load_label(result.loads[load])}")
+    fig.supylabel("damping ratio [%]")
+    shared_legend(fig, axes.flat[:count])
+    return fig
+
+
+@drawing
+def damping_of(ax: Any, result: Result, mode: int, load: int = -1) -> Any:
+    """Draw the damping ratio [%] of one mode over its level, with its band and the part that is slip."""
+    assert result.levels is not None
+    assert result.level_damping is not None
+    a = result.levels
+    if result.level_low is not None and result.level_high is not None:
+        low, high = (100 * one[load, :, mode] for one in (result.level_low, result.level_high))
+        if len(a) > 1:
+            ax.fill_between(a, low, high, color=COLOURS[0], alpha=0.18, lw=0, label="low to high")
+        else:
+            ax.vlines(a, low, high, color=COLOURS[0], alpha=0.35, lw=6, label="low to high")
+    ax.plot(a, 100 * result.level_damping[load, :, mode], "o-", color=COLOURS[0], ms=3, label="damping")
+    if result.level_slip is not None:
+        slip = 100 * result.level_slip[load, :, mode]
+        seen = np.where(slip > 1e-3 * np.nanmax(100 * result.level_damping[load]), slip, np.nan)
+        ax.plot(a, seen, "--", color=colour(1), lw=1.0, label="of it by slip")
+    ax.set(xscale="log", yscale="log")
+    least = np.nanmin(result.level_damping if result.level_low is None else result.level_low)
+    ax.set_ylim(bottom=30 * float(least))  # slip far below it says nothing
+    ax.set_xlim(a[0] / 1.4, a[-1] * 1.4)
+    plain_numbers(ax.xaxis)
+    plain_numbers(ax.yaxis)
+    ax.grid(alpha=0.3)
+    return ax
