@@ -29,8 +29,8 @@ html_math_renderer = "mathml"
 sphinx_gallery_conf = {
     "examples_dirs": "gallery",
     "gallery_dirs": "generated/gallery",
-    "filename_pattern": r"plot_",
-    "ignore_pattern": r"(paper|paper_asperity|front_page)\.py",
+    "filename_pattern": r"(plot_|front_page)",
+    "ignore_pattern": r"(paper|paper_asperity)\.py",
     "copyfile_regex": "",
     "show_memory": False,
     "show_signature": False,

@@ -44,6 +44,7 @@ from faying.sweeps.axes import axis_of
 from faying.sweeps.files import Sweep
 from tests.helpers.backbones import made as backbone_of
 from tests.helpers.chain import LOADS, DampedChain
+from tests.helpers.gallery import script
 from tests.helpers.plates import LAW, stacked
 from tests.helpers.scenes import two_boxes
 
@@ -333,6 +334,7 @@ def two_curves():
 FIGURES = {
     **{f"output/report.py:{name}": (lambda name=name: of_report(name)) for name in report.FIGURES},
     **{f"output/report_measured.py:{name}": (lambda name=name: of_test(name)) for name in ("mac", "frf", "shapes")},
+    "docs/gallery/front_page.py:draw": lambda: script("front_page").draw(result()),
     "result/figure.py:frequency_axes": lambda: whole(result().plot()),
     "result/backbone_figure.py:figure": two_curves,
     "result/backbone_figure.py:backbone_axes": lambda: whole(curve().plot()),

@@ -59,11 +59,11 @@ def damping_of(ax: Any, result: Result, mode: int, load: int = -1) -> Any:
     ax.plot(a, 100 * result.level_damping[load, :, mode], "o-", color=COLOURS[0], ms=3, label="damping")
     if result.level_slip is not None:
         slip = 100 * result.level_slip[load, :, mode]
-        seen = np.where(slip > 1e-3 * np.nanmax(100 * result.level_damping[load]), slip, np.nan)
-        ax.plot(a, seen, "--", color=colour(1), lw=1.0, label="of it by slip")
+        if np.nanmax(slip) > 30 * float(np.nanmin(result.level_damping[load])):  # else slip says nothing
+            ax.plot(a, np.where(slip > 0, slip, np.nan), "--", color=colour(1), lw=1.0, label="of it by slip")
     ax.set(xscale="log", yscale="log")
     least = np.nanmin(result.level_damping if result.level_low is None else result.level_low)
-    ax.set_ylim(bottom=30 * float(least))  # slip far below it says nothing
+    ax.set_ylim(bottom=30 * float(least))
     ax.set_xlim(a[0] / 1.4, a[-1] * 1.4)
     plain_numbers(ax.xaxis)
     plain_numbers(ax.yaxis)
