@@ -61,6 +61,7 @@ _STYLE: Any = {
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"))
 
 RESOLUTION = 200  # dots per inch of what is no line
+SHADED = 130  # those of shaded areas within drawings of lines
 
 
 def drawing(function: Callable[P, T]) -> Callable[P, T]:
@@ -221,14 +222,18 @@ def drawn(figure: Any, kind: str) -> bytes:
 
     It is drawn once: `savefig` draws a figure that lays itself out a second time, for the layout alone.
     """
+    import numpy as np
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.backends.backend_svg import FigureCanvasSVG
+    from PIL import Image
 
     buffer = BytesIO()
-    figure.dpi = RESOLUTION
+    figure.dpi = RESOLUTION if kind == "png" else SHADED
     canvas: Any = (FigureCanvasAgg if kind == "png" else FigureCanvasSVG)(figure)
     if kind == "png":
-        canvas.print_png(buffer)
+        canvas.draw()
+        picture = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])
+        picture.quantize(256).save(buffer, "png", optimize=True, dpi=(RESOLUTION, RESOLUTION))
     else:
         canvas.print_svg(buffer, metadata={"Date": None})
     return buffer.getvalue()

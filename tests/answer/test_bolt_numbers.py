@@ -116,7 +116,7 @@ def test_tables_and_files(tight, tmp_path):
     assert rows[1][1] == "bolt"
     assert table.conductance(tight)[0] == ["preload", "joint [W/K]", "joint [S]"]
     assert "bolts and what they clamp (no law here has a loading curve of its own: no embed" in text(tight)
-    assert "<h2>Conductance of the joints</h2>" in report.html(tight)
+    assert "<h3>Conductance of the joints</h3>" in report.html(tight)
     assert Result.load(tight.save(tmp_path / "result.nc")) == tight
     out = tight.to_dict()["bolt_numbers"]
     assert out["load_factor"] == {"unit": "1", "values": tight.bolt_numbers.load_factor.tolist()}

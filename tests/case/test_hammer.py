@@ -187,9 +187,9 @@ def test_the_command_writes_report_figures_and_files(result, tmp_path, monkeypat
         "test_frf.uff",
     }
     page = (tmp_path / "report.html").read_text()
-    for heading in ("<h2>Hammer test</h2>", "<h2>Modes at every preload</h2>", "<h2>Joints</h2>"):
+    for heading in ("<h2>Hammer test</h2>", "<h3>Modes at every preload</h3>", "<h3>Joints</h3>"):
         assert page.count(heading) == 1
-    assert len(re.findall("<figure[ >]", page)) == 4 + 2 + 3
+    assert len(re.findall("<figure[ >]", page)) == 5 + 2 + 3
 
 
 def test_what_no_universal_file_can_state_is_said_before_the_run(plan, tmp_path, capsys):

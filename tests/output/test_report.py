@@ -1,9 +1,14 @@
 """The report of a result made by hand: what it says of joints and laws."""
 
+import re
+from itertools import pairwise
+
 import numpy as np
 
-from faying.output import report
+from faying.output import answer, report
+from faying.output import page as page_parts
 from faying.result import Result
+from tests.helpers.figures import result as rich
 from tests.helpers.results import small_result
 
 
@@ -14,14 +19,14 @@ def html(joints, laws):
 
 def test_joints_of_one_law_share_a_section():
     page = html(("flange", "foot"), ("JK", "JK"))
-    assert "<h2>Contact of flange, foot</h2>" in page
-    assert page.count("<h3>Contact law</h3>") == 1
+    assert "<h3>Contact of flange, foot</h3>" in page
+    assert page.count("<h4>Contact law</h4>") == 1
 
 
 def test_joints_of_different_laws_have_each_its_own():
     page = html(("flange", "<foot>"), ("JK", "GW"))
-    assert "<h2>Contact of flange</h2>" in page
-    assert "<h2>Contact of &lt;foot&gt;</h2>" in page
+    assert "<h3>Contact of flange</h3>" in page
+    assert "<h3>Contact of &lt;foot&gt;</h3>" in page
     assert "doi:JK" in page
     assert "doi:GW" in page
 
@@ -44,3 +49,50 @@ def test_names_of_any_kind_reach_files_and_figures(tmp_path):
     assert "Träger &lt;b&gt;&amp;" in page
     assert "<b>" not in page
     assert {p.name for p in made} >= {"result.nc", "report.html", "pressure.svg"}
+
+
+def test_chapters_stand_in_their_order_and_the_answer_is_first():
+    page = html(("flange",), ("JK",))
+    found = re.findall(r"<h2[^>]*>(.*?)</h2>", page)
+    assert found[0] == "Answer"
+    assert found == [one for one in ("Answer", *report.CHAPTERS, "Assumptions", "Notes", "Inputs") if one in found]
+    for title in found[1:]:
+        assert page.count(f'<a href="#{report.anchor(title)}">') >= 1
+        assert page.count(f'id="{report.anchor(title)}"') == 1
+    levels = [int(level) for level in re.findall(r"<h([1-6])", page)]
+    assert levels[0] == 1
+    assert all(b <= a + 1 for a, b in pairwise(levels))  # no level is passed over
+
+
+def test_columns_of_zeros_are_left_out_and_named():
+    rows = [["mode", "scan", "k_n", "zero_only", "text"], ["1", "0", "0.0", "0", "-"], ["2", "4", "0%", "-0", "a"]]
+    shown = page_parts.table(rows, keys=1)
+    assert re.findall(r"<th [^>]*>(.*?)</th>", shown) == ["mode", "scan", "text"]
+    assert "Zero in all rows: <i>k</i><sub>n</sub>, zero_only" in shown
+    assert page_parts.without_zeros([["mode", "x"]])[1] == []
+
+
+def test_a_wide_table_is_split_and_loses_nothing():
+    rows = [[f"c{k}" for k in range(14)], [str(k + 1) for k in range(14)]]
+    shown = page_parts.table(rows, keys=2)
+    tables = re.findall(r"<table.*?</table>", shown)
+    heads = [re.findall(r"<th [^>]*>(.*?)</th>", one) for one in tables]
+    assert all(head[:2] == ["c0", "c1"] and len(head) <= page_parts.MOST_COLUMNS for head in heads)
+    assert [cell for head in heads for cell in head[2:]] == rows[0][2:]
+    assert [c for one in tables for c in re.findall(r"<td>(.*?)</td>", one)[2:]] == rows[1][2:]
+
+
+def test_pictures_have_words_for_those_who_do_not_see_them():
+    page = report.html(small_result())
+    pictures = re.findall(r"<(?:svg|img)[^>]*>", page)
+    assert len(pictures) >= 4
+    for one in pictures:
+        words = re.search(r'(?:alt|aria-label)="([^"]*)"', one)
+        assert words
+        assert len(words[1]) > 20
+
+
+def test_the_answer_says_how_the_test_lies():
+    assert "At 8 kN the lowest 3 elastic modes lie from 110 to 610 Hz." in answer.lead(rich())
+    assert "The first lies between 104 and 117 Hz (5 to 95 %)." in answer.lead(rich())
+    assert "3 of 4 measured frequencies lie within 5 to 95 %." in answer.lead(rich())  # 290 Hz lies above 276

@@ -132,7 +132,7 @@ def test_backbones_zoom_over_amplitude_on_a_logarithmic_axis(browser, result, tm
         page.keyboard.press("+")
         assert charts.nth(1).locator("text").first.text_content() != "0.1"  # both charts zoom
         assert page.locator("figure.of-backbones").is_hidden()
-        assert page.locator("h2", has_text="Error bounds of mode 1 over amplitude").count() == 2
+        assert page.locator("h3", has_text="Error bounds of mode 1 over amplitude").count() == 2
 
 
 def test_measured_points_are_marked_on_the_curves_of_a_backbone(browser, result, tmp_path):
@@ -146,7 +146,7 @@ def test_measured_points_are_marked_on_the_curves_of_a_backbone(browser, result,
         circles = [charts.nth(k).locator("svg svg path").nth(1).get_attribute("d").count("a3.5") / 2 for k in (0, 1)]
         assert circles == [3, 2]  # damping was measured at two of them
         assert "measured (points.csv)" in charts.first.locator(".fc-key").inner_text()
-        assert page.locator("h2", has_text="Measured points against mode 1").count() == 1
+        assert page.locator("h3", has_text="Measured points against mode 1").count() == 1
 
 
 def test_the_packed_curves_are_the_accelerance(result):
@@ -160,14 +160,14 @@ def test_the_packed_curves_are_the_accelerance(result):
 
 def test_on_paper_and_without_scripts_the_pictures_stand(browser, address, page):
     pictures = page.locator("figure.static, figure.of-response")
-    assert pictures.count() == 3
+    assert pictures.count() == 2
     assert not pictures.first.is_visible()
     page.emulate_media(media="print")
-    assert all(pictures.nth(k).is_visible() for k in range(3))
+    assert all(pictures.nth(k).is_visible() for k in range(2))
     assert not page.locator("#stage").is_visible()
     with opened(browser, address, java_script_enabled=False) as still:
         pictures = still.locator("figure.static, figure.of-response")
-        assert all(pictures.nth(k).is_visible() for k in range(3))
+        assert all(pictures.nth(k).is_visible() for k in range(2))
         assert "the pictures below stand in" in still.locator("#why").inner_text()
 
 

@@ -8,8 +8,8 @@ from typing import Any
 
 from faying import __version__
 from faying.files import write_text
-from faying.notes import FIRST_NOTES, TITLES, by_severity, grave
-from faying.output import page, report_measured
+from faying.notes import FIRST_NOTES, TITLES, by_severity, grave, grouped
+from faying.output import answer, page, report_measured
 from faying.output.figures import narrowing
 from faying.output.report_curves import backbone_curves, response_curves
 from faying.output.scene import of_result, pages, to_text
@@ -24,26 +24,63 @@ from faying.style import WIDE, drawing, new_figure, uncollected
 def html(result: Result, pictures: dict[str, str] | None = None) -> str:
     """Return the report as HTML text with its figures inside; pictures: those that are drawn already, as HTML."""
     if pictures is None:
-        pictures = {name: page.picture(name.removeprefix(TEST), figure) for name, figure in figures(result).items()}
+        made = figures(result).items()
+        pictures = {name: page.picture(name.removeprefix(TEST), figure, caption(name)) for name, figure in made}
+    chapters = _chapters(result, pictures)
     body = [
-        f"<h1>{escape(result.title)}</h1>",
-        f'<p class="soft">{escape(_made_by(result))}</p>',
+        f"<header><h1>{escape(result.title)}</h1>",
+        f'<p class="soft">{escape(_made_by(result))}</p></header><main>',
+        *_answer(result, pictures),
+        '<nav aria-label="Contents"><ul class="contents">',
+        *(f'<li><a href="#{anchor(title)}">{title}</a></li>' for title, _ in chapters),
+        "</ul></nav>",
     ]
-    first, *others = sections(result)
-    body += _table(first)
-    body += _first_notes(result)
-    body += _view(result, pictures)
-    body += _tables(others, result, pictures)
-    body += _response(result, pictures)
-    body += _backbones(result, pictures)
-    body.append("<h2>Figures</h2>")
-    body += [_figure(name, text) for name, text in pictures.items() if name not in (*MOVING, "response", "backbones")]
-    body += _contact(result)
-    body += _notes(result)
-    body += ["<h2>Sources</h2>", "<ul>", *(f"<li>{escape(line)}</li>" for line in result.sources), "</ul>"]
-    body += _provenance(result)
+    for title, parts in chapters:
+        body += [f'<h2 id="{anchor(title)}">{title}</h2>', *parts]
     run = "\n".join([pages.inline(), *(pages.added(name) for name in ("charts.js", "report.js"))])
-    return page.document(result.title, "".join(body), run)
+    return page.document(result.title, "".join([*body, "</main>"]), run)
+
+
+def anchor(title: str) -> str:
+    """Where a chapter is linked to."""
+    return title.lower().replace(" ", "-")
+
+
+def _chapters(result: Result, pictures: dict[str, str]) -> list[tuple[str, list[str]]]:
+    """The chapters that a result has, in their order, each with its parts."""
+    every = sections(result)
+    unknown = {section.name for section in every} - {"answer"} - {name for one in CHAPTERS.values() for name in one}
+    assert not unknown, unknown
+    out = {"Structure": _view(result, pictures)}
+    for title, names in CHAPTERS.items():
+        parts = out.get(title, [])
+        for name in names:
+            if name in TEXTS:
+                parts += TEXTS[name](result, pictures)
+            elif name in FIGURES and name not in TABLES:
+                parts += [_figure(name, pictures[name])] if name in pictures else []
+            else:
+                parts += _tables([one for one in every if one.name == name], result, pictures)
+        out[title] = parts
+    assumed = [note for note in grouped(result.notes) if note.severity == "remark"]
+    out["Assumptions"] = [_list([note.text for note in assumed])] if assumed else []
+    out["Notes"] = _notes(result)
+    out["Inputs"] = [*_contact(result), "<h3>Sources</h3>", _list(result.sources), *_provenance(result)]
+    return [(title, parts) for title, parts in out.items() if parts]
+
+
+def _list(texts: Sequence[str]) -> str:
+    return f"<ul>{''.join(f'<li>{escape(text)}</li>' for text in texts)}</ul>"
+
+
+def _answer(result: Result, pictures: dict[str, str]) -> list[str]:
+    """What a reader looks for: the modes with their intervals, how the test lies, and what to know first."""
+    first = [section for section in sections(result) if section.name == "answer"]
+    out = [f'<h2>Answer</h2><p class="lead">{escape(answer.lead(result))}</p>', *_first_notes(result)]
+    tables = [page.table(section.rows, section.name) for section in first]
+    shown = [_figure("intervals", pictures["intervals"])] if "intervals" in pictures else []
+    out += ['<div class="pair">', *tables, *shown, "</div>"] if first else []
+    return out + [f"<p>{page.typeset(escape(section.below))}</p>" for section in first]
 
 
 def _made_by(result: Result) -> str:
@@ -64,7 +101,7 @@ def _view(result: Result, pictures: dict[str, str]) -> list[str]:
     """The structure to look at, its data, and the pictures that stand in for it on paper and without scripts."""
     why = "Without JavaScript the structure does not move; the pictures below stand in."
     return [
-        f'<h2>Structure and modes</h2><p id="why" class="soft"><noscript>{why}</noscript></p><div id="stage"></div>',
+        f'<p id="why" class="soft"><noscript>{why}</noscript></p><div id="stage"></div>',
         pages.data(to_text(of_result(result)), "scene"),
         f'<p class="soft">{MAPS}</p>',
         *(_figure(name, pictures[name], "static") for name in MOVING if name in pictures),
@@ -77,22 +114,24 @@ def _first_notes(result: Result) -> list[str]:
     out = [f'<p class="flag">{escape(note.text)}</p>' for note in every[:FIRST_NOTES]]
     more = len(every) - FIRST_NOTES
     if more > 0:
-        out.append(f'<p class="soft">{more} more stand at the end, under <a href="#notes">Notes</a>.</p>')
+        out.append(f'<p class="soft">{more} more stand under <a href="#notes">Notes</a>.</p>')
     return out
 
 
 def _notes(result: Result) -> list[str]:
-    """All notes, by what they mean for the result."""
+    """What may be wrong and what limits the result."""
     out = []
     for kind, some in by_severity(result.notes).items():
-        title = TITLES[kind][:1].upper() + TITLES[kind][1:]
-        out += [f"<h3>{title}</h3>", "<ul>", *(f"<li>{escape(note.text)}</li>" for note in some), "</ul>"]
-    return ['<h2 id="notes">Notes</h2>', *out] if out else []
+        if kind != "remark":
+            title = TITLES[kind][:1].upper() + TITLES[kind][1:]
+            out += [f"<h3>{title}</h3>", _list([note.text for note in some])]
+    return out
 
 
 def _table(section: Section) -> list[str]:
-    below = [f"<p>{escape(section.below)}</p>"] if section.below else []
-    return [f"<h2>{escape(section.title)}</h2>", page.table(section.rows, section.name), *below]
+    below = [f"<p>{page.typeset(escape(section.below))}</p>"] if section.below else []
+    title = page.typeset(escape(section.title))
+    return [f"<h3>{title}</h3>", page.table(section.rows, section.name, section.keys), *below]
 
 
 def _tables(every: Sequence[Section], result: Result, pictures: dict[str, str]) -> list[str]:
@@ -111,7 +150,7 @@ def _response(result: Result, pictures: dict[str, str]) -> list[str]:
     if result.response is None:
         return []
     still = [_figure("response", pictures["response"], "of-response")] if "response" in pictures else []
-    return ["<h2>Frequency response</h2>", page.curves("response", response_curves(result)), *still]
+    return ["<h3>Frequency response</h3>", page.curves("response", response_curves(result)), *still]
 
 
 def _backbones(result: Result, pictures: dict[str, str]) -> list[str]:
@@ -119,7 +158,7 @@ def _backbones(result: Result, pictures: dict[str, str]) -> list[str]:
     if not result.backbones:
         return []
     still = [_figure("backbones", pictures["backbones"], "of-backbones")] if "backbones" in pictures else []
-    head = f"<h2>Frequency and damping of mode {result.backbones[0].mode} over amplitude</h2>"
+    head = f"<h3>Frequency and damping of mode {result.backbones[0].mode} over amplitude</h3>"
     return [head, page.curves("backbones", backbone_curves(result.backbones)), *still]
 
 
@@ -131,7 +170,7 @@ def _provenance(result: Result) -> list[str]:
     facts = {"made": p.date} | {f"version of {name}": version for name, version in p.versions.items()}
     files = [["file", "SHA-256"], *([name, digest] for name, digest in p.files.items())]
     return [
-        f"<h2>Where this comes from</h2>{page.facts(facts)}",
+        f"<h3>Where this comes from</h3>{page.facts(facts)}",
         page.table(files, "files") if p.files else "",
         f"<details open><summary>The study</summary><pre>{escape(p.study)}</pre></details>" if p.study else "",
     ]
@@ -141,11 +180,22 @@ def _contact(result: Result) -> list[str]:
     """Surface and law of every joint; joints that share both have one section."""
     shared: dict[str, list[str]] = {}
     for name, surface, law in zip(result.joints, result.surfaces, result.laws, strict=True):
-        text = f"<h3>Surface</h3>{page.facts(surface)}<h3>Contact law</h3>{page.facts(law)}"
+        text = f"<h4>Surface</h4>{page.facts(surface)}<h4>Contact law</h4>{page.facts(law)}"
         shared.setdefault(text, []).append(name)
-    return [f"<h2>Contact of {escape(', '.join(names))}</h2>{text}" for text, names in shared.items()]
+    return [f"<h3>Contact of {escape(', '.join(names))}</h3>{text}" for text, names in shared.items()]
 
 
+# chapter -> what stands in it, in order: names of tables, of figures, of what draws itself
+CHAPTERS = {
+    "Structure": ("parts", "bolts", "bolting"),
+    "Joints": ("joints", "pressure", "slip", "law", "surfaces", "conductance"),
+    "Modes": (
+        *("modes", "frequencies", "damping", "figure of damping", "laws", "beyond", "mac", "response", "backbones"),
+        *("backbone", "backbone measured", "backbone bounds", "modal forces"),
+    ),
+    "Intervals": ("shares", "narrowing", "figure of narrowing", "ranges", "waves"),
+    "Test": ("score", "comparison", "figure of comparison", "hammer"),
+}
 MAPS = (
     "Maps on joints: the value at a corner is the mean of the values at the points around it, weighted by area; peaks "
     "narrower than an element are flattened, and the table of joints has the greatest value at any point. Motion is "
@@ -155,7 +205,7 @@ SHAPES = (
     "Mode shapes at the greatest preload, drawn at one scale; colour is the motion over the greatest of the mode. "
     "Names: what most of the motion is, in slices across the longest side, or the part that moves most and its axis."
 )
-MOVING = ("modes", "pressure")  # figures that the view stands for on a screen
+MOVING = ("modes",)  # figures that the view stands for on a screen
 TEST = "test_"  # the figures of the hammer test begin with it
 
 
@@ -240,6 +290,29 @@ FIGURES = {
 }
 
 
+TABLES = ("modes", "damping", "narrowing", "comparison")  # tables whose names are those of figures, too
+
+
+def _own(name: str) -> Callable[[Result, dict[str, str]], list[str]]:
+    """What puts the figure of a name into a chapter, where the result has it."""
+
+    def drawn(result: Result, pictures: dict[str, str]) -> list[str]:
+        return [_figure(name, pictures[name])] if name in pictures else []
+
+    return drawn
+
+
+# what stands in a chapter under a name of its own
+TEXTS = {"response": _response, "backbones": _backbones, **{f"figure of {name}": _own(name) for name in TABLES}}
+
+
+def caption(name: str) -> str:
+    """What a figure shows, in words, for those who do not see it."""
+    if name.startswith(TEST):
+        return report_measured.CAPTIONS[name.removeprefix(TEST)]
+    return FIGURES[name].caption
+
+
 def figures(result: Result) -> dict[str, Any]:
     """Return every figure of the report by name."""
     out = {name: figure.draw(result) for name, figure in FIGURES.items() if figure.applies(result)}
@@ -261,7 +334,7 @@ def write(result: Result, folder: Path) -> list[Path]:
         for name, figure in figures(result).items():
             kind = name.removeprefix(TEST)
             file = folder / f"{name}.{'png' if kind in page.BITMAPS else 'svg'}"
-            file, pictures[name] = page.saved(kind, figure, file)
+            file, pictures[name] = page.saved(kind, figure, file, caption(name))
             made.append(file)
     made.append(write_text(folder / "report.html", html(result, pictures)))
     return made

@@ -18,6 +18,7 @@ class Section:
         title: its heading in the report.
         line: what stands above it in a terminal; the title in small letters where left out.
         below: what the report says below it.
+        keys: how many columns name a row; they are repeated where a table is split.
     """
 
     name: str
@@ -25,6 +26,7 @@ class Section:
     title: str
     line: str = ""
     below: str = ""
+    keys: int = 1
 
     @property
     def above(self) -> str:
@@ -129,10 +131,11 @@ def _joints(result: Result) -> tuple[Section, ...]:
             "the scan bears them out.",
         ),
         Section(name="parts", rows=table.parts(result), title="Masses"),
-        Section(name="joints", rows=table.joints(result), title="Joints"),
+        Section(name="joints", rows=table.joints(result), keys=2, title="Joints"),
         Section(
             name="bolts",
             rows=table.bolts(result),
+            keys=2,
             title="Bolts",
             line=f"bolts, tightened in the order {order}" if order else "bolts, all pulled at once",
             below=f"Tightened in the order {order}." if order else "All pulled at once.",
@@ -140,6 +143,7 @@ def _joints(result: Result) -> tuple[Section, ...]:
         Section(
             name="bolting",
             rows=table.bolting(result),
+            keys=2,
             title="Bolts and what they clamp",
             line=table.bolting_head(result),
             below=table.EMBEDDING,
