@@ -55,6 +55,7 @@ from .measured.ring_down import ring_down as ring_down
 from .measured.ring_down import ring_down_of_frf as ring_down_of_frf
 from .measured.uff import read_uff as read_uff
 from .measured.uff_write import write_uff as write_uff
+from .output.scene.notebook import view as view
 from .result import Result as Result
 from .result import read_model_modes as read_model_modes
 from .result.backbone import Backbone as Backbone

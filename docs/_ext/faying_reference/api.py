@@ -20,7 +20,16 @@ from faying_reference.rst import heading
 # title -> names; a public name that stands in none comes under the last
 GROUPS: Mapping[str, tuple[str, ...]] = {
     "Studies": ("Study", "run", "sweep", "axis_of", "backbone", "attach"),
-    "Results": ("Result", "load", "Backbone", "MeasuredBackbone", "ring_down", "ring_down_of_frf", "read_model_modes"),
+    "Results": (
+        "Result",
+        "load",
+        "view",
+        "Backbone",
+        "MeasuredBackbone",
+        "ring_down",
+        "ring_down_of_frf",
+        "read_model_modes",
+    ),
     "Surfaces": (
         *("read_scan", "write_scan", "Scan", "Profile", "synthesize", "fit_fractal", "FractalFit", "combine"),
         *("Combined", "Roughness"),

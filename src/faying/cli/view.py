@@ -10,19 +10,24 @@ import click
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(dir_okay=False, path_type=Path), help="The page (default: next to FILE).")
 @click.option("--unit", help='Unit of a mesh file, such as "mm"; no mesh file says.')
+@click.option("--vtu", type=click.Path(dir_okay=False, path_type=Path), help="Write a result for ParaView: NAME.pvd.")
 @click.option("--open/--no-open", "show", default=True, help="Open the page in the browser.")
-def command(file: Path, out: Path | None, unit: str | None, show: bool) -> None:
+def command(file: Path, out: Path | None, unit: str | None, vtu: Path | None, show: bool) -> None:
     """Show FILE: a study (.toml) before it is run, a result (.nc), a mesh, or a STEP file.
 
     Writes one page that opens anywhere, with everything inside, and opens it in the browser. A study shows its mesh
     with joints, bolts, supports and masses; a result its moving modes and the maps of its joints; a click on a face
-    tells its number, name, part, area and centre.
+    tells its number, name, part, area and centre. With --vtu a result is written for ParaView in place of the page:
+    NAME.pvd and one .vtu for each preload, with shapes, pressure, gap, slip and stiffness.
     """
     import webbrowser
 
     from faying.files import write_text
     from faying.output.scene import of_file, page
 
+    if vtu is not None:
+        _for_paraview(file, vtu, page_too=out is not None or unit is not None)
+        return
     scene = of_file(file, unit)
     made = write_text(out or place(file), page(scene))
     named = sum(1 for face in scene.faces if face.name)
@@ -30,6 +35,19 @@ def command(file: Path, out: Path | None, unit: str | None, show: bool) -> None:
     click.echo(f"written: {made}")
     if show and not webbrowser.open(made.resolve().as_uri()):
         click.echo(f"no browser was found; open {made.resolve().as_uri()} in one", err=True)
+
+
+def _for_paraview(file: Path, vtu: Path, *, page_too: bool) -> None:
+    """Write a result for ParaView."""
+    from faying.errors import InputError
+    from faying.result import Result
+
+    if file.suffix.lower() != ".nc":
+        raise InputError(f"--vtu writes a result (.nc) for ParaView; {file.name} is none. Run the study first")
+    if page_too:
+        raise InputError("--vtu writes no page; leave out --out and --unit")
+    for made in Result.load(file).save_vtu(vtu):
+        click.echo(f"written: {made}")
 
 
 def place(file: Path) -> Path:

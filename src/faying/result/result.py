@@ -697,6 +697,43 @@ class Result(Recorded):
         """Write one row for each load and mode, units in the heading; the file appears complete or not at all."""
         return write_text(Path(path), self.csv_text())
 
+    @checked_call
+    def save_vtu(self, path: str | Path) -> list[Path]:
+        """Write files for ParaView: NAME.pvd, which is opened, and one .vtu for each preload.
+
+        Each holds the outer surface with every mode shape, real and imaginary, and the first face of each joint with
+        pressure, gap, slip, k_n and k_t in SI units, NaN elsewhere; part, face and joint of each triangle, from 0, -1
+        where there is none; preload, frequencies and loss factors. ParaView's time is the preload [N].
+
+        Args:
+            path: NAME.pvd or NAME.vtu; a folder that is not there is made.
+
+        Returns:
+            The paths of all files, the .pvd first.
+
+        Raises:
+            InputError: the name ends in something else, or a file cannot be written.
+        """
+        from faying.result.vtu import write_vtu
+
+        return write_vtu(self, path)
+
+    def show(self, *, height: int = 620) -> Any:
+        """Show the structure in a notebook: moving modes, maps of the joints, faces to click, as `faying view` does.
+
+        Args:
+            height: of the view [pixels], 200 to 4000.
+
+        Returns:
+            What a notebook shows as the last line of a cell; its `save` writes it as a page.
+
+        Raises:
+            InputError: the height does not fit.
+        """
+        import faying
+
+        return faying.view(self, height=height)
+
     def csv_text(self) -> str:
         """Return the rows of to_csv as text."""
         out = io.StringIO()
