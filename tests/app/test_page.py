@@ -238,7 +238,7 @@ def test_keyboard_alone_reaches_every_view(browser, server, example, tmp_path):
     with page_at(browser, server) as page:
         until(page, "document.querySelector('#text').value.length > 0")
         page.focus("#tab-surface")
-        for name in ("structure", "run", "result", "surface"):
+        for name in ("structure", "run", "result", "steps", "surface"):
             page.keyboard.press("ArrowRight")
             assert page.evaluate("document.activeElement.id") == f"tab-{name}"
             assert page.is_visible(f"#{name}")
@@ -255,7 +255,7 @@ def test_nothing_is_cut_off(browser, server, example, tmp_path, width, height):
     for name in ("study.toml", "surface.x3p", "two-blocks.step"):
         shutil.copy(example / name, tmp_path)
     with page_at(browser, server, width=width, height=height) as page:
-        for name in ("structure", "run", "result", "surface"):
+        for name in ("structure", "run", "result", "surface", "steps"):
             page.click(f"#tab-{name}")
             assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), name
         for button in page.locator("button:visible").all():
@@ -285,3 +285,84 @@ def test_the_page_does_what_the_command_line_does(server, example, tmp_path):
     found = answer(["surface", "surface.x3p"], tmp_path)
     assert found["points"] == [320, 320]
     assert json.dumps(found)
+
+
+def test_the_first_screen_leads_and_the_example_opens_in_one_click(browser, server, tmp_path):
+    with page_at(browser, server) as page:
+        page.wait_for_selector("#steps:not([hidden])")
+        assert "Missing: a scan" in page.inner_text("#step-surface")
+        assert "Missing: a STEP file or a mesh" in page.inner_text("#step-structure")
+        assert page.inner_text("#next") == "Next: add a scan, or open the small example."
+        page.click("#try")
+        until(page, "window.fayingView !== undefined")
+        assert (tmp_path / "study.toml").is_file()
+        page.click("#tab-steps")
+        until(page, "document.querySelector('#next').textContent === 'Next: run the study.'")
+        assert page.get_attribute("#step-surface", "class") == "done"
+        assert page.get_attribute("#step-run", "class") == "now"
+        assert page.is_hidden("#offer")
+        page.click("#step-run button")
+        page.select_option("#command", "identify")
+        assert "Needs [test]" in page.inner_text("#needs")
+
+
+def test_an_upload_asks_before_it_replaces_the_study(browser, server, tmp_path):
+    (tmp_path / "study.toml").write_text('title = "precious"\n')
+    new = {"name": "study.toml", "mimeType": "text/plain", "buffer": b'title = "new"\n'}
+    with page_at(browser, server) as page:
+        until(page, "document.querySelector('#text').value.length > 0")
+        asked = []
+        page.once("dialog", lambda dialog: (asked.append(dialog.message), dialog.dismiss()))
+        page.set_input_files("#file", new)
+        until(page, "document.querySelector('#status').textContent === ''")
+        assert asked == ["Replace study.toml? Its text is lost."]
+        assert "precious" in (tmp_path / "study.toml").read_text()
+        page.once("dialog", lambda dialog: dialog.accept())
+        page.set_input_files("#file", new)
+        until(page, "document.querySelector('#text').value.includes('new')")
+    assert "new" in (tmp_path / "study.toml").read_text()
+
+
+def test_keys_are_explained_completed_and_coloured(browser, server, tmp_path):
+    (tmp_path / "study.toml").write_text('# mine\n[modes]\ncount = 3\n\n[[bolt]]\npreload = "2 kN"\n')
+    with page_at(browser, server) as page:
+        until(page, "document.querySelector('#keys').options.length > 1")
+        page.evaluate(
+            "(at => { const t = document.querySelector('#text'); t.focus(); t.setSelectionRange(at, at) })(20)"
+        )
+        page.keyboard.press("ArrowRight")
+        assert page.inner_text("#help") == "modes.count: Number of elastic modes. Default: 10."
+        offered = page.evaluate("[...document.querySelector('#keys').options].map((one) => one.value)")
+        assert "solver" in offered
+        assert "count" not in offered  # is there already
+        page.keyboard.press("Control+Space")
+        assert page.evaluate("document.activeElement.id") == "keys"
+        page.select_option("#keys", "damping")
+        assert "count = 3\ndamping = \n" in page.input_value("#text")
+        assert 'Choices: "hysteretic", "viscous"' in page.inner_text("#help")
+        spans = "[...document.querySelectorAll('#paint span')]"
+        kinds = dict(page.evaluate(f"{spans}.map((one) => [one.textContent.trim(), one.className])"))
+        assert kinds["# mine"] == "c"
+        assert kinds["[modes]"] == "t"
+        assert kinds["count"] == "k"
+        assert kinds["3"] == "n"
+        assert kinds['"2 kN"'] == "s"
+        painted = page.evaluate("document.querySelector('#paint').textContent")
+        assert painted.rstrip("\n") == page.input_value("#text").rstrip("\n")
+
+
+def test_a_fault_shows_while_it_is_typed(browser, server, example, tmp_path):
+    """Before the text is saved, and without the check of the geometry."""
+    for name in ("study.toml", "two-blocks.step"):
+        shutil.copy(example / name, tmp_path)
+    with page_at(browser, server) as page:
+        until(page, "document.querySelector('#text').value.length > 0")
+        page.route("**/api/check*", lambda route: None)  # never answered
+        page.route("**/api/study*", lambda route: None)
+        text = (tmp_path / "study.toml").read_text()
+        page.fill("#text", text.replace("[modes]", "[modes]\ncuont = 3"))
+        until(page, "document.querySelectorAll('#faults li').length === 1")
+        assert "cuont" in page.inner_text("#faults")
+        line = text.splitlines().index("[modes]") + 2
+        assert page.inner_text("#gutter b") == str(line)
+        page.unroute_all(behavior="ignoreErrors")

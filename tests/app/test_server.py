@@ -233,3 +233,27 @@ def test_ordinary_names_are_taken(name):
 def test_a_port_that_is_taken_says_so(server, tmp_path):
     with pytest.raises(InputError, match="leave out --port"):
         Server(Project.at(tmp_path), server.server_port)
+
+
+def test_a_study_is_not_replaced_by_an_upload_unasked(server, tmp_path):
+    (tmp_path / "study.toml").write_text("a = 1")
+    _, found = ask(server, "api/file?name=study.toml", "POST", b"b = 2")
+    assert "is there already" in json.loads(found)["fault"]
+    assert (tmp_path / "study.toml").read_text() == "a = 1"
+    ask(server, "api/file?name=study.toml&replace=yes", "POST", b"b = 2")
+    assert (tmp_path / "study.toml").read_text() == "b = 2"
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "line"),
+    [
+        ("a = ", "the text is not TOML", 1),
+        ("[modes]\ncount = 3\ncuont = 4\n", "cuont", 3),
+        ("title = 'x'\n[[bolt]]\npreload = 5\n", "preload", 3),
+    ],
+)
+def test_faults_of_a_text_that_is_typed(server, text, words, line):
+    _, found = ask(server, "api/read", "POST", json.dumps({"text": text}).encode())
+    faults = [one for one in json.loads(found)["findings"] if words in one["text"]]
+    assert faults
+    assert faults[0]["line"] == line

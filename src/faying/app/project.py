@@ -108,9 +108,14 @@ class Project:
             raise InputError(f"the study has more than {LARGEST_STUDY >> 20} MB; nothing was saved")
         write_text(self.study, text)
 
-    def receive(self, name: str, source: BufferedIOBase, size: int) -> Path:
-        """Write `size` bytes of a stream into the folder; the file appears complete or not at all."""
+    def receive(self, name: str, source: BufferedIOBase, size: int, *, replace: bool = False) -> Path:
+        """Write `size` bytes of a stream into the folder; the file appears complete or not at all.
+
+        The study is replaced only where that is wanted: it may hold an hour's work. Raises InputError otherwise.
+        """
         path = self.file(name)
+        if name == self.study_name and path.is_file() and not replace:
+            raise InputError(f"{name} is there already; say that it is to be replaced, or give the file another name")
         if not _kinds(name):
             known = ", ".join(sorted({suffix for suffixes in KINDS.values() for suffix in suffixes}))
             raise InputError(f"{name!r} ends in none of {known}")

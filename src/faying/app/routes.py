@@ -6,6 +6,7 @@ import threading
 from base64 import b64encode
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from importlib.resources import files
 from io import BufferedIOBase
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from typing import Any
 from faying import __version__
 from faying.app.commands import Job, answer
 from faying.app.project import Project, checked_name
+from faying.app.typed import faults_of
 from faying.errors import FayingError, InputError
 from faying.files import make_folder
 
@@ -70,7 +72,8 @@ class Session:
 
     def upload(self, request: Request) -> dict[str, Any]:
         """Take a file into the folder."""
-        return {"name": self.project.receive(request.given("name"), request.body, request.size).name}
+        name, replace = request.given("name"), request.query.get("replace") == "yes"
+        return {"name": self.project.receive(name, request.body, request.size, replace=replace).name}
 
     def save(self, request: Request) -> dict[str, Any]:
         """Save the study's text."""
@@ -81,6 +84,17 @@ class Session:
         with self._lock:
             self.project.save_text(text, before)
         return {"saved": True}
+
+    def read(self, request: Request) -> dict[str, Any]:
+        """Faults of a text that is being typed."""
+        text = request.data().get("text")
+        if not isinstance(text, str):
+            raise InputError("the request lacks text")
+        return {"findings": faults_of(text, self.project.folder)}
+
+    def schema(self, request: Request) -> str:
+        """The JSON schema of a study, as `faying schema` gives it."""
+        return files("faying.study").joinpath("schema.json").read_text(encoding="utf-8")
 
     def check(self, request: Request) -> dict[str, Any]:
         """Check the study as `faying check` does."""
@@ -168,6 +182,8 @@ ROUTES: dict[tuple[str, str], Callable[[Session, Request], dict[str, Any] | str]
     ("GET", "project"): Session.look,
     ("POST", "file"): Session.upload,
     ("PUT", "study"): Session.save,
+    ("POST", "read"): Session.read,
+    ("GET", "schema"): Session.schema,
     ("GET", "check"): Session.check,
     ("POST", "example"): Session.example,
     ("POST", "new"): Session.propose,

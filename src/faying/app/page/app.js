@@ -3,6 +3,7 @@
 import { mount } from "./viewer.js";
 
 const SAVE_AFTER = 700; // ms without a key
+const READ_AFTER = 200; // the same, for faults of the text alone
 const POLL = 600; // ms between two looks at a job
 const PICTURES = ["prediction.svg", "tornado.svg", "identification.svg", "backbone.svg"];
 const MM = 1e3;
@@ -63,7 +64,7 @@ async function busy(button, words, work) {
 
 /* tabs */
 
-const TABS = ["surface", "structure", "run", "result"];
+const TABS = ["steps", "surface", "structure", "run", "result"];
 
 function open(name) {
   for (const one of TABS) {
@@ -112,7 +113,8 @@ async function read() {
   if (project.text) shapes.unshift(["study", "the study"]);
   fill($("shapes"), shapes, $("shapes").value);
   proposable();
-  $("example").hidden = project.text !== null;
+  $("example").hidden = $("offer").hidden = project.text !== null;
+  steps();
   if (project.text !== null && project.text !== state.saved && $("text").value === state.saved) {
     $("text").value = state.saved = project.text;
     draw();
@@ -132,7 +134,9 @@ async function upload(files) {
   for (const file of files) {
     try {
       $("status").textContent = `reading ${file.name} …`;
-      await ask("POST", "file", { name: file.name }, file);
+      const replaces = file.name === state.project?.study && state.project.text !== null;
+      if (replaces && !confirm(`Replace ${file.name}? Its text is lost.`)) continue;
+      await ask("POST", "file", replaces ? { name: file.name, replace: "yes" } : { name: file.name }, file);
       last = file.name;
     } catch (fault) {
       $("status").textContent = "";
@@ -372,9 +376,141 @@ async function written(path, query) {
   }
 }
 
+$("try").addEventListener("click", (event) => busy(event.target, "writing …", async () => {
+  open("structure");
+  await written("example", {});
+}));
+
+/* steps */
+
+const step = (name, text, mark) => {
+  $(`step-${name}`).className = mark;
+  $(`step-${name}`).querySelector("p").textContent = text;
+};
+
+/** What each step has, what is missing, and what comes next. */
+function steps() {
+  const project = state.project;
+  if (!project) return;
+  const of = (kind) => project.files.filter((file) => file.kinds.includes(kind)).map((file) => file.name);
+  const text = project.text, scans = of("scan").filter((name) => !name.endsWith(".nc")), shapes = [...of("geometry"), ...of("mesh")];
+  const known = text !== null && /^\s*(D|G|C)\s*=/m.test(text), surface = scans.length > 0 || known;
+  const faults = state.faults ?? 0, ready = text !== null && faults === 0, ran = project.results.includes("result.nc");
+  step("surface", scans.length ? scans.join(", ") : known ? "D and G, or a law's own numbers, stand in the study."
+    : "Missing: a scan of one face (X3P, an instrument's file, or x, y, z text).", surface ? "done" : "now");
+  step("structure", text === null ? (shapes.length ? `${shapes.join(", ")}. Missing: a study of it.` : "Missing: a STEP file or a mesh of the bolted parts.")
+    : faults ? `${project.study} has ${faults} fault${faults > 1 ? "s" : ""}; they stand below its text.` : `${project.study} is ready.`,
+  ready ? "done" : surface ? "now" : "");
+  step("run", ran ? "There is a result." : ready ? "Not run yet." : "Needs the two steps before.", ran ? "done" : ready ? "now" : "");
+  $("next").textContent = ran ? "Next: look at the result, or change the study and run it again."
+    : ready ? "Next: run the study." : text !== null ? "Next: correct the faults of the study."
+    : shapes.length ? "Next: open Structure and press “New study from it”."
+    : surface ? "Next: add the STEP file of the parts, or a mesh." : "Next: add a scan, or open the small example.";
+}
+
+for (const button of document.querySelectorAll("[data-open]")) button.addEventListener("click", () => open(button.dataset.open));
+
+/* what the keys mean: the schema of a study */
+
+const schema = { root: null };
+
+/** The tables of a path of names in the schema, through lists, choices and names of the user's own. */
+function node(path) {
+  let at = [schema.root];
+  const flat = (one) => !one ? [] : one.$ref ? flat(one.$ref.split("/").slice(1).reduce((found, name) => found?.[name], schema.root))
+    : [one, ...(one.anyOf || one.oneOf || []).flatMap(flat), ...(one.items ? flat(one.items) : [])];
+  for (const name of path) {
+    at = at.flatMap(flat).flatMap((one) => one.properties?.[name] ? [one.properties[name]]
+      : typeof one.additionalProperties === "object" ? [one.additionalProperties] : Object.values(one.patternProperties || {}));
+  }
+  return at.flatMap(flat);
+}
+
+const names = (text) => [...text.matchAll(/"((?:[^"\\]|\\.)*)"|'([^']*)'|([\w-]+)/g)].map((found) => found[1] ?? found[2] ?? found[3]);
+
+/** The table and the key at the caret, and the keys that this table has already. */
+function where() {
+  const area = $("text"), lines = area.value.split("\n");
+  const line = area.value.slice(0, area.selectionStart).split("\n").length - 1;
+  let table = [], start = -1;
+  for (let k = line; k >= 0 && start < 0; k -= 1) {
+    const head = /^\s*\[{1,2}([^\]]+)\]/.exec(lines[k]);
+    if (head) { table = names(head[1]); start = k; }
+  }
+  let end = lines.findIndex((text, k) => k > Math.max(line, start) && /^\s*\[/.test(text));
+  if (end < 0) end = lines.length;
+  const keyOf = (text) => /^\s*((?:[\w-]+|"[^"]*")(?:\s*\.\s*(?:[\w-]+|"[^"]*"))*)\s*=/.exec(text)?.[1];
+  const own = keyOf(lines[line] || "");
+  return { table, key: own ? names(own) : [], used: lines.slice(start + 1, end).map(keyOf).filter(Boolean).map((text) => names(text)[0]) };
+}
+
+/** Say what the key at the caret means, and offer those that its table may have. */
+function explain() {
+  if (!schema.root) return;
+  const { table, key, used } = where();
+  const path = [...table, ...key], about = node(path).map((one) => one.description).filter(Boolean);
+  const choices = node(path).flatMap((one) => one.enum || []).map((one) => JSON.stringify(one));
+  $("help").textContent = path.length ? `${path.join(".")}: ${about[0] || (key.length ? "a name of your own." : "a table.")}${choices.length ? ` Choices: ${choices.join(", ")}.` : ""}` : "";
+  const found = new Map(node(table).flatMap((one) => Object.entries(one.properties || {})));
+  const free = [...found].filter(([name]) => !used.includes(name)).sort(([a], [b]) => (a < b ? -1 : 1));
+  const title = table.length ? `a key of [${table.join(".")}]` : "a key or table";
+  $("keys").replaceChildren(new Option(title, ""), ...free.map(([name, one]) => new Option(name, name, false, false)).map((option) => {
+    option.title = node([...table, option.value]).map((one) => one.description).find(Boolean) || "";
+    return option;
+  }));
+}
+
+/** Put a key, or the head of a table, below the line of the caret. */
+function insertKey(name) {
+  const { table } = where(), area = $("text"), inside = node([...table, name]);
+  const list = inside.some((one) => one.type === "array" && one.items?.type === "object");
+  const isTable = !table.length && inside.some((one) => one.type === "object");
+  const text = list && !table.length ? `\n[[${name}]]` : isTable ? `\n[${name}]` : `${name} = `;
+  let at = area.value.indexOf("\n", area.selectionStart);
+  if (at < 0 || text.startsWith("\n")) at = area.value.length;
+  const lead = at > 0 ? "\n" : "";
+  area.setRangeText(lead + text, at, at, "end");
+  area.focus();
+  typed();
+  explain();
+}
+
+$("keys").addEventListener("change", () => { if ($("keys").value) insertKey($("keys").value); });
+for (const kind of ["keyup", "click", "focus"]) $("text").addEventListener(kind, explain);
+$("text").addEventListener("keydown", (event) => {
+  if (event.ctrlKey && event.key === " ") { event.preventDefault(); explain(); $("keys").focus(); }
+});
+
 /* study */
 
 let faulty = new Set();
+const TOKEN = /(#.*)|("""[\s\S]*?"""|"(?:[^"\\\n]|\\.)*"?|'[^'\n]*'?)|(\b\d[\w.+-]*|\btrue\b|\bfalse\b)/g;
+
+/** The text in colours, behind the one that is typed. */
+function paint() {
+  const out = [];
+  const span = (text, kind) => out.push(made("span", text, { className: kind }));
+  for (const line of $("text").value.split("\n")) {
+    const head = /^(\s*\[{1,2}[^\]#]*\]{1,2})(.*)$/.exec(line), key = head ? null : /^(\s*[\w."' -]+?\s*)(=.*)$/.exec(line);
+    if (head) span(head[1], "t");
+    else if (key && !line.trimStart().startsWith("#")) span(key[1], "k");
+    const rest = head ? head[2] : key && !line.trimStart().startsWith("#") ? key[2] : line;
+    let end = 0;
+    for (const found of rest.matchAll(TOKEN)) {
+      out.push(rest.slice(end, found.index));
+      span(found[0], found[1] ? "c" : found[2] ? "s" : "n");
+      end = found.index + found[0].length;
+    }
+    out.push(rest.slice(end), "\n");
+  }
+  $("paint").replaceChildren(...out);
+  scrolled();
+}
+
+function scrolled() {
+  $("gutter").scrollTop = $("paint").scrollTop = $("text").scrollTop;
+  $("paint").scrollLeft = $("text").scrollLeft;
+}
 
 function draw() {
   const lines = $("text").value.split("\n").length;
@@ -384,7 +520,7 @@ function draw() {
     parts.push(document.createTextNode("\n"));
   }
   $("gutter").replaceChildren(...parts);
-  $("gutter").scrollTop = $("text").scrollTop;
+  paint();
 }
 
 function typed() {
@@ -392,6 +528,26 @@ function typed() {
   draw();
   clearTimeout(state.timer);
   state.timer = setTimeout(save, SAVE_AFTER);
+  clearTimeout(state.reading);
+  state.reading = setTimeout(glance, READ_AFTER);
+}
+
+/** Faults of the text as it is typed, long before the geometry is looked at. */
+async function glance() {
+  const text = $("text").value;
+  let found;
+  try {
+    found = (await ask("POST", "read", {}, JSON.stringify({ text }))).findings;
+  } catch { return; }
+  if (text === $("text").value && text !== state.saved) faults(found);
+}
+
+function faults(found) {
+  state.faults = found.length;
+  faulty = new Set(found.map((one) => one.line).filter(Boolean));
+  $("faults").replaceChildren(...found.map(finding));
+  draw();
+  steps();
 }
 
 async function save() {
@@ -423,12 +579,10 @@ async function check() {
     found = [{ level: "fault", text: fault.message, line: null }];
   }
   if (number !== state.checks) return; // a later one is under way
-  const faults = found.filter((one) => one.level === "fault");
-  faulty = new Set(faults.map((one) => one.line).filter(Boolean));
-  $("check-hint").textContent = faults.length ? `${faults.length} fault${faults.length > 1 ? "s" : ""}` : "no fault";
-  $("faults").replaceChildren(...faults.map(finding));
+  const bad = found.filter((one) => one.level === "fault");
+  $("check-hint").textContent = bad.length ? `${bad.length} fault${bad.length > 1 ? "s" : ""}` : "no fault";
   $("findings").replaceChildren(...found.map(finding));
-  draw();
+  faults(bad);
 }
 
 function finding(one) {
@@ -452,7 +606,7 @@ function reach(line) {
 }
 
 $("text").addEventListener("input", typed);
-$("text").addEventListener("scroll", () => { $("gutter").scrollTop = $("text").scrollTop; });
+$("text").addEventListener("scroll", scrolled);
 addEventListener("beforeunload", (event) => { if ($("text").value !== state.saved) event.preventDefault(); });
 addEventListener("keydown", (event) => {
   if ((event.ctrlKey || event.metaKey) && event.key === "s") { event.preventDefault(); save(); }
@@ -461,6 +615,15 @@ addEventListener("keydown", (event) => {
 /* run */
 
 const duration = (seconds) => (seconds < 120 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} min`);
+
+/** What a command needs of the study beyond a run. */
+function needs() {
+  const text = $("text").value, wanted = $("command").value;
+  const lacks = wanted === "identify" && !/^\s*\[test\]/m.test(text) ? "Needs [test]: measured frequencies, one list for each preload, and where they were measured."
+    : wanted === "backbone" && !/^\s*\[backbone\]|^\s*friction\s*=/m.test(text) ? "Needs friction, in [[joint]] or in [backbone]: without it nothing slips." : "";
+  $("needs").textContent = lacks || (wanted === "run" ? "" : "Works before any run of the study.");
+}
+$("command").addEventListener("change", needs);
 
 $("start").addEventListener("click", async () => {
   await save();
@@ -535,7 +698,8 @@ async function showResult() {
 look().then((project) => {
   $("text").readOnly = false; // what is typed before the study is there would stand against it
   const running = project.job?.running;
-  const first = running ? "run" : project.results.length ? "result" : $("shapes").value ? "structure" : "surface";
+  const first = running ? "run" : project.results.length ? "result" : $("shapes").value ? "structure" : $("scans").value ? "surface" : "steps";
   open(state.tab || first); // a view that the user has chosen meanwhile stays
   if (running) follow();
 });
+ask("GET", "schema").then((found) => { schema.root = found; explain(); }, () => {});

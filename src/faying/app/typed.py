@@ -1,0 +1,38 @@
+"""What can be said of a study's text while it is typed: faults of its form and of its keys, in milliseconds."""
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from faying.errors import FayingError
+from faying.setup.lines import key_of, line_of, lines_of
+from faying.study import Study
+from faying.study.keys.reader import StudyFaults
+
+
+def faults_of(text: str, folder: Path) -> list[dict[str, Any]]:
+    """Return the faults of a text, each with its line where that is known; files are not opened, nothing is meshed.
+
+    Args:
+        text: of the study.
+        folder: in which the files lie that it names.
+    """
+    try:
+        data = tomllib.loads(text)
+    except (ValueError, RecursionError) as fault:  # nested without end, a number of thousands of digits
+        at = re.search(r"at line (\d+)", str(fault))
+        line = int(at[1]) if at else text.count("\n") + 1 if "end of document" in str(fault) else None
+        return [_fault(f"the text is not TOML: {fault}", line)]
+    lines = lines_of(text)
+    try:
+        Study.from_dict(data, folder=folder, text=text)
+    except StudyFaults as faults:
+        return [_fault(line, line_of(key_of(line, lines), lines)) for line in faults.lines]
+    except FayingError as fault:
+        return [_fault(str(fault), None)]
+    return []
+
+
+def _fault(text: str, line: int | None) -> dict[str, Any]:
+    return {"level": "fault", "text": text, "line": line}
