@@ -38,7 +38,7 @@ from faying.result.result import Comparison
 from faying.study.keys.uncertain import Input
 from faying.surface import figure as surface
 from faying.surface.form import prepared
-from faying.surface.fractal import fit_all
+from faying.surface.fractal import fit_fractal
 from faying.surface.synthesize import spectral
 from faying.sweeps.axes import axis_of
 from faying.sweeps.files import Sweep
@@ -196,8 +196,10 @@ def scan():
 
 
 def overview(of):
-    """The figure of `faying surface`."""
-    return surface.overview_figure(of, prepared(of), fit_all(of))
+    """The figure of `faying surface`, with three of its estimators."""
+    return surface.overview_figure(
+        of, prepared(of), {name: fit_fractal(of, name) for name in ("psd", "structure", "higuchi")}
+    )
 
 
 def whole(drawn):

@@ -37,7 +37,7 @@ def drawn(request):
     """A figure, drawn once, with what measures it."""
     figure = FIGURES[request.param]()
     canvas = FigureCanvasAgg(figure)
-    canvas.draw()
+    figure.draw_without_rendering()
     renderer = canvas.get_renderer()
     yield figure, renderer, [(one, one.get_window_extent(renderer)) for one in texts(figure)]
     pyplot.close("all")
