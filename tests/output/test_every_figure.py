@@ -13,6 +13,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.legend import Legend
 from matplotlib.text import Text
 
+from faying.case.scatter import SCATTER
+from faying.result import interval_figure
 from faying.style import WIDE
 from faying.typeset import name_of, typeset, unit
 from tests.helpers.figures import FIGURES
@@ -185,3 +187,8 @@ def test_symbols_and_keys():
     assert name_of("material.45 steel.E") == "Young's modulus, 45 steel"
     assert name_of("joint.flange.form.crown_along") == "crown along, flange"
     assert name_of("law.model") == "contact law"
+
+
+def test_all_that_is_not_known_has_a_colour_of_its_own():
+    assert set(interval_figure.SOURCES) == set(SCATTER)
+    assert len(set(interval_figure.SOURCES.values())) == len(SCATTER)

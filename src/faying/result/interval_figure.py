@@ -19,6 +19,7 @@ SOURCES = {
     "k_t/k_n": COLOURS[3],
     "waves": COLOURS[2],
     "preload": COLOURS[4],
+    "mesh": "#4d4d4d",
     "structure": COLOURS[7],
     "mode": "#d9d9d9",
 }
