@@ -41,7 +41,7 @@ def test_a_scan_is_dropped_and_read(browser, server, example, tmp_path):
         page.set_input_files("#file", example / "surface.x3p")
         page.wait_for_selector("#scan-picture:not([hidden])")
         facts = page.inner_text("#scan-facts")
-        assert "320 x 320" in facts
+        assert "640 x 640" in facts
         assert "psd" in facts
         width = page.evaluate("document.querySelector('#scan-picture img').naturalWidth")
         assert width > 400
@@ -283,7 +283,7 @@ def test_the_page_does_what_the_command_line_does(server, example, tmp_path):
 
     shutil.copy(example / "surface.x3p", tmp_path)
     found = answer(["surface", "surface.x3p"], tmp_path)
-    assert found["points"] == [320, 320]
+    assert found["points"] == [640, 640]
     assert json.dumps(found)
 
 

@@ -189,7 +189,7 @@ class JointLaw:
         total = float(stiffness.sum())
         reasons = self.answer(pressure).reasons.items() if total > 0 else ()
         shares = {reason: float(stiffness @ mask) / total for reason, mask in reasons}
-        return {reason: share for reason, share in shares.items() if share >= LEAST_SHARE}
+        return {reason: round(share, 6) for reason, share in shares.items() if share >= LEAST_SHARE}
 
     def _within(self, pressure: Array) -> Array:
         """Pressures brought within the law; 0 stays 0."""
