@@ -57,7 +57,7 @@ def scored(
 def t_specimen() -> Measured:
     """Fifteen frequencies of five modes at three preloads."""
     study = Study.read(EXAMPLES / "t-specimen" / "study.toml")
-    result = faying.run(replace(study, beside=(), modes=replace(study.modes, levels=())))
+    result = faying.run(replace(study, alternatives=(), modes=replace(study.modes, levels=())))
     test = result.comparison
     load, column = np.nonzero(test.modes >= 0)
     scores, widths = scored(result, load, test.modes[load, column], test.frequencies[load, column])

@@ -95,7 +95,7 @@ def in_study(d: Dimensions) -> np.ndarray:
         end = (d.stem_thickness / 2e3, 0.0, (d.stem_height + d.flange_thickness) / 1e3)
         test = replace(STUDY.test, published=None, points=(end,))
         geometry = replace(STUDY.geometry, step=step)
-        result = faying.run(replace(STUDY, geometry=geometry, test=test, beside=()))
+        result = faying.run(replace(STUDY, geometry=geometry, test=test, alternatives=()))
     return result.comparison.predicted
 
 

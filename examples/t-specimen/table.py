@@ -16,11 +16,11 @@ from faying.form.form import Form
 from faying.output import table
 from faying.result.result import preload_slope
 from faying.study import Study
-from faying.study.keys.beside import BesideChoice
+from faying.study.keys.alternative import AlternativeChoice
 
 STUDY = Study.read(Path(__file__).parent / "study.toml")
-FLAT = BesideChoice(name="default, flat", form=Form())
-(JK,) = STUDY.beside
+FLAT = AlternativeChoice(name="default, flat", form=Form())
+(JK,) = STUDY.alternatives
 SEEDS = range(4)
 TOLERANCE = 1e-4  # of a frequency; draws differ by a thousandth and more
 
@@ -49,7 +49,7 @@ def skill(name: str, test: np.ndarray, found: np.ndarray) -> list[str]:
 
 def main() -> None:
     """Print the tables of docs/t-specimen.md."""
-    result = faying.run(replace(STUDY, beside=(FLAT, replace(JK, name="JK, flat"))))
+    result = faying.run(replace(STUDY, alternatives=(FLAT, replace(JK, name="JK, flat"))))
     c = result.comparison
     print(table.text(table.comparison(result)))
     wavy = draws(result)
@@ -60,7 +60,7 @@ def main() -> None:
     print("\n" + table.text(rows))
     rows = [["rms error at the last load", "own [%]", "test before times own ratio [%]", "skill", "skill of the ratio"]]
     rows.append(skill("same as at the load before", c.frequencies, np.ones_like(c.frequencies) * c.frequencies[-2]))
-    for name, found in zip(result.beside, c.beside, strict=True):
+    for name, found in zip(result.alternatives, c.alternatives, strict=True):
         rows.append(skill(name, c.frequencies, found))
     for seed, found in zip(SEEDS, wavy, strict=True):
         rows.append(skill(f"default, waves, draw {seed}", c.frequencies, found))

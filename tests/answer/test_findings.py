@@ -34,14 +34,14 @@ def texts(result, code):
 
 
 BESIDE = """
-[[beside]]
+[[alternative]]
 name = "JK, one rough face"
 law = { model = "jk" }
 surface = { scan = "surface.x3p", counter = "smooth" }
-[[beside]]
+[[alternative]]
 name = "GW"
 law = { model = "gw-ke" }
-[[beside]]
+[[alternative]]
 name = "hollow"
 form = { crown_along = "-20 um" }
 """
@@ -101,10 +101,10 @@ def test_modes_that_fall_with_preload_are_named_with_the_reason(default):
 
 
 def test_other_laws_stand_beside_as_if_they_were_run_alone(default, closed, tmp_path):
-    assert default.beside == ("JK, one rough face", "GW", "hollow")
-    assert default.beside_frequencies[1] == pytest.approx(closed.frequencies, rel=1e-6)
-    assert np.isnan(default.beside_loss_factors[1]).all()
-    assert np.all(default.beside_loss_factors[0] > 0)
+    assert default.alternatives == ("JK, one rough face", "GW", "hollow")
+    assert default.alternative_frequencies[1] == pytest.approx(closed.frequencies, rel=1e-6)
+    assert np.isnan(default.alternative_loss_factors[1]).all()
+    assert np.all(default.alternative_loss_factors[0] > 0)
     assert "k_t/k_n = 0.824 is Mindlin's, assumed" in " ".join(texts(closed, "assumed"))
     told = texts(default, "assumed")
     assert all(text.startswith("alternative ") for text in told)
@@ -116,13 +116,15 @@ def test_other_laws_stand_beside_as_if_they_were_run_alone(default, closed, tmp_
 def test_the_table_of_laws_has_shares_reach_and_both_answers(default, closed):
     """The other law's columns are those of its own run."""
     head, own, jk, gw, hollow = table.laws(default)
-    assert [row[0] for row in (own, jk, gw, hollow)] == ["half-space", *default.beside]
-    assert default.beside_reach[1] == pytest.approx(closed.laws[0]["greatest_pressure [Pa]"])
-    assert default.beside_outside_share[1] == pytest.approx(closed.outside_share, abs=1e-6)
-    past = default.pressure > default.beside_reach[0]
-    assert default.beside_beyond_share[0] == pytest.approx(past @ default.weights / default.weights.sum(), abs=0.05)
-    assert np.all(default.beside_beyond_frequencies >= default.beside_frequencies * (1 - 1e-9))
-    assert np.all(default.beside_beyond_share[1] == 0)
+    assert [row[0] for row in (own, jk, gw, hollow)] == ["half-space", *default.alternatives]
+    assert default.alternative_reach[1] == pytest.approx(closed.laws[0]["greatest_pressure [Pa]"])
+    assert default.alternative_outside_share[1] == pytest.approx(closed.outside_share, abs=1e-6)
+    past = default.pressure > default.alternative_reach[0]
+    assert default.alternative_beyond_share[0] == pytest.approx(
+        past @ default.weights / default.weights.sum(), abs=0.05
+    )
+    assert np.all(default.alternative_beyond_frequencies >= default.alternative_frequencies * (1 - 1e-9))
+    assert np.all(default.alternative_beyond_share[1] == 0)
     assert len(head) == len(own) == len(jk) == len(gw)
 
 
@@ -131,7 +133,7 @@ def test_a_form_beside_is_that_of_a_run_with_it(default, tmp_path):
     hollow = Study.read(coarse(tmp_path))
     joint = replace(hollow.joints[0], form=Form(crown_along=-20e-6))
     found = run(replace(hollow, joints=(joint,)))
-    assert default.beside_frequencies[2] == pytest.approx(found.frequencies, rel=1e-6)
+    assert default.alternative_frequencies[2] == pytest.approx(found.frequencies, rel=1e-6)
     assert np.abs(found.frequencies / default.frequencies - 1).max() > 1e-3
 
 
@@ -162,9 +164,9 @@ def test_a_stiffness_that_hangs_on_the_window_is_told_where_it_does(default, clo
 
 def test_faults_of_beside_are_found_when_the_study_is_read(tmp_path):
     for extra, words in (
-        ("\n[[beside]]\nname = 'x'\n", "give a law, a surface or a form"),
-        ("\n[[beside]]\nlaw = { model = 'jk', cutof = 1 }\n", "cutoff"),
-        ("\n[[beside]]\nlaw = { model = 'power-law' }\n", "power-law|Power law"),
+        ("\n[[alternative]]\nname = 'x'\n", "give a law, a surface or a form"),
+        ("\n[[alternative]]\nlaw = { model = 'jk', cutof = 1 }\n", "cutoff"),
+        ("\n[[alternative]]\nlaw = { model = 'power-law' }\n", "power-law|Power law"),
     ):
         with pytest.raises(faying.InputError, match=words):
             Study.read(coarse(tmp_path, extra=extra))
@@ -173,7 +175,7 @@ def test_faults_of_beside_are_found_when_the_study_is_read(tmp_path):
 def test_a_law_beside_that_has_no_answer_stops_nothing(tmp_path):
     """D and G of given numbers, and a law beside that needs a scan: refused when read; a missing scan is, too."""
     text = coarse(tmp_path).read_text()
-    lost = text + "\n[[beside]]\nname = 'lost'\nsurface = { scan = 'nowhere.x3p' }\n"
+    lost = text + "\n[[alternative]]\nname = 'lost'\nsurface = { scan = 'nowhere.x3p' }\n"
     (tmp_path / "study.toml").write_text(lost)
     with pytest.raises(faying.InputError, match=r"nowhere\.x3p"):
         Study.read(tmp_path / "study.toml")

@@ -29,7 +29,7 @@ def finer(study: Study, ratio: float) -> Study:
 
 def plain(study: Study) -> Study:
     """Without what the mesh does not change."""
-    return replace(study, beside=(), modes=replace(study.modes, levels=()), backbone=None, response=None)
+    return replace(study, alternatives=(), modes=replace(study.modes, levels=()), backbone=None, response=None)
 
 
 @pytest.fixture(scope="module")

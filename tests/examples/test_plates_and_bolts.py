@@ -63,12 +63,13 @@ def test_an_ordinary_joint_has_an_answer_with_bounds(name, proof_share, tmp_path
 def test_every_law_of_one_scan_has_its_row(tmp_path):
     """Laws that end below the bolts' pressure are bounded; those without a stiffness say so and stop nothing."""
     data = result_of("laws", tmp_path)
-    rows = dict(zip(data["beside"], range(len(data["beside"])), strict=True))
+    rows = dict(zip(data["alternatives"], range(len(data["alternatives"])), strict=True))
     held, bonded = (
-        np.array(data[key]["values"], dtype=float)[:, -1] for key in ("beside_frequencies", "beside_beyond_frequencies")
+        np.array(data[key]["values"], dtype=float)[:, -1]
+        for key in ("alternative_frequencies", "alternative_beyond_frequencies")
     )
-    reach = np.array(data["beside_reach"]["values"], dtype=float)
-    beyond = np.array(data["beside_beyond_share"]["values"], dtype=float)[:, -1]
+    reach = np.array(data["alternative_reach"]["values"], dtype=float)
+    beyond = np.array(data["alternative_beyond_share"]["values"], dtype=float)[:, -1]
     silent = {name for name, row in rows.items() if np.isnan(held[row]).all()}
     assert silent == {"JS", "MB", "WK", "YK"}
     own = np.array(data["frequencies"]["values"])[-1]
@@ -80,5 +81,5 @@ def test_every_law_of_one_scan_has_its_row(tmp_path):
         assert np.all(bonded[row] >= held[row] * (1 - 1e-9))
         assert np.any(bonded[row] > held[row] * (1 + 1e-5)) == (beyond[row] > 0)
     assert {"JK", "ME"} <= {name for name, row in rows.items() if beyond[row] > 0}
-    loss = np.array(data["beside_loss_factors"]["values"][rows["JK"]], dtype=float)
+    loss = np.array(data["alternative_loss_factors"]["values"][rows["JK"]], dtype=float)
     assert np.all(loss > 0)

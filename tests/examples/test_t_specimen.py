@@ -68,7 +68,7 @@ def test_the_change_with_preload_follows_the_test_more_than_the_paper_does(outco
         for name, values in (
             ("test", c["frequencies"]["values"]),
             ("paper", c["published"]["values"]),
-            ("JK", c["beside"]["values"][0]),
+            ("JK", c["alternatives"]["values"][0]),
             ("default", c["predicted"]["values"]),
         )
     }
@@ -106,9 +106,9 @@ def test_a_study_that_gives_its_waves_is_answered_by_one_draw_and_says_so(outcom
 
 def test_only_the_law_that_has_a_loss_damps(outcome):
     data = outcome[0]
-    assert data["beside"] == ["JK"]
+    assert data["alternatives"] == ["JK"]
     assert all(value is None for row in data["loss_factors"]["values"] for value in row)
-    loss = np.array(data["beside_loss_factors"]["values"][0], dtype=float)
+    loss = np.array(data["alternative_loss_factors"]["values"][0], dtype=float)
     assert np.all((loss > 0) & (loss < 0.0398))  # never more than the joint's own, alpha/(1 - alpha)/(2 pi)
 
 

@@ -161,8 +161,8 @@ def result():
         level_high=2 * damping,
         level_slip=damping - 9e-4,
         level_error=0 * damping,
-        beside=("JK",),
-        beside_frequencies=1.01 * f[None],
+        alternatives=("JK",),
+        alternative_frequencies=1.01 * f[None],
         comparison=Comparison(
             source="hammer test",
             frequencies=test,

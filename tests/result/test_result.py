@@ -11,16 +11,16 @@ from tests.helpers.scenes import two_boxes
 def test_names_of_other_laws_are_read_as_they_were_given_and_written_again(tmp_path):
     two = np.ones((2, 2, 2))
     written = small_result(
-        beside=("JK", "hollow"),
-        beside_frequencies=two,
-        beside_loss_factors=two,
-        beside_beyond_frequencies=two,
-        beside_outside_share=two[0],
-        beside_beyond_share=two[0],
-        beside_reach=two[0, 0],
+        alternatives=("JK", "hollow"),
+        alternative_frequencies=two,
+        alternative_loss_factors=two,
+        alternative_beyond_frequencies=two,
+        alternative_outside_share=two[0],
+        alternative_beyond_share=two[0],
+        alternative_reach=two[0, 0],
     )
     read = Result.load(written.save(tmp_path / "result.nc"))
-    assert read.beside == ("JK", "hollow")
+    assert read.alternatives == ("JK", "hollow")
     assert Result.load(read.save(tmp_path / "again.nc")) == written
 
 

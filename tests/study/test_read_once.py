@@ -7,11 +7,11 @@ import pytest
 
 from faying.answer.run import run
 from faying.backbones import backbone
-from faying.case import beside as other_laws
+from faying.case import alternative as other_laws
 from faying.case.case import Case, surfaces_of
 from faying.study import Study
+from faying.study.keys.alternative import AlternativeChoice
 from faying.study.keys.backbone import BackboneChoice
-from faying.study.keys.beside import BesideChoice
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import SurfaceChoice
 
@@ -39,9 +39,9 @@ def reads(monkeypatch):
 
 def test_laws_beside_share_the_surface(reads):
     study = Study.read(EXAMPLE)
-    beside = tuple(BesideChoice(name=law.model, law=law) for law in LAWS)
-    result = run(replace(study, beside=beside))
-    assert result.beside == ("JK", "MB", "YK")
+    alternatives = tuple(AlternativeChoice(name=law.model, law=law) for law in LAWS)
+    result = run(replace(study, alternatives=alternatives))
+    assert result.alternatives == ("JK", "MB", "YK")
     assert reads == [study.surface]
 
 
@@ -49,7 +49,7 @@ def test_a_surface_of_its_own_beside_is_read_too(reads):
     study = Study.read(EXAMPLE)
     case = Case.of(study)
     rough = replace(study.surface, D=2.5)
-    other = other_laws.changed(case, BesideChoice(name="rough", surface=rough))
+    other = other_laws.changed(case, AlternativeChoice(name="rough", surface=rough))
     assert reads == [study.surface, rough]
     assert [surface.rough.inputs.D for surface in other.surfaces] == [2.5]
     assert [surface.rough.inputs.D for surface in case.surfaces] == [study.surface.D]

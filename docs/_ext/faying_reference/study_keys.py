@@ -30,7 +30,7 @@ SCENARIOS: tuple[Mapping[str, Any], ...] = (
     *({"law": {"model": law.name}} for law in laws().values()),
 )
 # tables with the keys of another one
-SAME_AS = ("joint.surface", "joint.law", "beside.surface", "beside.law", "beside.form")
+SAME_AS = ("joint.surface", "joint.law", "alternative.surface", "alternative.law", "alternative.form")
 
 
 @dataclass(frozen=True, kw_only=True)

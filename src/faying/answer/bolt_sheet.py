@@ -120,7 +120,7 @@ def bolt_sheet(
         response=None,
         hammer=None,
         backbone=None,
-        beside=(),
+        alternatives=(),
         modes=replace(plan.modes, levels=(), intervals=False),
     )
     progress = Progress(4, report)

@@ -175,6 +175,14 @@ def _bare(
     joints = tuple(replace(joint, friction=mu) for joint, mu in zip(study.joints, friction, strict=True))
     modes = replace(study.modes, levels=levels, intervals=False)
     bare = replace(
-        study, bolts=bolts, joints=joints, modes=modes, beside=(), backbone=None, response=None, test=None, hammer=None
+        study,
+        bolts=bolts,
+        joints=joints,
+        modes=modes,
+        alternatives=(),
+        backbone=None,
+        response=None,
+        test=None,
+        hammer=None,
     )
     return run(bare, report=report)

@@ -15,7 +15,7 @@ from faying.answer.tracks import compared, encounters, macs, shapes_of
 from faying.backbones.backbone import backbones_of
 from faying.backbones.choice import friction_of
 from faying.bolt.bolt import FittedBolt
-from faying.case.beside import Beside, beside_fields, solve_beside
+from faying.case.alternative import Alternative, alternative_fields, solve_alternative
 from faying.case.bounds import bounds
 from faying.case.case import Case, Progress
 from faying.case.engine import engine_of
@@ -74,13 +74,13 @@ def run(
     case = Case.of(study, progress)
     solver = engine_of(engine, case)
     states = [solve(case, number, solver, progress) for number in range(len(study.loads))]
-    besides = [solve_beside(case, choice, solver, progress) for choice in study.beside]
+    alternatives = [solve_alternative(case, choice, solver, progress) for choice in study.alternatives]
     progress.begin("modes free and bonded")
     free, bonded, notes = bounds(case)
     mesh = mesh_error(case, states) if study.modes.intervals else None
     band, interval, more = intervals(case, states, mesh)
     more += mesh_notes(case, mesh) if study.modes.intervals else []
-    result = collect(case, states, (free, bonded), [*notes, *findings(case, states), *more], besides)
+    result = collect(case, states, (free, bonded), [*notes, *findings(case, states), *more], alternatives)
     if band is not None:
         result = replace(result, **band.fields(case.loads))
     if interval is not None:
@@ -116,7 +116,7 @@ def stages(study: Study) -> list[str]:
         out += [f"frequency response at {load}"] if study.response is not None else []
         if study.hammer is not None and number == study.hammer.load:
             out.append("frequency response at the points of the test")
-    out += [stage for _ in study.beside for load in loads for stage in (f"preload {load}", f"modes at {load}")]
+    out += [stage for _ in study.alternatives for load in loads for stage in (f"preload {load}", f"modes at {load}")]
     out.append("modes free and bonded")
     return out if study.backbone is None else [*out, f"mode {study.backbone.mode} over amplitude"]
 
@@ -126,7 +126,7 @@ def collect(
     states: Sequence[LoadedCase],
     bounds: tuple[Array, Array],
     notes: Sequence[Note],
-    besides: Sequence[Beside] = (),
+    alternatives: Sequence[Alternative] = (),
 ) -> Result:
     """Stack the states of a case into its result.
 
@@ -134,21 +134,21 @@ def collect(
         case, states: the case and its state under each load.
         bounds: frequencies [Hz] with the faces apart and with them bonded.
         notes: what is to be said beyond the notes of case and states.
-        besides: the same under other laws.
+        alternatives: the same under other laws.
     """
     study, structure = case.study, case.structure
     shapes = shapes_of(case, states)
     steps, with_first = macs(case, states)
     comparison, more = compared(case, states, shapes, steps)
-    if comparison is not None and besides:
-        comparison = replace(comparison, beside=np.stack([_predicted(b, comparison) for b in besides]))
+    if comparison is not None and alternatives:
+        comparison = replace(comparison, alternatives=np.stack([_predicted(b, comparison) for b in alternatives]))
     lossless = not structure.predicts_loss
     rigid = np.max([s.modes.frequencies[: case.rigid_count] for s in states], axis=0)
     first = states[0].modes.frequencies[case.rigid_count]
     every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more]
     every += encounters(states, steps)
     every += level_notes(case, [state.levels for state in states], lossless)
-    every += [*(note for b in besides for note in b.notes), *_closing_notes(study, rigid, first)]
+    every += [*(note for b in alternatives for note in b.notes), *_closing_notes(study, rigid, first)]
     way = structure.solver(study.modes.solver)
     bolts, more = _bolts(case, states, shapes)
     every += more
@@ -168,7 +168,7 @@ def collect(
         **_on_faces(structure, states),
         **_outline(structure, shapes, states),
         **_made_of(structure),
-        **beside_fields(besides, len(states), len(bounds[0])),
+        **alternative_fields(alternatives, len(states), len(bounds[0])),
         joints=tuple(j.name for j in structure.joints),
         bolts=tuple(bolt.name for bolt in study.bolts),
         unknowns=structure.mesh.unknowns,
@@ -189,7 +189,7 @@ def collect(
     if case.hammer is None:
         return result
     full = next((s.test_response for s in states if s.test_response is not None), None)
-    return replace(result, hammer=case.hammer.beside(result, full))
+    return replace(result, hammer=case.hammer.compared(result, full))
 
 
 def _bolts(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Array]) -> tuple[BoltNumbers | None, list[Note]]:
@@ -204,10 +204,10 @@ def _stacked(rows: Sequence[Array | None]) -> Array | None:
     return np.stack(kept) if len(kept) == len(rows) else None
 
 
-def _predicted(beside: Beside, comparison: Comparison) -> Array:
+def _predicted(other: Alternative, comparison: Comparison) -> Array:
     """Frequencies [Hz] that another law predicts of the test's modes; NaN where it has no answer."""
-    if beside.case is not None:
-        case, states = beside.case, beside.states
+    if other.case is not None:
+        case, states = other.case, other.states
         found, _ = compared(case, states, shapes_of(case, states), macs(case, states)[0])
         if found is not None:
             return found.predicted

@@ -10,7 +10,7 @@ import numpy as np
 from faying.backbones.choice import chosen, friction_of, load_index, names
 from faying.backbones.result import Curve, collected
 from faying.backbones.store import CurveStore
-from faying.case.beside import changed, study_beside
+from faying.case.alternative import changed, study_with
 from faying.case.case import Case, checked_laws, law_reasons, read_for, surfaces_of
 from faying.case.preloads import settled
 from faying.errors import InputError
@@ -29,8 +29,8 @@ from faying.numerics.damped import damped_modes
 from faying.numerics.modes import Modes
 from faying.progress import Report
 from faying.result.backbone import Backbone
+from faying.study.keys.alternative import AlternativeChoice
 from faying.study.keys.backbone import BackboneChoice, Point, laws
-from faying.study.keys.beside import BesideChoice
 from faying.study.keys.law import LawChoice
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
@@ -168,7 +168,7 @@ def backbones(
     progress.stage("surface and mesh", 0.0)
     read = read_for(study, surfaces_of(study))
     for law in choice.laws:
-        other = study_beside(study, _beside(study, law))
+        other = study_with(study, _beside(study, law))
         checked_laws(other, surfaces_of(other, read))  # raises, before the mesh
     case = Case.of(study, read=read)
     file = None if out is None else Path(out)
@@ -293,10 +293,10 @@ def _curves(
     return out
 
 
-def _beside(study: Study, law: LawChoice) -> BesideChoice:
+def _beside(study: Study, law: LawChoice) -> AlternativeChoice:
     """A law on all joints, with the parameters that the study gives it where all of them have it already."""
     own = {study.law_of(joint).kind.label: study.law_of(joint) for joint in study.joints}
-    return BesideChoice(name=law.model, law=own[law.kind.label] if set(own) == {law.kind.label} else law)
+    return AlternativeChoice(name=law.model, law=own[law.kind.label] if set(own) == {law.kind.label} else law)
 
 
 def _under(case: Case, law: LawChoice) -> Case:

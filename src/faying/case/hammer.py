@@ -81,7 +81,7 @@ class Hammer:
         at = np.array([nodes[points.nodes[d.point]] for d in used], dtype=np.int64)
         return at, points.transform.directions(np.array([d.axis() for d in used]).reshape(-1, 3))
 
-    def beside(self, result: Result, full: FullResponse | None) -> ModalComparison:
+    def compared(self, result: Result, full: FullResponse | None) -> ModalComparison:
         """The comparison at the preload of the test."""
         model = result.modes_at(float(result.loads[self.choice.load]))
         found = compare_modes(

@@ -34,9 +34,9 @@ def lead(result: Result) -> str:
     """The answer in two or three sentences: the modes at the greatest preload, how the test lies, what limits it."""
     f, load = result.frequencies[-1], f"{result.loads[-1] / 1e3:g} kN"
     if len(f) == 1:
-        words = [f"At {load} the structure has one elastic mode of interest, at {f[0]:.4g} Hz."]
+        words = [f"At {load} the structure has one elastic mode of interest, at {_hertz(f[0])} Hz."]
     else:
-        words = [f"At {load} the lowest {len(f)} elastic modes lie from {f[0]:.4g} to {f[-1]:.4g} Hz."]
+        words = [f"At {load} the lowest {len(f)} elastic modes lie from {_hertz(f[0])} to {_hertz(f[-1])} Hz."]
     if result.interval_low is not None and result.interval_high is not None:
         ends = _interval(float(result.interval_low[-1, 0]), float(result.interval_high[-1, 0])).replace("..", "and")
         words.append(f"The first lies between {ends} Hz (5 to 95 %).")
@@ -44,6 +44,10 @@ def lead(result: Result) -> str:
     if found is not None and found.inside is not None:
         words.append(f"{int(found.inside.sum())} of {found.measured} measured frequencies lie within 5 to 95 %.")
     return " ".join(words)
+
+
+def _hertz(f: float) -> str:
+    return f"{f:.0f}" if f >= 1000 else f"{f:.4g}"
 
 
 def _interval(low: float, high: float) -> str:

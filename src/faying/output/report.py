@@ -76,11 +76,11 @@ def _list(texts: Sequence[str]) -> str:
 def _answer(result: Result, pictures: dict[str, str]) -> list[str]:
     """What a reader looks for: the modes with their intervals, how the test lies, and what to know first."""
     first = [section for section in sections(result) if section.name == "answer"]
-    out = [f'<h2>Answer</h2><p class="lead">{escape(answer.lead(result))}</p>', *_first_notes(result)]
+    out = [f'<h2>Answer</h2><p class="lead">{escape(answer.lead(result))}</p>']
     tables = [page.table(section.rows, section.name) for section in first]
     shown = [_figure("intervals", pictures["intervals"])] if "intervals" in pictures else []
     out += ['<div class="pair">', *tables, *shown, "</div>"] if first else []
-    return out + [f"<p>{page.typeset(escape(section.below))}</p>" for section in first]
+    return out + [f"<p>{page.typeset(escape(section.below))}</p>" for section in first] + _first_notes(result)
 
 
 def _made_by(result: Result) -> str:
@@ -109,7 +109,7 @@ def _view(result: Result, pictures: dict[str, str]) -> list[str]:
 
 
 def _first_notes(result: Result) -> list[str]:
-    """What a reader must know before the tables: at most three notes, the gravest first."""
+    """What a reader must know beyond the answer: at most three notes, the gravest first."""
     every = grave(result.notes)
     out = [f'<p class="flag">{escape(note.text)}</p>' for note in every[:FIRST_NOTES]]
     more = len(every) - FIRST_NOTES
@@ -230,7 +230,7 @@ def _on_axes(draw: Callable[[Any, Result], Any]) -> Callable[[Result], Any]:
 FIGURES = {
     "intervals": ReportFigure(
         draw=interval_figure.intervals,
-        caption="Left: 5 to 95 % of each frequency at the greatest preload about the value as computed, with the test. "
+        caption="Left: 5 to 95 % of each frequency at the greatest preload about the value as computed, and the test where there is one. "
         "Right: what makes the interval, in shares of its variance.",
         applies=lambda result: result.interval is not None,
     ),

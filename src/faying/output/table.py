@@ -91,21 +91,25 @@ def laws(result: Result) -> Rows:
     is beyond the end is held or bonded.
     """
     r = result
-    if r.beside_frequencies is None or r.beside_loss_factors is None or r.beside_beyond_frequencies is None:
+    if (
+        r.alternative_frequencies is None
+        or r.alternative_loss_factors is None
+        or r.alternative_beyond_frequencies is None
+    ):
         return []
-    if r.beside_reach is None or r.beside_beyond_share is None or r.beside_outside_share is None:
+    if r.alternative_reach is None or r.alternative_beyond_share is None or r.alternative_outside_share is None:
         return []
     own = r.frequencies[-1] if r.beyond_frequencies is None else r.beyond_frequencies[-1]
-    held = np.stack([r.frequencies[-1], *r.beside_frequencies[:, -1]])
-    bonded = np.stack([own, *r.beside_beyond_frequencies[:, -1]])
-    lost = np.stack([r.loss_factors[-1], *r.beside_loss_factors[:, -1]])
-    reach = [min(float(law["greatest_pressure [Pa]"]) for law in r.laws), *r.beside_reach]
-    beyond = [r.beyond_share[-1], *r.beside_beyond_share[:, -1]]
-    outside = [r.outside_share[-1], *r.beside_outside_share[:, -1]]
+    held = np.stack([r.frequencies[-1], *r.alternative_frequencies[:, -1]])
+    bonded = np.stack([own, *r.alternative_beyond_frequencies[:, -1]])
+    lost = np.stack([r.loss_factors[-1], *r.alternative_loss_factors[:, -1]])
+    reach = [min(float(law["greatest_pressure [Pa]"]) for law in r.laws), *r.alternative_reach]
+    beyond = [r.beyond_share[-1], *r.alternative_beyond_share[:, -1]]
+    outside = [r.outside_share[-1], *r.alternative_outside_share[:, -1]]
     spread = np.nanmax(bonded, axis=0) / np.nanmin(held, axis=0)
     shown = np.sort(np.argsort(-spread)[:SHOWN])
     rows: Rows = [["law", "ends [MPa]", "beyond", "outside", *(f"mode {j + 1} [Hz] (loss)" for j in shown)]]
-    names = (" + ".join(dict.fromkeys(str(law["name"]) for law in r.laws)), *r.beside)
+    names = (" + ".join(dict.fromkeys(str(law["name"]) for law in r.laws)), *r.alternatives)
     for k, name in enumerate(names):
         if np.isnan(reach[k]) or np.isnan(held[k]).all():
             rows.append([name, *["-"] * (3 + len(shown))])
@@ -168,8 +172,8 @@ def comparison(result: Result) -> Rows:
     count = c.frequencies.shape[1]
     rows: Rows = [["preload", "source", *(f"mode {j + 1}" for j in range(count))]]
     theirs = [] if c.published is None else [(c.published_name, c.published)]
-    beside = [] if c.beside is None else list(zip(result.beside, c.beside, strict=True))
-    ours = [*beside, ("Faying", c.predicted)]
+    others = [] if c.alternatives is None else list(zip(result.alternatives, c.alternatives, strict=True))
+    ours = [*others, ("Faying", c.predicted)]
     for i, load in enumerate(result.loads):
         rows.append([f"{load / 1e3:g} kN", f"{c.reference} [Hz]", *(f"{f:.1f}" for f in c.frequencies[i])])
         for name, values in (*theirs, *ours):

@@ -142,9 +142,9 @@ def _against_preload(ax: Any, result: Result, mode: int) -> None:
     else:
         ends = f, f
     ax.plot(load, f, "o-" if len(load) > 1 else "D", color=COLOURS[0], ms=3, label="computed")
-    for k, name in enumerate(result.beside):
-        if result.beside_frequencies is not None:
-            of_law = result.beside_frequencies[k, :, mode]
+    for k, name in enumerate(result.alternatives):
+        if result.alternative_frequencies is not None:
+            of_law = result.alternative_frequencies[k, :, mode]
             ax.plot(load, of_law, ".--", color=colour(k + 2), ms=4, lw=1.0, label=plain(name))
     c = result.comparison
     if c is not None:

@@ -52,7 +52,7 @@ class Comparison:
         "load", "test_mode", unit="Hz", long_name="frequencies of a published model", default=None
     )
     published_name: str = "published"
-    beside: Array | None = variable(
+    alternatives: Array | None = variable(
         "law",
         "load",
         "test_mode",
@@ -117,7 +117,7 @@ class Result(Recorded):
     Frequencies, loss factors and shapes are those of the complex modes; "bonded" are the frequencies with the faces of
     every joint bonded, "free" those with the faces apart. `surfaces` and `laws` hold, per joint, what the law
     was made from and its own numbers. low and high: the frequencies at the ends of the range of stiffness that the laws
-    state, None where none states one; `beside` names other laws, whose frequencies stand in `beside_frequencies`.
+    state, None where none states one; `alternatives` names other laws, their frequencies are `alternative_frequencies`.
     `backbones` are the curves over amplitude that the study asks for, at the greatest preload.
     `tightening` names the bolts in the order in which they were pulled, and is empty where all were pulled at once.
     `parts`, `faces`, `joint_faces` (the two faces of each joint), `supports` and `masses` say what the structure is
@@ -444,7 +444,7 @@ class Result(Recorded):
         group="waves",
         name="wave_length",
     )
-    beside_frequencies: Array | None = variable(
+    alternative_frequencies: Array | None = variable(
         "law",
         "load",
         "mode",
@@ -455,7 +455,7 @@ class Result(Recorded):
         group="laws",
         name="frequency",
     )
-    beside_loss_factors: Array | None = variable(
+    alternative_loss_factors: Array | None = variable(
         "law",
         "load",
         "mode",
@@ -466,7 +466,7 @@ class Result(Recorded):
         group="laws",
         name="loss_factor",
     )
-    beside_beyond_frequencies: Array | None = variable(
+    alternative_beyond_frequencies: Array | None = variable(
         "law",
         "load",
         "mode",
@@ -477,7 +477,7 @@ class Result(Recorded):
         group="laws",
         name="frequency_bonded_above",
     )
-    beside_outside_share: Array | None = variable(
+    alternative_outside_share: Array | None = variable(
         "law",
         "load",
         unit="1",
@@ -487,7 +487,7 @@ class Result(Recorded):
         group="laws",
         name="outside_share",
     )
-    beside_beyond_share: Array | None = variable(
+    alternative_beyond_share: Array | None = variable(
         "law",
         "load",
         unit="1",
@@ -497,7 +497,7 @@ class Result(Recorded):
         group="laws",
         name="above_range_share",
     )
-    beside_reach: Array | None = variable(
+    alternative_reach: Array | None = variable(
         "law",
         unit="Pa",
         long_name="pressure at which another law ends",
@@ -525,7 +525,7 @@ class Result(Recorded):
         group="joints",
     )
     interval_sources: tuple[str, ...] = ()
-    beside: tuple[str, ...] = ()
+    alternatives: tuple[str, ...] = ()
     joints: tuple[str, ...]
     bolts: tuple[str, ...]
     parts: tuple[str, ...] = ()
@@ -660,7 +660,7 @@ class Result(Recorded):
         out |= in_units(self, without=MAPS)
         out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
         out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
-        out["interval_sources"], out["beside"] = list(self.interval_sources), list(self.beside)
+        out["interval_sources"], out["alternatives"] = list(self.interval_sources), list(self.alternatives)
         out["parts"] = list(self.parts)
         out |= {"joints": list(self.joints), "bolts": list(self.bolts), "tightening": list(self.tightening)}
         out |= {"damping": self.damping, "surfaces": list(self.surfaces), "laws": list(self.laws)}
@@ -684,7 +684,7 @@ class Result(Recorded):
         out |= {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
         out |= {"part": self.parts} if self.parts else {}
         out |= {"source": self.interval_sources} if self.interval_sources else {}
-        return out | ({"law": self.beside} if self.beside else {})
+        return out | ({"law": self.alternatives} if self.alternatives else {})
 
     @property
     def interval(self) -> Interval | None:

@@ -46,7 +46,7 @@ class Expected:
     @classmethod
     def of(cls, study: Study, unknowns: int) -> "Expected":
         """What the run of a study of so many unknowns needs: its loads, other laws, damping, waves and curves."""
-        share = 1.0 + LOAD * (len(study.loads) - 1) + OTHER * len(study.beside)
+        share = 1.0 + LOAD * (len(study.loads) - 1) + OTHER * len(study.alternatives)
         share -= 0.0 if study.modes.levels else LEVELS
         share -= WAVES if any(joint.form is not None for joint in study.joints) else 0.0
         seconds = START + share * EACH * unknowns**GROWTH

@@ -68,7 +68,7 @@ counterbody = "part"           # or "rigid": the other body does not yield
 # substrate = 1.0              # share of the deformation that the asperity takes, or "exact", "computed"
 
 # The same joints under another law, beside the study's own.
-# [[beside]]
+# [[alternative]]
 # name = "JK"
 # law = {{ model = "jk" }}
 

@@ -12,8 +12,8 @@ from faying.joint.attachments import PointMass, Support
 from faying.joint.modal import ModesChoice
 from faying.materials import Material
 from faying.misuse import checked_call
+from faying.study.keys.alternative import AlternativeChoice
 from faying.study.keys.backbone import BackboneChoice
-from faying.study.keys.beside import BesideChoice
 from faying.study.keys.bolt import read_bolt
 from faying.study.keys.bolt_sheet import BoltSheetChoice, read_bolt_sheets
 from faying.study.keys.geometry import GeometryChoice, read_geometry
@@ -42,7 +42,7 @@ class Study:
         geometry, surface, law, joints, bolts, supports, masses, modes, response, test, hammer: the tables of the file.
         bonds: joints whose faces are welded or glued; `joints` are the others.
         backbone: which curve over amplitude is asked for; None where the file does not say.
-        beside: other laws and surfaces whose modes stand beside those of the study.
+        alternatives: other laws and surfaces whose modes stand beside those of the study.
         bolt_sheets: what is said for the sheets of the bolts.
         uncertain: which numbers scatter; None where the file does not say.
         order: the order of tightening as indices of bolts, pass after pass; None where all are pulled at once.
@@ -65,7 +65,7 @@ class Study:
     test: TestChoice | None = None
     hammer: HammerChoice | None = None
     backbone: BackboneChoice | None = None
-    beside: tuple[BesideChoice, ...] = ()
+    alternatives: tuple[AlternativeChoice, ...] = ()
     uncertain: UncertainChoice | None = None
     bonds: tuple[JointChoice, ...] = ()
     name: str = PLAIN
@@ -127,10 +127,12 @@ class Study:
         law = LawChoice.of(top.table("law") or Table({}, "law", faults))
         shared = top.table("surface")
         surface = None if shared is None else SurfaceChoice.of(shared)
-        beside = tuple(BesideChoice.of(t, i) for i, t in enumerate(top.tables("beside")))
+        alternatives = tuple(AlternativeChoice.of(t, i) for i, t in enumerate(top.tables("alternative")))
         backbone = BackboneChoice.of(top.table("backbone"))
         _note_lacking(faults, joints, law, surface)
-        _note_lacking_beside(faults, joints, (law, surface), beside, () if backbone is None else backbone.laws)
+        _note_lacking_alternatives(
+            faults, joints, (law, surface), alternatives, () if backbone is None else backbone.laws
+        )
         read = [read_bolt(t, i, materials) for i, t in enumerate(top.tables("bolt", required=True))]
         bolts = tuple(bolt for bolt in read if bolt is not None)
         sheets = read_bolt_sheets(top.tables("bolt_sheet"), [bolt.name for bolt in bolts])
@@ -168,7 +170,7 @@ class Study:
             test=test,
             hammer=hammer,
             backbone=backbone,
-            beside=beside,
+            alternatives=alternatives,
             uncertain=uncertain,
             bolt_sheets=sheets,
             text=text,
@@ -204,15 +206,17 @@ def _uncertain(
     return read_uncertain(None if table is None else table.data, inside, known, top.faults)
 
 
-def _note_lacking_beside(
+def _note_lacking_alternatives(
     faults: Faults,
     joints: tuple[JointChoice, ...],
     shared: tuple[LawChoice, SurfaceChoice | None],
-    beside: tuple[BesideChoice, ...],
+    alternatives: tuple[AlternativeChoice, ...],
     laws: tuple[LawChoice, ...],
 ) -> None:
-    """Note what the laws of [[beside]] and [backbone] do not find in the surfaces."""
-    changes = [(f"beside[{number}]: ", other.law, other.surface) for number, other in enumerate(beside, start=1)]
+    """Note what the laws of [[alternative]] and [backbone] do not find in the surfaces."""
+    changes = [
+        (f"alternative[{number}]: ", other.law, other.surface) for number, other in enumerate(alternatives, start=1)
+    ]
     changes += [("backbone.law: ", law, None) for law in laws]
     for where, law, surface in changes:
         changed = tuple(replace(j, law=law or j.law, surface=surface or j.surface) for j in joints)

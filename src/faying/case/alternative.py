@@ -1,4 +1,4 @@
-"""The same structure under other laws and forms: what [[beside]] asks for."""
+"""The same structure under other laws and forms: what [[alternative]] asks for."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -12,14 +12,14 @@ from faying.case.solve import LoadedCase, solve
 from faying.errors import FayingError
 from faying.notes import Note
 from faying.numerics.solve import Released
-from faying.study.keys.beside import BesideChoice
+from faying.study.keys.alternative import AlternativeChoice
 from faying.study.study import Study
 
 TOLD = ("open", "beyond-law", "outside-validity", "law-choice", "assumed")  # notes of the other law that are told
 
 
 @dataclass(frozen=True, kw_only=True)
-class Beside:
+class Alternative:
     """A case under another law.
 
     Args:
@@ -35,7 +35,7 @@ class Beside:
     notes: tuple[Note, ...]
 
 
-def solve_beside(case: Case, choice: BesideChoice, engine: Engine, progress: Progress) -> Beside:
+def solve_alternative(case: Case, choice: AlternativeChoice, engine: Engine, progress: Progress) -> Alternative:
     """Solve a case under another law on all joints, at all loads, without meshing anew.
 
     engine: that of the case under its own law.
@@ -48,23 +48,23 @@ def solve_beside(case: Case, choice: BesideChoice, engine: Engine, progress: Pro
     except FayingError as fault:
         progress.done = done + 2 * len(case.study.loads)
         text = f"alternative {choice.name}: no answer: {fault}"
-        return Beside(name=choice.name, case=None, states=(), notes=(Note(code="beside", text=text),))
+        return Alternative(name=choice.name, case=None, states=(), notes=(Note(code="alternative", text=text),))
     notes = [*law_reasons(other.structure, other.surfaces), *(note for state in states for note in state.notes)]
     told = tuple(
         replace(note, text=f"alternative {choice.name}: {note.text}")
         for note in notes
         if note.code in TOLD and note not in case.notes
     )
-    return Beside(name=choice.name, case=other, states=states, notes=tuple(dict.fromkeys(told)))
+    return Alternative(name=choice.name, case=other, states=states, notes=tuple(dict.fromkeys(told)))
 
 
 def _slim(state: LoadedCase) -> LoadedCase:
-    """The state without its factorisation: what is beside needs none, and memory is short."""
+    """The state without its factorisation: an alternative needs none, and memory is short."""
     factor = state.modes.factorisation
     return replace(state, modes=replace(state.modes, factorisation=Released(name=factor.name, memory=factor.memory)))
 
 
-def study_beside(study: Study, choice: BesideChoice) -> Study:
+def study_with(study: Study, choice: AlternativeChoice) -> Study:
     """The study with another law, surface or form on all joints."""
     joints = tuple(
         replace(
@@ -78,9 +78,9 @@ def study_beside(study: Study, choice: BesideChoice) -> Study:
     return replace(study, joints=joints, response=None, hammer=None)
 
 
-def changed(case: Case, choice: BesideChoice) -> Case:
+def changed(case: Case, choice: AlternativeChoice) -> Case:
     """The case under another law or form, with the same mesh and what is assembled on it."""
-    study = study_beside(case.study, choice)
+    study = study_with(case.study, choice)
     surfaces = surfaces_of(study, case.read)
     mesh = case.structure.mesh
     placed = []
@@ -92,23 +92,23 @@ def changed(case: Case, choice: BesideChoice) -> Case:
     return replace(case, study=study, structure=structure, surfaces=surfaces, hammer=None, test_points=None, notes=())
 
 
-def beside_fields(besides: Sequence[Beside], loads: int, modes: int) -> dict[str, Any]:
+def alternative_fields(alternatives: Sequence[Alternative], loads: int, modes: int) -> dict[str, Any]:
     """Fields of the result for the other laws, NaN where one has no answer; none without any."""
-    if not besides:
+    if not alternatives:
         return {}
     nothing = np.full((loads, modes), np.nan)
     alone = np.full(loads, np.nan)
     rows: dict[str, list[Any]] = {
-        "beside_frequencies": [],
-        "beside_loss_factors": [],
-        "beside_beyond_frequencies": [],
-        "beside_outside_share": [],
-        "beside_beyond_share": [],
-        "beside_reach": [],
+        "alternative_frequencies": [],
+        "alternative_loss_factors": [],
+        "alternative_beyond_frequencies": [],
+        "alternative_outside_share": [],
+        "alternative_beyond_share": [],
+        "alternative_reach": [],
     }
-    for beside in besides:
-        joints, states = () if beside.case is None else beside.case.structure.joints, beside.states
-        lossless = beside.case is None or not beside.case.structure.predicts_loss
+    for other in alternatives:
+        joints, states = () if other.case is None else other.case.structure.joints, other.states
+        lossless = other.case is None or not other.case.structure.predicts_loss
         found = [
             np.stack([s.damped.frequencies for s in states]) if states else nothing,
             nothing if lossless else np.stack([s.damped.loss_factors for s in states]),
@@ -119,4 +119,6 @@ def beside_fields(besides: Sequence[Beside], loads: int, modes: int) -> dict[str
         ]
         for values, one in zip(rows.values(), found, strict=True):
             values.append(one)
-    return {"beside": tuple(b.name for b in besides)} | {name: np.stack(values) for name, values in rows.items()}
+    return {"alternatives": tuple(b.name for b in alternatives)} | {
+        name: np.stack(values) for name, values in rows.items()
+    }

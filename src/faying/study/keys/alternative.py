@@ -1,4 +1,4 @@
-"""[[beside]]: another law, surface or form for every joint, whose modes are listed with those of the study."""
+"""[[alternative]]: another law, surface or form for every joint, whose modes are listed with those of the study."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from faying.study.keys.surface import SurfaceChoice
 
 
 @dataclass(frozen=True, kw_only=True)
-class BesideChoice:
+class AlternativeChoice:
     """A law, a surface and a form for all joints, in place of those of the study where they are given.
 
     name: what the tables call it.
@@ -22,14 +22,14 @@ class BesideChoice:
     form: Form | None = None
 
     @classmethod
-    def of(cls, table: Table, index: int) -> "BesideChoice":
-        """Read one [[beside]]."""
+    def of(cls, table: Table, index: int) -> "AlternativeChoice":
+        """Read one [[alternative]]."""
         law, surface = table.table("law"), table.table("surface")
         form = read_form(table.table("form"))
         if law is None and surface is None and form is None:
             table.faults.add(f"{table.where}: give a law, a surface or a form that differs from the study's")
         read = None if law is None else LawChoice.of(law)
-        name = table.text("name", read.model if read is not None else f"beside {index + 1}")
+        name = table.text("name", read.model if read is not None else f"alternative {index + 1}")
         other = None if surface is None else SurfaceChoice.of(surface)
         choice = cls(name=name or "", law=read, surface=other, form=form)
         table.close()
