@@ -230,8 +230,8 @@ def _on_axes(draw: Callable[[Any, Result], Any]) -> Callable[[Result], Any]:
 FIGURES = {
     "intervals": ReportFigure(
         draw=interval_figure.intervals,
-        caption="Left: 5 to 95 % of each frequency at the greatest preload about the value as computed, and the test where there is one. "
-        "Right: what makes the interval, in shares of its variance.",
+        caption="Left: 5 to 95 % of each frequency at the greatest preload about the value as computed, and the test "
+        "where there is one. Right: what makes the interval, in shares of its variance.",
         applies=lambda result: result.interval is not None,
     ),
     "narrowing": ReportFigure(
