@@ -21,6 +21,7 @@ COMMANDS = {
     "check": ("check", "Check a study without solving it: faults, notes, memory, time."),
     "compare": ("compare", "Compare a hammer test with the result of a study: MAC, pairs, FRFs."),
     "condense": ("condense", "One joint as a 6 x 6 stiffness and loss between two points, with its error."),
+    "doctor": ("doctor", "What works on this machine, and what to do about the rest."),
     "faces": ("faces", "Faces of a STEP or mesh file: numbers, normals, centres, contacts."),
     "form": ("form", "Flatness, crowns and twist of a measured face or gap."),
     "identify": ("identify", "Update the uncertain numbers of a study from a hammer test."),
