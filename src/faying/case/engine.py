@@ -33,7 +33,10 @@ class Engine(Protocol):
         """Real and complex modes with springs on the joints. Raises InputError where a part moves freely."""
 
     def frequencies(self, springs: Sequence[Springs[Interface]], tolerance: float = RANGE_ERROR) -> Array:
-        """Frequencies [Hz] of the elastic modes with other springs; tolerance: of their squares."""
+        """Frequencies [Hz] of the elastic modes with other springs.
+
+        tolerance: relative error of their squares that is allowed; an engine may be more exact.
+        """
 
     def basis(self) -> Array:
         """Vectors (unknowns, m), orthonormal with the mass, in which modes near the last ones can be found."""
