@@ -137,6 +137,7 @@ def test_a_form_beside_is_that_of_a_run_with_it(default, tmp_path):
     assert np.abs(found.frequencies / default.frequencies - 1).max() > 1e-3
 
 
+@pytest.mark.slow
 def test_a_law_far_from_the_contact_of_its_scan_is_told(closed, tmp_path):
     """JK grows more slowly with pressure than the contact of this scan; GW-KE stays within a factor of two of it."""
     path = coarse(tmp_path, "jk")

@@ -60,7 +60,7 @@ def scan_named(name: str, folder: Path) -> Scan:
 @pytest.mark.parametrize(
     "name",
     [
-        "init",
+        pytest.param("init", marks=pytest.mark.slow),
         pytest.param("Hurst 0.5", marks=pytest.mark.slow),
         pytest.param("Hurst 0.8", marks=pytest.mark.slow),
         pytest.param("test1", marks=pytest.mark.slow),

@@ -147,6 +147,7 @@ def test_waves_are_assumed_where_nothing_is_said(coarse, assumed):
     assert "flat faces" not in " ".join(assumed.warnings)
 
 
+@pytest.mark.slow
 def test_a_draw_of_the_band_is_that_of_a_full_run(coarse, assumed):
     """The frequencies with waves from the small basis, against the same waves given as a form."""
     form = Form(waviness=replace(ASSUMED, seed=1))
