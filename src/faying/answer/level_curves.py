@@ -120,7 +120,7 @@ def level_curves(
     rest_damping: float | None = None,
     report: Report | None = None,
 ) -> LevelCurves:
-    """Follow all modes of a study from small to large amplitudes, without harmonics.
+    """Follow all modes of a study from small to large amplitudes, without harmonic balance.
 
     What is left out is taken from [backbone] of the study, or its default.
 
@@ -133,7 +133,8 @@ def level_curves(
         report: Called with a stage, the stages done, and how many there are.
 
     Returns:
-        The curves. They leave out harmonics and the mean opening of the joints, which `backbone` has.
+        The curves. Mean opening, lag and the harmonics 2 and 3 are corrected once in a pass; `backbone` solves them
+        together.
 
     Raises:
         InputError: No friction is given, no law has a stiffness that slips, there is no such load.

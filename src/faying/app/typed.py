@@ -1,12 +1,11 @@
 """What can be said of a study's text while it is typed: faults of its form and of its keys, in milliseconds."""
 
-import re
 import tomllib
 from pathlib import Path
 from typing import Any
 
 from faying.errors import FayingError
-from faying.setup.lines import key_of, line_of, lines_of
+from faying.setup.lines import key_of, line_of, line_of_fault, lines_of
 from faying.study import Study
 from faying.study.keys.reader import StudyFaults
 
@@ -21,9 +20,7 @@ def faults_of(text: str, folder: Path) -> list[dict[str, Any]]:
     try:
         data = tomllib.loads(text)
     except (ValueError, RecursionError) as fault:  # nested without end, a number of thousands of digits
-        at = re.search(r"at line (\d+)", str(fault))
-        line = int(at[1]) if at else text.count("\n") + 1 if "end of document" in str(fault) else None
-        return [_fault(f"the text is not TOML: {fault}", line)]
+        return [_fault(f"the text is not TOML: {fault}", line_of_fault(fault, text))]
     lines = lines_of(text)
     try:
         Study.from_dict(data, folder=folder, text=text)

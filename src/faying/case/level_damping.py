@@ -42,6 +42,11 @@ class LevelDamping:
     error: Array
 
 
+def can_slip(case: Case) -> bool:
+    """Whether levels are asked for, and no joint has springs per node, which do not slip."""
+    return bool(case.study.modes.levels) and not any(joint.per_node for joint in case.structure.joints)
+
+
 def level_damping(case: Case, preload: PreloadState, found: Vibration, basis: Array) -> LevelDamping | None:
     """Damping at the levels of a case under one preload.
 
@@ -55,7 +60,7 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration, basis: Ar
         None where no level is asked for, or where a law has no stiffness that slips.
     """
     structure, choice = case.structure, case.study.modes
-    if not choice.levels or any(joint.per_node for joint in structure.joints):
+    if not can_slip(case):
         return None
     given = [joint.friction for joint in structure.joints]
     try:

@@ -7,7 +7,7 @@ from faying.case.beyond import Beyond, bonded_beyond
 from faying.case.case import Case, Progress
 from faying.case.ends import Pair, ends_of
 from faying.case.engine import Engine
-from faying.case.level_damping import LevelDamping, level_damping
+from faying.case.level_damping import LevelDamping, can_slip, level_damping
 from faying.case.response import LoadedStructure, ResponseAtLoad
 from faying.fe.interface import Interface
 from faying.joint.equilibrium import PreloadState
@@ -120,7 +120,7 @@ def _levels(
     case: Case, preload: PreloadState, found: Vibration, engine: Engine, springs: Sequence[Springs[Interface]]
 ) -> LevelDamping | None:
     """Damping at levels, in a basis with the modes of joints that slip: softened ones, exact enough for shapes."""
-    if not case.study.modes.levels:
+    if not can_slip(case):
         return None
     for share in SOFTENED:
         engine.frequencies([replace(one, k_t=share * one.k_t) for one in springs], SHAPE_ERROR)

@@ -87,12 +87,12 @@ class LevelModel:
             before, damping = damping, max(lost, 0.0) / (2 * np.pi * speed**2 * amplitude**2)
             error = abs(damping - before) / damping if damping > 0 else 0.0
             change = self._change(motion, cycles)
-            self._follow(motion, forces.force, speed, damping)
             squared = speed**2
             softer = float(shape @ change @ shape)  # of the squared frequency, to first order
             if done == 0 and abs(softer) < SLIGHT * squared:
                 speed, error = float(np.sqrt(squared + softer)), abs(softer) / squared
                 break
+            self._follow(motion, forces.force, speed, damping)
             speed, shape = self._under(change, rest)
             if abs(speed**2 - squared) < SETTLED * squared and error < 10 * SETTLED:
                 break

@@ -5,6 +5,7 @@ import numpy as np
 from faying.case.scatter import SCATTER
 from faying.output.table import Rows
 from faying.result import Result
+from faying.result.interval import Interval
 from faying.result.result import preload_slope
 from faying.result.score import Score
 from faying.result.shape_names import part_and_axis
@@ -77,11 +78,17 @@ def limit(result: Result) -> str:
     mode = int(np.argmax(interval.width[-1]))
     most = interval.sources[int(np.argmax(interval.shares[:, -1, mode]))]
     text = f"Widest is mode {mode + 1}, {100 * interval.width[-1, mode]:.2g} % from 5 to 95 %, most of it by {most}."
-    known = SCATTER[most]
-    if known.remedy:
-        less = 1 - interval.narrowed({most: known.left}).width[-1, mode] / interval.width[-1, mode]
-        text += f" Known better ({known.remedy}), it would be {100 * less:.0f} % narrower."
+    less = gains(interval).get(most)
+    if less is not None:
+        text += f" Known better ({SCATTER[most].remedy}), it would be {100 * less[mode]:.0f} % narrower."
     return text
+
+
+def gains(interval: Interval) -> dict[str, Array]:
+    """How much narrower each mode's interval at the greatest preload is (m,) [-] with one source known better each."""
+    width = interval.width[-1]
+    known = {name: SCATTER[name] for name in interval.sources if SCATTER[name].remedy}
+    return {name: 1 - interval.narrowed({name: one.left}).width[-1] / width for name, one in known.items()}
 
 
 def shares(result: Result) -> Rows:
@@ -105,13 +112,14 @@ def narrowing(result: Result) -> Rows:
     if interval is None:
         return []
     found: list[tuple[float, list[str]]] = []
-    for name in interval.sources:
-        known = SCATTER[name]
-        if not known.remedy:
-            continue
-        less: Array = 1 - interval.narrowed({name: known.left}).width[-1] / interval.width[-1]
+    for name, less in gains(interval).items():
         best = int(np.argmax(less))
-        cells = [name, known.remedy, f"{100 * float(np.median(less)):.0f}", f"{100 * less[best]:.0f} (mode {best + 1})"]
+        cells = [
+            name,
+            SCATTER[name].remedy,
+            f"{100 * float(np.median(less)):.0f}",
+            f"{100 * less[best]:.0f} (mode {best + 1})",
+        ]
         found.append((float(np.mean(less)), cells))
     found.sort(key=lambda one: -one[0])
     return [["not known", "what would narrow it", "median [%]", "most [%]"], *(cells for _, cells in found)]

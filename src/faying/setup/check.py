@@ -1,6 +1,5 @@
 """What can be said of a study in seconds, before anything is meshed or solved: faults, notes, what a run will need."""
 
-import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -27,7 +26,7 @@ from faying.notes import Note
 from faying.progress import duration
 from faying.setup.bolt_names import MOST_NAMES, grouped
 from faying.setup.expected import Expected, unknowns_of
-from faying.setup.lines import key_of, line_of, lines_of
+from faying.setup.lines import key_of, line_of, line_of_fault, lines_of
 from faying.setup.reach import law_findings
 from faying.setup.sketch import Sketch
 from faying.study.keys.geometry import mesh_of
@@ -153,11 +152,11 @@ def _read(file: Path, found: _Findings) -> Study | None:
 
 def _toml_line(file: Path) -> int | None:
     """The line at which a file stops being TOML."""
+    text = file.read_text(encoding="utf-8", errors="replace")
     try:
-        tomllib.loads(file.read_text(encoding="utf-8", errors="replace"))
+        tomllib.loads(text)
     except (ValueError, RecursionError) as fault:  # nested without end, a number of thousands of digits
-        at = re.search(r"at line (\d+)", str(fault))
-        return int(at[1]) if at else None
+        return line_of_fault(fault, text)
     return None
 
 

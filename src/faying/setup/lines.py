@@ -6,6 +6,14 @@ from collections.abc import Mapping
 _KEY = re.compile(r'\s*(?:"((?:[^"\\\n]|\\.)*)"|\'([^\'\n]*)\'|([A-Za-z0-9_-]+))\s*')
 
 
+def line_of_fault(fault: Exception, text: str) -> int | None:
+    """The line, from 1, at which a text stops being TOML, from what the parser says of it; None where it says none."""
+    at = re.search(r"at line (\d+)", str(fault))
+    if at:
+        return int(at[1])
+    return text.count("\n") + 1 if "end of document" in str(fault) else None
+
+
 def lines_of(text: str) -> dict[str, int]:
     """The line, from 1, of every table and key of a TOML text, by its path.
 

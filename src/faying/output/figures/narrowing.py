@@ -6,6 +6,7 @@ import numpy as np
 
 from faying.case.scatter import SCATTER
 from faying.errors import InputError
+from faying.output.answer import gains
 from faying.result import Result
 from faying.result.interval_figure import SOURCES
 from faying.style import WIDE, drawing, legend_above, load_label, new_figure
@@ -28,12 +29,8 @@ def narrowing(result: Result) -> Any:
     interval = result.interval
     if interval is None:
         raise InputError("the result has no intervals; run it with [modes] intervals = true")
-    found = []
-    for name in interval.sources:
-        known = SCATTER[name]
-        if known.remedy:
-            less = 100 * (1 - interval.narrowed({name: known.left}).width[-1] / interval.width[-1])
-            found.append((float(np.median(less)), less, name, known.remedy))
+    less_of = {name: 100 * less for name, less in gains(interval).items()}
+    found = [(float(np.median(less)), less, name, SCATTER[name].remedy) for name, less in less_of.items()]
     found.sort(key=lambda one: -one[0])
     fig = new_figure(WIDE, 0.9 + 0.32 * len(found))
     ax = fig.subplots()
