@@ -7,12 +7,13 @@ import pytest
 
 import faying
 from faying.bolt.solid_bolt import SolidBolt
+from faying.fe.elasticity import assemble
 from faying.fe.interface import join
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Structure
 from faying.joint.tighten import tighten
-from tests.helpers.voxels import bolted
+from tests.helpers.voxels import bolted, voxels
 from tests.joint.test_tighten import bed
 
 STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0)
@@ -52,6 +53,36 @@ def test_the_seats_and_the_joint_carry_the_tension(single):
     made = structure(single)
     found = tighten(made, made.assembly(), [5e3])
     assert squeezed(made, found) == pytest.approx(5e3, rel=1e-7)
+
+
+def test_a_bolt_is_not_drawn_in_where_it_shares_nodes_with_a_part():
+    """The elements of the sleeve would be drawn with it, and its tension would be none of the preload."""
+    mm = 1e-3
+    across = np.array([-6, -3, 3, 6]) * mm
+    high = np.array([-3, 0, 2, 5, 10, 15, 18, 20, 23]) * mm
+
+    def off(p):
+        return np.abs(p[:, :2]).max(axis=1) / mm
+
+    def wall(p):
+        return (np.abs(p[:, 0] - 3 * mm) < 1e-9) & (np.abs(p[:, 1]) < 3.1 * mm) & (np.abs(p[:, 2] - 10 * mm) < 5.1 * mm)
+
+    parts = {
+        "bolt": lambda p: (off(p) < 3) | (p[:, 2] < 0) | (p[:, 2] > 20 * mm),
+        "sleeve": lambda p: (off(p) > 3) & (np.abs(p[:, 2] - 10 * mm) < 5 * mm),
+    }
+    faces = {
+        "head": ("bolt", lambda p: (np.abs(p[:, 2] - 20 * mm) < 1e-9) & (off(p) > 2.9)),
+        "nut": ("bolt", lambda p: (np.abs(p[:, 2]) < 1e-9) & (off(p) > 2.9)),
+        "wall": ("bolt", wall),
+        "inside": ("sleeve", wall),
+    }
+    mesh = voxels((across, across, high), parts, faces, kind="hex8").bonded_at(("wall", "inside"))
+    bolt = SolidBolt(name="b", part="bolt", faces=("head", "nut"))
+    K = assemble(mesh, dict.fromkeys(mesh.parts, STEEL))[0]
+    with pytest.raises(faying.InputError, match="nodes that it shares with 'sleeve'"):
+        bolt.fitted(mesh, K)
+    assert replace(bolt, at=(0, 0, 19 * mm)).fitted(mesh, K).rigidity > 0
 
 
 @pytest.mark.parametrize("height", [2.5e-3, 13e-3, 17e-3])

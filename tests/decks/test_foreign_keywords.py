@@ -128,19 +128,107 @@ def test_a_surface_on_all_of_a_part_does_not_hide_it(tmp_path):
     assert area(mesh, "skin") == pytest.approx(2 * 4e-4 + 4 * 2e-4)
 
 
+@pytest.mark.parametrize(
+    ("mangled", "read_as"),
+    [
+        (lambda text: "\ufeff" + text, 1),  # a mark of the encoding
+        (lambda text: ">**\n  a title\n" + text, 1),
+        (lambda text: text.replace("*NSET", " \t*NSET").replace("*ELEMENT", "  *Element"), 1),
+        (lambda text: text + "  ** a comment, 12\n ****\n*NSET, NSET=b\n1\n", 1),
+    ],
+)
+def test_blanks_titles_and_marks_before_keywords_change_nothing(tmp_path, mangled, read_as):
+    mesh = read(tmp_path, mangled(inp()))
+    assert list(mesh.parts) == ["low", "up"]
+    assert len(mesh.points) == 16 * read_as
+    assert area(mesh, "lowtop") == pytest.approx(4e-4)
+
+
+def test_numbers_before_the_first_keyword_are_not_passed_over(tmp_path):
+    with pytest.raises(faying.ReadError, match="line 1: data before the first keyword"):
+        read(tmp_path, "17, 0., 0., 0.\n" + inp())
+
+
+def test_elements_keep_to_lines_of_their_own(tmp_path):
+    """Nine lines of ten numbers are ninety: ten elements of eight nodes, none of which is in the file."""
+    rows = "".join(f"{k}, " + ", ".join(str(k + j) for j in range(9)) + "\n" for k in range(1, 10))
+    text = "*NODE\n" + "".join(f"{k}, {k}, {k % 3}, {k % 5}\n" for k in range(1, 20)) + "*ELEMENT, TYPE=C3D8\n" + rows
+    with pytest.raises(faying.ReadError, match="the lines of element 1 hold 10 numbers, where one of type C3D8 has 9"):
+        read(tmp_path, text)
+    split = inp().replace("1, 1, 2, 3, 4, 5,", "1, 1, 2, 3, 4,\n 5,")  # two lines make one element
+    assert len(read(tmp_path, split).points) == 16
+
+
+def test_elements_of_fluids_and_users_are_left_out_with_a_note(tmp_path):
+    mesh = read(tmp_path, inp("*ELEMENT, TYPE=D, ELSET=gas\n21, 1, 2, 3\n*ELEMENT, TYPE=U1\n22, 1, 9\n"))
+    assert list(mesh.parts) == ["low", "up"]
+    assert "1 elements D are left out" in said(mesh)
+    assert "1 elements U1 are left out" in said(mesh)
+
+
 TWO = {n: at for n, at in nodes(5, 10.0).items() if n > 8}
 
 
-def test_sets_of_one_body_are_joined_by_a_plus(tmp_path):
+SECTIONS = "*SOLID SECTION, ELSET=steel, MATERIAL=s\n*SOLID SECTION, ELSET=alu, MATERIAL=a\n"
+
+
+def column(more=""):
+    """Two cubes that share four nodes, each with a section of its own."""
     text = "*NODE\n" + "".join(f"{n}, {x}, {y}, {z}\n" for n, (x, y, z) in {**LOW, **TWO}.items())
-    text += (
-        "*ELEMENT, TYPE=C3D8, ELSET=steel\n1,1,2,3,4,5,6,7,8\n*ELEMENT, TYPE=C3D8, ELSET=alu\n2,5,6,7,8,9,10,11,12\n"
-    )
-    text += "*SOLID SECTION, ELSET=steel, MATERIAL=s\n*SOLID SECTION, ELSET=alu, MATERIAL=a\n"
-    with pytest.raises(
-        faying.InputError, match=r'one part of them, of one material: sets = { steel = "steel \+ alu" }'
-    ):
-        read(tmp_path, text)
+    text += "*ELEMENT, TYPE=C3D8, ELSET=steel\n1,1,2,3,4,5,6,7,8\n"
+    return text + f"*ELEMENT, TYPE=C3D8, ELSET=alu\n2,5,6,7,8,9,10,11,12\n{SECTIONS}{more}"
+
+
+def test_sections_that_share_nodes_are_parts_of_one_body(tmp_path):
+    """Springs in series: a force F lengthens the column by F (L/E1 A + L/E2 A) where nothing contracts."""
+    from faying.fe.elasticity import assemble
+
+    mesh = read(tmp_path, column())
+    assert mesh.bodies == (("steel", "alu"),)
+    assert "'steel' and 'alu' (4 nodes)" in said(mesh)
+    E = {"steel": 200e9, "alu": 70e9}
+    made = {part: faying.Material(name=part, E=value, nu=0.0, density=1.0) for part, value in E.items()}
+    K = assemble(mesh, made)[0].toarray()
+    free = np.flatnonzero(np.repeat(mesh.points[:, 2] > 1e-9, 3))
+    pull = np.zeros(len(K))
+    top = np.flatnonzero(mesh.points[:, 2] > 0.019)
+    pull[3 * top + 2] = 1000.0 / len(top)
+    moved = np.zeros(len(K))
+    moved[free] = np.linalg.solve(K[np.ix_(free, free)], pull[free])
+    assert moved[3 * top + 2] == pytest.approx(1000 * sum(0.01 / (one * 4e-4) for one in E.values()), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("more", "apart"),
+    [
+        ("*NSET, NSET=mid\n5,6,7,8\n", True),  # on both parts
+        ("*SURFACE, NAME=a\n1, S2\n*SURFACE, NAME=b\n2, S1\n", True),
+        ("*NSET, NSET=side\n1,2,6,5\n*SURFACE, NAME=top\n2, S2\n", False),  # they only meet the edge of the interface
+        ("*SURFACE, NAME=skin\nsteel,\n", False),  # the free faces
+        ("*NSET, NSET=all_of_steel\n1,2,3,4,5,6,7,8\n", False),  # the whole skin names no side
+    ],
+)
+def test_a_face_named_between_parts_that_share_nodes_is_a_joint(tmp_path, more, apart):
+    mesh = read(tmp_path, column(more))
+    assert len(mesh.bodies) == (2 if apart else 1)
+    assert len(mesh.points) == (16 if apart else 12)
+
+
+def test_a_face_on_a_part_of_what_is_shared_is_refused(tmp_path):
+    """Half of an interface bonded and half of it a joint is what a node forgotten in a set would make."""
+    wide = {**LOW, **{20 + n: (x + 20, y, z) for n, (x, y, z) in LOW.items() if x == 20}}
+    over = {30 + n: (x, y, z + 20) for n, (x, y, z) in wide.items() if z == 0}
+    text = "*NODE\n" + "".join(f"{n}, {x}, {y}, {z}\n" for n, (x, y, z) in {**wide, **over}.items())
+    text += "*ELEMENT, TYPE=C3D8, ELSET=low\n1,1,2,3,4,5,6,7,8\n2,2,22,23,3,6,26,27,7\n"
+    text += "*ELEMENT, TYPE=C3D8, ELSET=up\n3,5,6,7,8,31,32,33,34\n4,6,26,27,7,32,52,53,33\n"
+    assert read(tmp_path, text).bodies == (("low", "up"),)
+    with pytest.raises(faying.InputError, match="part 'low' shares 4 nodes with other parts .* with 'up'"):
+        read(tmp_path, text + "*NSET, NSET=mid\n5,6,7,8\n")
+
+
+def test_sets_of_one_body_are_joined_by_a_plus(tmp_path):
+    text = column()
+    assert read(tmp_path, text).bodies == (("steel", "alu"),)
     mesh = read(tmp_path, text, parts={"body": "steel + alu"})
     assert list(mesh.parts) == ["body"]
     assert sum(len(block) for block in mesh.parts["body"]) == 2

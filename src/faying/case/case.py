@@ -220,16 +220,18 @@ def materials_of(study: Study, mesh: Mesh) -> dict[str, Material]:
 def checked_mesh(study: Study) -> Mesh:
     """Return the mesh of a study; every name that does not fit the geometry is reported at once."""
     mesh = mesh_of(study.geometry)
-    faults = [fault for _, fault in name_faults(study, list(mesh.parts), mesh.face_part)]
+    faults = [fault for _, fault in name_faults(study, list(mesh.parts), mesh.face_part, mesh.bonded)]
     if faults:
         raise InputError("the study does not fit its geometry:\n" + "\n".join(f"  - {line}" for line in faults))
     return bonded_mesh(mesh, [(bond.name, bond.faces) for bond in study.bonds], snap=study.geometry.snap)
 
 
-def name_faults(study: Study, parts: Sequence[str], faces: Mapping[str, str]) -> list[tuple[str, str]]:
+def name_faults(
+    study: Study, parts: Sequence[str], faces: Mapping[str, str], one_body: Sequence[tuple[str, str]] = ()
+) -> list[tuple[str, str]]:
     """Names of a study that its geometry does not hold, and parts that nothing holds: key of each, and what is wrong.
 
-    faces: the part of each.
+    faces: the part of each; one_body: pairs of parts that share nodes in the file.
     """
     file = study.geometry.file.name
     held = ", ".join(parts)
@@ -248,14 +250,16 @@ def name_faults(study: Study, parts: Sequence[str], faces: Mapping[str, str]) ->
         for key, what, name, face in named_faces(study)
         if face not in faces
     ]
-    return faults or [*_loose_parts(study, parts, faces), *_idle_bolts(study)]
+    return faults or [*_loose_parts(study, parts, faces, one_body), *_idle_bolts(study)]
 
 
-def _loose_parts(study: Study, parts: Sequence[str], faces: Mapping[str, str]) -> list[tuple[str, str]]:
+def _loose_parts(
+    study: Study, parts: Sequence[str], faces: Mapping[str, str], one_body: Sequence[tuple[str, str]]
+) -> list[tuple[str, str]]:
     """Parts that no joint, no bond and no support holds, which a structure refuses."""
     met = {faces[face] for joint in study.joints for face in joint.faces}
     met |= {faces[support.face] for support in study.supports}
-    pairs = [(faces[bond.faces[0]], faces[bond.faces[1]]) for bond in study.bonds]
+    pairs = [*one_body, *((faces[bond.faces[0]], faces[bond.faces[1]]) for bond in study.bonds)]
     fault = loose_parts(bodies_of(tuple(parts), pairs), met)
     return [("joint", fault)] if fault else []
 

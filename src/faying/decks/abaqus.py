@@ -55,8 +55,9 @@ def read(path: Path) -> RawMesh:
         else:
             take(block, scope)
     if opened or (parts and not assembled):
-        lost = f"*END {opened}" if opened else "*ASSEMBLY"
-        raise ReadError(f"{path} ends without {lost}; the file is cut short")
+        lost = f"*END {opened}; the file is cut short"
+        none = "*ASSEMBLY; the file is cut short, or its part is the whole: then take *PART and *END PART out"
+        raise ReadError(f"{path} ends without {lost if opened else none}")
     if last is not None and last.keyword in DATA and not read_text(path, "input file").endswith("\n"):
         top.notes.append(
             f"{path.name} ends in the middle of *{last.keyword} without an end of line: it may be cut short"

@@ -44,13 +44,15 @@ def blocks(path: Path, seen: tuple[Path, ...] = (), count: list[int] | None = No
         raise ReadError(f"{path}: more than {MOST_FILES} files are included, or {DEEPEST} deep; write them into one")
     current: Block | None = None
     lines = iter(enumerate(read_text(path, "input file").splitlines(), 1))
-    for number, line in lines:
+    for number, given in lines:
+        line = given.lstrip() if given.lstrip().startswith("*") else given  # blanks may stand before a keyword
         if line.startswith("**") or not line.strip():
             continue
         if not line.startswith("*"):
-            if current is None:
+            if current is not None:
+                current.lines.append(line)
+            elif _is_data(line):
                 raise ReadError(f"{path}, line {number}: data before the first keyword; is this an Abaqus input file?")
-            current.lines.append(line)
             continue
         while line.rstrip().endswith(","):
             more = next(lines, None)
@@ -73,9 +75,14 @@ def blocks(path: Path, seen: tuple[Path, ...] = (), count: list[int] | None = No
         current = Block(keyword, options, [], where)
         if keyword in DATA and "INPUT" in options:
             data = read_text(path.parent / options["INPUT"], "data").splitlines()
-            current.lines.extend(line for line in data if line.strip() and not line.startswith("**"))
+            current.lines.extend(line for line in data if line.strip() and not line.lstrip().startswith("**"))
     if current is not None:
         yield current
+
+
+def _is_data(line: str) -> bool:
+    """Whether a line holds numbers, as the data below a keyword do; a title does not."""
+    return re.match(r"\s*[-+]?[\d.]+\s*(,|$)", line) is not None
 
 
 def orientations(deck: JointDeck) -> tuple[list[str], Index]:

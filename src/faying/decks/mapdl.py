@@ -27,7 +27,7 @@ _CONSTRAINTS = ("CE", "CP", "CERIG", "RBE3", "CEINTF", "CPINTF", "PSMESH", "SLOA
 
 def read(path: Path) -> RawMesh:
     """Read an archive. Raises ReadError for unblocked archives, other elements, and files cut short."""
-    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    lines = path.read_text(encoding="utf-8-sig", errors="replace").splitlines()
     kinds: dict[int, str] = {}
     numbers: list[int] = []
     points: list[list[float]] = []

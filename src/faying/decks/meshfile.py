@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from faying import units
+from faying.decks.conforming import bodies, check_apart
 from faying.decks.programs import MESHES, reader_of
 from faying.decks.raw import RawMesh
 from faying.errors import InputError, ReadError
@@ -41,7 +42,8 @@ def read_mesh(
     Gmsh .msh, MAPDL .cdb, VTK .vtk or .vtu; `unit` is needed then.
 
     Faces are the file's node sets, surfaces and face elements, turned outwards; a set that lies on several parts gives
-    PART.SET for each. Parts that share nodes on named faces get nodes of their own there.
+    PART.SET for each. Parts that share nodes on named faces get nodes of their own there; parts that share nodes where
+    no face is named are one body, which a note says.
 
     Args:
         path: The file.
@@ -155,7 +157,7 @@ class _Builder:
                 if mine.any():
                     some.append(block[mine])
             blocks[part] = tuple(some)
-        faces, face_part = self._faces(numbers, cells, blocks, names, owner)
+        faces, face_part = self._faces(numbers, cells, blocks)
         return self._split(points, blocks, faces, face_part)
 
     def _index(self, numbers: Index, what: str) -> Index:
@@ -276,30 +278,59 @@ class _Builder:
         return None
 
     def _faces(
-        self, numbers: Index, cells: list[Index], blocks: Mapping[str, Blocks], names: list[str], owner: Index
+        self, numbers: Index, cells: list[Index], blocks: Mapping[str, Blocks]
     ) -> tuple[dict[str, Blocks], dict[str, str]]:
+        """Faces by name, and the part of each; PART.SET where a set lies on several parts."""
         n = len(self.raw.numbers)
         skins = {part: skin(some, n) for part, some in blocks.items()}
         found: dict[str, dict[str, Blocks]] = {}
-        used = np.unique(np.concatenate([block.ravel() for block in cells]))
+        self._of_nodes(blocks, skins, found)
+        for label, rows in self.raw.face_elements.items():
+            given = [self._index(block.ravel(), f"the face {label!r}").reshape(block.shape) for block in rows]
+            key = np.concatenate([side_key(block, n) for block in given])
+            on = np.isin(key, np.concatenate([side_key(faces, n) for outer in skins.values() for faces in outer]))
+            if on.any():
+                self._by_key(label, key[on], skins, found)
+            if not on.all():
+                text = f"{np.count_nonzero(~on)} shells {label!r} lie on no solid and are left out, with their "
+                self.notes.append(Note(code="left-out", text=text + "stiffness and mass"))
+        self._of_sides(numbers, cells, skins, found)
+        faces: dict[str, Blocks] = {}
+        face_part: dict[str, str] = {}
+        for label, by_part in found.items():
+            for part, block in by_part.items():
+                name = label if len(by_part) == 1 else f"{part}.{label}"
+                faces[name], face_part[name] = block, part
+        return faces, face_part
+
+    def _of_nodes(
+        self, blocks: Mapping[str, Blocks], skins: Mapping[str, Blocks], found: dict[str, dict[str, Blocks]]
+    ) -> None:
+        """The faces whose nodes are in a set; the set of all nodes of the file is none."""
+        n = len(self.raw.numbers)
+        used = np.unique(np.concatenate([nodes_of(some) for some in blocks.values()]))
         for label, some in self.raw.node_sets.items():
             inside = np.zeros(n, dtype=bool)
             inside[self._index(some, f"the set {label!r}")] = True
             if inside[used].all():
                 continue
+            covered = [part for part, mine in blocks.items() if inside[nodes_of(mine)].all()]
             for part, outer in skins.items():
-                here = _on(outer, inside)
+                # the set of all nodes of one part names no side of another that shares nodes with it
+                theirs = [side_key(f, n) for other in covered if other != part for f in skins[other]]
+                here = _on(_without(outer, theirs, n), inside)
                 if here:
                     found.setdefault(label, {})[part] = here
-        for label, rows in self.raw.face_elements.items():
-            given = [self._index(block.ravel(), f"the face {label!r}").reshape(block.shape) for block in rows]
-            key = np.concatenate([side_key(block, n) for block in given])
-            if any(np.isin(side_key(faces, n), key).any() for outer in skins.values() for faces in outer):
-                self._by_key(label, key, skins, found)
-                continue
-            text = f"{len(key)} shells {label!r} lie on no solid and are left out, with their stiffness and mass"
-            self.notes.append(Note(code="left-out", text=text))
-        order = np.argsort(numbers)
+
+    def _of_sides(
+        self, numbers: Index, cells: list[Index], skins: Mapping[str, Blocks], found: dict[str, dict[str, Blocks]]
+    ) -> None:
+        """The faces that surfaces name, side by side or by the elements whose free sides they are."""
+        n, order = len(self.raw.numbers), np.argsort(numbers)
+        every, count = np.unique(
+            np.concatenate([side_key(f, n) for outer in skins.values() for f in outer]), return_counts=True
+        )
+        between = every[count > 1]  # sides that two parts share are no free ones
         for label, pairs in self.raw.side_sets.items():
             place = np.minimum(np.searchsorted(numbers[order], pairs[:, 0]), len(numbers) - 1)
             at = order[place]
@@ -313,16 +344,10 @@ class _Builder:
                 self._by_key(label, key, skins, found)
             if len(whole):
                 for part, outer in skins.items():
-                    free = tuple(f[np.isin(side_key(f, n), whole)] for f in outer)
+                    free = _without(outer, [between], n)
+                    free = tuple(f[np.isin(side_key(f, n), whole)] for f in free)
                     if any(len(f) for f in free):
                         found.setdefault(label, {})[part] = tuple(f for f in free if len(f))
-        faces: dict[str, Blocks] = {}
-        face_part: dict[str, str] = {}
-        for label, by_part in found.items():
-            for part, block in by_part.items():
-                name = label if len(by_part) == 1 else f"{part}.{label}"
-                faces[name], face_part[name] = block, part
-        return faces, face_part
 
     def _side_keys(self, label: str, at: Index, sides: Index, cells: list[Index]) -> tuple[Index, Index]:
         """Keys of the sides named one by one, and of all sides of elements named as a whole."""
@@ -363,32 +388,24 @@ class _Builder:
             )
             self.notes.append(Note(code="left-out", text=text))
         elif not hit.all():
-            raise InputError(
-                f"{self.name}: {np.count_nonzero(~hit)} of the {len(key)} element faces of {label!r} are no outer "
-                "side of a solid; where elements of one part share the nodes there, put those on each side into an "
+            found.pop(label)
+            text = (
+                f"{np.count_nonzero(~hit)} of the {len(key)} element faces of {label!r} are no outer side of a solid, "
+                "and it is left out; where elements of one part share the nodes there, put those on each side into an "
                 "element set of their own, which is then a part with its own face"
             )
+            self.notes.append(Note(code="left-out", text=text))
 
     def _split(
         self, points: Array, blocks: dict[str, Blocks], faces: dict[str, Blocks], face_part: dict[str, str]
     ) -> Mesh:
-        """Give each part nodes of its own where parts share them on named faces."""
+        """Give each body nodes of its own where bodies share them on named faces."""
         n = len(points)
-        owned = [i * n + nodes_of(some) for i, some in enumerate(blocks.values())]
-        key = np.unique(np.concatenate(owned))
-        place = {part: i for i, part in enumerate(blocks)}
-        node, count = np.unique(key % n, return_counts=True)
-        shared = node[count > 1]
-        if len(shared):
-            on = [place[face_part[name]] * n + nodes_of(some) for name, some in faces.items()]
-            loose = key[np.isin(key % n, shared) & ~np.isin(key, np.concatenate(on) if on else [])]
-            if len(loose):
-                near = list(blocks)[int(loose[0] // n)]
-                raise InputError(
-                    f"{self.name}: part {near!r} shares {len(loose)} nodes with other parts outside of any named face "
-                    f"(node {self.raw.numbers[loose[0] % n]} is one); name the faces of the joint on both sides, or "
-                    f'make one part of them, of one material: sets = {{ {near} = "{" + ".join(list(blocks)[:2])}" }}'
-                )
+        found = bodies(blocks, faces, face_part, n)
+        check_apart(self.name, blocks, faces, (face_part, found), self.raw.numbers)
+        if found.text:
+            self.notes.append(Note(code="one-body", text=found.text))
+        place, key = found.place, found.keys(blocks, n)
         old = key % n
         old_numbers = self.raw.numbers[old]
         numbers = old_numbers.copy()
@@ -396,8 +413,8 @@ class _Builder:
         again[np.unique(old, return_index=True)[1]] = False
         numbers[again] = self.raw.numbers.max() + 1 + np.arange(np.count_nonzero(again))
         made = {
-            part: tuple(np.searchsorted(key, i * n + block) for block in some)
-            for i, (part, some) in enumerate(blocks.items())
+            part: tuple(np.searchsorted(key, place[part] * n + block) for block in some)
+            for part, some in blocks.items()
         }
         new_points = points[old]
         for part, some in made.items():
@@ -413,6 +430,7 @@ class _Builder:
             source=self.name,
             node_numbers=numbers,
             turned=np.isin(old_numbers, self.raw.turned),
+            bonded=found.pairs,
             notes=(*self.notes, *(Note(code="file", text=text) for text in self.raw.notes)),
         )
 
@@ -468,6 +486,15 @@ def _rows(cells: list[Index]) -> Iterator[Index]:
     for block in cells:
         yield start + np.repeat(np.arange(len(block)), block.shape[1])
         start += len(block)
+
+
+def _without(outer: Blocks, keys: Sequence[Index], nodes: int) -> Blocks:
+    """Element faces that have none of some keys."""
+    if not keys:
+        return outer
+    gone = np.concatenate(list(keys))
+    left = tuple(faces[~np.isin(side_key(faces, nodes), gone)] for faces in outer)
+    return tuple(faces for faces in left if len(faces))
 
 
 def _on(outer: Blocks, inside: Index) -> Blocks:

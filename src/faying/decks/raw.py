@@ -130,7 +130,7 @@ def read_text(path: Path, what: str) -> str:
     if path.exists() and not path.is_file():
         raise ReadError(f"cannot read the {what} {path}: it is no regular file")
     try:
-        return path.read_text(encoding="utf-8", errors="replace")
+        return path.read_text(encoding="utf-8-sig", errors="replace")
     except OSError as fault:
         raise ReadError(f"cannot read the {what} {path}: {fault.strerror or fault}") from None
 

@@ -18,7 +18,7 @@ _SHEET = re.compile(r"^(?:S|STRI|CPS|CPE|M3D|SFM3D|R3D)(\d+)")
 _SHEET_COUNT = {"3": 3, "4": 4, "6": 6, "8": 8, "65": 6}
 # elements that are left out, with their nodes; those that carry stiffness or mass are named in a note
 _LINE = re.compile(
-    r"^(T3D[23]|B3[123]|MASS|ROTARYI|SPRING[A12]|DASHPOT[A12]|CONN3D2|DCOUP3D|GAP\w*|JOINTC|PSI\w*|RB3D2)"
+    r"^(T3D[23]|B3[123]|MASS|ROTARYI|SPRING[A12]|DASHPOT[A12]|CONN3D2|DCOUP3D|GAP\w*|JOINTC|PSI\w*|RB3D2|D$|U\w+$)"
 )
 _MAKERS = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "IMPORT", "SYMMETRIC MODEL GENERATION")
 _REFERENCES = {"COUPLING", "RIGID BODY", "KINEMATIC COUPLING", "DISTRIBUTING COUPLING", "PRE-TENSION SECTION"}
@@ -185,12 +185,7 @@ def _elements(block: Block, scope: Scope) -> None:
             f"{block.where}: elements of type {kind or 'none'} are not known; known are "
             f"{', '.join(_SOLID)} with their variants, and triangles and quadrangles as faces"
         )
-    words = block.words()
-    if not words or len(words) % (count + 1):
-        raise ReadError(
-            f"{block.where}: {len(words)} numbers do not make elements of {count} nodes; is the file complete?"
-        )
-    table = index(words).reshape(-1, count + 1)
+    table = index(_of_equal_length(block, count + 1)).reshape(-1, count + 1)
     numbers, nodes = table[:, 0], table[:, 1:]
     if base:
         scope.elements.setdefault(_SOLID[base.group()], []).append((numbers, nodes))
@@ -201,6 +196,24 @@ def _elements(block: Block, scope: Scope) -> None:
     if "ELSET" in block.options and base:
         scope.made.append(block.options["ELSET"])
         _add(scope.element_sets, block.options["ELSET"], "", numbers)
+
+
+def _of_equal_length(block: Block, width: int) -> list[str]:
+    """All numbers of a block of elements, each of which begins on a line of its own and has so many."""
+    words: list[str] = []
+    for row in block.rows():
+        begun = len(words) // width
+        words += [word for word in row if word]
+        if len(words) % width and len(words) // width > begun:
+            raise ReadError(
+                f"{block.where}: the lines of element {words[begun * width]} hold {len(words) - begun * width} "
+                f"numbers, where one of type {block.options.get('TYPE', '')} has {width}; is it of another type?"
+            )
+    if not words or len(words) % width:
+        raise ReadError(
+            f"{block.where}: {len(words)} numbers do not make elements of {width - 1} nodes; is the file complete?"
+        )
+    return words
 
 
 def _other(block: Block, scope: Scope, numbers: Index) -> None:

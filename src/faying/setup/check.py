@@ -114,7 +114,8 @@ def check(path: str | Path) -> Checked:
         return Checked(findings=tuple(found.out))
     named = _named(study, facts, found)
     before = len(found.out)
-    for key, fault in name_faults(study, list(facts.by_part), {name: some[0].part for name, some in named.items()}):
+    owner = {name: some[0].part for name, some in named.items()}
+    for key, fault in name_faults(study, list(facts.by_part), owner, () if mesh is None else mesh.bonded):
         found.add("fault", "names", fault, key)
     expected = _expected(study, facts, named, mesh, found)
     if len(found.out) > before and any(one.level == "fault" for one in found.out):
