@@ -1,5 +1,7 @@
 """Decks of bolted joints as other programs write them: what is no geometry is noted, not refused and not lost."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -288,6 +290,10 @@ def test_sets_of_the_case_control(tmp_path, case, faces, words):
         ("GRID,22,,10.,10.,0.\nGRID,23,,10.,10.,9.\nCBAR,201,2,22,23,1.,0.,0.\n", "1 cards CBAR"),
         ("MPC,1,5,1,1.,6,1,-1.\n", "MPC (1): couplings and constraints are left out"),
         ("BOLT,1,1,5,6\nBOLTFOR,2,1000.,1\n", "BOLT (1), BOLTFOR (1): the preload of bolts is left out"),
+        ("CSHEAR,301,3,1,2,3,4\n", "1 cards CSHEAR"),
+        ("GRID,31,,30.,0.,0.\nCQUAD,302,3,1,2,3,4,31\n", "1 cards CQUAD"),
+        ("CHBDYE,303,101,2\nCONV,303,9\nCLOAD,1,1.\nCBARAO,1,LE\n", "1 cards CHBDYE"),
+        ("DEQATN  301     Z(A,B,C,D,E,F,G,H,I,J)=SUM(A,B,C,D,E,F,G,H)\n        +A*B,C,1,2,3,4,5,6,7,8,9\n", ""),
         ("BCTABLE,1,SLAVE,3\nBSURF,3,101\n", "BCTABLE (1), BSURF (1): contact and ties are left out"),
     ],
 )
@@ -295,6 +301,11 @@ def test_cards_that_are_left_out(tmp_path, more, words):
     mesh = read(tmp_path, bdf("", more), "m.bdf")
     assert len(mesh.points) == 8
     assert words in said(mesh)
+
+
+def test_elements_that_may_be_solids_are_never_passed_over(tmp_path):
+    with pytest.raises(faying.ReadError, match="elements CPYRAM are not known"):
+        read(tmp_path, bdf("", "CPYRAM,7,1,1,2,3,4,5\n"), "m.bdf")
 
 
 def test_loads_on_shells_with_thru(tmp_path):
@@ -353,6 +364,18 @@ def test_elements_of_ansys_that_are_no_solids(tmp_path, kind, elements, words):
 
 
 # Gmsh
+
+
+def test_nodes_of_no_element_in_an_archive_that_counts_are_noted(tmp_path):
+    """Its blocks hold as many lines as their heads say, so that it is not cut short."""
+    extra = {40 + k: (float(k), 0.0, 0.0) for k in range(30)}
+    mesh = read(tmp_path, cdb(extra=extra), "m.cdb")
+    assert len(mesh.points) == 16
+    assert "30 nodes belong to no element and are left out" in said(mesh)
+    lines = cdb(extra=extra).splitlines(keepends=True)
+    uncounted = "".join(re.sub(r"^(EBLOCK,19,SOLID).*", r"\1", line) for line in lines)
+    with pytest.raises(faying.InputError, match="30 of 46 nodes belong to no element"):
+        read(tmp_path, uncounted, "m.cdb")
 
 
 def test_an_element_in_two_groups_is_one(tmp_path):

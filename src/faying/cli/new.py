@@ -1,4 +1,4 @@
-"""faying new PART.step"""
+"""faying new FILE"""
 
 import sys
 from pathlib import Path
@@ -10,7 +10,8 @@ from faying.text import json_text
 
 
 @click.command()
-@click.argument("step", type=click.Path(path_type=Path))
+@click.argument("step", metavar="FILE", type=click.Path(path_type=Path))
+@click.option("--unit", help='Unit of a mesh file\'s coordinates, such as "mm".')
 @click.option("--scan", type=click.Path(path_type=Path), help="Scan of one face (default: a synthetic milled one).")
 @click.option("--out", type=click.Path(path_type=Path), default="study.toml", show_default=True, help="The study file.")
 @click.option(
@@ -20,15 +21,18 @@ from faying.text import json_text
 )
 @click.option("--force", is_flag=True, help="Replace files that exist.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was found and written as JSON; asks nothing.")
-def command(step: Path, scan: Path | None, out: Path, yes: bool, force: bool, as_json: bool) -> None:
-    """Write a commented study of the assembly in STEP: joints, bolts, seats, mesh, and a list of what to fill in."""
+def command(step: Path, unit: str | None, scan: Path | None, out: Path, yes: bool, force: bool, as_json: bool) -> None:
+    """Write a commented study of the assembly in FILE: joints, bolts, seats, mesh, and a list of what to fill in.
+
+    FILE is a STEP file, or a mesh of another program whose faces have names; its pretension sections become bolts.
+    """
     from faying.errors import InputError
     from faying.setup import new
 
     silent = yes or as_json
     if not silent and not sys.stdin.isatty():
         raise InputError("faying new asks questions and there is no terminal to ask; give --yes to assume the answers")
-    proposal = new.find(step)
+    proposal = new.find(step, unit)
     answers = new.Answers(scan=scan) if silent else asked(proposal, scan)
     written = new.write(proposal, step, out, answers, force=force)
     if as_json:

@@ -11,16 +11,18 @@ read back in the tests by a reader of that grammar.
 
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real
 from faying.decks.keywords import DATA, Block, blocks, elements, orientations, table
-from faying.decks.raw import RawMesh, index, read_text
+from faying.decks.raw import Pretension, RawMesh, index, read_text
 from faying.decks.scope import Items, Scope, Span, placed, take
 from faying.decks.vocabulary import left_out
 from faying.errors import ReadError
+from faying.fe.elements import SOLIDS
 from faying.typing import Array, Index
 
 
@@ -85,7 +87,15 @@ def _merged(path: Path, top: Scope, instances: dict[str, Scope]) -> RawMesh:
         top.extra.extend(nodes + shift for nodes in one.extra)
         top.others.extend(numbers + raised for numbers in one.others)
         top.made += [f"{name}.{label}" for label in one.made]
-        top.bolts += [f"{name}.{label}" for label in one.bolts]
+        top.bolts += [
+            replace(
+                bolt,
+                surface=bolt.surface and f"{name}.{bolt.surface}",
+                node=str(int(bolt.node) + shift) if bolt.node.isdigit() else f"{name}.{bolt.node}",
+            )
+            for bolt in one.bolts
+        ]
+        top.loads += one.loads
         top.unknown += one.unknown
         for kind, words in one.left_out.items():
             top.left_out.setdefault(kind, []).extend(words)
@@ -188,7 +198,7 @@ def _resolved(
 def _surfaces(path: Path, top: Scope, upper: dict[str, Index], raised: Mapping[str, int]) -> dict[str, Index]:
     """Rows of (element, side) of every surface on solids; those of shells and beams are left out with a note."""
     others = np.concatenate([index([]), *top.others])
-    bolts = {name.upper() for name in top.bolts}
+    bolts = {bolt.surface.upper() for bolt in top.bolts}
     side_sets: dict[str, Index] = {}
     for name, rows in top.surfaces.items():
         if name.upper() in bolts:
@@ -243,7 +253,43 @@ def _raw(
         turned=np.concatenate([index([]), *(nodes.get(name.upper(), index([])) for name in top.turned)]),
         references=np.unique(np.concatenate([index([]), *references])),
         notes=tuple(notes),
+        pretensions=_pretensions(top, (nodes, upper), raised),
     )
+
+
+def _pretensions(
+    top: Scope, sets: tuple[dict[str, Index], dict[str, Index]], raised: Mapping[str, int]
+) -> tuple[Pretension, ...]:
+    """The pre-tension sections with surfaces on solids, with their nodes and forces; sets: of nodes, of elements."""
+    nodes, elements = sets
+    surfaces = {name.upper(): rows for name, rows in top.surfaces.items()}
+    found = []
+    for bolt in top.bolts:
+        section: list[Index] = []
+        for what, side in surfaces.get(bolt.surface.upper(), []):
+            one = int(what) if what.isdigit() else _numbered(what, raised)
+            chosen = index([one]) if one is not None else elements.get(what.upper(), index([]))
+            for numbers, corners in (row for rows in top.elements.values() for row in rows):
+                sides = SOLIDS[corners.shape[1]].sides
+                if re.fullmatch(r"S[1-6]", side) and int(side[1:]) <= len(sides):
+                    section.append(corners[np.isin(numbers, chosen)][:, sides[int(side[1:]) - 1]].ravel())
+        pulled = index([bolt.node]) if bolt.node.isdigit() else nodes.get(bolt.node.upper(), index([]))
+        forces = [force for what, force in top.loads if _means(what, pulled, nodes)]
+        found.append(
+            Pretension(
+                text=bolt.text,
+                nodes=np.unique(np.concatenate([index([]), *section])),
+                axis=bolt.axis,
+                force=forces[-1] if forces else None,
+            )
+        )
+    return tuple(found)
+
+
+def _means(what: str, nodes: Index, sets: Mapping[str, Index]) -> bool:
+    """Whether a node or a set of a load is the node of a section."""
+    named = index([what]) if what.isdigit() else sets.get(what.upper(), index([]))
+    return bool(len(nodes)) and np.array_equal(named, nodes)
 
 
 def decks(deck: JointDeck) -> dict[str, str]:

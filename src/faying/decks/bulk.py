@@ -1,7 +1,7 @@
 """The bulk data of Nastran: cards with their continuations and includes, and what they hold of a mesh."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -21,7 +21,7 @@ ORDER = {
 COUNTS = {"CTETRA": (4, 10), "CHEXA": (8, 20), "CPENTA": (6, 15)}
 _SKINS = {"CTRIA3": (3, 3), "CTRIAR": (3, 3), "CTRIA6": (3, 6), "CQUAD4": (4, 4), "CQUADR": (4, 4), "CQUAD8": (4, 8)}
 # what is left out, by the places of the grids it names
-_LEFT_OUT = {
+_LEFT_OUT: dict[str, Sequence[int]] = {
     "CBAR": (2, 3, 4),  # the third orients it, where it is a grid and no real number
     "CBEAM": (2, 3, 4),
     "CBEAM3": (2, 3, 4, 5),
@@ -59,7 +59,26 @@ _LEFT_OUT = {
     "RBE3": (2,),
     "RBAR": (1, 2),
     "RROD": (1, 2),
+    # plates in shear, of large strain, of revolution; sides for heat; acoustic absorbers and barriers
+    "CSHEAR": range(2, 6),
+    "CQUAD": range(2, 11),
+    "CQUADX": range(2, 11),
+    "CTRIAX": range(2, 8),
+    "CTRIAX6": range(2, 8),
+    "CHBDYE": (),
+    "CHBDYG": range(8, 16),
+    "CHBDYP": (5, 6, 7),
+    "CAABSF": range(2, 6),
+    "CHACAB": range(2, 22),
+    "CHACBR": range(2, 22),
+    "CDAMP5": (2, 3),
+    "CGEN": (),
 }
+# cards that begin with C and are no elements: loads, output, aerodynamics, symmetry, laws
+_NO_ELEMENTS = (
+    *("CSET", "CEND", "CONV", "CLOAD", "CBARAO", "CAERO", "CMFREE", "CONTRLT", "CREEP", "CSCHD", "CSSCHD", "CSUP"),
+    *("CYAX", "CYSUP", "CYSYM", "CAMPBLL", "COMPUDS", "CINTC"),
+)
 _MOST_FILES = 500
 
 Card = tuple[str, list[str], str]
@@ -85,6 +104,8 @@ def cards(path: Path, seen: tuple[Path, ...] = (), count: list[int] | None = Non
             continue
         found = re.match(r"\s*INCLUDE\s+['\"]?([^'\"]+)['\"]?", line, re.I)
         ended = re.match(r"\s*ENDDATA", line, re.I)
+        if name == "DEQATN" and line[0] in " +*":
+            continue  # more of an equation
         first, rest = ("", []) if found or ended else _fields(line, f"{path.name}, line {number}")
         if not found and not ended and (first == "" or first[0] in "+*"):
             fields += rest
@@ -105,6 +126,8 @@ def cards(path: Path, seen: tuple[Path, ...] = (), count: list[int] | None = Non
 
 def _fields(line: str, where: str) -> tuple[str, list[str]]:
     """First field, and the data fields of one line: eight small ones, four large ones, or those between commas."""
+    if line.upper().startswith("DEQATN"):  # an equation, with commas of its own
+        return "DEQATN", [""]
     if "," in line:
         first, *rest = (word.strip() for word in line.split(","))
         limit = 4 if first.endswith("*") or first.startswith("*") else 8
@@ -173,7 +196,7 @@ class Bulk:
             self.ended = True
         elif kind := nastran_kind(name):
             self.constraints.setdefault(kind, []).append(name)
-        elif name.startswith("C") and not name.startswith(("CSET", "CEND")):
+        elif name.startswith("C") and not name.startswith(_NO_ELEMENTS):
             raise ReadError(f"{where}: elements {name} are not known; known are {', '.join(COUNTS)}")
 
     def _grid(self, fields: list[str], where: str) -> None:

@@ -9,12 +9,13 @@ takes six constants, each RMORE six more. Not run in MAPDL: the archive is read 
 """
 
 import re
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real
-from faying.decks.raw import RawMesh, gathered, index, ranged, undoubled
+from faying.decks.raw import Pretension, RawMesh, gathered, index, ranged, undoubled
 from faying.decks.vocabulary import ANSYS_LEFT_OUT, ANSYS_SURFACES, BOLT, CONSTRAINT, left_out
 from faying.errors import ReadError
 from faying.typing import Array, Index
@@ -37,6 +38,7 @@ def read(path: Path) -> RawMesh:
     turned: list[int] = []
     dropped: list[str] = []
     commands: list[str] = []
+    bolts = _Bolts()
     k = 0
     try:
         while k < len(lines):
@@ -49,8 +51,9 @@ def read(path: Path) -> RawMesh:
                 k = _nodes(lines, k, words, numbers, points, turned)
                 continue
             if name == "EBLOCK":
-                k = _elements(lines, k, words, kinds, rows, extra, dropped)
+                k = _elements(lines, k, words, kinds, rows, extra, dropped, bolts)
                 continue
+            bolts.take(name, words)
             if name in _CONSTRAINTS:
                 commands.append(name)
             elif name == "CMBLOCK":
@@ -63,8 +66,9 @@ def read(path: Path) -> RawMesh:
     except ReadError:
         raise
     except (ValueError, IndexError, KeyError) as fault:
+        why = "a block or a line ends too early" if isinstance(fault, IndexError) else fault
         raise ReadError(
-            f"{path.name}, line {min(k, len(lines)) + 1}: cannot be read ({fault}); is the archive complete and "
+            f"{path.name}, line {min(k, len(lines)) + 1}: cannot be read ({why}); is the archive complete and "
             "in blocked format (CDWRITE)?"
         ) from None
     if not numbers or not rows:
@@ -81,18 +85,62 @@ def read(path: Path) -> RawMesh:
         extra=index(extra),
         turned=index(turned),
         notes=tuple(_left_out(dropped, commands)),
+        pretensions=bolts.sections(),
+        counted=_says_counts(lines),
     )
+
+
+def _says_counts(lines: list[str]) -> bool:
+    """Whether every block of nodes and elements says how many it holds, which was then compared."""
+    heads = [line.split(",") for line in lines if line.upper().startswith(("NBLOCK", "EBLOCK"))]
+    return all(len(words) > 4 and words[4].strip().isdigit() and int(words[4]) > 0 for words in heads)
 
 
 def _left_out(elements: list[str], commands: list[str]) -> list[str]:
     """Sentences on elements and commands that were left out."""
     notes = [
         f"{elements.count(kind)} elements of type {kind} ({_LEFT_OUT[kind]}) are left out, with their stiffness and "
-        "mass" + ("; give the bolts in [[bolt]] of the study" if kind == "179" else "")
+        "mass" + ("; give the bolts in [[bolt]] of the study, or let faying new propose them" if kind == "179" else "")
         for kind in dict.fromkeys(elements)
     ]
     bolts = [name for name in commands if name in ("PSMESH", "SLOAD")]
     return notes + left_out({BOLT: bolts, CONSTRAINT: [name for name in commands if name not in bolts]}, "")
+
+
+@dataclass
+class _Bolts:
+    """PRETS179 by the number of their section: pairs of nodes, and what SECDATA and SLOAD say of it."""
+
+    pairs: dict[int, list[tuple[int, int]]] = field(default_factory=dict)
+    axes: dict[int, tuple[float, float, float]] = field(default_factory=dict)
+    forces: dict[int, float] = field(default_factory=dict)
+    section: int = 0  # that SECDATA speaks of; 0 for one of another kind
+
+    def take(self, name: str, words: list[str]) -> None:
+        """Note a command."""
+        if name == "SECTYPE":
+            self.section = int(words[1]) if len(words) > 2 and words[2].upper().startswith("PRET") else 0
+        elif name == "SECDATA" and self.section and len(words) > 4:
+            x, y, z = (float(word or 0) for word in words[2:5])
+            self.axes[self.section] = x, y, z
+        elif name == "SLOAD" and len(words) > 1 and words[1].isdigit():
+            labels = [word.upper() for word in words]
+            at = labels.index("FORC") + 1 if "FORC" in labels else len(words)
+            if at < len(words) and words[at]:
+                self.forces[int(words[1])] = float(words[at])
+
+    def sections(self) -> tuple[Pretension, ...]:
+        """The sections that have elements."""
+        return tuple(
+            Pretension(
+                text=f"{len(some)} PRETS179 of section {number}",
+                nodes=index(one for one, _ in some),
+                twins=index(two for _, two in some),
+                axis=self.axes.get(number),
+                force=self.forces.get(number),
+            )
+            for number, some in self.pairs.items()
+        )
 
 
 def _types(lines: list[str], k: int, words: list[str], kinds: dict[int, str]) -> int:
@@ -164,6 +212,7 @@ def _elements(
     rows: dict[str, list[tuple[int, list[int]]]],
     extra: list[int],
     dropped: list[str],
+    bolts: "_Bolts",
 ) -> int:
     if len(words) < 3 or words[2].upper() != "SOLID":
         raise ReadError(f"line {k + 1}: EBLOCK without the key SOLID is not known; write the archive with CDWRITE,DB")
@@ -182,6 +231,8 @@ def _elements(
             nodes += _cut(lines[k], width)
             k += 1
         which = kinds[head[1]]
+        if which == "179" and len(nodes) >= 2:
+            bolts.pairs.setdefault(head[3], []).append((nodes[0], nodes[1]))
         if which in _SURFACE or which in _LEFT_OUT:
             extra += nodes
             dropped += [which] if which in _LEFT_OUT else []

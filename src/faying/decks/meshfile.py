@@ -10,7 +10,7 @@ import numpy as np
 from faying import units
 from faying.decks.conforming import bodies, check_apart
 from faying.decks.programs import MESHES, reader_of
-from faying.decks.raw import RawMesh
+from faying.decks.raw import Pretension, RawMesh
 from faying.errors import InputError, ReadError
 from faying.fe.elements import FACES, SOLIDS
 from faying.fe.mesh import Mesh, least_jacobian
@@ -120,6 +120,29 @@ def _read(module: Any, file: Path) -> RawMesh:
     return raw
 
 
+def read_pretensions(path: str | Path, mesh: Mesh) -> list[tuple[Pretension, tuple[str, ...]]]:
+    """The sections at which a mesh file tightens bolts, each with the parts of a mesh of it that hold its nodes.
+
+    Args:
+        path: the mesh file.
+        mesh: as `read_mesh` gives it.
+    """
+    file = Path(path)
+    raw = _read(reader_of(file, MESHES), file)
+    numbers = {part: mesh.numbers[mesh.part_nodes(part)] for part in mesh.parts}
+    return [
+        (
+            bolt,
+            tuple(
+                part
+                for part, mine in numbers.items()
+                if any(len(some) and np.isin(some, mine).all() for some in (bolt.nodes, bolt.twins))
+            ),
+        )
+        for bolt in raw.pretensions
+    ]
+
+
 def last_element(path: str | Path) -> int:
     """Greatest number of a solid element in a mesh file, for whoever adds elements to it."""
     file = Path(path)
@@ -148,6 +171,7 @@ class _Builder:
         numbers = np.concatenate([n for n, _ in self.raw.elements.values()])
         self._check(points, cells)
         names, owner = self._parts(numbers, cells, wanted)
+        cells = self._welded(points, cells, owner) if wanted is not None else cells
         blocks: dict[str, Blocks] = {}
         for i, part in enumerate(names):
             start, some = 0, []
@@ -203,7 +227,7 @@ class _Builder:
             [self.raw.references, *(some for some in self.raw.node_sets.values() if len(some) == 1)]
         )
         lost = loose[~np.isin(loose, points_of_reference)]
-        if len(lost) > max(FEW_NODES, MOST_LOST * len(points)):
+        if len(lost) > max(FEW_NODES, MOST_LOST * len(points)) and not self.raw.counted:
             raise InputError(
                 f"{self.name}: {len(lost)} of {len(points)} nodes belong to no element: {_some(lost)}; delete them, or "
                 "is the file cut short?"
@@ -222,6 +246,8 @@ class _Builder:
         """Names of the parts and the part of every element."""
         sets = {**self.raw.element_sets, **self.raw.bodies}
         if wanted is not None:
+            plain, piece = self._parts(numbers, cells, None)
+            sets = {part: numbers[piece == k] for k, part in enumerate(plain)} | sets
             wished = dict(wanted) if isinstance(wanted, Mapping) else {name: name for name in wanted}
             chosen = {part: name if name in sets else _several(name) for part, name in wished.items()}
             for part, joined in chosen.items():
@@ -269,6 +295,26 @@ class _Builder:
                 called = f"{given[body]}_{alike.index(one) + 1}"
             names.append(called or f"part{len(names) + 1}")
         return names, np.asarray(place, dtype=np.int64).ravel()
+
+    def _welded(self, points: Array, cells: list[Index], owner: Index) -> list[Index]:
+        """The elements with one node for each pair that a section of a bolt cuts in two within one part."""
+        of = np.full(len(points), -1, dtype=np.int64)
+        start = 0
+        for block in cells:
+            of[block] = owner[start : start + len(block), None]
+            start += len(block)
+        one = np.arange(len(points))
+        close = CLOSE * float(np.linalg.norm(np.ptp(points, axis=0)))
+        for bolt in self.raw.pretensions:
+            if not len(bolt.twins):
+                continue
+            a, b = self._index(bolt.nodes, bolt.text), self._index(bolt.twins, bolt.text)
+            same = (of[a] == of[b]) & (np.linalg.norm(points[a] - points[b], axis=1) <= close)
+            one[b[same]] = a[same]
+            if same.any():
+                text = f"{bolt.text}: the two halves of the bolt are one part, and {same.sum()} pairs of its nodes one"
+                self.notes.append(Note(code="bolt", text=text))
+        return [one[block] for block in cells]
 
     def _called(self, numbers: Index) -> str | None:
         """Name of the element set that holds just these elements."""

@@ -21,6 +21,25 @@ Matrices: TypeAlias = tuple[Any, Any, Index]
 
 
 @dataclass(frozen=True, kw_only=True)
+class Pretension:
+    """A section at which another program tightens a bolt.
+
+    Args:
+        text: the words of the file that say so.
+        nodes: numbers of the nodes of the section.
+        twins: numbers of the nodes on its other side, where the file cuts the bolt in two there; else empty.
+        axis: direction of the bolt as the file gives it; None where it does not.
+        force: what the file pulls with, in its own unit; None where it gives no force.
+    """
+
+    text: str
+    nodes: Index
+    twins: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    axis: tuple[float, float, float] | None = None
+    force: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class RawMesh:
     """Nodes and solid elements by number, and every named set.
 
@@ -28,8 +47,9 @@ class RawMesh:
     element numbers, the parts that the file itself makes of its elements; element_sets, node_sets: name -> numbers;
     side_sets: name -> rows of (element number, side); face_elements: name -> arrays of node numbers (f, a); extra:
     numbers of nodes that only elements other than solids hold; references: nodes that constraints alone name; turned:
-    nodes whose displacements are in directions of their own; notes: what was left out. Raises ReadError for numbers
-    below 1 or without end, and places that are not finite.
+    nodes whose displacements are in directions of their own; notes: what was left out; pretensions: sections at which
+    bolts are tightened; counted: whether the file says how many nodes and elements it has, and has them. Raises
+    ReadError for numbers below 1 or without end, and places that are not finite.
     """
 
     numbers: Index
@@ -44,6 +64,8 @@ class RawMesh:
     references: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     turned: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     notes: tuple[str, ...] = ()
+    pretensions: tuple[Pretension, ...] = ()
+    counted: bool = False
 
     def __post_init__(self) -> None:
         named = {"node": [self.numbers], "element": [numbers for numbers, _ in self.elements.values()]}

@@ -31,6 +31,16 @@ class Span:
     numbers: Index
 
 
+@dataclass(frozen=True)
+class Section:
+    """A pre-tension section: its words, the surface or the beam, the node that is pulled, and the direction."""
+
+    text: str
+    surface: str
+    node: str
+    axis: tuple[float, float, float] | None
+
+
 Items = list[tuple[str, "Index | str | Span"]]
 
 
@@ -48,7 +58,8 @@ class Scope:
     surfaces: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
     others: list[Index] = field(default_factory=list)  # numbers of elements that are no solids
     made: list[str] = field(default_factory=list)  # element sets that *ELEMENT itself names
-    bolts: list[str] = field(default_factory=list)  # surfaces of pre-tension sections
+    bolts: list["Section"] = field(default_factory=list)
+    loads: list[tuple[str, float]] = field(default_factory=list)  # node or set, and its force in direction 1
     left_out: dict[str, list[str]] = field(default_factory=dict)  # keywords by their kind
     unknown: list[str] = field(default_factory=list)
     sections: list[str] = field(default_factory=list)
@@ -89,6 +100,9 @@ def take(block: Block, scope: Scope) -> None:
             scope.references.extend(options[key] for key in ("REF NODE", "ROT NODE", "NODE") if key in options)
             if keyword == "PRE-TENSION SECTION":
                 _bolt(block, scope)
+        elif keyword == "CLOAD":
+            rows = [row for row in block.rows() if len(row) > 2 and row[1] == "1" and row[2]]
+            scope.loads += [(row[0], float(row[2])) for row in rows]
         elif keyword == "TRANSFORM":
             scope.turned.append(options.get("NSET", ""))
     except ReadError:
@@ -225,13 +239,21 @@ def _other(block: Block, scope: Scope, numbers: Index) -> None:
 
 def _bolt(block: Block, scope: Scope) -> None:
     """Note a pre-tension section with its words: its surface is a cut inside the bolt, or it is a beam."""
-    surface = block.options.get("SURFACE", "")
-    scope.bolts.append(surface)
     said = ", ".join(f"{key}={value}" for key, value in block.options.items())
-    axis = f", direction {block.lines[0].strip()}" if block.lines else ""
+    along = f", direction {block.lines[0].strip()}" if block.lines else ""
+    given = [float(word) for word in block.words()[:3]]
+    text = f"{block.where}: *PRE-TENSION SECTION, {said}{along}"
+    scope.bolts.append(
+        Section(
+            text=text,
+            surface=block.options.get("SURFACE", ""),
+            node=block.options.get("NODE", ""),
+            axis=(given[0], given[1], given[2]) if len(given) == 3 and any(given) else None,
+        )
+    )
     scope.notes.append(
-        f"{block.where}: *PRE-TENSION SECTION, {said}{axis}: the preload of this bolt is left out, with the surface "
-        "inside it; give the bolt in [[bolt]] of the study"
+        f"{text}: the preload of this bolt is left out, with the surface inside it; give the bolt in [[bolt]] of the "
+        "study, or let faying new propose it"
     )
 
 

@@ -1,4 +1,4 @@
-"""The study that `faying new` writes from a STEP file: what was found, what is assumed, and each of it said."""
+"""The study that `faying new` writes from a STEP or mesh file: what was found, what is assumed, and each of it said."""
 
 import json
 import os
@@ -8,10 +8,12 @@ from pathlib import Path
 
 from faying.errors import InputError
 from faying.files import together, write_atomically, write_text
+from faying.geometry.cad import STEP
 from faying.geometry.face_facts import read_facts
 from faying.geometry.selectors import AXES, Selector
 from faying.materials import CATALOGUE
 from faying.setup.bolt_names import grouped
+from faying.setup.mesh_proposal import propose_mesh
 from faying.setup.proposal import GRADE, SHARE, BoltProposal, Proposal, propose
 from faying.setup.template import SCHEMA, surface
 from faying.units import show
@@ -43,9 +45,16 @@ class Written:
     assumed: tuple[str, ...]
 
 
-def find(step: Path) -> Proposal:
-    """Read a STEP file and propose what its study may hold. Raises ReadError and InputError as `propose`."""
-    return propose(read_facts(step), step)
+def find(step: Path, unit: str | None = None) -> Proposal:
+    """Read a STEP file, or a mesh file in a unit, and propose what its study may hold.
+
+    Raises ReadError and InputError as `propose` and `propose_mesh`.
+    """
+    if step.suffix.lower() in STEP:
+        if unit is not None:
+            raise InputError("--unit goes with a mesh file; a STEP file says its unit")
+        return propose(read_facts(step), step)
+    return propose_mesh(step, unit)
 
 
 def write(proposal: Proposal, step: Path, out: Path, answers: Answers, *, force: bool = False) -> Written:
@@ -91,7 +100,7 @@ def study_text(proposal: Proposal, step: Path, out: Path, answers: Answers) -> t
         _geometry(proposal, _relative(step, out)),
         _parts(proposal, answers, assumed),
         _surface(out, answers, assumed),
-        _joints(proposal),
+        _joints(proposal) or NO_JOINT,
         *(_bolt(bolt, answers) for bolt in proposal.bolts),
         "" if proposal.bolts else NO_BOLT,
         SUPPORT,
@@ -102,6 +111,11 @@ def study_text(proposal: Proposal, step: Path, out: Path, answers: Answers) -> t
     return "\n".join(block for block in blocks if block), [*assumed, *proposal.remarks]
 
 
+NO_JOINT = """# No two named faces of the file touch. Name the faces of a joint in the file, one on each side.
+# [[joint]]
+# name = "joint"
+# faces = ["FACE_A", "FACE_B"]
+"""
 NO_BOLT = """# No bolt was found in the geometry. Name the two faces that head and nut press on (see `faying faces`).
 # [[bolt]]
 # name = "bolt 1"
@@ -132,6 +146,14 @@ def _head(proposal: Proposal, step: Path, out: Path) -> str:
 
 def _geometry(proposal: Proposal, step: str) -> str:
     elements = f"about {proposal.unknowns:,} unknowns"
+    if proposal.unit:
+        lines = ["[geometry]", f"mesh = {_quoted(step)}", f"unit = {_quoted(proposal.unit)}"]
+        if proposal.snap:
+            lines.append(f'snap = "{show(proposal.snap, "m")}"  # ASSUMED: gaps between faces up to this are none')
+        if proposal.sets:
+            lines.append("[geometry.sets]  # parts that are several sets of the file, or bodies of it")
+        lines += [f"{_quoted(part)} = {_quoted(some)}" for part, some in proposal.sets.items()]
+        return "\n".join([*lines, ""])
     lines = [
         "[geometry]",
         f"step = {_quoted(step)}",
@@ -214,6 +236,7 @@ def _bolt(bolt: BoltProposal, answers: Answers) -> str:
     lines.append(f"faces = [{', '.join(map(_quoted, bolt.faces))}]")
     if bolt.part is not None:
         lines.append(f"part = {_quoted(bolt.part)}")
+        lines += [f"at = [{', '.join(_quoted(_mm(x)) for x in bolt.at)}]"] if bolt.at is not None else []
         lines += [f'thread = "M{bolt.size}"', f'grade = "{GRADE}"  # ASSUMED'] if bolt.size else []
     else:
         assert bolt.ring is not None
@@ -228,6 +251,8 @@ def _bolt(bolt: BoltProposal, answers: Answers) -> str:
         ]
     if answers.preload is not None:
         lines.append(f'preload = "{show(answers.preload, "N", digits=6)}"')
+    elif bolt.force is not None:
+        lines.append(f'preload = "{bolt.force:.9g} N"  # ASSUMED: the force of the file, taken as newtons')
     elif bolt.preload is not None:
         lines.append(f'preload = "{show(bolt.preload, "N")}"  # ASSUMED: {_share()}')
     else:
@@ -245,7 +270,9 @@ def _assumed_of_bolts(bolts: Sequence[BoltProposal], answers: Answers) -> list[s
     for bolt in bolts:
         groups.setdefault(bolt.remark, []).append(bolt.name)
     for bolt in bolts:
-        if answers.preload is None and bolt.preload is not None:
+        if answers.preload is None and bolt.force is not None:
+            groups.setdefault(f"{bolt.force:.9g} N, the force of the file taken as newtons", []).append(bolt.name)
+        elif answers.preload is None and bolt.preload is not None:
             groups.setdefault(f"{show(bolt.preload, 'N')}, {_share()}", []).append(bolt.name)
         elif answers.preload is None:
             groups.setdefault("no preload; its thread is not known: give one", []).append(bolt.name)

@@ -1,7 +1,7 @@
 """A study proposed from CAD facts: joints where parts touch, bolts where holes line up, a size of mesh."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import floor, log10
 from pathlib import Path
 
@@ -46,6 +46,7 @@ class BoltProposal:
         at: point on the axis [m]; None where a tapped hole says it.
         ring: inner and outer diameter of the seat [m].
         part: the part that it is, if it is one.
+        force: what a mesh file pulls it with, as the file writes it; None where it gives none.
         remark: where size and ring come from.
     """
 
@@ -55,6 +56,7 @@ class BoltProposal:
     at: tuple[float, float, float] | None = None
     ring: tuple[float, float] | None = None
     part: str | None = None
+    force: float | None = None
     remark: str = ""
 
     @property
@@ -78,6 +80,9 @@ class Proposal:
         snap: gap up to which faces count as touching [m]; 0 where all touch.
         left_out: parts of the file that the mesh leaves out; `facts` does not hold them.
         remarks: what was assumed, and what was left out.
+        unit: length unit of a mesh file; "" for a STEP file, which is meshed.
+        sets: parts of a mesh file that are several of its sets.
+        counted: unknowns of a mesh file.
     """
 
     facts: GeometryFacts
@@ -88,11 +93,14 @@ class Proposal:
     snap: float
     left_out: tuple[str, ...]
     remarks: tuple[str, ...]
+    unit: str = ""
+    sets: dict[str, str] = field(default_factory=dict)
+    counted: int = 0
 
     @property
     def unknowns(self) -> int:
-        """Unknowns of the mesh, as counted on other structures."""
-        return unknowns_of(self.facts, self.size)
+        """Unknowns of the mesh file, or of the mesh as counted on other structures."""
+        return self.counted or unknowns_of(self.facts, self.size)
 
 
 def propose(facts: GeometryFacts, path: Path) -> Proposal:
@@ -107,11 +115,11 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
     """
     if len(facts.parts) < 2:
         raise InputError(f"{facts.file} holds one part, {facts.parts[0].name!r}; a joint needs two that touch")
-    fasteners = find_fasteners(facts, _joints(facts))
+    fasteners = find_fasteners(facts, touching(facts))
     facts = facts.without(fasteners.left_out)
     alone = _alone(facts, path)
     facts = facts.without(alone)
-    contacts = _joints(facts)
+    contacts = touching(facts)
     left = LeftOut()
     bolts = found_bolts(facts, fasteners, contacts, left)
     apart = _apart(facts, contacts, bolts)
@@ -176,7 +184,7 @@ def rounded(value: float, digits: int, *, up: bool = False) -> float:
     return round((np.ceil(value / step) if up else round(value / step)) * step, 15)
 
 
-def _joints(facts: GeometryFacts) -> list[Contact]:
+def touching(facts: GeometryFacts) -> list[Contact]:
     """Planes that touch; where two parts touch nowhere, those that nearly do."""
     close = TOUCHING * facts.size
     plane = [
@@ -211,7 +219,7 @@ def _apart(facts: GeometryFacts, contacts: Sequence[Contact], bolts: Sequence[Fo
 
 def _alone(facts: GeometryFacts, path: Path) -> tuple[str, ...]:
     """Parts of which no flat face touches another part. Raises InputError where that holds for all."""
-    contacts = _joints(facts)
+    contacts = touching(facts)
     if not contacts:
         apart = part_distance(path)
         assert apart is not None

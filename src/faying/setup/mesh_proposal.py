@@ -1,0 +1,154 @@
+"""What a study of a mesh file may be: joints of named faces that touch, bolts of its pretension sections."""
+
+from collections.abc import Sequence
+from math import pi, sqrt
+from pathlib import Path
+
+import numpy as np
+
+from faying.bolt.threads import WASHERS
+from faying.decks.meshfile import read_mesh, read_pretensions
+from faying.decks.raw import Pretension
+from faying.errors import InputError
+from faying.fe.mesh import Mesh
+from faying.geometry.face_facts import Contact, FaceFacts, GeometryFacts
+from faying.geometry.mesh_facts import mesh_facts
+from faying.geometry.selectors import TOUCHING
+from faying.setup.proposal import BoltProposal, JointProposal, Proposal, rounded, touching
+from faying.typing import Array
+from faying.units import show
+
+ALONG = 0.9  # cosine between the axis of a bolt and the normal of its seats
+ROUND = 0.03  # of a nominal diameter: how far the circle of the section's area may be from it
+
+
+def propose_mesh(path: Path, unit: str | None) -> Proposal:
+    """Propose joints and bolts for a mesh file.
+
+    Args:
+        path: the mesh file.
+        unit: length unit of its coordinates.
+
+    Raises:
+        ReadError, InputError: as `read_mesh`.
+        InputError: it holds one part.
+    """
+    mesh = read_mesh(path, unit=unit)
+    assert unit is not None
+    sets = _halves(path, mesh)
+    if sets:
+        mesh = read_mesh(path, unit=unit, parts=sets)
+    facts = mesh_facts(mesh)
+    if len(facts.parts) < 2:
+        raise InputError(f"{facts.file} holds one part, {facts.parts[0].name!r}; a joint needs two that touch")
+    contacts = touching(facts)
+    remarks = [note.text for note in mesh.notes]
+    bolts: list[BoltProposal] = []
+    for section, parts in read_pretensions(path, mesh):
+        found = _bolt(mesh, facts, contacts, section, parts, f"bolt {len(bolts) + 1}")
+        if isinstance(found, str):
+            remarks.append(found)
+        else:
+            bolts.append(found)
+    widest = max((abs(contact.gap) for contact in contacts), default=0.0)
+    snap = 0.0 if widest <= TOUCHING * facts.size else rounded(1.01 * widest, 2, up=True)
+    if snap:
+        remarks.append(f"faces up to {show(widest, 'm')} apart are taken for touching (geometry.snap)")
+    if not contacts:
+        remarks.append("no two named faces touch: name the faces of the joints in the file, one on each side")
+    return Proposal(
+        facts=facts,
+        faces={},
+        joints=tuple(_joint(facts, contact, k, len(contacts)) for k, contact in enumerate(contacts, 1)),
+        bolts=tuple(bolts),
+        size=0.0,
+        snap=snap,
+        left_out=(),
+        remarks=tuple(remarks),
+        unit=unit,
+        sets=sets,
+        counted=mesh.unknowns,
+    )
+
+
+def _halves(path: Path, mesh: Mesh) -> dict[str, str]:
+    """Sets that make one part of the two halves of each bolt that the file cuts at its section; none without such."""
+    joined: dict[str, str] = {}
+    for section, parts in read_pretensions(path, mesh):
+        if len(section.twins) and len(parts) == 2:
+            joined[f"bolt{len(joined) + 1}"] = " + ".join(parts)
+    halves = {one for some in joined.values() for one in some.split(" + ")}
+    return {part: part for part in mesh.parts if part not in halves} | joined if joined else {}
+
+
+def _joint(facts: GeometryFacts, contact: Contact, number: int, count: int) -> JointProposal:
+    one, two = facts.face(*contact.first), facts.face(*contact.second)
+    return JointProposal(
+        name="joint" if count == 1 else f"joint {number}",
+        faces=(one.name, two.name),
+        gap=contact.gap,
+        area=contact.area,
+    )
+
+
+def _bolt(
+    mesh: Mesh,
+    facts: GeometryFacts,
+    contacts: Sequence[Contact],
+    section: Pretension,
+    parts: Sequence[str],
+    name: str,
+) -> BoltProposal | str:
+    """The bolt of a section; why there is none, where its part or its seats are not known."""
+    if len(parts) != 1:
+        held = "no solid holds it, as of a beam" if not parts else f"it lies on {', '.join(map(repr, parts))}"
+        return f"{section.text}: no bolt is proposed, as {held}; give the bolt by hand"
+    part = parts[0]
+    places = mesh.points[np.isin(mesh.numbers, section.nodes)]
+    middle, axis = places.mean(axis=0), _axis(places, section)
+    met = {side for contact in contacts for side in (contact.first, contact.second)}
+    seats: dict[bool, list[FaceFacts]] = {True: [], False: []}
+    for face in facts.by_part[part]:
+        if face.normal is None or (part, face.number) not in met:
+            continue
+        depth = float((np.array(face.centre) - middle) @ axis)
+        if float(np.array(face.normal) @ axis) * np.sign(-depth) > ALONG:  # it looks back at the section
+            seats[depth > 0].append(face)
+    if not seats[True] or not seats[False]:
+        return (
+            f"{section.text}: no bolt is proposed, as the bolt {part!r} has no named faces that touch other parts "
+            "under its head and its nut; name them in the file"
+        )
+    head, nut = (max(some, key=lambda face: face.area) for some in (seats[True], seats[False]))
+    size = _size(places, axis)
+    x, y, z = (round(float(v), 9) + 0.0 for v in middle)
+    force = section.force if section.force is not None and section.force > 0 else None
+    pulled = "" if section.force is None else f", force {section.force:.9g} in the unit of the file"
+    return BoltProposal(
+        name=name,
+        faces=(head.name, nut.name),
+        size=size,
+        at=(x, y, z),
+        part=part,
+        force=force,
+        remark=f"{section.text}{pulled}: the part {part!r} is the bolt"
+        + (f", M{size} by the area of its section" if size else ""),
+    )
+
+
+def _axis(places: Array, section: Pretension) -> Array:
+    """Unit direction of a bolt: that of the file, else across the plane of the section."""
+    if section.axis is not None:
+        given = np.array(section.axis)
+        return np.asarray(given / np.linalg.norm(given))
+    return np.asarray(np.linalg.svd(places - places.mean(axis=0))[2][2])
+
+
+def _size(places: Array, axis: Array) -> int | None:
+    """Nominal diameter [mm] of a round section; None where it is none of a common bolt."""
+    from scipy.spatial import ConvexHull
+
+    flat = np.linalg.svd(np.eye(3) - np.outer(axis, axis))[0][:, :2]
+    area = ConvexHull((places - places.mean(axis=0)) @ flat).volume  # of a plane figure it is the area
+    wide = 1e3 * sqrt(4 * area / pi)
+    return next((size for size in WASHERS if abs(wide - size) <= ROUND * size), None)
