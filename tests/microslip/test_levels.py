@@ -58,7 +58,8 @@ def test_two_masses_agree_with_harmonic_balance(mode, monkeypatch):
         point = Epmc(model=model, mode=mode, harmonics=1, samples=256).solve(amplitude)
         shape = np.abs(point.coordinates[1] + 1j * point.coordinates[2]).max()
         level = point.frequency**2 * shape
-        frequency, damping, _ = found._mode(level, mode)
+        answer = found.at([level], mode + 1)
+        frequency, damping = answer.frequencies[0, mode], answer.damping[0, mode]
         speed = 2 * np.pi * frequency
         assert speed == pytest.approx(point.frequency, rel=2e-3)
         assert damping == pytest.approx(point.damping, rel=0.05)
@@ -76,7 +77,8 @@ def test_harmonics_bring_the_damping_nearer_to_harmonic_balance_with_harmonics(m
         for amplitude in (0.1, 0.4):
             point = Epmc(model=model, mode=0, harmonics=3, samples=256).solve(amplitude)
             level = point.frequency**2 * np.abs(point.coordinates[1] + 1j * point.coordinates[2]).max()
-            frequency, damping, _ = found._mode(level, 0)
+            answer = found.at([level], 1)
+            frequency, damping = answer.frequencies[0, 0], answer.damping[0, 0]
             assert 2 * np.pi * frequency == pytest.approx(point.frequency, rel=3e-4)
             miss.append(abs(damping / point.damping - 1))
         misses.append(max(miss))

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 import faying
-from faying.bolt.threads import CLEARANCE_HOLES, Fastener, Thread, size_for_hole
+from faying.bolt.threads import CLEARANCE_HOLES, Fastener, Thread, is_tapped, size_for_hole
 from faying.case.case import checked_mesh
 from faying.cli.main import cli
 from faying.geometry.face_facts import PartFacts
@@ -163,6 +163,10 @@ def test_every_hole_of_iso_273_finds_its_bolt(size):
     assert size_for_hole(fine * 1e-3) == size
     assert size_for_hole(medium * 1e-3) == size
     assert size_for_hole(coarse * 1e-3) >= size  # a coarse hole of one size may be a fine one of the next
+    for last_digit in (1 - 1e-15, 1.0, 1 + 1e-15):  # a hole drawn as wide as the thread takes the thread
+        hole = size * 1e-3 * last_digit
+        assert size_for_hole(hole) != size
+        assert is_tapped(hole, size)
     assert Fastener(thread=Thread.coarse(size * 1e-3), grade="8.8").proof_load > 0
 
 

@@ -176,17 +176,20 @@ class Thread:
         return pi / 4 * ((self.pitch_diameter + self.minor_diameter) / 2) ** 2
 
 
+NOMINAL = 0.05  # mm: a hole wider by no more is drawn as wide as the thread, whatever the last digit of its radius
+
+
 def size_for_hole(diameter: float) -> int | None:
     """Return the nominal diameter [mm] of the bolt that a clearance hole [m] is made for; None where there is none.
 
-    The size whose medium hole is nearest, the greater of two alike, if the hole is wider than the bolt and not wider
-    than its coarse hole.
+    The size whose medium hole is nearest, the greater of two alike, if the hole is wider than the bolt by more than
+    0.05 mm and not wider than its coarse hole. What is narrower is as wide as the thread: see `is_tapped`.
 
     Source:
         ISO 273:1979.
     """
     hole = 1e3 * diameter
-    fitting = [size for size, (_, _, coarse) in CLEARANCE_HOLES.items() if size < hole <= coarse * (1 + 1e-6)]
+    fitting = [size for size, (_, _, coarse) in CLEARANCE_HOLES.items() if size + NOMINAL < hole <= coarse * (1 + 1e-6)]
     return min(fitting, key=lambda size: (round(abs(CLEARANCE_HOLES[size][1] - hole), 6), -size), default=None)
 
 
@@ -195,7 +198,7 @@ def is_tapped(diameter: float, size: int) -> bool:
 
     CAD models show a thread by its tap drill, by its core, or by its nominal diameter.
     """
-    return bool(size - 1.3 * COARSE[size] <= 1e3 * diameter <= size + 0.05)
+    return bool(size - 1.3 * COARSE[size] <= 1e3 * diameter <= size + NOMINAL)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,6 +14,7 @@ from faying.joint.equilibrium import PreloadState
 from faying.joint.springs import Springs
 from faying.joint.state import Vibration, law_notes
 from faying.joint.strength import pressure_notes
+from faying.joint.structure import Structure
 from faying.measured.model import FullResponse
 from faying.notes import Note
 from faying.numerics.damped import DampedModes
@@ -38,8 +39,8 @@ class LoadedCase:
         notes: where a law leaves its validity range, and the like.
         ends: frequencies [Hz] at 5 and 95 % of each doubt of the joints, by its name; None where none are asked for.
         levels: damping at levels of acceleration; None where none is asked for, or no joint can slip.
-        outside_share, beyond_share: of the area of all joints [-], where their law is outside its validity range and
-            where the pressure exceeds its end.
+        outside_share: of the normal stiffness of all joints [-], where their law is outside its validity range.
+        beyond_share: of their area [-], where the pressure exceeds the end of their law.
     """
 
     load: float
@@ -109,9 +110,7 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
             *law_notes(structure, preload, load),
             *pressure_notes(structure, preload.pressures, load),
         ),
-        outside_share=_share(
-            springs, [~j.law.answer(s.pressure).valid for j, s in zip(structure.joints, springs, strict=True)]
-        ),
+        outside_share=_outside(structure, springs),
         beyond_share=_share(springs, [j.past_end(s) for j, s in zip(structure.joints, springs, strict=True)]),
     )
 
@@ -149,3 +148,13 @@ def _share(springs: Sequence[Springs[Interface]], masks: Sequence[Mask]) -> floa
     """Share of the area of all joints where a mask of its points holds [-]."""
     held = sum(float(s.interface.weights @ mask) for s, mask in zip(springs, masks, strict=True))
     return held / sum(s.interface.area for s in springs)
+
+
+def _outside(structure: Structure, springs: Sequence[Springs[Interface]]) -> float:
+    """Share of the normal stiffness of all joints where their law is outside its validity range [-]."""
+    outside = total = 0.0
+    for joint, s in zip(structure.joints, springs, strict=True):
+        stiffness = s.interface.weights * s.k_n
+        outside += float(stiffness @ ~joint.law.answer(s.pressure).valid)
+        total += float(stiffness.sum())
+    return outside / total if total > 0 else 0.0

@@ -68,34 +68,38 @@ class LevelModel:
 
     def at(self, levels: Sequence[float], count: int) -> AtLevels:
         """The lowest elastic modes, so many, at each level: acceleration [m/s2] of the point that moves most."""
-        found = np.array([[self._mode(level, self.rigid + k) for k in range(count)] for level in levels])
+        numbers = range(self.rigid, self.rigid + count)
+        greatest = self._greatest(self.slip.modes[1][:, numbers])
+        found = np.array([[self._mode(a, k, far) for k, far in zip(numbers, greatest, strict=True)] for a in levels])
         frequency, damping, error = np.moveaxis(found, 2, 0)
         return AtLevels(frequencies=frequency, damping=damping, error=error)
 
-    def _mode(self, level: float, number: int) -> tuple[float, float, float]:
-        """Frequency [Hz], damping of slip and its change in the last pass, of one mode."""
+    def _mode(self, level: float, number: int, greatest: float) -> tuple[float, float, float]:
+        """Frequency [Hz], damping of slip and its error, of one mode; greatest: motion of a node in its shape."""
         speeds, shapes = self.slip.modes
         speed, shape = float(speeds[number]), shapes[:, number]
         rest, damping, error = shape, 0.0, 0.0
         motion = np.zeros((1 + 2 * HARMONICS, len(shape)))
         for done in range(PASSES):
-            amplitude = level / speed**2 / self._greatest(shape)
+            amplitude = level / speed**2 / greatest
             motion[1] = amplitude * shape
             forces = self.slip.forces(motion, derivative=False, samples=SAMPLES)
             cycles = forces.cycles
             lost = sum(float(j.weights @ c.dissipated) for j, c in zip(self.slip.joints, cycles, strict=True))
             before, damping = damping, max(lost, 0.0) / (2 * np.pi * speed**2 * amplitude**2)
             error = abs(damping - before) / damping if damping > 0 else 0.0
-            change = self._change(motion, cycles)
+            secants = self._secants(motion, cycles)
             squared = speed**2
-            softer = float(shape @ change @ shape)  # of the squared frequency, to first order
+            # change of the squared frequency, to first order
+            softer = sum(j.work(c, motion[1]) for j, c in zip(self.slip.joints, secants, strict=True)) / amplitude**2
             if done == 0 and abs(softer) < SLIGHT * squared:
                 speed, error = float(np.sqrt(squared + softer)), abs(softer) / squared
                 break
             self._follow(motion, forces.force, speed, damping)
-            speed, shape = self._under(change, rest)
+            speed, shape = self._under(secants, rest)
             if abs(speed**2 - squared) < SETTLED * squared and error < 10 * SETTLED:
                 break
+            greatest = float(self._greatest(shape[:, None])[0])
         softened = max(1 - (speed / float(speeds[number])) ** 2, 0.0)
         return speed / (2 * np.pi), damping, error + OF_SHAPE * float(np.sqrt(softened))
 
@@ -119,14 +123,14 @@ class LevelModel:
             flexible = np.where(np.abs(stiff) > MET * driven, 1 / np.where(stiff == 0, 1.0, stiff), 0.0)
             motion[rows] -= (left @ shapes * flexible) @ shapes.T
 
-    def _greatest(self, shape: Array) -> float:
-        """The greatest displacement of a node in a shape."""
-        moved = (self.vectors @ shape).reshape(-1, 3)
-        return float(np.sqrt(np.einsum("ni,ni->n", moved, moved).max()))
+    def _greatest(self, shapes: Array) -> Array:
+        """The greatest displacement of a node (k,) in each of several shapes (m, k)."""
+        moved = (self.vectors @ shapes).reshape(-1, 3, shapes.shape[1])
+        return np.asarray(np.sqrt(np.einsum("nik,nik->nk", moved, moved).max(axis=0)))
 
-    def _change(self, motion: Array, cycles: Sequence[Any]) -> Array:
-        """What secant stiffnesses change of the stiffness at rest, in the basis (m, m)."""
-        out = np.zeros_like(self.slip.stiffness)
+    def _secants(self, motion: Array, cycles: Sequence[Any]) -> list[Array]:
+        """What secant stiffnesses at the points of each joint (q, 3, 3) change of those at rest [Pa/m]."""
+        out = []
         for joint, cycle in zip(self.slip.joints, cycles, strict=True):
             u, t = joint.motion(motion)[1], cycle.traction[1]
             rest = joint.at_rest[1]
@@ -138,13 +142,14 @@ class LevelModel:
                 k = np.einsum("qi,qi->q", t[:, axes], u[:, axes])[moves] / square[moves]
                 for axis in axes:
                     change[moves, axis, axis] = k - rest[moves, axis, axis]
-            out += joint.projected(change)
+            out.append(change)
         return out
 
-    def _under(self, change: Array, rest: Array) -> tuple[float, Array]:
-        """Circular frequency and shape of the mode that is most like that at rest."""
+    def _under(self, changes: Sequence[Array], rest: Array) -> tuple[float, Array]:
+        """Circular frequency and shape of the mode that is most like that at rest; changes: `_secants`."""
         from scipy.linalg import eigh
 
+        change = sum(j.projected(c) for j, c in zip(self.slip.joints, changes, strict=True))
         squared, shapes = eigh(self.slip.linear + change, self.slip.mass)
         like = np.abs(shapes.T @ self.slip.mass @ rest)
         number = int(np.argmax(like))

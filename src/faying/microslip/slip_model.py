@@ -48,8 +48,16 @@ class SlipJoint:
 
     def projected(self, tangent: Array) -> Array:
         """Stiffness (m, m) [N/m] of a tangent per area [Pa/m] (q, 3, 3)."""
-        turned = np.matmul(self.weights[:, None, None] * tangent, self.relative.reshape(len(self.weights), 3, -1))
-        return np.asarray(self.relative.T @ turned.reshape(self.relative.shape))
+        rows = np.flatnonzero(tangent.any(axis=(1, 2)))
+        relative = self.relative.reshape(len(self.weights), 3, -1)[rows]
+        turned = np.matmul(self.weights[rows, None, None] * tangent[rows], relative)
+        size = self.relative.shape[1]
+        return np.asarray(relative.reshape(-1, size).T @ turned.reshape(-1, size))
+
+    def work(self, tangent: Array, coordinates: Array) -> float:
+        """Twice the energy [J] of a tangent per area [Pa/m] (q, 3, 3) in a motion given by its coordinates (m,)."""
+        motion = (self.relative @ coordinates).reshape(-1, 3)
+        return float(np.einsum("q,qi,qij,qj->", self.weights, motion, tangent, motion, optimize=True))
 
     def halved(self) -> Self:
         """The same joint at every other point, each with the area of the one that was left out beside it."""

@@ -86,9 +86,9 @@ def beyond(result: Result) -> Rows:
 def laws(result: Result) -> Rows:
     """One row per law at the greatest preload, the study's own first; empty where there is no other law.
 
-    Where each law ends, the share of the joints beyond that, the share outside its validity range, and of the modes
-    that differ most between the laws the frequency with its loss factor; two frequencies where it matters whether what
-    is beyond the end is held or bonded.
+    Where each law ends, the share of the joints beyond that, the share of their stiffness outside its validity range.
+    Of the modes that differ most between the laws the frequency with its loss factor; two frequencies where it matters
+    whether what is beyond the end is held or bonded.
     """
     r = result
     if (

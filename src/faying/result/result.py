@@ -291,7 +291,10 @@ class Result(Recorded):
         name="seat_diameter",
     )
     outside_share: Array = variable(
-        "load", unit="1", long_name="share of the joints where their law is outside its validity range", group="joints"
+        "load",
+        unit="1",
+        long_name="share of the joints' stiffness where their law is outside its validity range",
+        group="joints",
     )
     beyond_share: Array = variable(
         "load",
@@ -481,7 +484,7 @@ class Result(Recorded):
         "law",
         "load",
         unit="1",
-        long_name="share of the joints where another law is outside its validity range",
+        long_name="share of the joints' stiffness where another law is outside its validity range",
         gaps=True,
         default=None,
         group="laws",
