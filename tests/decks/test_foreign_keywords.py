@@ -188,6 +188,8 @@ def test_sections_that_share_nodes_are_parts_of_one_body(tmp_path):
     mesh = read(tmp_path, column())
     assert mesh.bodies == (("steel", "alu"),)
     assert "'steel' and 'alu' (4 nodes)" in said(mesh)
+    assert set(mesh.faces) == {"steel.alu", "alu.steel"}
+    assert mesh.is_shared("steel.alu")
     E = {"steel": 200e9, "alu": 70e9}
     made = {part: faying.Material(name=part, E=value, nu=0.0, density=1.0) for part, value in E.items()}
     K = assemble(mesh, made)[0].toarray()

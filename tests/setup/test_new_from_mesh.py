@@ -12,6 +12,7 @@ from faying.cli.main import cli
 from faying.decks.meshfile import read_pretensions
 from faying.study import Study
 from tests.helpers import meshfiles
+from tests.helpers.plates import LAW
 from tests.helpers.voxels import bolted
 
 
@@ -139,6 +140,56 @@ def test_the_halves_of_a_bolt_that_prets179_hold_are_one_part(tmp_path):
     assert one.volumes["bolt"] == pytest.approx(8e-6)
     assert "4 pairs of its nodes one" in one.notes[-1].text + one.notes[0].text
     assert read_pretensions(path, one)[0][1] == ("bolt",)
+
+
+@pytest.fixture
+def screwed(mesh):
+    """The bolt screwed into the lower plate: the mesh is one there, and no face is named between them."""
+    from dataclasses import replace
+
+    one = mesh.bonded_at(("bolt0.nut", "lower.seat0"))
+    gone = ("bolt0.nut", "lower.seat0", "bolt0.shank")
+    kept = {name: some for name, some in one.faces.items() if name not in gone}
+    return replace(one, faces=kept, face_part={name: one.face_part[name] for name in kept})
+
+
+def test_a_bolt_that_shares_nodes_with_what_it_is_screwed_into(tmp_path, screwed):
+    """The tension that its seat carries is the force of the deck, whatever holds its other end."""
+    study, _ = proposed(tmp_path, deck(screwed))
+    (bolt,) = study.bolts
+    assert bolt.faces == ("bolt0.head", "bolt0.lower")
+    assert {frozenset(joint.faces) for joint in study.joints} == {
+        frozenset(("lower.joint", "upper.joint")),
+        frozenset(("bolt0.head", "upper.seat0")),
+    }
+    whole = checked_mesh(study)
+    assert whole.bodies == (("lower", "bolt0"), ("upper",))
+    joints = [faying.Joint(("lower.joint", "upper.joint"), LAW), faying.Joint(("bolt0.head", "upper.seat0"), LAW)]
+    state = faying.Structure(whole, "45 steel", joints, [bolt]).solve("5 kN", modes=1)
+    forces = [joint.interface.weights @ state.pressures[joint.name] for joint in state.structure.joints]
+    assert forces == pytest.approx([5000, 5000], rel=1e-5)
+    with pytest.raises(faying.InputError, match="'bolt0.lower' is one with another part, so that nothing moves there"):
+        faying.Structure(whole, "45 steel", [*joints, faying.Joint(("bolt0.lower", "lower.bolt0"), LAW)], [bolt])
+
+
+def test_the_joint_under_a_head_carries_the_force_of_its_bolt_once(tmp_path, mesh):
+    """In a turned assembly the depth of the seat below the head is rounding, above zero as often as below."""
+    from dataclasses import replace
+
+    from scipy.spatial.transform import Rotation
+
+    proposed(tmp_path, deck(mesh))
+    for angle in np.linspace(0.1, 1.2, 6):
+        turned = replace(mesh, points=mesh.points @ Rotation.from_rotvec([angle, 0.3, 0.2]).as_matrix().T)
+        (tmp_path / "m.inp").write_text(meshfiles.abaqus(turned))
+        study = (tmp_path / "s.toml").read_text()
+        middle = ", ".join(
+            f'"{1e3 * x:.9g} mm"' for x in Rotation.from_rotvec([angle, 0.3, 0.2]).apply([0.02, 0.02, 0.01])
+        )
+        (tmp_path / "t.toml").write_text(re.sub(r"^at = .*", f"at = [{middle}]", study, flags=re.M))
+        out = " ".join(call("check", tmp_path / "t.toml").output.split())
+        assert len(re.findall(r"5 kN on [\d.]+ mm2 press", out)) == 3
+        assert "10 kN" not in out
 
 
 def test_a_unit_goes_with_a_mesh_file_alone(tmp_path, mesh):

@@ -1,7 +1,7 @@
 """Parts of a file that share nodes: one body where no face is named between them, and apart where faces are."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -21,11 +21,13 @@ class Bodies:
         pairs: parts that share sides of elements where no face is named.
         place: the body of each part, from 0.
         shared: number of nodes of each pair that both parts have.
+        sides: name of each face between parts of one body, with its part and the sides.
     """
 
     pairs: tuple[tuple[str, str], ...]
     place: Mapping[str, int]
     shared: tuple[int, ...]
+    sides: Mapping[str, tuple[str, Blocks]] = field(default_factory=dict)
 
     def keys(self, blocks: Mapping[str, Blocks], nodes: int) -> Index:
         """One number for each node of each body."""
@@ -41,8 +43,8 @@ class Bodies:
         ]
         more = f" and {len(self.pairs) - LISTED} more pairs" if len(self.pairs) > LISTED else ""
         return (
-            f"parts that share nodes are one body, as in the file: {', '.join(some)}{more}; where they only touch, "
-            "name the face of the joint on both sides in the file"
+            f"parts that share nodes are one body, as in the file: {', '.join(some)}{more}; the sides between "
+            "them are called PART.OTHER; where they only touch, name the face of the joint on both sides in the file"
         )
 
 
@@ -59,7 +61,9 @@ def bodies(
     counts: list[int] = []
     if not _any_shared(blocks, nodes):
         return Bodies((), {part: k for k, part in enumerate(names)}, ())
-    skins = {part: _keys(skin(some, nodes), nodes) for part, some in blocks.items()}
+    outer = {part: skin(some, nodes) for part, some in blocks.items()}
+    skins = {part: _keys(some, nodes) for part, some in outer.items()}
+    sides: dict[str, tuple[str, Blocks]] = {}
     own = {part: nodes_of(some) for part, some in blocks.items()}
     named: dict[str, list[Index]] = {part: [] for part in names}
     for face, some in faces.items():
@@ -73,8 +77,11 @@ def bodies(
             if len(met) and not np.isin(met, marked[a]).any() and not np.isin(met, marked[b]).any():
                 pairs.append((a, b))
                 counts.append(len(np.intersect1d(own[a], own[b])))
+                for one, two in ((a, b), (b, a)):
+                    on = tuple(some[np.isin(side_key(some, nodes), met)] for some in outer[one])
+                    sides[f"{one}.{two}"] = one, tuple(some for some in on if len(some))
     place = {part: k for k, body in enumerate(bodies_of(names, pairs)) for part in body}
-    return Bodies(tuple(pairs), place, tuple(counts))
+    return Bodies(tuple(pairs), place, tuple(counts), {name: one for name, one in sides.items() if name not in faces})
 
 
 def check_apart(

@@ -452,6 +452,8 @@ class _Builder:
         if found.text:
             self.notes.append(Note(code="one-body", text=found.text))
         place, key = found.place, found.keys(blocks, n)
+        faces = {**faces, **{name: some for name, (_, some) in found.sides.items()}}
+        face_part = {**face_part, **{name: part for name, (part, _) in found.sides.items()}}
         old = key % n
         old_numbers = self.raw.numbers[old]
         numbers = old_numbers.copy()

@@ -95,6 +95,13 @@ class Mesh(Summary):
         """The parts that are one body, in their order: those that are bonded together, and each other one alone."""
         return bodies_of(tuple(self.parts), self.bonded)
 
+    def is_shared(self, face: str) -> bool:
+        """Whether every node of a named face is a node of another part too; False where there is no such face."""
+        if not self.bonded or face not in self.faces:
+            return False
+        others = [self.part_nodes(part) for part in self.parts if part != self.face_part[face]]
+        return bool(np.isin(self.face_nodes(face), np.concatenate(others)).all())
+
     def body_nodes(self, body: Sequence[str]) -> Index:
         """Nodes of the parts of a body, each once."""
         return np.unique(np.concatenate([self.part_nodes(part) for part in body]))

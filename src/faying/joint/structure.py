@@ -110,6 +110,11 @@ class Structure(Summary):
         twice = sorted({part for part in meshed if meshed.count(part) > 1})
         if twice:
             raise InputError(f"part {', '.join(twice)} is two solid bolts; a part is drawn in once, with one preload")
+        for joint in self.joints:
+            still = nothing_moves(joint.name, [face for face in joint.faces if self.mesh.is_shared(face)])
+            if still:
+                raise InputError(still)
+        faces += [face for bolt in solid for face in bolt.faces if self.mesh.is_shared(face)]
         for bolt in solid:
             apart = seat_apart(bolt, faces)
             if apart:
@@ -353,6 +358,16 @@ class Structure(Summary):
         """Mass of each part [kg] (p,), without bolts and point masses."""
         volumes = self.mesh.volumes
         return np.array([(self.materials[part].density or 0.0) * volumes[part] for part in self.mesh.parts])
+
+
+def nothing_moves(joint: str, shared: Sequence[str]) -> str:
+    """What there is to say of a joint with faces all of whose nodes are of another part, too; "" without such faces."""
+    if not shared:
+        return ""
+    return (
+        f"joint {joint!r}: every node of its face {shared[0]!r} is one with another part, so that nothing moves there; "
+        "leave the joint out, or name the face on both sides in the mesh file"
+    )
 
 
 def seat_apart(bolt: SolidBolt, faces: Container[str]) -> str:

@@ -20,7 +20,7 @@ from faying.geometry.mesh_facts import mesh_facts
 from faying.geometry.selectors import TOUCHING, chosen, points_of
 from faying.joint.joint import each_pair_once
 from faying.joint.strength import SolidPlace, bolt_notes, material_notes
-from faying.joint.structure import seat_apart
+from faying.joint.structure import nothing_moves, seat_apart
 from faying.memory import available
 from faying.notes import Note
 from faying.progress import duration
@@ -132,7 +132,11 @@ def check(path: str | Path) -> Checked:
     _contacts(sketch, found)
     for key, what, point in named_points(study):
         found.tried("point", key, partial(on_structure, what, point, mesh or facts))
-    sketch = _bolts(sketch, found)
+    shared = set() if mesh is None else {face for face in mesh.faces if mesh.is_shared(face)}
+    for joint in study.joints:
+        if text := nothing_moves(joint.name, [face for face in joint.faces if face in shared]):
+            found.add("fault", "contact", text, f"joint[{joint.number}].faces")
+    sketch = _bolts(sketch, found, shared)
     for level, code, words, key in law_findings(sketch):
         found.add(level, code, words, key)
     return Checked(findings=tuple(found.out), expected=expected)
@@ -296,11 +300,16 @@ def _contacts(sketch: Sketch, found: _Findings) -> None:
             found.add("ok", "contact", f"joint {joint.name!r}: its faces touch over {area:.4g} mm2", key)
 
 
-def _bolts(sketch: Sketch, found: _Findings) -> Sketch:
-    """Bolts in their places: seats that look away from each other, axes in their holes, forces that they bear."""
+def _bolts(sketch: Sketch, found: _Findings, shared: set[str]) -> Sketch:
+    """Bolts in their places: seats that look away from each other, axes in their holes, forces that they bear.
+
+    shared: faces all of whose nodes are of another part, too.
+    """
     places: list[BoltPlace | SolidPlace] = []
     met = {face for joint in sketch.study.joints for face in joint.faces}
     met |= {support.face for support in sketch.study.supports}
+    met |= {face for bond in sketch.study.bonds for face in bond.faces}
+    met |= shared
     well: dict[str, list[tuple[str, str]]] = {}  # what is said -> bolts and keys of which it is
     for k, bolt in enumerate(sketch.study.bolts, 1):
 

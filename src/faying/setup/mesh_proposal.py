@@ -41,7 +41,11 @@ def propose_mesh(path: Path, unit: str | None) -> Proposal:
     facts = mesh_facts(mesh)
     if len(facts.parts) < 2:
         raise InputError(f"{facts.file} holds one part, {facts.parts[0].name!r}; a joint needs two that touch")
-    contacts = touching(facts)
+    contacts = [
+        contact
+        for contact in touching(facts)
+        if not any(mesh.is_shared(facts.face(*side).name) for side in (contact.first, contact.second))
+    ]
     remarks = [note.text for note in mesh.notes]
     bolts: list[BoltProposal] = []
     for section, parts in read_pretensions(path, mesh):
@@ -109,17 +113,18 @@ def _bolt(
     met = {side for contact in contacts for side in (contact.first, contact.second)}
     seats: dict[bool, list[FaceFacts]] = {True: [], False: []}
     for face in facts.by_part[part]:
-        if face.normal is None or (part, face.number) not in met:
-            continue
+        thread = mesh.is_shared(face.name)  # what holds it there is one with it
         depth = float((np.array(face.centre) - middle) @ axis)
-        if float(np.array(face.normal) @ axis) * np.sign(-depth) > ALONG:  # it looks back at the section
+        back = face.normal is not None and float(np.array(face.normal) @ axis) * np.sign(-depth) > ALONG
+        if thread or (back and (part, face.number) in met):
             seats[depth > 0].append(face)
     if not seats[True] or not seats[False]:
         return (
             f"{section.text}: no bolt is proposed, as the bolt {part!r} has no named faces that touch other parts "
             "under its head and its nut; name them in the file"
         )
-    head, nut = (max(some, key=lambda face: face.area) for some in (seats[True], seats[False]))
+    ends = [max(some, key=lambda face: (not mesh.is_shared(face.name), face.area)) for some in seats.values()]
+    head, nut = sorted(ends, key=lambda face: mesh.is_shared(face.name))
     size = _size(places, axis)
     x, y, z = (round(float(v), 9) + 0.0 for v in middle)
     force = section.force if section.force is not None and section.force > 0 else None

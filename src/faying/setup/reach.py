@@ -149,8 +149,8 @@ def _through(sketch: Sketch, joint: JointChoice) -> list[tuple[BoltPlace | Solid
     corners = _corners(sketch, joint)
     out: list[tuple[BoltPlace | SolidPlace, float]] = []
     for place in sketch.fitted_bolts:
-        if not place.bolt.preload:
-            continue
+        if not place.bolt.preload or (isinstance(place, SolidPlace) and {*place.bolt.faces} & {*joint.faces}):
+            continue  # its own seats carry all of its force
         arm = corners - place.point
         depth = arm @ place.axis
         beside = np.linalg.norm(arm - np.outer(depth, place.axis), axis=1)
