@@ -3,6 +3,7 @@ from . import contact as contact
 from .answer.bolt_sheet import bolt_sheet as bolt_sheet
 from .answer.level_curves import LevelCurves as LevelCurves
 from .answer.level_curves import level_curves as level_curves
+from .answer.load_cases import load_cases as load_cases
 from .answer.run import run as run
 from .asperity_fe import solve_asperity as solve_asperity
 from .backbones.backbone import backbone as backbone
@@ -41,6 +42,10 @@ from .joint.joint import Joint as Joint
 from .joint.state import State as State
 from .joint.state import VibrationModes as VibrationModes
 from .joint.structure import Structure as Structure
+from .loads.load import Displacement as Displacement
+from .loads.load import Force as Force
+from .loads.load import Load as Load
+from .loads.load import Pressure as Pressure
 from .materials import CATALOGUE as CATALOGUE
 from .materials import RIGID as RIGID
 from .materials import ContactPair as ContactPair
@@ -59,6 +64,7 @@ from .output.scene.notebook import view as view
 from .result import Result as Result
 from .result import read_model_modes as read_model_modes
 from .result.backbone import Backbone as Backbone
+from .result.load_cases import LoadCases as LoadCases
 from .study import Study as Study
 from .surface import synthesize as synthesize
 from .surface.combine import Combined as Combined

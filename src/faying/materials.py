@@ -11,6 +11,7 @@ from faying.errors import InputError, shown
 from faying.hardness import BRINELL_RANGE, VickersHardness
 
 STIFFEST = 0.495  # Poisson's ratio from which displacements alone cannot describe a solid
+MOST_EXPANSION = 1e-3  # 1/K: beyond it a power of ten is wrong
 UNITS = {
     "E": "Pa",
     "nu": "",
@@ -22,6 +23,7 @@ UNITS = {
     "conductivity": "W/(m*K)",
     "resistivity": "ohm*m",
     "bearing_limit": "Pa",
+    "expansion": "1/K",
 }
 
 
@@ -43,6 +45,7 @@ class Material:
         conductivity: of heat [W/(m K)].
         resistivity: electrical [ohm m].
         bearing_limit: pressure [Pa] that it bears under the head of a bolt (p_G of VDI 2230).
+        expansion: coefficient of linear thermal expansion [1/K].
         source: where the numbers come from.
 
     Quantities may also be text with a unit, for example "210 GPa".
@@ -63,6 +66,7 @@ class Material:
     conductivity: float | None = None
     resistivity: float | None = None
     bearing_limit: float | None = None
+    expansion: float | None = None
     source: str = ""
 
     def __post_init__(self) -> None:
@@ -84,6 +88,11 @@ class Material:
             endless = field in ("density", "conductivity", "resistivity", "bearing_limit") and value == inf
             if value is not None and (isnan(value) or value <= 0 or endless):
                 raise InputError(f"material {self.name!r}: {field} = {value}; it must be positive, or left out")
+        if self.expansion is not None and not abs(self.expansion) < MOST_EXPANSION:
+            raise InputError(
+                f"material {self.name!r}: expansion = {self.expansion} 1/K; no solid reaches {MOST_EXPANSION:g} 1/K, "
+                "steel has 12e-6 1/K"
+            )
         if self.friction is not None and not (isfinite(self.friction) and self.friction >= 0):
             raise InputError(f"material {self.name!r}: friction = {self.friction}; it must be 0 or more, or left out")
         if self.hardness is None and self.yield_strength is not None:
@@ -237,8 +246,10 @@ CATALOGUE = Catalogue(
         hardness=994e6,
         brinell=1.67e9,
         friction=0.25,
+        expansion=11.6e-6,
         source="Zhang et al. 2024, doi:10.3390/fractalfract8100611, Table 2; Brinell hardness: HB 170, the lower "
-        "end of 170 to 210 that producers state for C45 (AISI 1045), hot rolled or normalised",
+        "end of 170 to 210 that producers state for C45 (AISI 1045), hot rolled or normalised; expansion: AISI 1045, "
+        "annealed, 0 to 100 degrees C, as handbooks list it",
     ),
     Material(
         name="S355",
@@ -249,8 +260,9 @@ CATALOGUE = Catalogue(
         brinell=1.59e9,
         conductivity=53.3,
         bearing_limit=760e6,
-        source="EN 1993-1-1, 3.2.6 and Table 3.1; EN 1991-1-1, Table A.4; conductivity at 20 degrees C: "
-        "EN 1993-1-2, 3.4.1.3; bearing limit: VDI 2230:2003, Table A9; Brinell hardness: HB 162, from the "
+        expansion=12e-6,
+        source="EN 1993-1-1, 3.2.6 (expansion too) and Table 3.1; EN 1991-1-1, Table A.4; conductivity at 20 degrees "
+        "C: EN 1993-1-2, 3.4.1.3; bearing limit: VDI 2230:2003, Table A9; Brinell hardness: HB 162, from the "
         "tensile strength 470 to 630 MPa of EN 10025-2 over 3.4",
     ),
     Material(
@@ -261,8 +273,9 @@ CATALOGUE = Catalogue(
         yield_strength=260e6,
         brinell=0.93e9,
         conductivity=191.4,
-        source="EN 1999-1-1, 3.2.5 and Table 3.2b (extrusions, 5 < t <= 15 mm); conductivity at 20 degrees C: "
-        "EN 1999-1-2, 3.3.3; Brinell hardness: HB 95, typical of the temper",
+        expansion=23e-6,
+        source="EN 1999-1-1, 3.2.5 (expansion too) and Table 3.2b (extrusions, 5 < t <= 15 mm); conductivity at 20 "
+        "degrees C: EN 1999-1-2, 3.3.3; Brinell hardness: HB 95, typical of the temper",
     ),
 )
 """A few materials with their sources. Friction depends on the pair and its finish: give your own."""

@@ -27,6 +27,8 @@ WRONG = frozenset(
         "law-materials",
         "odd-material",
         "no-answer",
+        "load-opens",
+        "bolt-loose",
     }
 )
 LIMITS = frozenset(
@@ -58,6 +60,8 @@ LIMITS = frozenset(
         "test-modes",
         "left-out",
         "not-mixed",
+        "loads-stick",
+        "load-yields",
     }
 )
 NUMBER = re.compile(r"(?<![\w.])\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?(?![\w])")

@@ -32,7 +32,7 @@ from faying.measured.modes import ModeSet
 from faying.measured.ring_down import MeasuredBackbone
 from faying.output import report, report_measured
 from faying.output.figures import asperity, sweep
-from faying.result import Receptance, backbone_figure
+from faying.result import Receptance, backbone_figure, load_cases_figure
 from faying.result.backbone import Witness
 from faying.result.result import Comparison
 from faying.study.keys.uncertain import Input
@@ -45,6 +45,7 @@ from faying.sweeps.files import Sweep
 from tests.helpers.backbones import made as backbone_of
 from tests.helpers.chain import LOADS, DampedChain
 from tests.helpers.gallery import script
+from tests.helpers.load_cases import made as made_cases
 from tests.helpers.plates import LAW, stacked
 from tests.helpers.scenes import two_boxes
 
@@ -341,6 +342,8 @@ FIGURES = {
     "result/backbone_figure.py:figure": two_curves,
     "result/backbone_figure.py:backbone_axes": lambda: whole(curve().plot()),
     "result/backbone_figure.py:measured": lambda: backbone_figure.measured(measured_points()),
+    "result/load_cases_figure.py:figure": lambda: load_cases_figure.figure(made_cases()),
+    "result/load_cases_figure.py:case_axes": lambda: whole(made_cases().plot("left_1", "flange_1")),
     "joint/figure.py:pressure_axes": lambda: whole(state().plot_pressure()),
     "joint/figure.py:structure_axes": lambda: whole(state().structure.plot()),
     "joint/figure.py:mode_axes": lambda: whole(state().modes.plot(1)),

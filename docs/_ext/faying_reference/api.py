@@ -19,11 +19,12 @@ from faying_reference.rst import heading
 
 # title -> names; a public name that stands in none comes under the last
 GROUPS: Mapping[str, tuple[str, ...]] = {
-    "Studies": ("Study", "run", "sweep", "axis_of", "backbone", "attach"),
+    "Studies": ("Study", "run", "sweep", "axis_of", "backbone", "attach", "load_cases"),
     "Results": (
         "Result",
         "load",
         "view",
+        "LoadCases",
         "Backbone",
         "MeasuredBackbone",
         "ring_down",
@@ -41,6 +42,7 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
     "Materials": ("Material", "ContactPair", "CATALOGUE", "RIGID"),
     "Structures": (
         *("Structure", "State", "VibrationModes", "Joint", "Bolt", "Washer", "SolidBolt"),
+        *("Load", "Force", "Pressure", "Displacement"),
         *("Mesh", "read_mesh", "read_matrices", "Form", "Waviness", "GapMap", "FaceMap", "fit_form", "minimum_zone"),
     ),
     "Tests": (*("FRF", "frf_from_records", "identify_modes", "read_uff", "write_uff", "ModelModes", "compare_modes"),),

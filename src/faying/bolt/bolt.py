@@ -645,6 +645,15 @@ class FittedBolt:
         """What the shank's stretch adds to the bolt's force [N] under a displacement (unknowns,)."""
         return float(self.pull @ displacement)
 
+    def end_forces(self, displacement: Array) -> Array | None:
+        """Forces [N] and moments [N m] (12,) on the shank at head and nut, in the bolt's axes; None without a shank.
+
+        By a displacement (unknowns,) since the bolt was tightened: at each end the force along the axis and two across
+        it, then the torque and two bending moments.
+        """
+        beam = self._beam()
+        return None if beam is None else np.asarray(beam @ (self.motion @ displacement))
+
     def _beam(self) -> Array | None:
         """Stiffness (12, 12) of a round beam with shear along the first axis (Przemieniecki 1968, section 5.6)."""
         bolt = self.bolt

@@ -95,12 +95,23 @@ class SolidBolt:
         pull = np.zeros_like(drawn)  # nothing but rounding outside the layer, where the motion is rigid
         pull[layer] = np.asarray(stiffness @ drawn.ravel()).reshape(-1, 3)[layer]
         rigidity = float(np.sum(pull * drawn))
-        return FittedSolidBolt(bolt=self, pull=pull.ravel(), rigidity=rigidity, seats=np.stack([centre, end]))
+        return FittedSolidBolt(
+            bolt=self, pull=pull.ravel(), rigidity=rigidity, seats=np.stack([centre, end]), drawn=drawn.ravel()
+        )
+
+    def place(self, mesh: Mesh) -> Array:
+        """The point (3,) [m] of the plane in which the shank is drawn in."""
+        if self.at is not None:
+            return np.array(self.at)
+        first, second = (face_centre(mesh.points, mesh.face(face))[0] for face in self.faces)
+        return np.asarray((first + second) / 2)
 
 
 @dataclass(frozen=True, kw_only=True)
 class FittedSolidBolt:
     """A solid bolt in its place: pull (unknowns,), rigidity [N/m], and the centres (2, 3) [m] of its two faces.
+
+    drawn (unknowns,): v, how the far half moves when it is drawn in by 1.
 
     The far half is drawn towards the head by a (the turn of a nut), v being 1 along the axis in that half and 0 in the
     other. The bolt is strained by u + a v, so that its tension is v.K(u + a v) = pull.u + rigidity a: the resultant of
@@ -112,6 +123,7 @@ class FittedSolidBolt:
     pull: Array
     rigidity: float
     seats: Array
+    drawn: Array
 
     @cached_property
     def load(self) -> Array:

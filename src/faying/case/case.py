@@ -17,6 +17,7 @@ from faying.joint.joint_law import JointLaw
 from faying.joint.modal import ModalProblem
 from faying.joint.strength import bolt_notes, material_notes
 from faying.joint.structure import Structure, loose_parts
+from faying.loads.load import Displacement, Force, Pressure
 from faying.materials import Material
 from faying.measured.mapping import PointMap
 from faying.notes import Note
@@ -250,6 +251,7 @@ def name_faults(
         for key, what, name, face in named_faces(study)
         if face not in faces
     ]
+    faults += _heated(study)
     return faults or [*_loose_parts(study, parts, faces, one_body), *_idle_bolts(study)]
 
 
@@ -291,7 +293,35 @@ def named_faces(study: Study) -> list[tuple[str, str, str, str]]:
     ]
     named += [(f"support[{k}].face", "support", one.face, one.face) for k, one in enumerate(study.supports, 1)]
     masses = [(k, one.face) for k, one in enumerate(study.masses, 1) if one.face is not None]
-    return named + [(f"mass[{k}].face", "mass", face, face) for k, face in masses]
+    named += [(f"mass[{k}].face", "mass", face, face) for k, face in masses]
+    for k, load in enumerate(study.load_cases, 1):
+        acting: dict[str, Sequence[Force | Pressure | Displacement]] = {
+            "force": load.forces,
+            "pressure": load.pressures,
+            "displacement": load.displacements,
+        }
+        named += [
+            (f"load[{k}].{key}[{n}].face", "load", load.name, one.face)
+            for key, many in acting.items()
+            for n, one in enumerate(many, 1)
+            if one.face is not None
+        ]
+    return named
+
+
+def _heated(study: Study) -> list[tuple[str, str]]:
+    """Names in the temperatures of loads that are neither part nor bolt."""
+    known = [*study.parts, *(bolt.name for bolt in study.bolts)]
+    return [
+        (
+            f"load[{k}].temperature",
+            f"load {load.name!r}: temperature of {name!r}, which is no part and no bolt; there are "
+            f"{', '.join(map(repr, known))}",
+        )
+        for k, load in enumerate(study.load_cases, 1)
+        for name in load.temperature
+        if name not in known
+    ]
 
 
 def structure_of(

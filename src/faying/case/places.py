@@ -23,6 +23,10 @@ def named_points(study: Study) -> Iterator[tuple[str, str, Point]]:
     for k, mass in enumerate(study.masses, 1):
         if mass.point is not None:
             yield f"mass[{k}].point", f"point mass of {mass.mass:g} kg", mass.point
+    for k, load in enumerate(study.load_cases, 1):
+        for n, force in enumerate(load.forces, 1):
+            if force.face is None and force.point is not None:
+                yield f"load[{k}].force[{n}].point", f"load {load.name!r}: force", force.point
     if study.response is not None:
         for place, _ in (*study.response.inputs, *study.response.outputs):
             yield "response", "point of the response", place

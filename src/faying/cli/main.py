@@ -27,6 +27,7 @@ COMMANDS = {
     "identify": ("identify", "Update the uncertain numbers of a study from a hammer test."),
     "init": ("init", "Write a commented study file to start from."),
     "law": ("law", "Curves of a contact law: area, stiffness and loss against pressure."),
+    "loads": ("loads", "Bolt forces, opening and slip under load cases about the preload."),
     "models": ("models", "List the contact models with their sources, inputs and ranges."),
     "modes": ("modes", "Real modes of a study or of assembled matrices, also over many machines."),
     "new": ("new", "Write a study of your own STEP file: joints, bolts, seats, mesh."),

@@ -9,20 +9,22 @@ from faying.misuse import checked_call
 from faying.netcdf import Group
 from faying.result.backbone import Backbone
 from faying.result.fields import RECORD, read_tree
+from faying.result.load_cases import LoadCases
 from faying.result.result import Result
 
-Saved = Result | Backbone | Prediction | Identification
-KINDS: tuple[type[Result] | type[Backbone] | type[Prediction] | type[Identification], ...] = (
+Saved = Result | Backbone | Prediction | Identification | LoadCases
+KINDS: tuple[type[Result] | type[Backbone] | type[Prediction] | type[Identification] | type[LoadCases], ...] = (
     Result,
     Backbone,
     Prediction,
     Identification,
+    LoadCases,
 )
 
 
 @checked_call
 def load(path: str | Path) -> Saved:
-    """Read a file that Faying has saved: a result, a backbone, a prediction or an identification.
+    """Read a file that Faying has saved: a result, a backbone, a prediction, an identification or load cases.
 
     Args:
         path: The file.

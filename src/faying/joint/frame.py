@@ -95,6 +95,20 @@ class Frame:
         M = added(M, [mass.matrix(self.mesh) for mass in self.masses])
         return constrain(K, self.fixed), constrain(M, self.fixed, 0.0)
 
+    def held_back(self, displacement: Array) -> Array:
+        """Forces [N] (unknowns,) with which parts, elastic supports and tight bolts resist a displacement [m]."""
+        tight = [bolt.stiffness for bolt in self.fitted_bolts if bolt.released is None and bolt.stiffness is not None]
+        return np.asarray(sum((one @ displacement for one in tight), self._upheld @ displacement))
+
+    def inertia(self, acceleration: Array) -> Array:
+        """Mass of parts, bolts and point masses times an acceleration [m/s2] (unknowns,), unknowns that are fixed too.
+
+        The matrix of the modes has those cleared, and with them what their nodes share of the mass of their elements.
+        """
+        more = [bolt.mass for bolt in self.fitted_bolts] + [mass.matrix(self.mesh) for mass in self.masses]
+        given = [one @ acceleration for one in more if one is not None]
+        return np.asarray(sum(given, self.matrices[1] @ acceleration))
+
     @property
     def is_bare(self) -> bool:
         """Whether parts and supports are all that vibrates: no bolt has a stiffness or a mass, no mass is added."""

@@ -191,6 +191,14 @@ class Structure(Summary):
         """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; fixed ones cleared."""
         return self._frame.vibrating
 
+    def held_back(self, displacement: Array) -> Array:
+        """Forces [N] (unknowns,) with which parts, elastic supports and tight bolts resist a displacement [m]."""
+        return self._frame.held_back(displacement)
+
+    def inertia(self, acceleration: Array) -> Array:
+        """Mass of all that moves times an acceleration [m/s2] (unknowns,), that of fixed unknowns included [N]."""
+        return self._frame.inertia(acceleration)
+
     @property
     def is_bare(self) -> bool:
         """Whether the parts under preload are all that vibrates: no bolt adds a stiffness or a mass."""

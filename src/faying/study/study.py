@@ -10,6 +10,7 @@ from faying.bolt.solid_bolt import SolidBolt
 from faying.errors import ReadError
 from faying.joint.attachments import PointMass, Support
 from faying.joint.modal import ModesChoice
+from faying.loads.load import Load
 from faying.materials import Material
 from faying.misuse import checked_call
 from faying.study.keys.alternative import AlternativeChoice
@@ -19,6 +20,7 @@ from faying.study.keys.bolt_sheet import BoltSheetChoice, read_bolt_sheets
 from faying.study.keys.geometry import GeometryChoice, read_geometry
 from faying.study.keys.joint import JointChoice, read_joints
 from faying.study.keys.law import LawChoice
+from faying.study.keys.load import read_loads
 from faying.study.keys.material import read_materials, read_parts
 from faying.study.keys.reader import Faults, Table
 from faying.study.keys.solution import ResponseChoice, read_modes, read_order
@@ -44,6 +46,7 @@ class Study:
         backbone: which curve over amplitude is asked for; None where the file does not say.
         alternatives: other laws and surfaces whose modes stand beside those of the study.
         bolt_sheets: what is said for the sheets of the bolts.
+        load_cases: what acts on the preloaded structure.
         uncertain: which numbers scatter; None where the file does not say.
         order: the order of tightening as indices of bolts, pass after pass; None where all are pulled at once.
     """
@@ -70,6 +73,7 @@ class Study:
     bonds: tuple[JointChoice, ...] = ()
     name: str = PLAIN
     bolt_sheets: tuple[BoltSheetChoice, ...] = ()
+    load_cases: tuple[Load, ...] = ()
     text: str = field(default="", repr=False)
     files: tuple[Path, ...] = ()
 
@@ -133,16 +137,11 @@ class Study:
         _note_lacking_alternatives(
             faults, joints, (law, surface), alternatives, () if backbone is None else backbone.laws
         )
-        read = [read_bolt(t, i, materials) for i, t in enumerate(top.tables("bolt", required=True))]
-        bolts = tuple(bolt for bolt in read if bolt is not None)
+        bolts = _bolts(top, materials)
         sheets = read_bolt_sheets(top.tables("bolt_sheet"), [bolt.name for bolt in bolts])
+        cases = read_loads(top.tables("load"))
         supports = [read_support(t) for t in top.tables("support")]
         masses = [read_mass(t) for t in top.tables("mass")]
-        counts = {len(b.preload) for b in bolts if b.preload}
-        if len(counts) > 1:
-            faults.add(
-                f"the bolts have {' and '.join(map(str, sorted(counts)))} preloads; give each bolt the same number"
-            )
         modes = read_modes(top.table("modes"))
         order = read_order(top.table("tightening"), [bolt.name for bolt in bolts])
         response = ResponseChoice.of(top.table("response"))
@@ -173,9 +172,21 @@ class Study:
             alternatives=alternatives,
             uncertain=uncertain,
             bolt_sheets=sheets,
+            load_cases=cases,
             text=text,
             files=tuple(dict.fromkeys(faults.files)),
         )
+
+
+def _bolts(top: Table, materials: dict[str, Material]) -> tuple[Bolt | SolidBolt, ...]:
+    """Read [[bolt]]; a fault is noted where they have different numbers of preloads."""
+    read = [read_bolt(t, i, materials) for i, t in enumerate(top.tables("bolt", required=True))]
+    bolts = tuple(bolt for bolt in read if bolt is not None)
+    counts = {len(b.preload) for b in bolts if b.preload}
+    if len(counts) > 1:
+        many = " and ".join(map(str, sorted(counts)))
+        top.faults.add(f"the bolts have {many} preloads; give each bolt the same number")
+    return bolts
 
 
 def _with_selectors(geometry: GeometryChoice, faults: Faults) -> GeometryChoice:

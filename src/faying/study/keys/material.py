@@ -22,6 +22,7 @@ def read_materials(top: Table) -> dict[str, Material]:
             "conductivity": table.quantity("conductivity", "W/(m*K)", None),
             "resistivity": table.quantity("resistivity", "ohm*m", None),
             "bearing_limit": table.quantity("bearing_limit", "Pa", None),
+            "expansion": table.quantity("expansion", "1/K", None, positive=False),
             "source": table.text("source", ""),
         }
         table.close()

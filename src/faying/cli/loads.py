@@ -1,0 +1,45 @@
+"""faying loads STUDY.toml: what the preloaded structure does under its load cases."""
+
+from pathlib import Path
+
+import click
+
+from faying.cli.progress import Form, Shown, progress_options
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option("--preload", metavar="FORCE", help='Which of the study\'s preloads, such as "8 kN" (default: greatest).')
+@click.option("--no-modes", is_flag=True, help="Leave out the modes about each loaded state.")
+@click.option("--out", type=click.Path(path_type=Path), help="Write all numbers and pressure maps as NetCDF (.nc).")
+@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw the pressure (svg, png, pdf).")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
+@progress_options
+def command(
+    study: Path,
+    preload: str | None,
+    no_modes: bool,
+    out: Path | None,
+    plot: Path | None,
+    as_json: bool,
+    progress: Form | None,
+) -> None:
+    """Find bolt forces, opening, pressure and slip of STUDY under each [[load]], about its preload."""
+    from faying.answer.load_cases import load_cases
+    from faying.output import load_cases as shown
+    from faying.result.load_cases_figure import figure
+    from faying.style import check_ending, save
+    from faying.text import json_text
+
+    if plot is not None:
+        check_ending(plot)
+    with Shown("loads", progress) as report:
+        found = load_cases(study, preload=preload, modes=not no_modes, report=report)
+    files = [] if out is None else [found.save(out)]
+    files += [] if plot is None else [save(figure(found), plot)]
+    if as_json:
+        click.echo(json_text(found.to_dict() | {"files": [str(file) for file in files]}))
+        return
+    click.echo(shown.terminal(found))
+    if files:
+        click.echo(f"\nwritten: {', '.join(str(file) for file in files)}")

@@ -1,0 +1,37 @@
+"""Nodal forces of what acts on solids: pressure on a face, heat."""
+
+import numpy as np
+
+from faying.fe.elasticity import Solid
+from faying.fe.elements import SOLIDS
+from faying.fe.elements.element import gradients_in_space
+from faying.fe.faces import sampled
+from faying.fe.mesh import Mesh
+from faying.typing import Array
+
+CHUNK = 20_000  # elements at a time
+
+
+def pressure_forces(mesh: Mesh, face: str) -> Array:
+    """Nodal forces [N] (unknowns,) of a pressure of 1 Pa that presses on a face, against its outward normal."""
+    total = np.zeros((len(mesh.points), 3))
+    for faces, values, _, normals, share in sampled(mesh.points, mesh.face(face)):
+        np.add.at(total, faces, -np.einsum("fq,qa,fqi->fai", share, values, normals))
+    return total.ravel()
+
+
+def thermal_forces(mesh: Mesh, part: str, material: Solid, strain: float) -> Array:
+    """Nodal forces [N] (unknowns,) of a free expansion of a part by `strain` [-] in all directions.
+
+    Under them alone the part takes that strain and has no stress, since they are integrated by the rule of its
+    stiffness; incompatible modes do no work on an even stress.
+    """
+    stress = material.E / (1 - 2 * material.nu) * strain
+    total = np.zeros((len(mesh.points), 3))
+    for cells in mesh.parts[part]:
+        _, weights, _, gradients = SOLIDS[cells.shape[1]].stiffness_rule
+        for begin in range(0, len(cells), CHUNK):
+            some = cells[begin : begin + CHUNK]
+            g, det = gradients_in_space(mesh.points, some, gradients)
+            np.add.at(total, some, stress * np.einsum("eq,eqai->eai", det * weights, g))
+    return total.ravel()

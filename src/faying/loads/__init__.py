@@ -1,0 +1,1 @@
+"""What a preloaded structure does under loads: forces of bolts, opening, slip."""

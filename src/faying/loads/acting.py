@@ -1,0 +1,184 @@
+"""From a load case to nodal forces, displacements of supports and free lengthening of bolts."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from faying.bolt.bolt import FittedBolt
+from faying.errors import InputError
+from faying.fe.attach import mean_motion
+from faying.fe.faces import face_centre
+from faying.fe.nodal_forces import pressure_forces, thermal_forces
+from faying.joint.attachments import nearest_node
+from faying.joint.joint import known_face
+from faying.joint.structure import Structure
+from faying.loads.load import Displacement, Force, Load
+from faying.typing import Array
+
+BALANCED = 1e-6  # of the forces: what a load may leave over where nothing holds the structure
+
+
+@dataclass(frozen=True, kw_only=True)
+class Acting:
+    """What a case does to a structure.
+
+    Args:
+        force: Nodal forces [N] (unknowns,), those of heated parts and bolts included.
+        moved: Displacements [m] (unknowns,) of what supports hold; 0 elsewhere.
+        longer: Free lengthening [m] (bolts,) of bolts that are beams, by heat.
+        heat: What heated parts give of `force` [N] (unknowns,): stresses in them are those of strains less these.
+    """
+
+    force: Array
+    moved: Array
+    longer: Array
+    heat: Array
+
+    def __add__(self, other: "Acting") -> "Acting":
+        """Return both together."""
+        return Acting(
+            force=self.force + other.force,
+            moved=self.moved + other.moved,
+            longer=self.longer + other.longer,
+            heat=self.heat + other.heat,
+        )
+
+    def times(self, factor: float) -> "Acting":
+        """Return it with a factor [-] on all."""
+        return Acting(
+            force=factor * self.force,
+            moved=factor * self.moved,
+            longer=factor * self.longer,
+            heat=factor * self.heat,
+        )
+
+
+def nothing(structure: Structure) -> Acting:
+    """Return what a case without any load does."""
+    none = np.zeros(structure.mesh.unknowns)
+    return Acting(force=none, moved=none, longer=np.zeros(len(structure.bolts)), heat=none)
+
+
+def acting(structure: Structure, loads: Sequence[Load]) -> dict[str, Acting]:
+    """Return what each case does, by its name; cases come after those that they name.
+
+    Raises:
+        InputError: A face, a part, a bolt or a support is not there, a material has no expansion, or nothing holds the
+            structure against what is left over of a load.
+    """
+    out: dict[str, Acting] = {}
+    for load in loads:
+        total = _own(structure, load)
+        for name, factor in load.combine.items():
+            total = total + out[name].times(factor)
+        out[load.name] = total
+    for name, found in out.items():
+        check_held(structure, name, found.force)
+    return out
+
+
+def _own(structure: Structure, load: Load) -> Acting:
+    mesh, what = structure.mesh, f"load {load.name!r}"
+    force = np.zeros(mesh.unknowns)
+    for one in load.forces:
+        force += _force(structure, one, what)
+    for pressure in load.pressures:
+        known_face(mesh, pressure.face, what)
+        force += pressure.pressure * pressure_forces(mesh, pressure.face)
+    if any(load.acceleration):
+        force -= structure.inertia(np.tile(np.array(load.acceleration), len(mesh.points)))
+    heat, shanks, longer = _heat(structure, load.temperature, what)
+    moved = np.zeros((len(mesh.points), 3))
+    for displacement in load.displacements:
+        _move(structure, displacement, moved, what)
+    return Acting(force=force + heat + shanks, moved=moved.ravel(), longer=longer, heat=heat)
+
+
+def _force(structure: Structure, one: Force, what: str) -> Array:
+    mesh = structure.mesh
+    if one.face is None:
+        assert one.point is not None
+        force = np.zeros((len(mesh.points), 3))
+        force[nearest_node(mesh, one.point, f"{what}: force")] = one.force
+        return force.ravel()
+    known_face(mesh, one.face, what)
+    centre, _, _ = face_centre(mesh.points, mesh.face(one.face))
+    motion = mean_motion(mesh.points, mesh.face(one.face), centre if one.point is None else np.array(one.point))
+    return np.asarray(motion.T @ np.array([*one.force, *one.moment]))
+
+
+def _heat(structure: Structure, changes: Mapping[str, float], what: str) -> tuple[Array, Array, Array]:
+    """Nodal forces [N] of heated parts and of heated bolts, and free lengthening [m] of the bolts."""
+    mesh, bolts = structure.mesh, structure.fitted_bolts
+    force, shanks, longer = np.zeros(mesh.unknowns), np.zeros(mesh.unknowns), np.zeros(len(bolts))
+    names = [bolt.bolt.name for bolt in bolts]
+    for name, change in changes.items():
+        beam = name in names and isinstance(bolts[names.index(name)], FittedBolt)
+        if name in mesh.parts and beam:
+            raise InputError(
+                f"{what}: temperature of {name!r} may mean the part or the bolt of that name; rename the bolt"
+            )
+        if name in mesh.parts:
+            material = structure.materials[name]
+            strain = _expansion(material, f"{what}: part {name!r}") * change
+            force += thermal_forces(mesh, name, material, strain)
+        elif beam:
+            fitted = bolts[names.index(name)]
+            assert isinstance(fitted, FittedBolt)
+            if fitted.bolt.material is None:
+                raise InputError(
+                    f"{what}: bolt {name!r} is a force without a shank, which no temperature changes; give it diameter "
+                    "and material, or leave out its temperature"
+                )
+            washers = sum(washer.thickness for washer in fitted.bolt.washers)
+            strain = _expansion(fitted.bolt.material, f"{what}: bolt {name!r}") * change
+            longer[names.index(name)] = strain * (fitted.length + washers)
+            shanks -= fitted.axial_stiffness * longer[names.index(name)] * fitted.load
+        else:
+            known = ", ".join(map(repr, (*mesh.parts, *names)))
+            raise InputError(f"{what}: temperature of {name!r}, which is no part and no bolt; there are {known}")
+    return force, shanks, longer
+
+
+def _expansion(material: object, what: str) -> float:
+    found = getattr(material, "expansion", None)
+    if found is None:
+        name = getattr(material, "name", "")
+        raise InputError(
+            f"{what} changes its temperature, and its material {name!r} has no expansion; give the material one, such "
+            'as "12e-6 1/K" for steel'
+        )
+    return float(found)
+
+
+def _move(structure: Structure, one: Displacement, moved: Array, what: str) -> None:
+    """Put the displacement of a supported face in its place."""
+    known_face(structure.mesh, one.face, what)
+    nodes = structure.mesh.face_nodes(one.face)
+    held = np.zeros(structure.mesh.unknowns, dtype=bool)
+    held[structure.fixed] = True
+    for axis, size in enumerate(one.displacement):
+        if not size:
+            continue
+        if not held[3 * nodes + axis].all():
+            raise InputError(
+                f"{what}: the face {one.face!r} is moved along {'xyz'[axis]}, in which no rigid support holds all of "
+                "it; give it a [[support]] without stiffness in that direction, or a force in place of the displacement"
+            )
+        moved[nodes, axis] = size
+
+
+def check_held(structure: Structure, name: str, force: Array) -> None:
+    """Raise InputError where nothing holds a structure against what is left over of a load [N] (unknowns,)."""
+    if not structure.rigid.size:
+        return
+    rigid = np.linalg.qr(structure.rigid)[0]
+    scale, net = float(np.linalg.norm(force)), float(np.linalg.norm(rigid.T @ force))
+    if net > BALANCED * scale:
+        total = force.reshape(-1, 3).sum(axis=0)
+        total = np.where(np.abs(total) > BALANCED * scale, total, 0.0)
+        raise InputError(
+            f"load {name!r} does not balance: forces of ({', '.join(f'{one:.4g}' for one in total)}) N or their moment "
+            "are left over, and nothing holds the structure against them; add a [[support]], or loads that balance"
+        )

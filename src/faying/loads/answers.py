@@ -1,0 +1,251 @@
+"""From the states of load cases to what a designer asks for: bolts, opening, slip."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from faying.bolt.bolt import Bolt, FittedBolt
+from faying.bolt.solid_bolt import FittedSolidBolt
+from faying.joint.clamping import stack_of
+from faying.joint.strength import seat_area
+from faying.joint.structure import Structure
+from faying.loads.contact import LoadedContact
+from faying.loads.statics import LoadedState
+from faying.typing import Array, Index
+
+NAN = float("nan")
+NOTHING = 1e-5  # of a bolt's preload: of a smaller working load no share is told
+
+
+@dataclass(frozen=True, kw_only=True)
+class Regions:
+    """Which points of the joints belong to which bolt: those whose axis is nearest.
+
+    Args:
+        bolt: Of each joint (q,): index of the bolt.
+        joints: Of each bolt: the joints that it clamps.
+    """
+
+    bolt: tuple[Index, ...]
+    joints: tuple[tuple[int, ...], ...]
+
+    @classmethod
+    def of(cls, structure: Structure) -> "Regions":
+        """Return the regions of a structure."""
+        bolts = structure.fitted_bolts
+        nearest = []
+        for joint in structure.joints:
+            distance = np.stack([_from_axis(bolt.seats, joint.interface.positions) for bolt in bolts])
+            nearest.append(np.argmin(distance, axis=0))
+        clamped = []
+        for index, fitted in enumerate(bolts):
+            stack = stack_of(structure, index)
+            if stack is not None:
+                clamped.append(stack.joints)
+                continue
+            own = fitted.bolt.part if isinstance(fitted, FittedSolidBolt) else None
+            clamped.append(
+                tuple(
+                    number
+                    for number, joint in enumerate(structure.joints)
+                    if np.any(nearest[number] == index)
+                    and own not in [structure.mesh.face_part[face] for face in joint.faces]
+                )
+            )
+        return cls(bolt=tuple(nearest), joints=tuple(clamped))
+
+
+def _from_axis(seats: Array, positions: Array) -> Array:
+    """Distance [m] of places (q, 3) from the axis through two seats (2, 3)."""
+    axis = (seats[1] - seats[0]) / np.linalg.norm(seats[1] - seats[0])
+    arm = positions - seats[0]
+    return np.asarray(np.linalg.norm(arm - (arm @ axis)[:, None] * axis, axis=1))
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointAnswers:
+    """What the joints do in each case; arrays (case, joint), see `LoadCases`."""
+
+    normal_force: Array
+    shear_force: Array
+    mean_pressure: Array
+    greatest_pressure: Array
+    opened: Array
+    sliding: Array
+    friction_needed: Array
+    friction_needed_worst: Array
+    worst_bolt: Index
+    dissipated: Array
+
+
+def joint_answers(
+    structure: Structure,
+    contacts: Sequence[LoadedContact],
+    states: Sequence[LoadedState],
+    dissipated: Sequence[Array],
+    regions: Regions,
+) -> JointAnswers:
+    """Return what the joints do under each state; dissipated (joint,) [J]: on the way to each."""
+    found = [
+        [
+            _joint(contact, joint.interface.frames, regions.bolt[k], state.motions[k], state.tractions[k])
+            for k, (joint, contact) in enumerate(zip(structure.joints, contacts, strict=True))
+        ]
+        for state in states
+    ]
+    names = ["normal_force", "shear_force", "mean_pressure", "greatest_pressure", "opened", "sliding"]
+    names += ["friction_needed", "friction_needed_worst", "worst_bolt"]
+    arrays: dict[str, Any] = {name: np.array([[one[name] for one in row] for row in found]) for name in names}
+    return JointAnswers(dissipated=np.array(dissipated), **arrays)
+
+
+def _joint(contact: LoadedContact, frames: Array, bolt: Index, motion: Array, traction: Array) -> dict[str, float]:
+    pressure, weights = -traction[:, 0], contact.weights
+    touched = float(weights @ (contact.pressure > 0)) or NAN
+    normal, shear = _resultants(frames, traction, weights)
+    parts: dict[int, float] = {}
+    for index in np.unique(bolt):
+        some = bolt == index
+        own, across = _resultants(frames[some], traction[some], weights[some])
+        if own > 0:
+            parts[int(index)] = float(np.linalg.norm(across)) / own
+    worst = max(parts, key=lambda k: parts[k], default=-1)
+    return {
+        "normal_force": normal,
+        "shear_force": float(np.linalg.norm(shear)),
+        "mean_pressure": normal / float(weights.sum()),
+        "greatest_pressure": float(pressure.max()),
+        "opened": float(weights @ contact.opened(motion)) / touched,
+        "sliding": float(weights @ contact.sliding(motion, traction)) / (float(weights @ (pressure > 0)) or NAN),
+        "friction_needed": float(np.linalg.norm(shear)) / normal if normal > 0 else NAN,
+        "friction_needed_worst": parts.get(worst, NAN),
+        "worst_bolt": worst,
+    }
+
+
+def _resultants(frames: Array, traction: Array, weights: Array) -> tuple[float, Array]:
+    """Normal force [N] and the resultant of the shear (3,) [N], in the axes of the model."""
+    shear = np.einsum("q,qi,qij->j", weights, traction[:, 1:], frames[:, 1:])
+    return float(-weights @ traction[:, 0]), shear
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoltAnswers:
+    """What the bolts do in each case; arrays (case, bolt), see `LoadCases`."""
+
+    bolt_force: Array
+    bolt_force_linear: Array
+    bolt_moment: Array
+    bolt_shear: Array
+    working_load: Array
+    load_factor: Array
+    transverse_load: Array
+    seat_pressure: Array
+    head_friction: Array
+    head_friction_needed: Array
+
+
+def bolt_answers(
+    structure: Structure,
+    contacts: Sequence[LoadedContact],
+    preload: Array,
+    states: Sequence[tuple[LoadedState, Array, Array]],
+    regions: Regions,
+) -> BoltAnswers:
+    """Return what the bolts do.
+
+    Args:
+        structure: The structure.
+        contacts: Of each joint.
+        preload: Force of each bolt [N] (b,) before any load.
+        states: Of each case: its equilibrium, its displacement and the linear one [m] (unknowns,).
+        regions: Which points belong to which bolt.
+    """
+    change, linear, ends, working, transverse = [], [], [], [], []
+    for state, motion, straight in states:
+        here = bolt_changes(structure, state, motion)
+        change.append(here)
+        linear.append(bolt_changes(structure, state, straight))
+        ends.append([_bent(structure, k, state, motion) for k in range(len(here))])
+        pairs = [_carried(structure, contacts, state, regions, k) for k in range(len(here))]
+        working.append([_greatest(here[k] - lost) for k, (lost, _) in enumerate(pairs)])
+        transverse.append([across.max(initial=0.0) for _, across in pairs])
+    moment, shear = np.moveaxis(np.array(ends), 2, 0)
+    force, load = preload + np.array(change), np.array(working)
+    some = np.abs(load) > NOTHING * preload
+    areas = np.array([_least_area(structure, k) for k in range(len(preload))])
+    return BoltAnswers(
+        bolt_force=force,
+        bolt_force_linear=preload + np.array(linear),
+        bolt_moment=moment,
+        bolt_shear=shear,
+        working_load=load,
+        load_factor=np.where(some, np.array(change) / np.where(some, load, 1.0), NAN),
+        transverse_load=np.array(transverse),
+        seat_pressure=force / areas,
+        head_friction=np.array([_head_friction(fitted.bolt) for fitted in structure.fitted_bolts]),
+        head_friction_needed=np.where(force > 0, shear / np.where(force > 0, force, 1.0), NAN),
+    )
+
+
+def bolt_changes(structure: Structure, state: LoadedState, motion: Array) -> Array:
+    """Change of the force of each bolt [N] (b,) by a displacement [m] (unknowns,) under the load of a state."""
+    out = structure.pulls @ motion
+    for k, fitted in enumerate(structure.fitted_bolts):
+        if isinstance(fitted, FittedBolt):
+            out[k] -= fitted.axial_stiffness * state.acting.longer[k]
+        else:
+            out[k] -= fitted.drawn @ state.acting.heat
+    return np.asarray(out)
+
+
+def _bent(structure: Structure, index: int, state: LoadedState, motion: Array) -> tuple[float, float]:
+    """Greater bending moment [N m] of both ends of a bolt, and force across it [N]; NaN without a shank."""
+    fitted = structure.fitted_bolts[index]
+    if isinstance(fitted, FittedBolt):
+        ends = fitted.end_forces(motion)
+        if ends is None:
+            return NAN, NAN
+        return float(max(np.linalg.norm(ends[4:6]), np.linalg.norm(ends[10:12]))), float(np.linalg.norm(ends[1:3]))
+    axis = fitted.seats[1] - fitted.seats[0]
+    axis = axis / np.linalg.norm(axis)
+    far = np.any(fitted.drawn.reshape(-1, 3) != 0, axis=1)
+    force = structure.matrices[0] @ motion - state.acting.heat
+    force = np.where(far[:, None], force.reshape(-1, 3), 0.0)
+    arm = structure.mesh.points - fitted.bolt.place(structure.mesh)
+    total, moment = force.sum(axis=0), np.cross(arm, force).sum(axis=0)
+    across, bending = (one - (one @ axis) * axis for one in (total, moment))
+    return float(np.linalg.norm(bending)), float(np.linalg.norm(across))
+
+
+def _carried(
+    structure: Structure, contacts: Sequence[LoadedContact], state: LoadedState, regions: Regions, index: int
+) -> tuple[Array, Array]:
+    """Change of the normal force, and shear [N], round a bolt at each joint that it clamps."""
+    change, across = [], []
+    for k in regions.joints[index]:
+        some = regions.bolt[k] == index
+        contact, frames = contacts[k], structure.joints[k].interface.frames[some]
+        normal, shear = _resultants(frames, state.tractions[k][some], contact.weights[some])
+        change.append(normal - float(contact.weights[some] @ contact.pressure[some]))
+        across.append(float(np.linalg.norm(shear)))
+    return np.array(change), np.array(across)
+
+
+def _greatest(values: Array) -> float:
+    """The value of greatest size; 0 where there is none."""
+    return float(values[np.argmax(np.abs(values))]) if len(values) else 0.0
+
+
+def _least_area(structure: Structure, index: int) -> float:
+    """The smaller area [m2] of a bolt's two seats; NaN for a meshed bolt."""
+    fitted = structure.fitted_bolts[index]
+    if not isinstance(fitted, FittedBolt):
+        return NAN
+    return min(seat_area(structure, fitted, face) for face in fitted.bolt.faces)
+
+
+def _head_friction(bolt: object) -> float:
+    return NAN if not isinstance(bolt, Bolt) or bolt.friction is None else bolt.friction[1]

@@ -1,0 +1,75 @@
+"""What there is to say of load cases: where the law ends, what opens, what friction is not known."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from faying.joint.structure import Structure
+from faying.loads.answers import BoltAnswers, JointAnswers
+from faying.loads.contact import LoadedContact
+from faying.notes import Note, percent
+from faying.typing import Array
+from faying.units import show
+
+LITTLE = 0.01  # of a joint's normal force beyond which it is said that the load presses harder than the preload did
+
+
+def load_notes(
+    structure: Structure,
+    contacts: Sequence[LoadedContact],
+    cases: Sequence[str],
+    pressures: Sequence[Sequence[Array]],
+    bolts: BoltAnswers,
+    joints: JointAnswers,
+) -> list[Note]:
+    """Return the notes on all cases."""
+    out = []
+    for k, case in enumerate(cases):
+        for j, (joint, contact) in enumerate(zip(structure.joints, contacts, strict=True)):
+            out += _joint(case, joint.name, contact, pressures[k][j], float(joints.opened[k, j]))
+        for b, fitted in enumerate(structure.fitted_bolts):
+            out += _bolt(case, fitted.bolt, float(bolts.bolt_force[k, b]))
+    sticking = [joint.name for joint in structure.joints if joint.friction is None]
+    if sticking:
+        text = (
+            f"{', '.join(sticking)} sticks everywhere under the loads, since no friction is given: friction needed is "
+            "what it would take. joint.friction lets it slip"
+        )
+        out.append(Note(code="loads-stick", text=text))
+    return out
+
+
+def _joint(case: str, name: str, contact: LoadedContact, pressure: Array, opened: float) -> list[Note]:
+    out, weights, law = [], contact.weights, contact.law
+    if not np.any(pressure > 0):
+        text = f"load {case!r}: {name} opens wholly; the bolts alone hold its parts together"
+        out.append(Note(code="load-opens", joint=name, share=1.0, text=text))
+    share = float(weights @ (pressure > law.model.greatest_pressure) / weights.sum())
+    if share > 0:
+        text = (
+            f"load {case!r}: on {percent(share)} of {name} the pressure exceeds the "
+            f"{show(law.model.greatest_pressure, 'Pa')} at which {law.model.name} ends"
+        )
+        out.append(Note(code="beyond-law", joint=name, share=share, text=text))
+    more = float(weights @ np.maximum(pressure - contact.pressure, 0.0))
+    if law.yields and more > LITTLE * float(weights @ contact.pressure):
+        text = (
+            f"load {case!r}: {name} is pressed harder in places than by the preload, with {show(more, 'N')} more in "
+            f"all; asperities of {law.model.name} would yield further there and close more, which is left out"
+        )
+        out.append(Note(code="load-yields", joint=name, text=text))
+    return out
+
+
+def _bolt(case: str, bolt: object, force: float) -> list[Note]:
+    fastener, name = getattr(bolt, "fastener", None), getattr(bolt, "name", "")
+    if force <= 0:
+        text = f"load {case!r}: bolt {name!r} has no tension left ({show(force, 'N')}); its head comes off its seat"
+        return [Note(code="bolt-loose", text=text)]
+    if fastener is not None and force > fastener.proof_load:
+        text = (
+            f"load {case!r}: bolt {name!r} carries {show(force, 'N')}, more than its proof load of "
+            f"{show(fastener.proof_load, 'N')}; it stretches for good, which is left out"
+        )
+        return [Note(code="beyond-proof", load=force, text=text)]
+    return []

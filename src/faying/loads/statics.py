@@ -1,0 +1,385 @@
+"""Static equilibrium of a preloaded structure under loads, in a basis that grows until nothing is left over.
+
+From the preload u_0 a load moves the structure by d + y: d is what supports prescribe, y what is found. With the
+stiffness K of parts, supports and tight bolts, the relative motion B of the faces and their traction t,
+
+    f - K (d + y) - B' [t(B (u_0 + d + y)) - t(B u_0)] = 0.
+
+K_0 = K + B' k B is the stiffness under the springs at the preload, with which modes are found as well. y is sought in
+vectors that are orthonormal in K_0: there the linear answer of a load is its projection, and only the joints depart
+from it. What the answer leaves of the forces on the whole structure, solved for with one factorisation near K_0, is the
+next vector, for all loads together.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from faying.errors import NotConverged
+from faying.joint.equilibrium import admissible
+from faying.loads.acting import Acting
+from faying.loads.contact import ContactState, LoadedContact
+from faying.numerics.product import product
+from faying.numerics.span import Columns, extension
+from faying.typing import Array, Index
+
+TOLERANCE = 1e-9  # of the load: what may be left over
+ON_THE_WAY = 1e-4  # the same at increments before the last
+ROUNDED = 1e-6  # error below which an answer stands where rounding lets it fall no further
+STILL = 5  # rounds in which an error does not halve: it stands
+ROUNDS = 80  # of new vectors
+NEWTON_STEPS = 30
+HALVINGS = 6
+KEPT = 0.01  # relative change of a tangent from which a Newton step counts it
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadedState:
+    """A structure in equilibrium under a load.
+
+    Args:
+        coordinates: Of the basis at the time it was found (m,).
+        acting: The load.
+        contact: State of each joint.
+        tractions: Of each joint (q, 3) [Pa]: minus pressure, shear beyond that of the preload.
+        motions: Relative motion of each joint (q, 3) [m].
+        dissipated: By the sliders of each joint on the way here from the state before [J].
+        error: Forces that are left over, over the load, both in the energy that they have on K_0 [-].
+    """
+
+    coordinates: Array
+    acting: Acting
+    contact: tuple[ContactState, ...]
+    tractions: tuple[Array, ...]
+    motions: tuple[Array, ...]
+    dissipated: Array
+    error: float
+
+
+@dataclass
+class _Task:
+    """One load on its way."""
+
+    name: str
+    target: Acting
+    offset: Array  # nodal forces f - K d, admissible
+    before: Array  # the same under the load that it starts from
+    moved: tuple[Array, ...]  # relative motion (q, 3) by d
+    start: tuple[ContactState, ...]
+    x: Array
+    rest: Array | None = None  # forces left over
+    error: float = np.inf
+
+
+class LoadStatics:
+    """Answers of a preloaded structure to one load after another, or to several at once.
+
+    Args:
+        stiffness: K_0 [N/m] (unknowns, unknowns), fixed unknowns cleared.
+        factor: What solves near it.
+        held_back: K times a displacement, fixed unknowns included.
+        joints: Relative motion of the faces and the contact of each joint.
+        displacement: Under the preload [m] (unknowns,).
+        rigid: Motions (unknowns, r) that nothing resists.
+        fixed: Unknowns that supports hold.
+    """
+
+    def __init__(
+        self,
+        *,
+        stiffness: Any,
+        factor: Any,
+        held_back: Callable[[Array], Array],
+        joints: Sequence[tuple[Any, LoadedContact]],
+        displacement: Array,
+        rigid: Array,
+        fixed: Index,
+    ) -> None:
+        self.stiffness, self.factor, self.joints = stiffness, factor, list(joints)
+        self.displacement, self.fixed = displacement, fixed
+        self._held_back = held_back
+        self._rigid = np.linalg.qr(rigid)[0] if rigid.size else rigid
+        none = np.zeros((stiffness.shape[0], 0))
+        self._vectors, self._images = Columns(none), Columns(none)
+        self._relative = [np.zeros((3 * len(contact.weights), 0)) for _, contact in self.joints]
+        self._at_rest = [contact.advance(contact.start, contact.rest)[1] for _, contact in self.joints]
+        self.solutions = 0  # by the factorisation
+
+    @property
+    def size(self) -> int:
+        """How many vectors the basis has."""
+        return int(self._vectors.values.shape[1])
+
+    def rest_state(self, acting: Acting) -> LoadedState:
+        """Return the preload itself; acting: a load that does nothing."""
+        contacts = [contact for _, contact in self.joints]
+        return LoadedState(
+            coordinates=np.zeros(self.size),
+            acting=acting,
+            contact=tuple(contact.start for contact in contacts),
+            tractions=tuple(self._at_rest),
+            motions=tuple(contact.rest for contact in contacts),
+            dissipated=np.zeros(len(contacts)),
+            error=0.0,
+        )
+
+    def motion(self, state: LoadedState) -> Array:
+        """Displacement [m] (unknowns,) from the preload to a state."""
+        x = state.coordinates
+        return np.asarray(self._vectors.values[:, : len(x)] @ x + state.acting.moved)
+
+    def linear(self, actings: Sequence[Acting]) -> list[Array]:
+        """Displacements [m] (unknowns,) under loads if the joints kept the springs of the preload.
+
+        Raises NotConverged where the factorisation does not lead there.
+        """
+        loads = np.stack([self._offset(one) for one in actings], axis=1)
+        # what d does to the springs of the joints
+        loads = loads - np.stack([self._spring_forces(one) for one in actings], axis=1)
+        for _ in range(ROUNDS):
+            x = self._vectors.values.T @ loads
+            rest = loads - self._images.values @ x
+            z = self._solved(rest)
+            left = np.sqrt(np.maximum(np.einsum("ij,ij->j", rest, z), 0.0))
+            scale = np.linalg.norm(x, axis=0)
+            if np.all(left <= TOLERANCE * scale):
+                break
+            if not self._extend(z[:, left > TOLERANCE * scale]):
+                if np.all(left <= ROUNDED * scale):
+                    break
+                raise NotConverged("loads: the linear answer does not converge; is a part free to move?")
+        else:
+            raise NotConverged(
+                f"loads: the linear answer does not converge in {ROUNDS} rounds; is a part free to move?"
+            )
+        return [self._vectors.values @ x[:, k] + one.moved for k, one in enumerate(actings)]
+
+    def energy_norm(self, motion: Array, acting: Acting) -> float:
+        """Root of twice the energy [J^0.5] of a displacement less what supports prescribe, under the springs K_0."""
+        y = motion - acting.moved
+        return float(np.sqrt(max(float(y @ product(self.stiffness, y)), 0.0)))
+
+    def solve(self, cases: Sequence[tuple[str, LoadedState, Acting, int]]) -> list[list[LoadedState]]:
+        """Find the states on the way to loads.
+
+        Args:
+            cases: Name, the state that it starts from, the load, and in how many increments.
+
+        Returns:
+            For each case: the states at its increments; the last one is under the whole load.
+
+        Raises:
+            NotConverged: A joint opens wholly, or the iteration stops short.
+        """
+        found: list[list[LoadedState]] = [[] for _ in cases]
+        most = max((count for *_, count in cases), default=0)
+        for step in range(1, most + 1):
+            moving = [k for k, (*_, count) in enumerate(cases) if step <= count]
+            tasks = []
+            for k in moving:
+                name, start, load, count = cases[k]
+                before = found[k][-1] if found[k] else start
+                share = step / count
+                target = load if step == count else start.acting.times(1 - share) + load.times(share)
+                tasks.append(self._task(name, before, target))
+            loose = [step < cases[k][3] for k in moving]
+            self._settle(tasks, [ON_THE_WAY if one else TOLERANCE for one in loose])
+            for k, task in zip(moving, tasks, strict=True):
+                found[k].append(self._state(task))
+        return found
+
+    def _task(self, name: str, before: LoadedState, target: Acting) -> _Task:
+        moved = tuple(np.asarray(trace.relative @ target.moved).reshape(-1, 3) for trace, _ in self.joints)
+        x = np.zeros(self.size)
+        x[: len(before.coordinates)] = before.coordinates
+        return _Task(name, target, self._offset(target), self._offset(before.acting), moved, before.contact, x)
+
+    def _scale(self, task: _Task) -> float:
+        """Root of twice the energy [J^0.5] that the greater of the loads of a task has on K_0."""
+        sides = np.stack([task.offset, task.before], axis=1)
+        return float(np.linalg.norm(self._vectors.values.T @ sides, axis=0).max()) or 1.0
+
+    def _settle(self, tasks: Sequence[_Task], tolerances: Sequence[float]) -> None:
+        """Bring all tasks into equilibrium."""
+        past: list[float] = []  # the greatest error of each round
+        for _ in range(ROUNDS):
+            for task, tolerance in zip(tasks, tolerances, strict=True):
+                if task.error > tolerance:
+                    self._balance(task, tolerance)
+                    self._leave_over(task)
+            left = [k for k, task in enumerate(tasks) if task.error > tolerances[k]]
+            if not left:
+                return
+            rest = np.stack([task.rest for k in left if (task := tasks[k]).rest is not None], axis=1)
+            z = self._solved(rest)
+            for column, k in enumerate(left):
+                left_over = float(np.sqrt(max(float(rest[:, column] @ z[:, column]), 0.0)))
+                tasks[k].error = left_over / self._scale(tasks[k]) if self.size else np.inf
+            more = [column for column, k in enumerate(left) if tasks[k].error > tolerances[k]]
+            worst = max(tasks, key=lambda task: task.error)
+            if not more or (worst.error <= ROUNDED and _stands(past)):
+                return
+            past.append(worst.error)
+            if not self._extend(z[:, more]):
+                if worst.error <= ROUNDED:
+                    return
+                raise self._lost(worst)
+        raise self._lost(max(tasks, key=lambda task: task.error))
+
+    def _balance(self, task: _Task, tolerance: float) -> None:
+        """Newton's iteration within the basis."""
+        x = np.zeros(self.size)
+        x[: len(task.x)] = task.x
+        projected = self._vectors.values.T @ task.offset
+        left, tangents = self._left(task, x, projected)
+        size = float(np.linalg.norm(left))
+        goal = max(0.03 * min(task.error, 1.0), 0.1 * tolerance) * self._scale(task)
+        for _ in range(NEWTON_STEPS):
+            if size <= goal or not len(x):
+                break
+            step = np.linalg.solve(self._tangent(tangents), left)
+            best, length = None, 1.0
+            for _ in range(HALVINGS):
+                tried = self._left(task, x + length * step, projected)
+                now = float(np.linalg.norm(tried[0]))
+                if best is None or now < best[0]:
+                    best = now, length, tried
+                if now < (1 - 0.3 * length) * size:
+                    break
+                length /= 2
+            assert best is not None
+            gained = best[0] < 0.999 * size
+            x = x + best[1] * step
+            size, (left, tangents) = best[0], best[2]
+            if not gained:
+                break
+        task.x = x
+
+    def _left(self, task: _Task, x: Array, projected: Array) -> tuple[Array, list[Array]]:
+        """Forces left over in the basis (m,), and the change (q, 3, 3) of the tangents against the springs."""
+        left, changes = projected - x, []
+        for k, (_, contact) in enumerate(self.joints):
+            by = (self._relative[k] @ x).reshape(-1, 3)
+            motion = contact.rest + task.moved[k] + by
+            _, traction, tangent = contact.advance(task.start[k], motion)
+            local = traction - self._at_rest[k]
+            local[:, 0] -= contact.k_n * by[:, 0]
+            local[:, 1:] -= contact.k_t[:, None] * by[:, 1:]
+            left = left - self._relative[k].T @ (contact.weights[:, None] * local).ravel()
+            tangent[:, 0, 0] -= contact.k_n
+            tangent[:, 1, 1] -= contact.k_t
+            tangent[:, 2, 2] -= contact.k_t
+            changes.append(tangent)
+        return left, changes
+
+    def _tangent(self, changes: Sequence[Array]) -> Array:
+        """Tangent (m, m) in the basis: 1 and what the joints change of it."""
+        total = np.eye(self.size)
+        for relative, change, (_, contact) in zip(self._relative, changes, self.joints, strict=True):
+            size = np.abs(change).max(axis=(1, 2))
+            some = size > KEPT * np.maximum(contact.k_n, KEPT * contact.k_n.max())
+            rows = relative.reshape(len(change), 3, -1)[some]
+            turned = np.matmul(contact.weights[some, None, None] * change[some], rows)
+            total += rows.reshape(-1, self.size).T @ turned.reshape(-1, self.size)
+        return total
+
+    def _leave_over(self, task: _Task) -> None:
+        """Put what the answer leaves of the forces on the whole structure into the task."""
+        rest = task.offset - self._images.values @ task.x
+        for k, (trace, contact) in enumerate(self.joints):
+            by = (self._relative[k] @ task.x).reshape(-1, 3)
+            _, traction, _ = contact.advance(task.start[k], contact.rest + task.moved[k] + by)
+            local = traction - self._at_rest[k]
+            local[:, 0] -= contact.k_n * by[:, 0]
+            local[:, 1:] -= contact.k_t[:, None] * by[:, 1:]
+            rest = rest - trace.relative.T @ (contact.weights[:, None] * local).ravel()
+        task.rest = admissible(np.asarray(rest), self._rigid, self.fixed)
+
+    def _state(self, task: _Task) -> LoadedState:
+        states, tractions, motions, lost = [], [], [], []
+        for k, (_, contact) in enumerate(self.joints):
+            motion = contact.rest + task.moved[k] + (self._relative[k][:, : len(task.x)] @ task.x).reshape(-1, 3)
+            state, traction, _ = contact.advance(task.start[k], motion)
+            lost.append(float(contact.weights @ contact.dissipated(task.start[k], state)))
+            states.append(state)
+            tractions.append(traction)
+            motions.append(motion)
+        return LoadedState(
+            coordinates=task.x,
+            acting=task.target,
+            contact=tuple(states),
+            tractions=tuple(tractions),
+            motions=tuple(motions),
+            dissipated=np.array(lost),
+            error=task.error,
+        )
+
+    def _offset(self, acting: Acting) -> Array:
+        """Forces f - K d [N] (unknowns,)."""
+        force = acting.force
+        if np.any(acting.moved):
+            force = force - self._held_back(acting.moved)
+        return admissible(force, self._rigid, self.fixed)
+
+    def _spring_forces(self, acting: Acting) -> Array:
+        """What the springs of the joints at the preload resist of d [N] (unknowns,)."""
+        total = np.zeros_like(acting.force)
+        if not np.any(acting.moved):
+            return total
+        for trace, contact in self.joints:
+            by = np.asarray(trace.relative @ acting.moved).reshape(-1, 3)
+            local = contact.weights[:, None] * np.stack([contact.k_n, contact.k_t, contact.k_t], axis=1) * by
+            total += trace.relative.T @ local.ravel()
+        return admissible(total, self._rigid, self.fixed)
+
+    def _solved(self, forces: Array) -> Array:
+        """Displacements near K_0^-1 forces (unknowns, k)."""
+        self.solutions += forces.shape[1]
+        found = np.asarray(self.factor.solve(forces))
+        if self._rigid.size:
+            found = found - self._rigid @ (self._rigid.T @ found)
+        found[self.fixed] = 0.0
+        return found
+
+    def _extend(self, new: Array) -> int:
+        """Add columns (unknowns, k) to the basis; return how many directions were new."""
+        size = np.sqrt(np.maximum(np.einsum("ij,ij->j", new, product(self.stiffness, new)), 0.0))
+        new = new[:, size > 0] / size[size > 0]
+        if not new.shape[1]:
+            return 0
+        found, image = extension(new, self._vectors.values, self._images.values, self.stiffness, least=1e-20)
+        self._vectors.add(found)
+        self._images.add(image)
+        self._relative = [
+            np.concatenate([old, np.asarray(trace.relative @ found)], axis=1)
+            for old, (trace, _) in zip(self._relative, self.joints, strict=True)
+        ]
+        return int(found.shape[1])
+
+    def _lost(self, task: _Task) -> NotConverged:
+        """What to say of a load whose iteration stops short."""
+        state = self._state(replace_size(task, self.size))
+        apart = [
+            k
+            for k, (contact, motion) in enumerate(zip((c for _, c in self.joints), state.motions, strict=True))
+            if not np.any(contact.normal(motion)[0] > 0)
+        ]
+        where = f"; joint {apart[0] + 1} is wholly open, and nothing holds its parts together" if apart else ""
+        return NotConverged(
+            f"load {task.name!r}: no equilibrium is found, an error of {task.error:.1e} is left{where}; give more "
+            "increments, a smaller load or a greater preload"
+        )
+
+
+def _stands(errors: Sequence[float]) -> bool:
+    """Whether errors, round by round, fall no further."""
+    return len(errors) > STILL and min(errors[-STILL:]) > min(errors[:-STILL]) / 2
+
+
+def replace_size(task: _Task, size: int) -> _Task:
+    """The task with coordinates of the whole basis (size,)."""
+    x = np.zeros(size)
+    x[: len(task.x)] = task.x
+    return replace(task, x=x)

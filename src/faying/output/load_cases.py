@@ -1,0 +1,126 @@
+"""Load cases as text of a terminal, 80 columns wide, and as rows."""
+
+from collections.abc import Sequence
+from textwrap import wrap
+
+import numpy as np
+
+from faying.output.table import Rows, text
+from faying.result.load_cases import ENOUGH, LoadCases
+from faying.units import show
+
+WIDTH = 80
+MOST_MODES = 10  # that the table of frequencies has
+SCOPE = (
+    "Forces in N where no unit stands, moments in N m, pressures in MPa. F_A: load that pulls the parts apart at a "
+    "bolt; Phi: change of the bolt's force over it, as found; M, V: bending moment of the bolt and force across it; "
+    "seat: mean pressure on it. N, Q: normal and shear force of a joint; mu >: friction that the part round the worst "
+    "bolt needs. A margin is friction over the shear to carry, of a head, a joint, or round its worst bolt: at 1 it "
+    "slips. Shear that tightening left is not counted."
+)
+
+
+def terminal(found: LoadCases) -> str:
+    """Return all cases as text."""
+    lines = [f"{found.title}: load cases at a preload of {show(found.preload, 'N')}", ""]
+    for k in range(len(found.cases)):
+        lines += [*_wrapped(heading(found, k)), text(bolt_rows(found, k), left=(0,)), ""]
+        lines += [text(joint_rows(found, k), left=(0,)), ""]
+    modes = mode_rows(found)
+    lines += ["frequency under each load [Hz], and its change", text(modes), ""] if modes else []
+    lines += _wrapped(SCOPE)
+    for note in found.notes:
+        lines += wrap(note.text, WIDTH, initial_indent="- ", subsequent_indent="  ", break_long_words=False)
+    return "\n".join(lines)
+
+
+def heading(found: LoadCases, k: int) -> str:
+    """Return what a case comes to, in one sentence."""
+    after = f" after {found.after[k]!r}" if found.after[k] else ""
+    apart = float(found.superposition[k])
+    linear = f"superposition would do, to {apart:.1%}" if apart <= ENOUGH else f"superposition is off by {apart:.0%}"
+    return f"load {found.cases[k]!r}{after}: moves up to {show(float(found.displacement[k]), 'm')}; {linear}"
+
+
+def bolt_rows(found: LoadCases, k: int) -> Rows:
+    """Return one row for each bolt under a case."""
+    rows: Rows = [["bolt", "F [kN]", "change", "linear", "F_A", "Phi", "M", "V", "seat", "margin"]]
+    for b, name in enumerate(found.bolts):
+        force, linear = found.bolt_force[k, b], found.bolt_force_linear[k, b]
+        rest = found.bolt_preload[b]
+        rows.append(
+            [
+                _cut(name, 8),
+                f"{force / 1e3:.4g}",
+                _short(force - rest, sign="+"),
+                _short(linear - rest, sign="+"),
+                _short(found.working_load[k, b], sign="+"),
+                _number(found.load_factor[k, b], ".3f"),
+                _short(found.bolt_moment[k, b]),
+                _short(found.bolt_shear[k, b]),
+                _short(found.seat_pressure[k, b] / 1e6),
+                margin(found.head_margin[k, b]),
+            ]
+        )
+    return rows
+
+
+def joint_rows(found: LoadCases, k: int) -> Rows:
+    """Return one row for each joint under a case."""
+    rows: Rows = [["joint", "N [kN]", "Q", "mean", "peak", "opens", "slides", "mu >", "margin", "worst"]]
+    for j, name in enumerate(found.joints):
+        rows.append(
+            [
+                _cut(name, 8),
+                f"{found.normal_force[k, j] / 1e3:.4g}",
+                _short(found.shear_force[k, j]),
+                _short(found.mean_pressure[k, j] / 1e6),
+                _short(found.greatest_pressure[k, j] / 1e6),
+                f"{found.opened[k, j]:.1%}",
+                "-" if np.isnan(found.friction[j]) else f"{found.sliding[k, j]:.1%}",
+                _short(found.friction_needed_worst[k, j]),
+                margin(found.slip_margin[k, j]),
+                margin(found.slip_margin_worst[k, j]),
+            ]
+        )
+    return rows
+
+
+def mode_rows(found: LoadCases) -> Rows:
+    """Return one row for each mode, with its frequency under every case; empty where no modes were asked for."""
+    if found.rest_frequency is None or found.frequency is None or found.frequency_change is None:
+        return []
+    rows: Rows = [["mode", "preload", *(_cut(name, 18) for name in found.cases)]]
+    for m, rest in enumerate(found.rest_frequency[:MOST_MODES]):
+        cells = [
+            f"{f:.2f} {change:+.2%}"
+            for f, change in zip(found.frequency[:, m], found.frequency_change[:, m], strict=True)
+        ]
+        rows.append([str(m + 1), f"{rest:.2f}", *cells])
+    return rows
+
+
+def margin(value: float) -> str:
+    """A margin in words: a dash where it is not known."""
+    return "-" if np.isnan(value) else ">999" if value > 999 else f"{value:.3g}"
+
+
+def _short(value: float, sign: str = "") -> str:
+    """A number in six characters or so, 0 where it is less than a thousandth."""
+    if not np.isfinite(value):
+        return "-"
+    if abs(value) < 1e-3:
+        return "0"
+    return f"{value:{sign}.0f}" if abs(value) >= 100 else f"{value:{sign}.3g}"
+
+
+def _number(value: float, form: str) -> str:
+    return "-" if not np.isfinite(value) else format(value, form)
+
+
+def _cut(name: str, most: int) -> str:
+    return name if len(name) <= most else name[: most - 1] + "…"
+
+
+def _wrapped(line: str) -> Sequence[str]:
+    return wrap(line, WIDTH, break_long_words=False, break_on_hyphens=False)

@@ -1,0 +1,150 @@
+"""Load cases on two bars under a bolt, where all is one-dimensional."""
+
+import numpy as np
+import pytest
+
+import faying
+from faying.answer.load_cases import Preloaded, answers, near_factor
+from faying.case.case import Progress
+from faying.joint.attachments import PointMass, Support
+from tests.helpers.bars import AREA, LENGTH, SIMPLE, bars
+
+PRELOAD = 5000.0
+
+
+@pytest.fixture(scope="module")
+def free():
+    """Bars that nothing holds, under their preload."""
+    made = bars()
+    return made, made.structure.solve(PRELOAD, modes=2)
+
+
+@pytest.fixture(scope="module")
+def held():
+    """Bars held by the left end."""
+    made = bars(held=True)
+    return made, made.structure.solve(PRELOAD, modes=2)
+
+
+def pair(name, force, **more):
+    """A force that pulls both ends apart."""
+    ends = [faying.Force("p0.left", force=(-force, 0, 0)), faying.Force("p1.right", force=(force, 0, 0))]
+    return faying.Load(name, forces=ends, **more)
+
+
+def test_a_load_at_the_seats_is_shared_as_the_compliances_say_until_the_joint_opens(free):
+    made, state = free
+    opens = PRELOAD / (1 - made.share)  # the load that takes the last of the clamp force
+    forces = np.array([-2000.0, 1.0, 2000.0, 0.999 * opens, 1.001 * opens, 1.5 * opens])
+    found = faying.load_cases(state, [pair(f"{k}", force) for k, force in enumerate(forces)], modes=False)
+    wanted = np.where(forces < opens, PRELOAD + made.share * forces, forces)
+    assert found.bolt_force[:, 0] == pytest.approx(wanted, rel=1e-8)
+    assert found.bolt_force_linear[:, 0] == pytest.approx(PRELOAD + made.share * forces, rel=1e-8)
+    shut = forces < opens
+    assert found.opened[:, 0] == pytest.approx(np.where(shut, 0.0, 1.0), abs=1e-12)
+    assert found.normal_force[:, 0] == pytest.approx(np.where(shut, wanted - forces, 0.0), rel=1e-7, abs=1e-6)
+    assert found.mean_pressure[:, 0] == pytest.approx(found.normal_force[:, 0] / AREA, rel=1e-12)
+    assert found.working_load[:, 0] == pytest.approx(forces, rel=1e-7)
+    assert found.load_factor[shut, 0] == pytest.approx(made.share, rel=1e-6)
+    assert list(found.superposes) == [*shut[:4], *shut[4:]]
+    assert {note.code for note in found.notes} >= {"load-opens"}
+
+
+def test_heat_of_bolt_and_bars(free):
+    """dF = l (alpha_P dT_P - alpha_S dT_S)/(delta_S + delta_P), and nothing where all is heated alike."""
+    made, state = free
+    loads = [
+        faying.Load("bars", temperature={"p0": "60 K", "p1": "60 K"}),
+        faying.Load("bolt", temperature={"b": 40.0}),
+        faying.Load("all", temperature={"p0": 50.0, "p1": 50.0, "b": 50.0}),
+        faying.Load("one", temperature={"p0": 30.0}),
+    ]
+    found = faying.load_cases(state, loads, modes=False)
+    per_kelvin = 2 * LENGTH * SIMPLE.expansion / (made.bolt + made.members)
+    change = found.bolt_force[:, 0] - PRELOAD
+    assert change == pytest.approx(per_kelvin * np.array([60, -40, 0, 15]), rel=1e-6, abs=1e-6 * PRELOAD)
+    assert found.normal_force[:, 0] - PRELOAD == pytest.approx(change, rel=1e-6, abs=1e-6 * PRELOAD)
+    assert found.working_load[:, 0] == pytest.approx(0, abs=1e-6 * PRELOAD)
+
+
+def test_acceleration_pulls_by_the_mass_beyond_the_joint(held):
+    """The joint loses, and the bolt gains, what the free bar and the free end of the bolt weigh under 1000 m/s2."""
+    _, state = held
+    found = faying.load_cases(state, [faying.Load("a", acceleration=(-1000.0, "0 m/s^2", 0))], modes=False)
+    end = state.structure.fitted_bolts[0].mass @ np.tile([1.0, 0, 0], len(state.structure.mesh.points))
+    right = state.structure.mesh.points[:, 0] > LENGTH * 1.5  # the seat of the nut
+    beyond = SIMPLE.density * AREA * LENGTH + end.reshape(-1, 3)[right, 0].sum()
+    assert found.working_load[0, 0] == pytest.approx(1000.0 * beyond, rel=1e-8)
+    weight = 1000.0 * (state.structure.mass / 2 + end.reshape(-1, 3)[right, 0].sum())
+    assert found.bolt_force[0, 0] - found.normal_force[0, 0] == pytest.approx(weight, rel=1e-8)
+
+
+def test_a_point_mass_pulls_as_well():
+    made = bars(held=True, diameter=None)
+    heavy = faying.Structure(
+        made.structure.mesh,
+        made.structure.materials,
+        made.structure.joints,
+        made.structure.bolts,
+        supports=made.structure.supports,
+        masses=[PointMass(mass=0.5, face="p1.right")],
+    )
+    loads = [faying.Load("a", acceleration=(-100.0, 0, 0))]
+    found = faying.load_cases(heavy.solve(PRELOAD, modes=2), loads, modes=False)
+    bar = SIMPLE.density * AREA * LENGTH
+    assert PRELOAD - found.normal_force[0, 0] == pytest.approx(100 * (bar + 0.5), rel=1e-8)
+
+
+def test_pressure_is_force_over_area_and_loads_combine(held):
+    _, state = held
+    loads = [
+        faying.Load("pull", pressures=[faying.Pressure("p1.right", "-2 MPa")]),
+        faying.Load("force", forces=[faying.Force("p1.right", force=("800 N", 0, 0))]),
+        faying.Load("both", combine={"pull": 0.5, "force": -2}, acceleration=(0, 0, 1e-9)),
+    ]
+    found = faying.load_cases(state, loads, modes=False)
+    change = found.bolt_force[:, 0] - PRELOAD
+    assert change[0] == pytest.approx(change[1], rel=1e-8)
+    assert change[2] == pytest.approx(-1.5 * change[1], rel=1e-7)
+
+
+def test_displacement_of_a_support(held):
+    """Both ends held, one moved: joint and bolt change by the way over their compliances."""
+    made, tight = held
+    # a bolt between two ends that are held presses nothing: the bars are tightened first, then held
+    both = faying.Structure(
+        made.structure.mesh,
+        made.structure.materials,
+        made.structure.joints,
+        made.structure.bolts,
+        supports=[Support(face="p0.left"), Support(face="p1.right")],
+    )
+    base = Preloaded(
+        title="bars",
+        structure=both,
+        preload=tight.preload,
+        springs=tight.springs,
+        factor=near_factor(both, tight.springs, None),
+        rest=None,
+        modes=lambda _: pytest.fail("no modes are asked for"),
+    )
+    move = 1e-7
+    loads = (
+        faying.Load("m", displacements=[faying.Displacement("p1.right", (move, "0 mm", 0))]),
+        faying.Load("back", combine={"m": -2}),
+    )
+    found = answers(base, loads, Progress(0))
+    ways = np.array([1, -2]) * move
+    assert found.bolt_force[:, 0] == pytest.approx(PRELOAD + ways / made.bolt, rel=1e-8)
+    assert found.normal_force[:, 0] == pytest.approx(PRELOAD - ways / made.members, rel=1e-8)
+    assert found.displacement == pytest.approx(np.abs(ways), rel=1e-8)
+
+
+def test_a_load_that_nothing_holds_is_refused(free):
+    _, state = free
+    with pytest.raises(faying.InputError, match=r"load 'a' does not balance: forces of \(100, 0, 0\) N"):
+        faying.load_cases(state, [faying.Load("a", forces=[faying.Force("p1.right", force=(100, 0, 0))])])
+    with pytest.raises(faying.InputError, match="no rigid support holds"):
+        faying.load_cases(state, [faying.Load("m", displacements=[faying.Displacement("p1.right", (1e-6, 0, 0))])])
+    with pytest.raises(faying.InputError, match="no part and no bolt; there are 'p0', 'p1', 'b'"):
+        faying.load_cases(state, [faying.Load("m", temperature={"nut": 3.0})])

@@ -1,0 +1,177 @@
+"""[[load]] in a study: its keys, the command, the record, and what is refused."""
+
+import json
+
+import numpy as np
+import pytest
+
+import faying
+from faying.case.case import build
+from faying.cli.main import main
+from faying.fe.faces import face_centre
+from faying.output.load_cases import terminal
+from faying.study import Study
+from tests.helpers.studies import write
+
+LOADS = """
+[[support]]
+face = { part = "lower", normal = "-z", all = true }
+
+[[load]]
+name = "10 g"
+acceleration = ["0 m/s^2", "0 m/s^2", "98.1 m/s^2"]
+
+[[load]]
+name = "pull"
+[[load.force]]
+face = "upper.seat"
+force = ["0 N", "0 N", "1.5 kN"]
+
+[[load]]
+name = "push"
+after = "pull"
+combine = { "10 g" = 1.5 }
+temperature = { bolt = "20 K", upper = "5 K" }
+increments = 3
+[[load.force]]
+face = { part = "upper", normal = "+x" }
+force = ["300 N", "0 N", "0 N"]
+moment = ["0 N*m", "3 N*m", "0 N*m"]
+point = ["40 mm", "0 mm", "12 mm"]
+[[load.pressure]]
+face = "upper.seat"
+pressure = "0.1 MPa"
+"""
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """Two blocks under a bolt with a shank, coarsely meshed, with three load cases."""
+    file = tmp_path_factory.mktemp("loads") / "study.toml"
+    write(file)
+    text = file.read_text().replace('size = "8 mm" ', 'size = "15 mm" ').replace('"upper.joint" = "4 mm"\n', "", 1)
+    text = text.replace("[geometry.face_size]", "# no finer faces", 1).replace("count = 6", "count = 3")
+    text = text.replace('springs = "per-area"', "friction = 0.25")
+    for key in ("diameter", "material", "grade"):
+        text = text.replace(f"# {key} = ", f"{key} = ", 1) if key != "material" else text
+    text = text.replace('# material = "45 steel"\n# grade', 'material = "45 steel"\ngrade').replace(
+        '# material = "45 steel"', 'material = "45 steel"'
+    )
+    file.write_text(text + LOADS)
+    return file
+
+
+@pytest.fixture(scope="module")
+def found(study):
+    return faying.load_cases(study)
+
+
+def test_the_keys_say_what_acts(study):
+    plan = Study.read(study)
+    assert [load.name for load in plan.load_cases] == ["10 g", "pull", "push"]
+    push = plan.load_cases[2]
+    assert push.after == "pull"
+    assert push.combine == {"10 g": 1.5}
+    assert push.temperature == {"bolt": 20.0, "upper": 5.0}
+    assert push.increments == 3
+    [force] = push.forces
+    assert (force.force, force.moment, force.point) == ((300, 0, 0), (0, 3, 0), (0.04, 0, 0.012))
+    assert push.pressures[0].pressure == 1e5
+    assert plan.load_cases[0].acceleration == (0, 0, 98.1)
+
+
+def test_the_joint_carries_what_acts_on_the_upper_block(found, study):
+    """Equilibrium across the joint: its shear and its loss of normal force, with the bolt's, are the outer force."""
+    mesh = build(Study.read(study)).mesh
+    area = face_centre(mesh.points, mesh.face("upper.seat"))[2]
+    change = found.bolt_force[:, 0] - found.bolt_preload[0]
+    apart = change - (found.normal_force[:, 0] - found.normal_preload[0])
+    assert apart == pytest.approx(found.working_load[:, 0], rel=1e-9)
+    assert apart[1] == pytest.approx(1500.0, rel=1e-6)
+    weight = -apart[0]  # the inertia under 10 g upwards presses the block on the lower one
+    assert 0.9 < weight / (7800 * 0.08 * 0.03 * 0.015 * 98.1) < 1.2  # with half of the bolt
+    assert apart[2] == pytest.approx(-1.5 * weight - 1e5 * area, rel=1e-6)
+    # across: 300 N, less what the shank takes
+    assert abs(found.shear_force[2, 0] - 300) < 1.01 * found.bolt_shear[2, 0] + 1e-3
+    assert found.slip_margin[2, 0] == pytest.approx(0.25 * found.normal_force[2, 0] / found.shear_force[2, 0])
+
+
+def test_modes_follow_the_pressure(found):
+    """A load that parts the joint lowers the frequencies, one that presses it raises them."""
+    assert found.frequency_change is not None
+    press, pull, _ = found.frequency_change[:, :2]
+    assert np.all(pull < 0)
+    assert np.all(press > 0)
+    assert np.all(found.likeness[:2, :2] > 0.9)
+
+
+def test_the_record_comes_back_from_its_file(found, tmp_path):
+    path = found.save(tmp_path / "loads.nc")
+    assert faying.load(path) == found
+    assert faying.LoadCases.load(path) == found
+    table = found.to_dataframe("joints")
+    assert table.loc[("pull", "joint"), "normal_force"] == found.normal_force[1, 0]
+    tree = found.to_xarray()
+    assert tree["bolts"]["bolt_force"].sel(case="push", bolt="bolt") == found.bolt_force[2, 0]
+
+
+def test_the_table_fits_a_terminal(found):
+    lines = terminal(found).splitlines()
+    tables = [line for line in lines if "  " in line.strip()]
+    assert tables
+    assert max(map(len, lines)) <= 80
+    assert any(line.startswith("load 'push' after 'pull'") for line in lines)
+    assert len(repr(found).splitlines()) <= 12
+
+
+def test_the_command(study, tmp_path, capsys):
+    out = tmp_path / "cases.nc"
+    with pytest.raises(SystemExit) as end:
+        main(["loads", str(study), "--preload", "2 kN", "--no-modes", "--json", "--out", str(out)])
+    assert end.value.code == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["cases"] == ["10 g", "pull", "push"]
+    assert said["after"] == [None, None, "pull"]
+    assert said["preload"] == {"unit": "N", "values": 2000.0}
+    assert said["files"] == [str(out)]
+    kept = faying.LoadCases.load(out)
+    assert said["bolt_force"]["values"] == kept.bolt_force.tolist()
+    assert kept.frequency is None
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (('after = "pull"', 'after = "push"'), "name each other in a circle"),
+        (('after = "pull"', 'after = "pul"'), "names the load 'pul', which is not there; there are '10 g', 'pull'"),
+        (('name = "push"', 'name = "pull"'), "two loads are called 'pull'"),
+        (('temperature = { bolt = "20 K"', 'temperature = { bolt = "20"'), 'temperature.bolt = "20" has no unit'),
+        (('force = ["300 N", "0 N", "0 N"]', 'force = ["300 N", "0 N"]'), "should be three components, for example"),
+        (("increments = 3", "increment = 3"), "increment is not a key that a study has; did you mean increments"),
+        (('face = "upper.seat"\nforce', "force"), "a force needs a face, or a point"),
+        (
+            ('acceleration = ["0 m/s^2", "0 m/s^2", "98.1 m/s^2"]', ""),
+            "nothing acts; give forces, pressures, an acceleration",
+        ),
+    ],
+)
+def test_faults_are_named(study, tmp_path, change, said):
+    text = study.read_text()
+    assert change[0] in text
+    other = tmp_path / "study.toml"
+    (tmp_path / "two-blocks.step").write_bytes((study.parent / "two-blocks.step").read_bytes())
+    other.write_text(text.replace(*change, 1))
+    with pytest.raises(faying.InputError) as fault:
+        Study.read(other)
+    assert said in str(fault.value)
+
+
+def test_names_that_the_geometry_lacks_are_named(study, tmp_path):
+    text = study.read_text().replace('face = "upper.seat"\npressure', 'face = "upper.sea"\npressure')
+    text = text.replace('bolt = "20 K"', 'nut = "20 K"')
+    (tmp_path / "two-blocks.step").write_bytes((study.parent / "two-blocks.step").read_bytes())
+    (tmp_path / "study.toml").write_text(text)
+    with pytest.raises(faying.InputError) as fault:
+        faying.load_cases(tmp_path / "study.toml")
+    assert "load 'push' names the face 'upper.sea', which does not exist" in str(fault.value).replace('"', "'")
+    assert "temperature of 'nut', which is no part and no bolt" in str(fault.value)
