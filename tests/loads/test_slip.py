@@ -25,7 +25,7 @@ BED = faying.Material(name="bed", E=1e15, nu=0.0, density=7800.0)
 @pytest.fixture(scope="module")
 def strip():
     """A strip on a stiff bed that is held, pressed evenly over its length."""
-    mesh = stacked(counts=(60, 1, 1), size=(LONG, WIDE, THICK))
+    mesh = stacked(counts=(40, 1, 1), size=(LONG, WIDE, THICK))
     joint = FittedJoint(
         name="bed",
         faces=("low.top", "high.bottom"),
@@ -66,7 +66,7 @@ def test_a_strip_creeps_as_far_as_friction_says(strip):
     found = faying.load_cases(strip, [pull(f"{k}", f) for k, f in enumerate(forces)], modes=False)
     wanted, slid = np.array([end_motion(f) for f in forces]).T
     assert found.displacement == pytest.approx(wanted, rel=0.02)
-    assert found.sliding[:, 0] * LONG == pytest.approx(slid, abs=0.001)  # the length of an element
+    assert found.sliding[:, 0] * LONG == pytest.approx(slid, abs=0.0015)  # the length of an element
     assert found.shear_force[:, 0] == pytest.approx(forces, rel=1e-6)
     assert found.slip_margin[:, 0] == pytest.approx(SHEAR * LONG / forces, rel=1e-5)
 
@@ -81,7 +81,7 @@ def test_up_down_and_up_again_dissipates_what_the_sliders_say(strip):
 
     Closed form: Goodman 1959 for a strip on a rigid bed, q being the friction per length.
     """
-    steps, force = 6, 0.7 * SHEAR * LONG
+    steps, force = 5, 0.7 * SHEAR * LONG
     sizes = np.concatenate([np.linspace(0, 1, steps + 1), np.linspace(1, -1, 2 * steps + 1)[1:]])
     sizes = np.concatenate([sizes, np.linspace(-1, 1, 2 * steps + 1)[1:]])
     statics = statics_of(of_state(strip, modes=False))

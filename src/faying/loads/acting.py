@@ -27,13 +27,13 @@ class Acting:
         force: Nodal forces [N] (unknowns,), those of heated parts and bolts included.
         moved: Displacements [m] (unknowns,) of what supports hold; 0 elsewhere.
         longer: Free lengthening [m] (bolts,) of bolts that are beams, by heat.
-        heat: What heated parts give of `force` [N] (unknowns,): stresses in them are those of strains less these.
+        strains: Part -> free expansion [-] by heat; stresses are those of the strain less this.
     """
 
     force: Array
     moved: Array
     longer: Array
-    heat: Array
+    strains: Mapping[str, float]
 
     def __add__(self, other: "Acting") -> "Acting":
         """Return both together."""
@@ -41,7 +41,10 @@ class Acting:
             force=self.force + other.force,
             moved=self.moved + other.moved,
             longer=self.longer + other.longer,
-            heat=self.heat + other.heat,
+            strains={
+                part: self.strains.get(part, 0.0) + other.strains.get(part, 0.0)
+                for part in dict.fromkeys((*self.strains, *other.strains))
+            },
         )
 
     def times(self, factor: float) -> "Acting":
@@ -50,14 +53,14 @@ class Acting:
             force=factor * self.force,
             moved=factor * self.moved,
             longer=factor * self.longer,
-            heat=factor * self.heat,
+            strains={part: factor * strain for part, strain in self.strains.items()},
         )
 
 
 def nothing(structure: Structure) -> Acting:
     """Return what a case without any load does."""
     none = np.zeros(structure.mesh.unknowns)
-    return Acting(force=none, moved=none, longer=np.zeros(len(structure.bolts)), heat=none)
+    return Acting(force=none, moved=none, longer=np.zeros(len(structure.bolts)), strains={})
 
 
 def acting(structure: Structure, loads: Sequence[Load]) -> dict[str, Acting]:
@@ -88,11 +91,11 @@ def _own(structure: Structure, load: Load) -> Acting:
         force += pressure.pressure * pressure_forces(mesh, pressure.face)
     if any(load.acceleration):
         force -= structure.inertia(np.tile(np.array(load.acceleration), len(mesh.points)))
-    heat, shanks, longer = _heat(structure, load.temperature, what)
+    heat, longer, strains = _heat(structure, load.temperature, what)
     moved = np.zeros((len(mesh.points), 3))
     for displacement in load.displacements:
         _move(structure, displacement, moved, what)
-    return Acting(force=force + heat + shanks, moved=moved.ravel(), longer=longer, heat=heat)
+    return Acting(force=force + heat, moved=moved.ravel(), longer=longer, strains=strains)
 
 
 def _force(structure: Structure, one: Force, what: str) -> Array:
@@ -108,10 +111,10 @@ def _force(structure: Structure, one: Force, what: str) -> Array:
     return np.asarray(motion.T @ np.array([*one.force, *one.moment]))
 
 
-def _heat(structure: Structure, changes: Mapping[str, float], what: str) -> tuple[Array, Array, Array]:
-    """Nodal forces [N] of heated parts and of heated bolts, and free lengthening [m] of the bolts."""
+def _heat(structure: Structure, changes: Mapping[str, float], what: str) -> tuple[Array, Array, dict[str, float]]:
+    """Nodal forces [N] of heated parts and bolts, free lengthening [m] of the bolts and strain [-] of the parts."""
     mesh, bolts = structure.mesh, structure.fitted_bolts
-    force, shanks, longer = np.zeros(mesh.unknowns), np.zeros(mesh.unknowns), np.zeros(len(bolts))
+    force, longer, strains = np.zeros(mesh.unknowns), np.zeros(len(bolts)), {}
     names = [bolt.bolt.name for bolt in bolts]
     for name, change in changes.items():
         beam = name in names and isinstance(bolts[names.index(name)], FittedBolt)
@@ -121,8 +124,8 @@ def _heat(structure: Structure, changes: Mapping[str, float], what: str) -> tupl
             )
         if name in mesh.parts:
             material = structure.materials[name]
-            strain = _expansion(material, f"{what}: part {name!r}") * change
-            force += thermal_forces(mesh, name, material, strain)
+            strains[name] = _expansion(material, f"{what}: part {name!r}") * change
+            force += thermal_forces(mesh, name, material, strains[name])
         elif beam:
             fitted = bolts[names.index(name)]
             assert isinstance(fitted, FittedBolt)
@@ -134,11 +137,11 @@ def _heat(structure: Structure, changes: Mapping[str, float], what: str) -> tupl
             washers = sum(washer.thickness for washer in fitted.bolt.washers)
             strain = _expansion(fitted.bolt.material, f"{what}: bolt {name!r}") * change
             longer[names.index(name)] = strain * (fitted.length + washers)
-            shanks -= fitted.axial_stiffness * longer[names.index(name)] * fitted.load
+            force -= fitted.axial_stiffness * longer[names.index(name)] * fitted.load
         else:
             known = ", ".join(map(repr, (*mesh.parts, *names)))
             raise InputError(f"{what}: temperature of {name!r}, which is no part and no bolt; there are {known}")
-    return force, shanks, longer
+    return force, longer, strains
 
 
 def _expansion(material: object, what: str) -> float:

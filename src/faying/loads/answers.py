@@ -8,11 +8,13 @@ import numpy as np
 
 from faying.bolt.bolt import Bolt, FittedBolt
 from faying.bolt.solid_bolt import FittedSolidBolt
+from faying.fe.nodal_forces import thermal_forces
 from faying.joint.clamping import stack_of
 from faying.joint.strength import seat_area
 from faying.joint.structure import Structure
 from faying.loads.contact import LoadedContact
 from faying.loads.statics import LoadedState
+from faying.numerics.product import product
 from faying.typing import Array, Index
 
 NAN = float("nan")
@@ -197,7 +199,7 @@ def bolt_changes(structure: Structure, state: LoadedState, motion: Array) -> Arr
         if isinstance(fitted, FittedBolt):
             out[k] -= fitted.axial_stiffness * state.acting.longer[k]
         else:
-            out[k] -= fitted.drawn @ state.acting.heat
+            out[k] -= fitted.drawn @ _own_heat(structure, fitted, state)
     return np.asarray(out)
 
 
@@ -209,15 +211,33 @@ def _bent(structure: Structure, index: int, state: LoadedState, motion: Array) -
         if ends is None:
             return NAN, NAN
         return float(max(np.linalg.norm(ends[4:6]), np.linalg.norm(ends[10:12]))), float(np.linalg.norm(ends[1:3]))
+    moves = _section_moves(structure, fitted)
+    layer = np.repeat(np.any(fitted.pull.reshape(-1, 3) != 0, axis=1), 3)
+    # in the plane across the shank: nodes that the bolt shares with another part bear forces of that part, too
+    resisted = np.where(layer[:, None], product(structure.matrices[0], moves), 0.0)
+    work = resisted.T @ motion - moves.T @ _own_heat(structure, fitted, state)
+    return float(np.linalg.norm(work[2:])), float(np.linalg.norm(work[:2]))
+
+
+def _section_moves(structure: Structure, fitted: FittedSolidBolt) -> Array:
+    """Motions (unknowns, 4) of the far half of a meshed bolt: along two axes across it, and about them."""
     axis = fitted.seats[1] - fitted.seats[0]
     axis = axis / np.linalg.norm(axis)
-    far = np.any(fitted.drawn.reshape(-1, 3) != 0, axis=1)
-    force = structure.matrices[0] @ motion - state.acting.heat
-    force = np.where(far[:, None], force.reshape(-1, 3), 0.0)
-    arm = structure.mesh.points - fitted.bolt.place(structure.mesh)
-    total, moment = force.sum(axis=0), np.cross(arm, force).sum(axis=0)
-    across, bending = (one - (one @ axis) * axis for one in (total, moment))
-    return float(np.linalg.norm(bending)), float(np.linalg.norm(across))
+    first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    first /= np.linalg.norm(first)
+    across = (first, np.cross(axis, first))
+    points = structure.mesh.points
+    far = np.any(fitted.drawn.reshape(-1, 3) != 0, axis=1)[:, None]
+    arm = points - fitted.bolt.place(structure.mesh)
+    moves = [np.where(far, one, 0.0) for one in across] + [np.where(far, np.cross(one, arm), 0.0) for one in across]
+    return np.stack([one.ravel() for one in moves], axis=1)
+
+
+def _own_heat(structure: Structure, fitted: FittedSolidBolt, state: LoadedState) -> Array:
+    """Nodal forces [N] (unknowns,) of the heat of a meshed bolt."""
+    part = fitted.bolt.part
+    strain = state.acting.strains.get(part, 0.0)
+    return thermal_forces(structure.mesh, part, structure.materials[part], strain)
 
 
 def _carried(
