@@ -258,3 +258,49 @@ def test_the_command_writes_text_page_and_json(made, tmp_path, capsys):
     (sheet,) = out["bolts"]
     assert np.isclose(next(r for r in sheet["rows"] if r["quantity"]["symbol"] == "F_PA")["inputs"][1]["values"], 2e3)
     assert "M8x1.25 8.8" in (tmp_path / "sheet.html").read_text()
+
+
+PULL = {
+    "name": "pull",
+    "force": [{"face": "upper.seat", "force": ["150 N", "0 N", "900 N"]}],
+    "temperature": {"bolt": "15 K"},
+}
+OTHER = {"name": "press", "force": [{"face": "upper.seat", "force": ["0 N", "0 N", "-400 N"]}]}
+HELD = {"face": {"part": "lower", "normal": "-z", "all": True}}
+
+
+def test_loads_of_the_sheet_are_those_of_a_case(made):
+    """Working load, load across, share and loss by heat are those that the case has; all rows follow from them."""
+    cases = {"support": [HELD], "load": [PULL, OTHER]}
+    study = made(bolt_sheet={"load": ["pull", "press"]}, **cases)
+    (sheet,) = bolt_sheet(study).sheets
+    bare = {key: value for key, value in PULL.items() if key != "temperature"}
+    warm = {"name": "warm", "temperature": PULL["temperature"]}
+    found = faying.load_cases(made(support=[HELD], load=[PULL, OTHER, bare | {"name": "cold"}, warm]), modes=False)
+    change = dict(zip(found.cases, found.bolt_force[:, 0] - found.bolt_preload[0], strict=True))
+    values = {one.symbol: one.value for row in sheet.rows for one in row.inputs}
+    assert (values["F_Au"], values["F_Ao"]) == pytest.approx((-400, 900), rel=1e-6)
+    assert values["F_Q"] == pytest.approx(found.transverse_load[0, 0], rel=1e-6)
+    assert values["F_th"] == pytest.approx(-change["warm"], rel=1e-6)
+    assert values["F_th"] > 100
+    # heat and force act on a joint that hardens: the share of the force depends on both by a little
+    assert sheet.row("Phi").result.value * 900 == pytest.approx(change["pull"] - change["warm"], rel=1e-6)
+    assert sheet.row("Phi").result.value * 900 == pytest.approx(change["cold"], rel=0.05)
+    for row in sheet.rows:
+        given = {one.symbol: one.value for one in row.inputs}
+        if None not in given.values():
+            assert row.result.value == pytest.approx(HAND[row.result.symbol](given), rel=1e-9)
+    assert "of load 'pull' and 'press'" in sheet.row("F_Smax").inputs[-1].name
+
+
+@pytest.mark.parametrize(
+    ("table", "text"),
+    [
+        ({"load": "lift"}, r'bolt_sheet\[1\].load = "lift" is no \[\[load\]\]; there are "pull"'),
+        ({"load": "pull", "axial": "1 kN"}, "has both load and axial, which the load gives"),
+        ({"load": 3}, "should be the name of a load, or of several"),
+    ],
+)
+def test_faults_of_a_load_in_the_table(made, table, text):
+    with pytest.raises(faying.InputError, match=text):
+        made(bolt_sheet=table, support=[HELD], load=[PULL])

@@ -50,6 +50,7 @@ OWN: dict[str, dict[str, Any]] = {
     "modes.levels": listed({"$ref": "#/$defs/quantity"}, 0),
     "bolt.torque": ONE_OR_MORE,
     "bolt.seat": listed({"$ref": "#/$defs/quantity"}, 2, 2),
+    "bolt_sheet.load": {"anyOf": [TEXT, listed(TEXT, 1)]},
     "bolt_sheet.axial": {
         "anyOf": [{"$ref": "#/$defs/quantity"}, listed({"$ref": "#/$defs/quantity"}, 2, 2)],
     },

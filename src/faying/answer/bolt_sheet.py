@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from faying.answer.bolt_loads import BoltLoad, bolt_loads
 from faying.answer.bolt_numbers import bolt_numbers
 from faying.answer.tracks import shapes_of
 from faying.bolt.bolt import Bolt, FittedBolt
@@ -25,7 +26,7 @@ from faying.joint.strength import seat_limit
 from faying.misuse import checked_call
 from faying.progress import Report
 from faying.result.bolts import BoltNumbers
-from faying.study.keys.bolt_sheet import BoltSheetChoice
+from faying.study.keys.bolt_sheet import BoltSheetChoice, choice_of
 from faying.study.study import Study
 from faying.units import positive, show
 
@@ -104,7 +105,7 @@ def bolt_sheet(
 
     Raises:
         InputError: The study has no such preload, or no bolt.
-        NotConverged: The preload has no solution, or what a bolt clamps has no stiffness.
+        NotConverged: The preload or a load case has no solution, or what a bolt clamps has no stiffness.
 
     Source:
         VDI 2230 Part 1:2015, section 4, for concentric clamping and loading.
@@ -123,26 +124,35 @@ def bolt_sheet(
         alternatives=(),
         modes=replace(plan.modes, levels=(), intervals=False),
     )
-    progress = Progress(4, report)
+    progress = Progress(5, report)
     case = Case.of(bare, progress)
-    state = solve(case, number, engine_of("reanalysis", case), progress, ranges=False)
+    engine = engine_of("reanalysis", case)
+    state = solve(case, number, engine, progress, ranges=False)
     numbers = bolt_numbers(case, [state], shapes_of(case, [state]))
     if numbers is None:
         raise InputError("the study has no bolt, so that there is no sheet; add [[bolt]]")
     forces = np.array(state.preload.bolt_forces)
-    sheets = [_sheet(case, index, numbers, float(forces[index])) for index in range(len(forces))]
+    found = bolt_loads(case, state, engine, numbers, progress)
+    sheets = [_sheet(case, index, numbers, float(forces[index]), found.get(index)) for index in range(len(forces))]
     return BoltSheets(title=plan.title, load=state.load, sheets=tuple(sheets))
 
 
 def choice_for(study: Study, bolt: str) -> BoltSheetChoice:
     """Return what the study says for the sheet of a bolt: its own table, that of all others, or nothing."""
-    named = {one.bolt: one for one in study.bolt_sheets}
-    return named.get(bolt) or named.get(None) or BoltSheetChoice()
+    return choice_of(study.bolt_sheets, bolt)
 
 
-def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float) -> BoltSheet:
+def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: BoltLoad | None) -> BoltSheet:
     fitted = case.structure.fitted_bolts[index]
     bolt, choice = fitted.bolt, choice_for(case.study, fitted.bolt.name)
+    if found is not None:
+        choice = replace(
+            choice,
+            axial=found.axial,
+            transverse=found.transverse,
+            introduction=found.introduction,
+            thermal_loss=found.thermal_loss,
+        )
     known = {
         one.symbol: one
         for one in (
@@ -245,11 +255,12 @@ def _loads(case: Case, index: int, choice: BoltSheetChoice) -> list[Quantity]:
     across = choice.transverse if choice.transverse is not None or not stated else 0.0
     asked = choice.clamp if choice.clamp is not None or not stated else 0.0
     thermal = choice.thermal_loss
+    under = f", of load {' and '.join(map(repr, choice.loads))}" if choice.loads else ""
     return [
         _quantity("mu_T", "friction of the joint", "", friction, "joint.friction or bolt_sheet.slip_friction"),
         _quantity(
             "F_Q",
-            "transverse load" + none_of_it * (choice.transverse is None),
+            "transverse load" + under + none_of_it * (choice.transverse is None),
             "N",
             across,
             "bolt_sheet.transverse",
@@ -257,10 +268,10 @@ def _loads(case: Case, index: int, choice: BoltSheetChoice) -> list[Quantity]:
         _quantity(
             "F_KP", "clamp load that is asked for" + none_of_it * (choice.clamp is None), "N", asked, "bolt_sheet.clamp"
         ),
-        _quantity("F_Au", "least working load", "N", low, "bolt_sheet.axial"),
-        _quantity("F_Ao", "greatest working load", "N", high, "bolt_sheet.axial"),
-        _quantity("n", "load introduction factor", "", choice.introduction, ""),
-        _quantity("F_th", "loss by temperature", "N", thermal, "bolt_sheet.thermal_loss"),
+        _quantity("F_Au", "least working load" + under, "N", low, "bolt_sheet.axial"),
+        _quantity("F_Ao", "greatest working load" + under, "N", high, "bolt_sheet.axial"),
+        _quantity("n", "load introduction factor" + under, "", choice.introduction, ""),
+        _quantity("F_th", "loss by temperature" + under, "N", thermal, "bolt_sheet.thermal_loss"),
         _quantity("F_thd", "loss by temperature" + " (not given: none)" * (thermal is None), "N", thermal or 0.0, ""),
     ]
 

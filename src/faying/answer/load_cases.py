@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from faying.answer.bolt_sheet import choice_for
 from faying.case.case import Case, Progress
 from faying.case.engine import Engine, engine_of
 from faying.case.provenance import provenance
@@ -35,6 +34,7 @@ from faying.numerics.single import factorise_roughly
 from faying.progress import Report
 from faying.result.load_cases import LoadCases
 from faying.result.provenance import Provenance
+from faying.study.keys.bolt_sheet import choice_of
 from faying.study.study import Study
 from faying.typing import Array
 from faying.units import positive, show
@@ -158,7 +158,7 @@ def preloaded_case(
     if modes:
         vibration = engine.vibrate(springs)
         rest, factor = (vibration.damped.frequencies, vibration.damped.shapes), vibration.modes.factorisation
-    friction = [choice_for(study, bolt.name).head_friction for bolt in study.bolts]
+    friction = [choice_of(study.bolt_sheets, bolt.name).head_friction for bolt in study.bolts]
     return Preloaded(
         title=study.title,
         structure=structure,

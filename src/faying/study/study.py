@@ -138,8 +138,9 @@ class Study:
             faults, joints, (law, surface), alternatives, () if backbone is None else backbone.laws
         )
         bolts = _bolts(top, materials)
-        sheets = read_bolt_sheets(top.tables("bolt_sheet"), [bolt.name for bolt in bolts])
         cases = read_loads(top.tables("load"))
+        named = [bolt.name for bolt in bolts], [load.name for load in cases]
+        sheets = read_bolt_sheets(top.tables("bolt_sheet"), *named)
         supports = [read_support(t) for t in top.tables("support")]
         masses = [read_mass(t) for t in top.tables("mass")]
         modes = read_modes(top.table("modes"))

@@ -20,6 +20,8 @@ class BoltSheetChoice:
         way: Way of tightening, a name of `joint.tightening.TIGHTENING`.
         tightening_factor: alpha_A, greatest over least preload.
         thread_friction, head_friction, slip_friction: Coefficients [-], in the thread, under the head, in the joint.
+        loads: Load cases that give working load, transverse load, load factor and loss by temperature in place of
+            typed numbers; from nothing to one, or between the least and the greatest of several.
         axial: Least and greatest working load [N] that pulls the parts apart.
         introduction: Load introduction factor n [-]; 1 for a load at the seats.
         transverse: Load [N] across the bolt that friction carries.
@@ -36,6 +38,7 @@ class BoltSheetChoice:
     thread_friction: float | None = None
     head_friction: float | None = None
     slip_friction: float | None = None
+    loads: tuple[str, ...] = ()
     axial: tuple[float, float] | None = None
     introduction: float = 1.0
     transverse: float | None = None
@@ -46,7 +49,7 @@ class BoltSheetChoice:
     rolled: Literal["before", "after"] = "before"
 
     @classmethod
-    def of(cls, table: Table, bolts: Sequence[str]) -> "BoltSheetChoice":
+    def of(cls, table: Table, bolts: Sequence[str], cases: Sequence[str]) -> "BoltSheetChoice":
         """Read one [[bolt_sheet]]."""
         name = table.text("bolt", None)
         if name is not None and name not in bolts:
@@ -55,8 +58,17 @@ class BoltSheetChoice:
         way = table.text("tightening", None)
         if way is not None:
             table.made(lambda: tightening(way, f"{table.where}.tightening"))
+        loads = table.take("load", _names, ())
+        lacking = [one for one in loads if one not in cases]
+        if lacking:
+            known = ", ".join(f'"{one}"' for one in cases) or "none"
+            table.faults.add(f'{table.where}.load = "{lacking[0]}" is no [[load]]; there are {known}')
+        for key in ("axial", "transverse", "introduction", "thermal_loss"):
+            if loads and key in table.data:
+                table.faults.add(f"{table.where} has both load and {key}, which the load gives; leave one out")
         choice = cls(
             bolt=name,
+            loads=loads,
             way=way,
             tightening_factor=table.take("tightening_factor", _between(1.0, MOST_FACTOR), None),
             thread_friction=table.take("thread_friction", _between(0.02, 1.0), None),
@@ -77,15 +89,33 @@ class BoltSheetChoice:
         return choice
 
 
-def read_bolt_sheets(tables: Sequence[Table], bolts: Sequence[str]) -> tuple[BoltSheetChoice, ...]:
-    """Read all [[bolt_sheet]]; a fault is noted where two name the same bolt, or two name none."""
-    found = tuple(BoltSheetChoice.of(table, bolts) for table in tables)
+def choice_of(choices: Sequence[BoltSheetChoice], bolt: str) -> BoltSheetChoice:
+    """Return what is said for the sheet of a bolt: its own table, that of all others, or nothing."""
+    named = {one.bolt: one for one in choices}
+    return named.get(bolt) or named.get(None) or BoltSheetChoice()
+
+
+def read_bolt_sheets(
+    tables: Sequence[Table], bolts: Sequence[str], cases: Sequence[str]
+) -> tuple[BoltSheetChoice, ...]:
+    """Read all [[bolt_sheet]]; a fault is noted where two name the same bolt, or two name none.
+
+    bolts, cases: names of the bolts and load cases of the study.
+    """
+    found = tuple(BoltSheetChoice.of(table, bolts, cases) for table in tables)
     names = [one.bolt for one in found]
     for table, choice in zip(tables, found, strict=True):
         if names.count(choice.bolt) > 1:
             who = "no bolt" if choice.bolt is None else f'the bolt "{choice.bolt}"'
             table.faults.add(f"{table.where}: two tables name {who}; leave one out")
     return found
+
+
+def _names(value: Any, name: str) -> tuple[str, ...]:
+    items = [value] if isinstance(value, str) else value
+    if not isinstance(items, list) or not items or not all(isinstance(one, str) for one in items):
+        raise InputError(f'{name} = {value!r} should be the name of a load, or of several: ["up", "down"]')
+    return tuple(items)
 
 
 def _between(low: float, high: float) -> Any:
