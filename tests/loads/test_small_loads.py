@@ -79,7 +79,7 @@ def test_the_answer_does_not_depend_on_the_basis_or_on_the_company(tight):
     """One case alone, and after others in the same basis."""
     alone = faying.load_cases(tight, cases(1500.0)[:1], modes=False)
     others = faying.load_cases(tight, [*cases(1500.0)[1:2], *cases(1500.0)[:1]], modes=False)
-    assert alone.bolt_force[0] == pytest.approx(others.bolt_force[1], rel=1e-8)
+    assert alone.bolt_force[0] == pytest.approx(others.bolt_force[1], rel=1e-6)
     assert alone.pressure[0] == pytest.approx(others.pressure[1], abs=1e-4 * alone.pressure[0].max())
     # and it satisfies the equations of the whole structure
     statics = statics_of(of_state(tight, modes=False))

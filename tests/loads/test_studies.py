@@ -90,7 +90,7 @@ def test_the_joint_carries_what_acts_on_the_upper_block(found, study):
     assert apart[1] == pytest.approx(1500.0, rel=1e-6)
     weight = -apart[0]  # the inertia under 10 g upwards presses the block on the lower one
     assert 0.9 < weight / (7800 * 0.08 * 0.03 * 0.015 * 98.1) < 1.2  # with half of the bolt
-    assert apart[2] == pytest.approx(-1.5 * weight - 1e5 * area, rel=1e-6)
+    assert apart[2] == pytest.approx(-1.5 * weight - 1e5 * area, rel=1e-5)
     # across: 300 N, less what the shank takes
     assert abs(found.shear_force[2, 0] - 300) < 1.01 * found.bolt_shear[2, 0] + 1e-3
     assert found.slip_margin[2, 0] == pytest.approx(0.25 * found.normal_force[2, 0] / found.shear_force[2, 0])

@@ -21,12 +21,13 @@ from faying.errors import NotConverged
 from faying.joint.equilibrium import admissible
 from faying.loads.acting import Acting
 from faying.loads.contact import ContactState, LoadedContact
-from faying.numerics.product import product
+from faying.numerics.product import combined, product
 from faying.numerics.span import Columns, extension
 from faying.typing import Array, Index
 
-TOLERANCE = 1e-9  # of the load: what may be left over
-ON_THE_WAY = 1e-4  # the same at increments before the last
+STRAIGHT = 1e-9  # of the load: what a linear answer may leave over
+TOLERANCE = 1e-7  # the same of a state with opening and friction
+ON_THE_WAY = 1e-2  # the same at increments before the last, which tell no more than the way
 ROUNDED = 1e-6  # error below which an answer stands where rounding lets it fall no further
 STILL = 5  # rounds in which an error does not halve: it stands
 ROUNDS = 80  # of new vectors
@@ -69,7 +70,8 @@ class _Task:
     moved: tuple[Array, ...]  # relative motion (q, 3) by d
     start: tuple[ContactState, ...]
     x: Array
-    rest: Array | None = None  # forces left over
+    sides: Array  # of offset and before in the basis (m, 2), as far as it was projected on
+    tractions: list[Array] | None = None  # of each joint, less what its springs at the preload give
     error: float = np.inf
 
 
@@ -144,9 +146,10 @@ class LoadStatics:
             z = self._solved(rest)
             left = np.sqrt(np.maximum(np.einsum("ij,ij->j", rest, z), 0.0))
             scale = np.linalg.norm(x, axis=0)
-            if np.all(left <= TOLERANCE * scale):
+            if np.all(left <= STRAIGHT * scale):
                 break
-            if not self._extend(z[:, left > TOLERANCE * scale]):
+            more = left > STRAIGHT * scale
+            if not self._extend(z[:, more], left[more]):
                 if np.all(left <= ROUNDED * scale):
                     break
                 raise NotConverged("loads: the linear answer does not converge; is a part free to move?")
@@ -194,35 +197,42 @@ class LoadStatics:
         moved = tuple(np.asarray(trace.relative @ target.moved).reshape(-1, 3) for trace, _ in self.joints)
         x = np.zeros(self.size)
         x[: len(before.coordinates)] = before.coordinates
-        return _Task(name, target, self._offset(target), self._offset(before.acting), moved, before.contact, x)
+        return _Task(
+            name, target, self._offset(target), self._offset(before.acting), moved, before.contact, x, np.zeros((0, 2))
+        )
+
+    def _project(self, task: _Task) -> None:
+        """Project the loads of a task on vectors that are new."""
+        known = len(task.sides)
+        if known < self.size:
+            new = self._vectors.values[:, known:].T
+            task.sides = np.concatenate([task.sides, np.stack([new @ task.offset, new @ task.before], axis=1)])
 
     def _scale(self, task: _Task) -> float:
         """Root of twice the energy [J^0.5] that the greater of the loads of a task has on K_0."""
-        sides = np.stack([task.offset, task.before], axis=1)
-        return float(np.linalg.norm(self._vectors.values.T @ sides, axis=0).max()) or 1.0
+        return float(np.linalg.norm(task.sides, axis=0).max(initial=0.0)) or 1.0
 
     def _settle(self, tasks: Sequence[_Task], tolerances: Sequence[float]) -> None:
         """Bring all tasks into equilibrium."""
         past: list[float] = []  # the greatest error of each round
         for _ in range(ROUNDS):
-            for task, tolerance in zip(tasks, tolerances, strict=True):
-                if task.error > tolerance:
-                    self._balance(task, tolerance)
-                    self._leave_over(task)
             left = [k for k, task in enumerate(tasks) if task.error > tolerances[k]]
             if not left:
                 return
-            rest = np.stack([task.rest for k in left if (task := tasks[k]).rest is not None], axis=1)
+            for k in left:
+                self._project(tasks[k])
+                self._balance(tasks[k], tolerances[k])
+            rest = self._left_over([tasks[k] for k in left])
             z = self._solved(rest)
-            for column, k in enumerate(left):
-                left_over = float(np.sqrt(max(float(rest[:, column] @ z[:, column]), 0.0)))
-                tasks[k].error = left_over / self._scale(tasks[k]) if self.size else np.inf
+            sizes = np.sqrt(np.maximum(np.einsum("ij,ij->j", rest, z), 0.0))
+            for size, k in zip(sizes, left, strict=True):
+                tasks[k].error = float(size) / self._scale(tasks[k]) if self.size else np.inf
             more = [column for column, k in enumerate(left) if tasks[k].error > tolerances[k]]
             worst = max(tasks, key=lambda task: task.error)
             if not more or (worst.error <= ROUNDED and _stands(past)):
                 return
             past.append(worst.error)
-            if not self._extend(z[:, more]):
+            if not self._extend(z[:, more], sizes[more]):
                 if worst.error <= ROUNDED:
                     return
                 raise self._lost(worst)
@@ -232,8 +242,7 @@ class LoadStatics:
         """Newton's iteration within the basis."""
         x = np.zeros(self.size)
         x[: len(task.x)] = task.x
-        projected = self._vectors.values.T @ task.offset
-        left, tangents = self._left(task, x, projected)
+        left, tangents, tractions = self._left(task, x)
         size = float(np.linalg.norm(left))
         goal = max(0.03 * min(task.error, 1.0), 0.1 * tolerance) * self._scale(task)
         for _ in range(NEWTON_STEPS):
@@ -242,7 +251,7 @@ class LoadStatics:
             step = np.linalg.solve(self._tangent(tangents), left)
             best, length = None, 1.0
             for _ in range(HALVINGS):
-                tried = self._left(task, x + length * step, projected)
+                tried = self._left(task, x + length * step)
                 now = float(np.linalg.norm(tried[0]))
                 if best is None or now < best[0]:
                     best = now, length, tried
@@ -252,14 +261,14 @@ class LoadStatics:
             assert best is not None
             gained = best[0] < 0.999 * size
             x = x + best[1] * step
-            size, (left, tangents) = best[0], best[2]
+            size, (left, tangents, tractions) = best[0], best[2]
             if not gained:
                 break
-        task.x = x
+        task.x, task.tractions = x, tractions
 
-    def _left(self, task: _Task, x: Array, projected: Array) -> tuple[Array, list[Array]]:
-        """Forces left over in the basis (m,), and the change (q, 3, 3) of the tangents against the springs."""
-        left, changes = projected - x, []
+    def _left(self, task: _Task, x: Array) -> tuple[Array, list[Array], list[Array]]:
+        """Forces left over in the basis (m,); how tangents (q, 3, 3) and tractions (q, 3) differ from the springs'."""
+        left, changes, tractions = task.sides[:, 0] - x, [], []
         for k, (_, contact) in enumerate(self.joints):
             by = (self._relative[k] @ x).reshape(-1, 3)
             motion = contact.rest + task.moved[k] + by
@@ -268,11 +277,12 @@ class LoadStatics:
             local[:, 0] -= contact.k_n * by[:, 0]
             local[:, 1:] -= contact.k_t[:, None] * by[:, 1:]
             left = left - self._relative[k].T @ (contact.weights[:, None] * local).ravel()
+            tractions.append(local)
             tangent[:, 0, 0] -= contact.k_n
             tangent[:, 1, 1] -= contact.k_t
             tangent[:, 2, 2] -= contact.k_t
             changes.append(tangent)
-        return left, changes
+        return left, changes, tractions
 
     def _tangent(self, changes: Sequence[Array]) -> Array:
         """Tangent (m, m) in the basis: 1 and what the joints change of it."""
@@ -285,17 +295,16 @@ class LoadStatics:
             total += rows.reshape(-1, self.size).T @ turned.reshape(-1, self.size)
         return total
 
-    def _leave_over(self, task: _Task) -> None:
-        """Put what the answer leaves of the forces on the whole structure into the task."""
-        rest = task.offset - self._images.values @ task.x
-        for k, (trace, contact) in enumerate(self.joints):
-            by = (self._relative[k] @ task.x).reshape(-1, 3)
-            _, traction, _ = contact.advance(task.start[k], contact.rest + task.moved[k] + by)
-            local = traction - self._at_rest[k]
-            local[:, 0] -= contact.k_n * by[:, 0]
-            local[:, 1:] -= contact.k_t[:, None] * by[:, 1:]
-            rest = rest - trace.relative.T @ (contact.weights[:, None] * local).ravel()
-        task.rest = admissible(np.asarray(rest), self._rigid, self.fixed)
+    def _left_over(self, tasks: Sequence[_Task]) -> Array:
+        """What the answers leave of the forces on the whole structure [N] (unknowns, tasks)."""
+        out = np.stack([task.offset for task in tasks], axis=1)
+        out -= combined(self._images.values, np.stack([task.x for task in tasks], axis=1))
+        for column, task in enumerate(tasks):
+            assert task.tractions is not None
+            for (trace, contact), local in zip(self.joints, task.tractions, strict=True):
+                out[:, column] -= trace.relative.T @ (contact.weights[:, None] * local).ravel()
+            out[:, column] = admissible(out[:, column], self._rigid, self.fixed)
+        return out
 
     def _state(self, task: _Task) -> LoadedState:
         states, tractions, motions, lost = [], [], [], []
@@ -343,15 +352,20 @@ class LoadStatics:
         found[self.fixed] = 0.0
         return found
 
-    def _extend(self, new: Array) -> int:
-        """Add columns (unknowns, k) to the basis; return how many directions were new."""
-        size = np.sqrt(np.maximum(np.einsum("ij,ij->j", new, product(self.stiffness, new)), 0.0))
+    def _extend(self, new: Array, size: Array) -> int:
+        """Add columns (unknowns, k) to the basis; return how many directions were new.
+
+        size: about the root of twice the energy [J^0.5] of each (k,), by which small ones count as much as great ones.
+        """
         new = new[:, size > 0] / size[size > 0]
         if not new.shape[1]:
             return 0
         found, image = extension(new, self._vectors.values, self._images.values, self.stiffness, least=1e-20)
-        self._vectors.add(found)
-        self._images.add(image)
+        if not self.size:  # room is made ahead of the first columns
+            self._vectors, self._images = Columns(found), Columns(image)
+        else:
+            self._vectors.add(found)
+            self._images.add(image)
         self._relative = [
             np.concatenate([old, np.asarray(trace.relative @ found)], axis=1)
             for old, (trace, _) in zip(self._relative, self.joints, strict=True)
