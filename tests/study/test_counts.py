@@ -3,7 +3,6 @@
 import json
 import tomllib
 from importlib import import_module
-from pathlib import Path
 
 import click
 import numpy as np
@@ -16,9 +15,10 @@ from faying.fe.response import frequency_response
 from faying.form.form import PARAMETERS
 from faying.numerics.memory import check_modes
 from faying.study import Study
+from faying.study.schema import schema_text
 from tests.helpers.meshfiles import STUDY
 
-SCHEMA = json.loads((Path(faying.__file__).parent / "study" / "schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads(schema_text())
 POINT = {"point": ["0 mm", "0 mm", "0 mm"], "direction": [0, 0, 1]}
 RESPONSE = {"from": "1 Hz", "to": "2 Hz", "input": [POINT], "output": [POINT]}
 HUGE = 10**9

@@ -2,7 +2,7 @@
 
 import ast
 import inspect
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -27,7 +27,7 @@ from faying.surface.estimators.table import ESTIMATORS
 from faying.units import EXAMPLES
 from faying_reference.docstrings import rendered
 from faying_reference.rst import escape, heading, table
-from faying_reference.study_keys import Key, meanings, recorded
+from faying_reference.study_keys import Key, keys
 
 GROUPS = {
     "result.nc": Result,
@@ -39,7 +39,6 @@ GROUPS = {
     "A backbone": Backbone,
     "witness of a backbone": Witness,
 }
-MEANINGS = Path(__file__).parents[2] / "reference" / "keys.toml"
 
 
 class Section(SphinxDirective):
@@ -59,40 +58,36 @@ class StudyKeys(Section):
 
     def lines(self) -> list[str]:
         """Return the sections."""
-        self.env.note_dependency(str(MEANINGS))
-        words, found = meanings(MEANINGS), recorded()
-        lacking = sorted({key.path for key in found.values() if not key.meaning} - set(words))
-        extra = sorted(set(words) - {key.path for key in found.values()})
-        if lacking or extra:
-            raise self.error(f"{MEANINGS.name}: no words for {lacking}; no key for {extra}")
         places: dict[str, list[Key]] = {}
-        for key in found.values():
+        tables: dict[str, Key] = {}
+        for key in keys():
             places.setdefault(key.table, []).append(key)
-        lists = {key.path for key in found.values() if key.kind == "list of tables"}
+            if key.kind in ("table", "list of tables"):
+                tables[key.path] = key
         out: list[str] = []
-        for place, keys in places.items():
-            title = "Top level" if not place else f"[[{place}]]" if place in lists else f"[{place}]"
+        for place, found in places.items():
+            many = place in tables and tables[place].kind == "list of tables"
+            title = "Top level" if not place else f"[[{place}]]" if many else f"[{place}]"
             out += [f".. _table-{place or 'top'}:", "", *heading(title)]
-            if place in words:
-                out += [escape(words[place]), ""]
-            own = [key for key in keys if not key.model]
-            out += _keys(own, words)
-            for model in dict.fromkeys(key.model for key in keys if key.model):
-                named = [key for key in keys if key.model == model]
-                out += [f'With ``model = "{model.lower()}"`` also:', "", *_keys(named, words)]
+            if place in tables:
+                out += [escape(tables[place].meaning), ""]
+            out += _keys([key for key in found if not key.model])
+            for model in dict.fromkeys(key.model for key in found if key.model):
+                named = [key for key in found if key.model == model]
+                out += [f'With ``model = "{model.lower()}"`` also:', "", *_keys(named)]
         return out
 
 
-def _keys(keys: list[Key], words: Mapping[str, str]) -> list[str]:
+def _keys(found: list[Key]) -> list[str]:
     head = ("key", "value", "default", "meaning")
     rows = [
         (
             f"``{key.name}``",
             escape(f"{key.kind}, {key.allowed}" if key.allowed else key.kind) + _example(key),
             f"``{key.default}``" if key.default and key.default != "required" else key.default,
-            escape(key.meaning or words[key.path]),
+            escape(key.meaning),
         )
-        for key in keys
+        for key in found
     ]
     return table(head, rows, (18, 30, 14, 38))
 

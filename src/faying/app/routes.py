@@ -6,7 +6,6 @@ import threading
 from base64 import b64encode
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from importlib.resources import files
 from io import BufferedIOBase
 from pathlib import Path
 from typing import Any
@@ -94,7 +93,9 @@ class Session:
 
     def schema(self, request: Request) -> str:
         """The JSON schema of a study, as `faying schema` gives it."""
-        return files("faying.study").joinpath("schema.json").read_text(encoding="utf-8")
+        from faying.study.schema import schema_text
+
+        return schema_text()
 
     def check(self, request: Request) -> dict[str, Any]:
         """Check the study as `faying check` does."""

@@ -13,14 +13,14 @@ def command(out: Path | None, as_json: bool) -> None:
 
     A study names it in its first line: #:schema ./faying.schema.json
     """
-    from importlib.resources import files
 
     from faying.errors import InputError
     from faying.files import write_text
+    from faying.study.schema import schema_text
 
     if out is not None and as_json:
         raise InputError("--json prints the schema and --out writes it; leave one out")
-    text = files("faying.study").joinpath("schema.json").read_text(encoding="utf-8")
+    text = schema_text()
     if out is None:
         click.echo(text, nl=False)
     else:

@@ -19,13 +19,14 @@ from faying.study.keys.bolt import read_bolt
 from faying.study.keys.bolt_sheet import BoltSheetChoice, read_bolt_sheets
 from faying.study.keys.geometry import GeometryChoice, read_geometry
 from faying.study.keys.joint import JointChoice, read_joints
-from faying.study.keys.law import LawChoice
+from faying.study.keys.law import LAW, LawChoice
 from faying.study.keys.load import read_loads
 from faying.study.keys.material import read_materials, read_parts
 from faying.study.keys.reader import Faults, Table
 from faying.study.keys.solution import ResponseChoice, read_modes, read_order
 from faying.study.keys.support import read_mass, read_support
 from faying.study.keys.surface import SurfaceChoice
+from faying.study.keys.tables import STUDY
 from faying.study.keys.test import HammerChoice, TestChoice, read_test
 from faying.study.keys.uncertain import Known, UncertainChoice, lifted, read_uncertain
 from faying.study.results_folder import PLAIN, results_folder
@@ -122,13 +123,13 @@ class Study:
         """Check a study given as nested dictionaries (as TOML gives them); file names are relative to `folder`."""
         faults = Faults(folder=folder)
         data, inside = lifted(data)
-        top = Table(data, "", faults)
-        title = top.text("title", "untitled")
+        top = Table(data, "", faults, STUDY)
+        title = top.get("title")
         materials = read_materials(top)
         geometry = read_geometry(top)
         parts = read_parts(top, materials)
         joints, bonds = read_joints(top)
-        law = LawChoice.of(top.table("law") or Table({}, "law", faults))
+        law = LawChoice.of(top.table("law") or Table({}, "law", faults, LAW.keys))
         shared = top.table("surface")
         surface = None if shared is None else SurfaceChoice.of(shared)
         alternatives = tuple(AlternativeChoice.of(t, i) for i, t in enumerate(top.tables("alternative")))
@@ -181,7 +182,7 @@ class Study:
 
 def _bolts(top: Table, materials: dict[str, Material]) -> tuple[Bolt | SolidBolt, ...]:
     """Read [[bolt]]; a fault is noted where they have different numbers of preloads."""
-    read = [read_bolt(t, i, materials) for i, t in enumerate(top.tables("bolt", required=True))]
+    read = [read_bolt(t, i, materials) for i, t in enumerate(top.tables("bolt"))]
     bolts = tuple(bolt for bolt in read if bolt is not None)
     counts = {len(b.preload) for b in bolts if b.preload}
     if len(counts) > 1:

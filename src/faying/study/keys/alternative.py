@@ -3,10 +3,18 @@
 from dataclasses import dataclass
 
 from faying.form.form import Form
-from faying.study.keys.form import read_form
-from faying.study.keys.law import LawChoice
+from faying.study.keys.declared import Declared, Inner, text
+from faying.study.keys.form import FORM, read_form
+from faying.study.keys.law import LAW, LawChoice
 from faying.study.keys.reader import Table
-from faying.study.keys.surface import SurfaceChoice
+from faying.study.keys.surface import SURFACE, SurfaceChoice
+
+ALTERNATIVE: Declared = {
+    "law": Inner(says="The law, with the keys of [law].", keys=LAW.keys, models=LAW.models),
+    "surface": Inner(says="The surface, with the keys of [surface].", keys=SURFACE, either=True),
+    "form": Inner(says="The form, with the keys of [joint.form].", keys=FORM),
+    "name": text("What tables call it; the label of its law where left out.", "auto"),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +37,7 @@ class AlternativeChoice:
         if law is None and surface is None and form is None:
             table.faults.add(f"{table.where}: give a law, a surface or a form that differs from the study's")
         read = None if law is None else LawChoice.of(law)
-        name = table.text("name", read.model if read is not None else f"alternative {index + 1}")
+        name = table.get("name", read.model if read is not None else f"alternative {index + 1}")
         other = None if surface is None else SurfaceChoice.of(surface)
         choice = cls(name=name or "", law=read, surface=other, form=form)
         table.close()

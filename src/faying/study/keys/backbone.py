@@ -10,8 +10,22 @@ from faying.contact.build import find
 from faying.errors import InputError
 from faying.joint.modal import MOST_MODES
 from faying.measured.ring_down import MeasuredBackbone
+from faying.study.keys.declared import (
+    NUMBER,
+    QUANTITY,
+    WORDS,
+    Declared,
+    count,
+    file,
+    listed,
+    one_or_more,
+    own,
+    point,
+    text,
+)
 from faying.study.keys.law import LawChoice
-from faying.study.keys.reader import Table, number, point
+from faying.study.keys.reader import Table
+from faying.study.keys.values import number
 
 Point = tuple[float, float, float]
 RANGE = (0.1, 100.0)  # m/s2
@@ -71,15 +85,8 @@ class BackboneChoice:
         if table is None:
             return None
         given = {
-            "mode": table.count("mode", 1, most=MOST_MODES),
-            "amplitude": table.take("amplitude", accelerations, RANGE),
-            "at": table.take("at", point, None),
-            "friction": table.take("friction", frictions, ()),
-            "harmonics": table.count("harmonics", 3, most=9),
-            "rest_damping": table.take("rest_damping", _rest, 0.0),
-            "slip": table.text("slip", "microslip", ("microslip", "coulomb")),
-            "laws": table.take("law", laws, ()),
-            "measured": table.file("measured", None),
+            **{key: table.get(key) for key in BACKBONE if key != "law"},
+            "laws": table.get("law"),
         }
         if given["measured"] is not None:
             table.made(lambda: MeasuredBackbone.read(given["measured"]))  # a fault shows at once
@@ -120,3 +127,43 @@ def laws(value: Any, name: str) -> tuple[LawChoice, ...]:
 
 def _rest(value: Any, name: str) -> float | str:
     return "law" if value == "law" else number(value, name)
+
+
+BACKBONE: Declared = {
+    "mode": count("Elastic mode, from 1.", 1, most=MOST_MODES),
+    "amplitude": own(
+        'two accelerations, for example ["0.1 m/s^2", "60 m/s^2"]',
+        listed(QUANTITY, 2, 2),
+        "First and last acceleration.",
+        RANGE,
+        read=accelerations,
+        unit="m/s^2",
+    ),
+    "at": point("Point whose acceleration that is; where the mode moves most if left out."),
+    "friction": own(
+        "a number or a list of them",
+        one_or_more(NUMBER),
+        ("Coefficient for all joints, or a list with a curve for each; those of the joints where left out."),
+        (),
+        read=frictions,
+    ),
+    "harmonics": count("Highest harmonic of the motion, 1 to 9.", 3, most=9),
+    "rest_damping": own(
+        'a number, or "law"',
+        {"anyOf": [{"type": "number"}, {"const": "law"}]},
+        'Ratio to critical that is added, or "law": what the laws lose without slip.',
+        0.0,
+        read=_rest,
+    ),
+    "slip": text(
+        "Sliders that follow the curve of the law, or one slider at each point.", "microslip", ("microslip", "coulomb")
+    ),
+    "law": own(
+        'the name of a law, or a list of them, such as ["auto", "jk"]',
+        one_or_more(WORDS),
+        ("Contact law of all joints, or a list with a curve for each; that of the study where left out."),
+        (),
+        read=laws,
+    ),
+    "measured": file("CSV file of measured points: acceleration, frequency, damping."),
+}

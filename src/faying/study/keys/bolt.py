@@ -10,8 +10,22 @@ from faying.bolt.solid_bolt import SolidBolt
 from faying.bolt.threads import Fastener, Thread
 from faying.errors import InputError
 from faying.materials import Material
-from faying.study.keys.face import face_names
-from faying.study.keys.reader import Table, point, quantity
+from faying.study.keys.declared import (
+    QUANTITY,
+    REQUIRED,
+    Declared,
+    Inner,
+    listed,
+    number,
+    one_or_more,
+    own,
+    point,
+    quantity,
+    text,
+)
+from faying.study.keys.face import face_names, two_faces
+from faying.study.keys.reader import Table
+from faying.study.keys.values import quantity as read_quantity
 
 OF_THE_MESH = (
     "material",
@@ -27,13 +41,13 @@ OF_THE_MESH = (
 
 def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bolt | SolidBolt | None:
     """Read one [[bolt]]; None where its faults leave no bolt."""
-    name = table.text("name", f"bolt {index + 1}")
+    name = table.get("name", f"bolt {index + 1}")
     faces = face_names(table, "faces", name)
-    at = table.take("at", point, None)
-    part = table.text("part", None)
-    diameter = table.quantity("diameter", "m", None)
-    pitch = table.quantity("pitch", "m", None)
-    friction = (table.number("thread_friction", None), table.number("head_friction", None))
+    at = table.get("at")
+    part = table.get("part")
+    diameter = table.get("diameter")
+    pitch = table.get("pitch")
+    friction = (table.get("thread_friction"), table.get("head_friction"))
     preload = _preload(table, diameter, pitch, friction)
     thread, fastener = _thread(table, diameter, pitch, meshed=part is not None)
     bolt: Bolt | SolidBolt | None
@@ -41,15 +55,15 @@ def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bo
         _note_solid(table, part)
         bolt = SolidBolt(name=name, part=part, faces=faces, at=at, preload=preload, fastener=fastener)
     else:
-        material = _material(table, "material", name, materials, optional=True)
+        material = _material(table, name, materials)
         washers = tuple(_washer(t, name, materials) for t in table.tables("washer"))
         given: dict[str, Any] = {
-            "seat": table.take("seat", _ring, None),
-            "head_mass": table.quantity("head_mass", "kg", None),
-            "nut_mass": table.quantity("nut_mass", "kg", None),
-            "engaged": table.quantity("engaged", "m", None),
-            "shank": table.quantity("shank", "m", None, positive=False),
-            "head": table.text("head", "hexagon", ("hexagon", "socket")),
+            "seat": table.get("seat"),
+            "head_mass": table.get("head_mass"),
+            "nut_mass": table.get("nut_mass"),
+            "engaged": table.get("engaged"),
+            "shank": table.get("shank"),
+            "head": table.get("head"),
             "thread": thread,
             "friction": None if None in friction else friction,
         }
@@ -79,25 +93,27 @@ def _thread(
     table: Table, diameter: float | None, pitch: float | None, *, meshed: bool
 ) -> tuple[Thread | None, Fastener | None]:
     """The thread where it is given, by itself or by its pitch; and with its property class, where that is given."""
-    grade, text = table.text("grade", None), table.text("thread", None)
-    if meshed and grade is None and text is not None:
+    grade, size_text = table.get("grade"), table.get("thread")
+    if meshed and grade is None and size_text is not None:
         table.faults.add(
             f'{table.where}.thread is used with grade alone where the bolt is meshed; give grade, such as "8.8", or '
             "leave it out"
         )
         return None, None
-    if grade is not None and text is None and diameter is None:
+    if grade is not None and size_text is None and diameter is None:
         table.faults.add(f'{table.where}.grade needs the size of the thread; give thread, such as "M8"')
         return None, None
 
     def made() -> Thread | None:
-        if text is not None:
-            return Thread.parse(text)
+        if size_text is not None:
+            return Thread.parse(size_text)
         return None if pitch is None or diameter is None else Thread(diameter=diameter, pitch=pitch)
 
     thread = table.made(made)
     if thread is not None and pitch is not None and not isclose(thread.pitch, pitch, rel_tol=1e-6):
-        table.faults.add(f'{table.where}: thread = "{text}" and pitch = {1e3 * pitch:g} mm differ; leave pitch out')
+        table.faults.add(
+            f'{table.where}: thread = "{size_text}" and pitch = {1e3 * pitch:g} mm differ; leave pitch out'
+        )
     if grade is None:
         return thread, None
     size = thread or table.made(lambda: Thread.coarse(diameter or 0.0))
@@ -120,10 +136,8 @@ def _note_solid(table: Table, part: str) -> None:
         )
 
 
-def _material(
-    table: Table, key: str, bolt: str, materials: Mapping[str, Material], *, optional: bool
-) -> Material | None:
-    name = table.text(key, None) if optional else table.text(key)
+def _material(table: Table, bolt: str, materials: Mapping[str, Material]) -> Material | None:
+    name = table.get("material")
     if name is None or name in materials:
         return materials.get(name) if name is not None else None
     known = ", ".join(f'"{m}"' for m in materials)
@@ -132,8 +146,8 @@ def _material(
 
 
 def _washer(table: Table, bolt: str, materials: Mapping[str, Material]) -> Washer | None:
-    outer, inner, thickness = (table.quantity(key, "m") for key in ("outer", "inner", "thickness"))
-    material = _material(table, "material", bolt, materials, optional=False)
+    outer, inner, thickness = (table.get(key) for key in ("outer", "inner", "thickness"))
+    material = _material(table, bolt, materials)
     table.close()
     if None in (outer, inner, thickness) or material is None:
         return None
@@ -143,7 +157,7 @@ def _washer(table: Table, bolt: str, materials: Mapping[str, Material]) -> Washe
 def _ring(value: Any, name: str) -> tuple[float, float]:
     if not isinstance(value, list) or len(value) != 2:
         raise InputError(f'{name} = {value!r} should be inner and outer diameter, for example ["8.4 mm", "16 mm"]')
-    inner, outer = (quantity(v, "m", name, positive=False) for v in value)
+    inner, outer = (read_quantity(v, "m", name, positive=False) for v in value)
     return inner, outer
 
 
@@ -151,10 +165,10 @@ def _preload(
     table: Table, diameter: float | None, pitch: float | None, friction: tuple[float | None, float | None]
 ) -> tuple[float, ...]:
     """Forces [N], given as such or as torques with what turns them into forces."""
-    forces = table.take("preload", lambda v, name: _rising(v, name, "N", "12 kN"), None)
-    torques = table.take("torque", lambda v, name: _rising(v, name, "N m", "20 N m"), None)
+    forces = table.get("preload")
+    torques = table.get("torque")
     thread: dict[str, Any] = {
-        "nut_factor": table.number("nut_factor", None),
+        "nut_factor": table.get("nut_factor"),
         "pitch": pitch,
         "thread_friction": friction[0],
         "head_friction": friction[1],
@@ -175,11 +189,11 @@ def _rising(value: Any, name: str, unit: str, example: str) -> tuple[float, ...]
     items = value if isinstance(value, list) else [value]
     if not items:
         raise InputError(f'{name} is empty; give one or more, for example "{example}"')
-    loads = [quantity(v, unit, name, positive=False) for v in items]
-    for text, load in zip(items, loads, strict=True):
+    loads = [read_quantity(v, unit, name, positive=False) for v in items]
+    for item, load in zip(items, loads, strict=True):
         if load <= 0:
-            raise InputError(f'{name} = "{text}": a preload pulls the joint together and must be positive')
-        quantity(text, unit, name)  # refuses what no bolt can have
+            raise InputError(f'{name} = "{item}": a preload pulls the joint together and must be positive')
+        read_quantity(item, unit, name)  # refuses what no bolt can have
     if any(b <= a or isclose(a, b) for a, b in pairwise(loads)):
         raise InputError(
             f"{name} = {value!r}: preloads must rise, since the law is one of loading; the joint remembers the "
@@ -187,3 +201,78 @@ def _rising(value: Any, name: str, unit: str, example: str) -> tuple[float, ...]
             "load it has seen"
         )
     return tuple(loads)
+
+
+BOLT: Declared = {
+    "name": text("What tables call it.", "bolt 1"),
+    "faces": two_faces("The two faces that head and nut press on."),
+    "at": point(
+        "A point on the axis, where a face holds more than one seat; of a meshed bolt, where the shank is drawn in."
+    ),
+    "part": text("The part that is the bolt, where it is meshed."),
+    "diameter": quantity("m", "Diameter of the shank; with material, the bolt has stiffness and mass."),
+    "pitch": quantity(
+        "m",
+        (
+            "Pitch of the thread, where it is not the coarse one; for its areas, and F = T/(P/2pi + "
+            "0.577 d2 mu + 0.65 d mu) of ISO 16047."
+        ),
+    ),
+    "thread_friction": number("Coefficient of friction in the thread."),
+    "head_friction": number("Coefficient of friction under the head."),
+    "preload": own(
+        "quantity [N], or a list that rises",
+        one_or_more(QUANTITY),
+        'One force or several that rise, for example ["6 kN", "12 kN"].',
+        read=lambda value, name: _rising(value, name, "N", "12 kN"),
+        unit="N",
+    ),
+    "torque": own(
+        "quantity [N*m], or a list that rises",
+        one_or_more(QUANTITY),
+        "One tightening torque or several that rise, in place of preload.",
+        read=lambda value, name: _rising(value, name, "N m", "20 N m"),
+        unit="N*m",
+    ),
+    "nut_factor": number("K of F = T/(K d)."),
+    "grade": text('Property class of ISO 898-1, for example "8.8"; compares the preload with the proof load.'),
+    "thread": text('Thread, for example "M8x1", where it is not the coarse one of the diameter.'),
+    "material": text("Material of the shank."),
+    "washer": Inner(
+        says="Washers under head and nut together.",
+        many=True,
+        keys={
+            "outer": quantity("m", "Outer diameter.", REQUIRED),
+            "inner": quantity("m", "Inner diameter.", REQUIRED),
+            "thickness": quantity("m", "Thickness.", REQUIRED),
+            "material": text("Material.", REQUIRED),
+        },
+    ),
+    "seat": own(
+        'inner and outer diameter, for example ["8.4 mm", "16 mm"]',
+        listed(QUANTITY, 2, 2),
+        ("Inner and outer diameter of the ring that is pressed; the full face where left out and no at is given."),
+        read=_ring,
+        unit="m",
+    ),
+    "head_mass": quantity("kg", "Mass of the head; of a hexagon head of the diameter where left out."),
+    "nut_mass": quantity(
+        "kg", "Mass of the nut; of a hexagon nut of the diameter where left out, none in a tapped hole."
+    ),
+    "engaged": quantity(
+        "m",
+        (
+            "Length of the thread in a tapped hole, whose wall is the second face; 1.5 diameters, or "
+            "the depth of the hole, where left out."
+        ),
+    ),
+    "shank": quantity(
+        "m",
+        (
+            "Length of the plain shank under the head. Where left out: 0, a thread up to the head; "
+            "all of the free length for a diameter that is not that of the thread."
+        ),
+        positive=False,
+    ),
+    "head": text("The head of the screw.", "hexagon", ("hexagon", "socket")),
+}

@@ -6,7 +6,9 @@ from typing import Any, Literal
 
 from faying.bolt.tightening import tightening
 from faying.errors import InputError
-from faying.study.keys.reader import Table, quantity
+from faying.study.keys.declared import QUANTITY, WORDS, Declared, Key, listed, one_or_more, own, quantity, text
+from faying.study.keys.reader import Table
+from faying.study.keys.values import quantity as read_quantity
 
 MOST_FACTOR = 10.0  # greatest tightening factor that is no slip of the pen
 
@@ -51,14 +53,14 @@ class BoltSheetChoice:
     @classmethod
     def of(cls, table: Table, bolts: Sequence[str], cases: Sequence[str]) -> "BoltSheetChoice":
         """Read one [[bolt_sheet]]."""
-        name = table.text("bolt", None)
+        name = table.get("bolt")
         if name is not None and name not in bolts:
             known = ", ".join(f'"{one}"' for one in bolts)
             table.faults.add(f'{table.where}.bolt = "{name}" is no bolt; there are {known}')
-        way = table.text("tightening", None)
+        way = table.get("tightening")
         if way is not None:
             table.made(lambda: tightening(way, f"{table.where}.tightening"))
-        loads = table.take("load", _names, ())
+        loads = table.get("load")
         lacking = [one for one in loads if one not in cases]
         if lacking:
             known = ", ".join(f'"{one}"' for one in cases) or "none"
@@ -70,18 +72,7 @@ class BoltSheetChoice:
             bolt=name,
             loads=loads,
             way=way,
-            tightening_factor=table.take("tightening_factor", _between(1.0, MOST_FACTOR), None),
-            thread_friction=table.take("thread_friction", _between(0.02, 1.0), None),
-            head_friction=table.take("head_friction", _between(0.02, 1.0), None),
-            slip_friction=table.take("slip_friction", _between(0.02, 2.0), None),
-            axial=table.take("axial", _axial, None),
-            introduction=table.take("introduction", _between(0.0, 1.0), 1.0),
-            transverse=table.take("transverse", _not_negative, None),
-            clamp=table.take("clamp", _not_negative, None),
-            embedding=table.quantity("embedding", "m", None),
-            thermal_loss=table.quantity("thermal_loss", "N", None, positive=False),
-            shear_strength=table.quantity("shear_strength", "Pa", None),
-            rolled=table.text("rolled", "before", ("before", "after")),
+            **{key: table.get(key) for key in BOLT_SHEET if key not in ("bolt", "tightening", "load")},
         )
         if way is not None and choice.tightening_factor is not None:
             table.faults.add(f"{table.where} has both tightening and tightening_factor; give one of them")
@@ -128,7 +119,7 @@ def _between(low: float, high: float) -> Any:
 
 
 def _not_negative(value: Any, name: str) -> float:
-    force = float(quantity(value, "N", name, positive=False))
+    force = float(read_quantity(value, "N", name, positive=False))
     if force < 0:
         raise InputError(f'{name} = "{value}" should be 0 or more')
     return force
@@ -138,7 +129,83 @@ def _axial(value: Any, name: str) -> tuple[float, float]:
     items = value if isinstance(value, list) else ["0 N", value]
     if len(items) != 2:
         raise InputError(f'{name} = {value!r} should be one load or the least and the greatest: ["0 kN", "4 kN"]')
-    low, high = (float(quantity(one, "N", name, positive=False)) for one in items)
+    low, high = (float(read_quantity(one, "N", name, positive=False)) for one in items)
     if high < low or high < 0:
         raise InputError(f"{name} = {value!r}: the second load must be the greater, and pull the parts apart")
     return low, high
+
+
+def _number(low: float, high: float, says: str, default: float | None = None) -> Key:
+    """A number from the lower to the higher."""
+    schema = {"type": "number", "minimum": low, "maximum": high}
+    return own(f"a number from {low:g} to {high:g}", schema, says, default, read=_between(low, high))
+
+
+BOLT_SHEET: Declared = {
+    "bolt": text("The bolt; all that no other table names where left out."),
+    "tightening": text(
+        'Way of tightening, as of [uncertain] preload; "torque wrench, friction estimated" where '
+        "left out and nothing scatters."
+    ),
+    "tightening_factor": _number(1.0, MOST_FACTOR, "Greatest over least assembly preload, in place of tightening."),
+    "thread_friction": _number(
+        0.02, 1.0, "Coefficient of friction in the thread; that of the bolt, or 0.12, where left out."
+    ),
+    "head_friction": _number(
+        0.02, 1.0, "Coefficient of friction under the head; that of the bolt, or 0.12, where left out."
+    ),
+    "slip_friction": _number(
+        0.02, 2.0, "Coefficient of friction of the clamped joint; the least of its joints where left out."
+    ),
+    "load": own(
+        "the name of a [[load]], or a list of them",
+        one_or_more(WORDS),
+        (
+            "A [[load]], or several, that give working load, load across, load factor and loss by "
+            "temperature as they are found; in place of axial, transverse, introduction and "
+            "thermal_loss. One stands for nothing and itself, several for the least and the greatest "
+            "of them."
+        ),
+        (),
+        read=_names,
+    ),
+    "axial": own(
+        "quantity [N], or the least and the greatest",
+        {"anyOf": [QUANTITY, listed(QUANTITY, 2, 2)]},
+        (
+            "Least and greatest working load along the bolt, positive where it pulls the parts "
+            "apart; one load stands for 0 and that."
+        ),
+        read=_axial,
+        unit="N",
+    ),
+    "introduction": _number(0.0, 1.0, "Load introduction factor n, from 0 to 1; 1 is a load at the seats.", 1.0),
+    "transverse": own(
+        "quantity [N], 0 or more",
+        QUANTITY,
+        "Working load across the bolt, which friction carries.",
+        read=_not_negative,
+        unit="N",
+    ),
+    "clamp": own(
+        "quantity [N], 0 or more",
+        QUANTITY,
+        "Clamp load that is asked for, of a seal for example.",
+        read=_not_negative,
+        unit="N",
+    ),
+    "embedding": quantity(
+        "m",
+        (
+            "Embedding of thread, seats and joints together; the guide value of VDI 2230 where left "
+            "out and scans give a roughness."
+        ),
+    ),
+    "thermal_loss": quantity("N", "Preload that temperature takes; negative where it adds some.", positive=False),
+    "shear_strength": quantity("Pa", "Shear strength of the part that is tapped."),
+    "rolled": text(
+        "Whether the thread is rolled before or after heat treatment.",
+        "before",
+        ("before", "after"),
+    ),
+}

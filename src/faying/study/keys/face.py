@@ -8,25 +8,34 @@ import numpy as np
 from faying.errors import InputError
 from faying.geometry.face_facts import Point
 from faying.geometry.selectors import AXES, WITHIN, Selector
-from faying.study.keys.reader import Table, direction, point, whole_number
+from faying.study.keys.declared import (
+    REQUIRED,
+    WHOLE,
+    WORDS,
+    Declared,
+    Key,
+    listed,
+    own,
+    point,
+    quantity,
+    text,
+    truth,
+)
+from faying.study.keys.reader import Table
+from faying.study.keys.values import direction as read_direction
+from faying.study.keys.values import text as read_text
+from faying.study.keys.values import whole_number
 
 FORM = '"upper.joint", or {part = "upper", normal = "+z"}'
 
 
 def read_selector(table: Table) -> Selector | None:
     """Read the table of one selector; None where its faults leave none."""
-    part = table.text("part")
+    part = table.get("part")
     if "point" in table.data:
         table.faults.add(f"{table.where}.point has become {table.where}.nearest; rename the key")
         table.data.pop("point")
-    given: dict[str, Any] = {
-        "normal": table.take("normal", _normal, None),
-        "touching": table.text("touching", None),
-        "nearest": table.take("nearest", point, None),
-        "within": table.quantity("within", "m", None),
-        "number": table.take("number", _numbers, None),
-        "all": table.truth("all", False),
-    }
+    given: dict[str, Any] = {key: table.get(key) for key in SELECTOR if key != "part"}
     rules = [key for key in ("normal", "touching", "nearest", "number") if key in table.data]
     table.close()
     if not rules and part is not None:
@@ -42,16 +51,15 @@ def read_selector(table: Table) -> Selector | None:
     return Selector(part=part, **given | {"within": given["within"] or WITHIN})
 
 
-def face_name(table: Table, key: str, label: str, *, required: bool = True) -> str | None:
+def face_name(table: Table, key: str, label: str) -> str | None:
     """Take a face: its name, or a selector, whose face gets the name `label`."""
     value = table.data.get(key)
     if isinstance(value, Mapping):
-        inner = table.table(key)
-        selector = None if inner is None else read_selector(inner)
+        selector = table.take(key, lambda one, where: read_selector(Table(one, where, table.faults, SELECTOR)), None)
         if selector is not None:
             table.faults.selectors[label] = selector
         return label
-    name: str | None = table.text(key) if required else table.text(key, None)
+    name: str | None = table.take(key, read_text)
     return name
 
 
@@ -70,7 +78,7 @@ def face_names(table: Table, key: str, label: str) -> tuple[str, str]:
                 names.append(one)
                 continue
             name = f"{label} {('first', 'second')[place]}"
-            selector = read_selector(type(table)(one, f"{where}[{place + 1}]", table.faults))
+            selector = read_selector(Table(one, f"{where}[{place + 1}]", table.faults, SELECTOR))
             if selector is not None:
                 table.faults.selectors[name] = selector
             names.append(name)
@@ -88,7 +96,7 @@ def _normal(value: Any, name: str) -> Point:
         return AXES[value]
     if not isinstance(value, list):
         raise InputError(f'{name} = {value!r} should be an axis such as "+z", or three numbers such as [0, 0, 1]')
-    along = np.array(direction(value, name))
+    along = np.array(read_direction(value, name))
     x, y, z = along / np.linalg.norm(along)
     return float(x), float(y), float(z)
 
@@ -100,3 +108,44 @@ def _numbers(value: Any, name: str) -> int | tuple[int, ...]:
     if not value:
         raise InputError(f"{name} is empty; give the number of a face, such as 3, or of several, such as [3, 5]")
     return tuple(whole_number(one, name) for one in value)
+
+
+SELECTOR: Declared = {
+    "part": text("The part.", REQUIRED),
+    "normal": own(
+        'an axis such as "+z", or three numbers such as [0, 0, 1]',
+        {"anyOf": [{"enum": list(AXES)}, listed({"type": "number"}, 3, 3)]},
+        ('Outward normal of a plane, within 1 degree: "+x", "-x", "+y", "-y", "+z", "-z" or three numbers.'),
+        read=_normal,
+    ),
+    "touching": text("The part that the face touches, or comes as near to as geometry.snap says."),
+    "nearest": point("A point; of the faces for which the rest holds, the nearest."),
+    "within": quantity("m", "The farthest that this point may lie from the face; 1 mm where left out."),
+    "number": own(
+        "a whole number from 1 to 1,000,000, or a list of them",
+        {"anyOf": [WHOLE, listed(WHOLE, 1)]},
+        (
+            "Number of the face among those of its part, as `faying faces` lists them; or those of "
+            "several faces that are meant together, such as [3, 5]."
+        ),
+        read=_numbers,
+    ),
+    "all": truth("Several faces that fit count as one."),
+}
+FACE = {"anyOf": [WORDS, {"$ref": "#/$defs/selector"}]}
+
+
+def one_face(says: str, default: Any = None) -> Key:
+    """A face, by its name or by a selector; `face_name` reads it."""
+    return own(f"a face: {FORM}", FACE, says, default)
+
+
+def two_faces(says: str) -> Key:
+    """Two faces, each by its name or by a selector; `face_names` reads them."""
+    return own(
+        'a list of 2 names, for example ["upper.joint", "lower.joint"], or of selectors such as '
+        '{part = "upper", touching = "lower"}',
+        listed(FACE, 2, 2),
+        says,
+        REQUIRED,
+    )

@@ -4,8 +4,9 @@ from typing import Any
 
 from faying.form.form import PARAMETERS, Form
 from faying.form.gap_map import FaceMap, GapMap, read_gap_map, read_heights
-from faying.study.keys.reader import Table, direction, point
-from faying.study.keys.waviness import read_waviness
+from faying.study.keys.declared import REQUIRED, Declared, Inner, direction, file, of_parameter, point, text, truth
+from faying.study.keys.reader import Table
+from faying.study.keys.waviness import WAVINESS, read_waviness
 
 
 def read_form(table: Table | None) -> Form | None:
@@ -13,8 +14,8 @@ def read_form(table: Table | None) -> Form | None:
     if table is None:
         return None
     _note_flat(table)
-    given = {name: table.parameter(name, parameter) for name, parameter in PARAMETERS.items()}
-    along = table.take("along", direction, None)
+    given = {name: table.get(name) for name in PARAMETERS}
+    along = table.get("along")
     gap, first, second = table.table("gap"), table.table("first"), table.table("second")
     maps: dict[str, Any] = {
         "gap": None if gap is None else _gap(gap),
@@ -30,35 +31,61 @@ def read_form(table: Table | None) -> Form | None:
 def _note_flat(table: Table) -> None:
     """Take `flat`, and note where it stands beside a form."""
     others = [key for key in table.data if key != "flat"]
-    if table.truth("flat", False) and others:
+    if table.get("flat") and others:
         table.faults.add(f"{table.where}: flat = true says that the faces have no form; leave out {', '.join(others)}")
 
 
 def _gap(table: Table) -> GapMap | None:
     """Read the map of a gap: CSV or text of x, y, gap, with the units of the columns and the place of their axes."""
-    file = table.file("file")
-    xy, gap = table.text("xy_unit", None), table.text("gap_unit", None)
-    origin = table.take("origin", point, (0.0, 0.0, 0.0))
-    x_axis = table.take("x_axis", direction, (1.0, 0.0, 0.0))
-    y_axis = table.take("y_axis", direction, (0.0, 1.0, 0.0))
+    given = {key: table.get(key) for key in GAP}
     table.close()
-    if file is None:
-        return None
-    return table.made(lambda: read_gap_map(file, xy_unit=xy, gap_unit=gap, origin=origin, x_axis=x_axis, y_axis=y_axis))
+    path = given.pop("file")
+    return None if path is None else table.made(lambda: read_gap_map(path, **given))
 
 
 def _face(table: Table) -> FaceMap | None:
     """Read the heights of one face: a list of points or a scan, and where it lies."""
-    file = table.file("file")
-    xy, z = table.text("xy_unit", None), table.text("z_unit", None)
-    origin, x_axis = table.take("origin", point, None), table.take("x_axis", direction, None)
-    y_axis = table.take("y_axis", direction, None)
+    given = {key: table.get(key) for key in HEIGHTS}
     table.close()
-    if file is None:
+    if given["file"] is None:
         return None
 
     def made() -> FaceMap:
-        places, heights = read_heights(file, xy_unit=xy, z_unit=z)
-        return FaceMap(places=places, heights=heights, origin=origin, x_axis=x_axis, y_axis=y_axis)
+        path, xy, z = (given.pop(key) for key in ("file", "xy_unit", "z_unit"))
+        places, heights = read_heights(path, xy_unit=xy, z_unit=z)
+        return FaceMap(places=places, heights=heights, **given)
 
     return table.made(made)
+
+
+GAP: Declared = {
+    "file": file("Table of x, y, gap.", REQUIRED),
+    "xy_unit": text("Unit of x and y, where the heading of the file states none."),
+    "gap_unit": text("Unit of the gap, where the heading of the file states none."),
+    "origin": point("Point of the structure at which x = y = 0.", (0.0, 0.0, 0.0)),
+    "x_axis": direction("Direction of x.", (1.0, 0.0, 0.0)),
+    "y_axis": direction("Direction of y.", (0.0, 1.0, 0.0)),
+}
+HEIGHTS: Declared = {
+    "file": file("Scan, or table of x, y, z.", REQUIRED),
+    "xy_unit": text("Unit of x and y, where the file states none."),
+    "z_unit": text("Unit of the heights, where the file states none."),
+    "origin": point("Point at which x = y = 0; the middle of the map lies on the middle of the joint where left out."),
+    "x_axis": direction("Direction of x; the longer side of the face where left out."),
+    "y_axis": direction("Direction of y; as seen from outside the face where left out."),
+}
+FORM: Declared = {
+    "flat": truth("The faces are flat: neither form nor waves. Stands alone."),
+    **{name: of_parameter(parameter) for name, parameter in PARAMETERS.items()},
+    "along": direction("Direction of the longer side, where the face is as long as wide."),
+    "gap": Inner(says="A measured gap between the faces.", keys=GAP),
+    "first": Inner(says="Measured heights of the first face.", keys=HEIGHTS),
+    "second": Inner(says="Measured heights of the second face.", keys=HEIGHTS),
+    "waviness": Inner(
+        says=(
+            "Random waves between the scan and the form of the face. The size is said in one way: "
+            "Wq, Wa, flatness, process or from."
+        ),
+        keys=WAVINESS,
+    ),
+}

@@ -10,7 +10,8 @@ from faying.errors import InputError
 from faying.fe.mesh import Mesh
 from faying.geometry.mesh_facts import mesh_facts
 from faying.geometry.selectors import Selector, chosen, points_of
-from faying.study.keys.face import read_selector
+from faying.study.keys.declared import NAME, REQUIRED, WORDS, Declared, Inner, file, listed, own, quantity, text
+from faying.study.keys.face import SELECTOR, read_selector
 from faying.study.keys.reader import Faults, Table
 
 
@@ -43,18 +44,18 @@ class GeometryChoice:
 
 def read_geometry(top: Table) -> GeometryChoice:
     """Take the table [geometry] of a study; its faults are noted."""
-    table = top.table("geometry", required=True) or Table({}, "geometry", Faults())
+    table = top.table("geometry") or Table({}, "geometry", Faults(), GEOMETRY)
     if "mesh" in table.data:
         return _meshed(table)
-    step = table.file("step")
-    size = table.quantity("size", "m")
+    step = table.get("step")
+    size = table.get("size")
     sizes: dict[str, float] = {}
     inner = table.table("face_size")
     for name in list(inner.data) if inner else []:
-        sizes[name] = inner.quantity(name, "m") if inner else 0.0
+        sizes[name] = inner.get(name) if inner else 0.0
     faces = _faces(table)
-    snap = table.quantity("snap", "m", 0.0)
-    left = table.take("leave_out", _parts, ())
+    snap = table.get("snap")
+    left = table.get("leave_out")
     table.close()
     return GeometryChoice(step=step, size=size, face_size=sizes, face=faces, snap=snap, leave_out=left)
 
@@ -80,20 +81,20 @@ def _faces(table: Table) -> dict[str, Selector]:
 
 
 def _meshed(table: Table) -> GeometryChoice:
-    mesh = table.file("mesh")
+    mesh = table.get("mesh")
     if mesh is not None:
         table.faults.files += included(mesh)
     if "unit" not in table.data:
         table.faults.add('geometry.unit is missing: a mesh file does not say its unit; write for example unit = "mm"')
-    unit = table.text("unit", None)
+    unit = table.get("unit")
     for key in ("step", "size", "face_size", "leave_out"):
         if key in table.data:
             table.faults.add(f"geometry.{key} goes with a STEP file; geometry.mesh names a mesh that is ready")
             table.data.pop(key)
     inner = table.table("sets")
-    sets = {name: inner.text(name) for name in list(inner.data)} if inner else {}
+    sets = {name: inner.get(name) for name in list(inner.data)} if inner else {}
     faces = _faces(table)
-    snap = table.quantity("snap", "m", 0.0)
+    snap = table.get("snap")
     table.close()
     return GeometryChoice(mesh=mesh, unit=unit, sets=sets, face=faces, snap=snap)
 
@@ -130,3 +131,44 @@ def with_faces(mesh: Mesh, spec: GeometryChoice) -> Mesh:
         faces[label] = tuple(block for face in found for block in mesh.face(face.name))
         owner[label] = selector.part
     return replace(mesh, faces=faces, face_part=owner)
+
+
+GEOMETRY: Declared = {
+    "step": file("STEP file; its solids and faces carry names.", REQUIRED),
+    "size": quantity("m", "Largest element.", REQUIRED),
+    "face_size": Inner(
+        says="Smaller elements on some faces.",
+        keys={NAME: quantity("m", "Largest element on the face NAME.", REQUIRED)},
+    ),
+    "face": Inner(
+        says=(
+            "Names for faces that have none in the file. A selector may also stand where a joint, a "
+            "bolt, a support or a mass names a face."
+        ),
+        keys={
+            NAME: Inner(
+                says=(
+                    "The face for which all that is given holds gets NAME; it is an error where none or several fit."
+                ),
+                keys=SELECTOR,
+            )
+        },
+    ),
+    "snap": quantity("m", "Faces of a joint that are nowhere farther apart than this count as touching.", 0.0),
+    "leave_out": own(
+        'a list of parts, for example ["dowel 1", "dowel 2"]',
+        listed(WORDS, 0),
+        (
+            "Parts of the STEP file that are not meshed, such as dowels, or the bolts and nuts that "
+            "a [[bolt]] stands for."
+        ),
+        (),
+        read=_parts,
+    ),
+    "mesh": file("Mesh file, in place of step and size.", REQUIRED),
+    "unit": text('Unit of the coordinates of the mesh file, for example "mm"; needed with mesh.'),
+    "sets": Inner(
+        says="Element sets of the mesh file that are the parts, where its bodies are not.",
+        keys={NAME: text("Element set of the part NAME, or several joined by a plus sign.", REQUIRED)},
+    ),
+}

@@ -6,11 +6,13 @@ from typing import Any, Literal
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.form.form import Form
-from faying.study.keys.face import face_names
-from faying.study.keys.form import read_form
-from faying.study.keys.law import LawChoice
-from faying.study.keys.reader import MOST_FRICTION, Table
-from faying.study.keys.surface import SurfaceChoice
+from faying.study.keys.declared import NUMBER, Declared, Inner, own, quantity, text, truth, within
+from faying.study.keys.face import face_names, two_faces
+from faying.study.keys.form import FORM, read_form
+from faying.study.keys.law import LAW, LawChoice
+from faying.study.keys.reader import Table
+from faying.study.keys.surface import SURFACE, SurfaceChoice
+from faying.study.keys.values import MOST_FRICTION
 
 TANGENTIAL = Parameter("", "tangential over normal stiffness, k_t/k_n", 0, 2, "(]")
 
@@ -55,8 +57,8 @@ class JointChoice:
             table.faults.add(f"{table.where}.gap has become {table.where}.form.gap; rename the table")
             table.data.pop("gap")
         surface, law = table.table("surface"), table.table("law")
-        name = table.text("name", f"joint {index + 1}")
-        bonded = table.truth("bonded", False)
+        name = table.get("name", f"joint {index + 1}")
+        bonded = table.get("bonded")
         more = [key for key in table.data if key not in ("name", "faces", "bonded")]
         if bonded and more:
             table.faults.add(
@@ -66,10 +68,10 @@ class JointChoice:
         choice = cls(
             name=name,
             faces=face_names(table, "faces", name),
-            springs=table.text("springs", "per-area", ("per-area", "per-node")),
-            tangential=table.take("tangential", _tangential, None),
-            friction=table.within("friction", 0, MOST_FRICTION, None),
-            search_distance=table.quantity("search_distance", "m", None),
+            springs=table.get("springs"),
+            tangential=table.get("tangential"),
+            friction=table.get("friction"),
+            search_distance=table.get("search_distance"),
             surface=None if surface is None else SurfaceChoice.of(surface),
             law=None if law is None else LawChoice.of(law),
             form=read_form(table.table("form")),
@@ -82,7 +84,7 @@ class JointChoice:
 
 def read_joints(top: Table) -> tuple[tuple[JointChoice, ...], tuple[JointChoice, ...]]:
     """Take all [[joint]]: those that bolts press together, and those that are bonded."""
-    every = [JointChoice.of(table, index) for index, table in enumerate(top.tables("joint", required=True))]
+    every = [JointChoice.of(table, index) for index, table in enumerate(top.tables("joint"))]
     joints, bonds = (tuple(joint for joint in every if joint.bonded is bonded) for bonded in (False, True))
     if bonds and not joints:
         top.faults.add("every [[joint]] is bonded; Faying needs one at least that bolts press together")
@@ -90,3 +92,43 @@ def read_joints(top: Table) -> tuple[tuple[JointChoice, ...], tuple[JointChoice,
     if bonds and again:
         top.faults.add(f"two joints are called {again[0]!r}; give each a name of its own")
     return joints, bonds
+
+
+JOINT: Declared = {
+    "surface": Inner(says="A surface for this joint alone, with the keys of [surface].", keys=SURFACE, either=True),
+    "law": Inner(says="A law for this joint alone, with the keys of [law].", keys=LAW.keys, models=LAW.models),
+    "name": text("What tables call it.", "joint 1"),
+    "bonded": truth(
+        "The faces are welded or glued: their nodes are one. The joint has no pressure and no "
+        "law, and takes no other key but name and faces."
+    ),
+    "faces": two_faces("The two faces; the first is the rough one."),
+    "springs": text(
+        (
+            "Springs per area on both faces, or one at each pair of nodes, as in the JK paper; the "
+            "latter depends on the mesh."
+        ),
+        "per-area",
+        ("per-area", "per-node"),
+    ),
+    "tangential": own(
+        '"law", "mindlin", or k_t/k_n, above 0 and at most 2',
+        {"anyOf": [NUMBER, {"enum": ["law", "mindlin"]}]},
+        (
+            'Tangential stiffness: "law" takes that of the law, "mindlin" takes k_t/k_n = 2(1 - '
+            "nu)/(2 - nu), and a number is k_t/k_n itself; measured ratios reach from 0.1 to 0.7. "
+            "That of the law where it has one, else Mindlin's, if left out."
+        ),
+        read=_tangential,
+    ),
+    "friction": within(
+        0,
+        MOST_FRICTION,
+        (
+            "Coefficient at which the joint slips while the bolts are tightened, and in a backbone; "
+            "sticks everywhere where left out."
+        ),
+    ),
+    "search_distance": quantity("m", "How far apart faces may lie and still be a joint."),
+    "form": Inner(says="Form of the two faces together, as a gap. What is given adds up.", keys=FORM),
+}

@@ -1,7 +1,7 @@
 """[law]: which contact law, and its parameters as the law declares them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import MISSING, dataclass, field, fields
 from difflib import get_close_matches
 from typing import Literal
 
@@ -9,10 +9,12 @@ from faying.contact.auto import Choice, pick
 from faying.contact.build import AUTO, LawKind, build, check_entries, find, laws
 from faying.contact.inputs import RoughSurface
 from faying.contact.mates import Mates
-from faying.errors import InputError
+from faying.contact.parameter import TABLE
 from faying.materials import CATALOGUE, RIGID, ContactPair, Material
+from faying.study.keys.declared import WORDS, Inner, Key, of_parameter, own, text
 from faying.study.keys.reader import Table
 from faying.study.keys.surface import Surface
+from faying.study.keys.values import text as read_text
 
 # D, G and area of a surface are written under [surface], where a scan would give them
 OF_SURFACE = ("D", "G", "scan_area")
@@ -32,8 +34,8 @@ class LawChoice:
     @classmethod
     def of(cls, table: Table) -> "LawChoice":
         """Read one [law] table."""
-        kind = table.take("model", lambda value, name: find(_text(value, name)), None)
-        counterbody = table.text("counterbody", "part", ("part", "rigid"))
+        kind = table.get("model")
+        counterbody = table.get("counterbody")
         if kind is None and "model" in table.data:
             return cls.unknown()
         kind = kind or find(cls.model)
@@ -110,12 +112,6 @@ class LawChoice:
         return ContactPair(rough, RIGID if self.counterbody == "rigid" else other)
 
 
-def _text(value: object, name: str) -> str:
-    if not isinstance(value, str):
-        raise InputError(f"{name} = {value!r} should be text in quotes")
-    return value
-
-
 def _note_misplaced(table: Table, kind: LawKind) -> bool:
     """Note keys that are entries of other laws, each with the laws that have it; whether there were some."""
     found = False
@@ -127,3 +123,28 @@ def _note_misplaced(table: Table, kind: LawKind) -> bool:
             table.data.pop(key)
             found = True
     return found
+
+
+def _of_laws() -> dict[str, dict[str, Key]]:
+    """What [law] takes with each law, with the defaults that the law has."""
+    out = {}
+    for law in laws().values():
+        defaults = {one.name: one.default for one in fields(law) if one.default is not MISSING}  # type: ignore[arg-type]
+        entries = {name: one for name, one in law.entries().items() if name not in OF_SURFACE and one.unit != TABLE}
+        out[law.name] = {name: of_parameter(one, defaults.get(name)) for name, one in entries.items()}
+    return out
+
+
+LAW = Inner(
+    says="The contact law of all joints without a law of their own.",
+    keys={
+        "model": own(
+            "text",
+            WORDS,
+            ('Label of the law; "auto" where left out, which solves the contact on the scan or takes the nearest law.'),
+            read=lambda value, name: find(read_text(value, name)),
+        ),
+        "counterbody": text("The other body is the part that is there, or rigid.", "part", ("part", "rigid")),
+    },
+    models=_of_laws,
+)

@@ -5,8 +5,23 @@ from typing import Any
 
 from faying.errors import InputError
 from faying.loads.load import MOST_INCREMENTS, NOTHING, Displacement, Force, Load, Pressure, Vector, in_order
-from faying.study.keys.face import face_name
-from faying.study.keys.reader import Table, number, point, quantity
+from faying.study.keys.declared import (
+    QUANTITY,
+    REQUIRED,
+    Declared,
+    Inner,
+    Key,
+    count,
+    listed,
+    own,
+    point,
+    quantity,
+    text,
+)
+from faying.study.keys.face import face_name, one_face
+from faying.study.keys.reader import Table
+from faying.study.keys.values import number
+from faying.study.keys.values import quantity as read_quantity
 
 LENGTH = '["0 mm", "0 mm", "0.1 mm"]'
 EXAMPLES = {"N": '["0 N", "0 N", "5 kN"]', "N*m": '["0 N*m", "20 N*m", "0 N*m"]', "m": LENGTH}
@@ -25,15 +40,15 @@ def read_loads(tables: Sequence[Table]) -> tuple[Load, ...]:
 
 
 def _read(table: Table) -> Load | None:
-    name = table.text("name")
+    name = table.get("name")
     forces = [_force(one, f"{table.where} force {k}") for k, one in enumerate(table.tables("force"), 1)]
     pressures = [_pressure(one, f"{table.where} pressure {k}") for k, one in enumerate(table.tables("pressure"), 1)]
     moves = [_move(one, f"{table.where} displacement {k}") for k, one in enumerate(table.tables("displacement"), 1)]
-    acceleration = table.take("acceleration", _vector("m/s^2"), None) or NOTHING
-    heat = table.take("temperature", _changes, {})
-    combine = table.take("combine", _factors, {})
-    after = table.text("after", None)
-    increments = table.count("increments", 4, most=MOST_INCREMENTS)
+    acceleration = table.get("acceleration") or NOTHING
+    heat = table.get("temperature")
+    combine = table.get("combine")
+    after = table.get("after")
+    increments = table.get("increments")
     table.close()
     if name is None or None in forces or None in pressures or None in moves:
         return None
@@ -53,17 +68,17 @@ def _read(table: Table) -> Load | None:
 
 
 def _force(table: Table, label: str) -> Force | None:
-    face = face_name(table, "face", label, required=False)
-    force = table.take("force", _vector("N"), None) or NOTHING
-    moment = table.take("moment", _vector("N*m"), None) or NOTHING
-    place = table.take("point", point, None)
+    face = face_name(table, "face", label)
+    force = table.get("force") or NOTHING
+    moment = table.get("moment") or NOTHING
+    place = table.get("point")
     table.close()
     return table.made(lambda: Force(face, force=force, moment=moment, point=place))
 
 
 def _pressure(table: Table, label: str) -> Pressure | None:
     face = face_name(table, "face", label)
-    pressure = table.quantity("pressure", "Pa", positive=False)
+    pressure = table.get("pressure")
     table.close()
     if face is None or pressure is None:
         return None
@@ -72,7 +87,7 @@ def _pressure(table: Table, label: str) -> Pressure | None:
 
 def _move(table: Table, label: str) -> Displacement | None:
     face = face_name(table, "face", label)
-    displacement = table.take("displacement", _vector("m"))
+    displacement = table.get("displacement")
     table.close()
     if face is None or displacement is None:
         return None
@@ -83,7 +98,7 @@ def _vector(unit: str) -> Callable[[Any, str], Vector]:
     def convert(value: Any, name: str) -> Vector:
         if not isinstance(value, list) or len(value) != 3:
             raise InputError(f"{name} = {value!r} should be three components, for example {EXAMPLES[unit]}")
-        x, y, z = (quantity(one, unit, name, positive=False) for one in value)
+        x, y, z = (read_quantity(one, unit, name, positive=False) for one in value)
         return x, y, z
 
     return convert
@@ -92,10 +107,78 @@ def _vector(unit: str) -> Callable[[Any, str], Vector]:
 def _changes(value: Any, name: str) -> dict[str, float]:
     if not isinstance(value, dict) or not value:
         raise InputError(f'{name} = {value!r} should be changes by part or bolt, for example {{plate = "60 K"}}')
-    return {key: quantity(one, "K", f"{name}.{key}", positive=False) for key, one in value.items()}
+    return {key: read_quantity(one, "K", f"{name}.{key}", positive=False) for key, one in value.items()}
 
 
 def _factors(value: Any, name: str) -> dict[str, float]:
     if not isinstance(value, dict) or not value:
         raise InputError(f'{name} = {value!r} should be factors by load, for example {{"10 g" = 1.5}}')
     return {key: number(one, f"{name}.{key}") for key, one in value.items()}
+
+
+def _three(unit: str, says: str, default: Any = None) -> Key:
+    """Three components with units."""
+    kind = f"three components, for example {EXAMPLES[unit]}"
+    return own(kind, listed(QUANTITY, 3, 3), says, default, read=_vector(unit), unit=unit)
+
+
+LOAD: Declared = {
+    "name": text("What tables call the case.", REQUIRED),
+    "force": Inner(
+        says="A force and a moment on a face, or a force at a point.",
+        many=True,
+        keys={
+            "face": one_face("The face, over which the force is spread without stiffening it."),
+            "force": _three("N", "Components along x, y and z."),
+            "moment": _three("N*m", "Components about x, y and z; on a face alone."),
+            "point": point(
+                "Point that the force goes through, also apart from the face; the centre of the face "
+                "where left out. Without a face: the force acts on the node nearest to it."
+            ),
+        },
+    ),
+    "pressure": Inner(
+        says="An even pressure on a face.",
+        many=True,
+        keys={
+            "face": one_face("The face.", REQUIRED),
+            "pressure": quantity("Pa", "Above 0 it presses on the face, below 0 it pulls.", REQUIRED, positive=False),
+        },
+    ),
+    "displacement": Inner(
+        says="A displacement of a face that a [[support]] without stiffness holds.",
+        many=True,
+        keys={
+            "face": one_face("The face.", REQUIRED),
+            "displacement": _three(
+                "m", "Components along x, y and z; 0 where the support leaves the face free.", REQUIRED
+            ),
+        },
+    ),
+    "acceleration": _three(
+        "m/s^2",
+        (
+            "Acceleration of the whole structure along x, y and z; the inertia of parts, bolts and "
+            "masses pulls the other way."
+        ),
+    ),
+    "temperature": own(
+        'changes by part or bolt, for example {plate = "60 K"}',
+        {"type": "object", "additionalProperties": QUANTITY},
+        "Change of temperature since the bolts were tightened, by the name of the part or bolt.",
+        {},
+        read=_changes,
+        unit="K",
+    ),
+    "combine": own(
+        'factors by load, for example {"10 g" = 1.5}',
+        {"type": "object", "additionalProperties": {"type": "number"}},
+        "Factors by the names of other cases, whose loads act here too.",
+        {},
+        read=_factors,
+    ),
+    "after": text("Case from whose state this one starts: its load gives way to this one. The preload where left out."),
+    "increments": count(
+        "Into how many parts the way to the load is cut where a joint has friction.", 4, most=MOST_INCREMENTS
+    ),
+}

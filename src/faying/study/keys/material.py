@@ -4,27 +4,16 @@ from collections.abc import Mapping
 
 from faying.errors import InputError
 from faying.materials import CATALOGUE, STIFFEST, Material
-from faying.study.keys.reader import MOST_FRICTION, Table
+from faying.study.keys.declared import NAME, REQUIRED, Declared, Inner, number, quantity, text, within
+from faying.study.keys.reader import Table
+from faying.study.keys.values import MOST_FRICTION
 
 
 def read_materials(top: Table) -> dict[str, Material]:
     """Return the catalogue with the materials of the study."""
     materials = dict(CATALOGUE)
     for name, table in top.named("material").items():
-        fields = {
-            "E": table.quantity("E", "Pa"),
-            "nu": table.number("nu"),
-            "density": table.quantity("density", "kg/m^3"),
-            "yield_strength": table.quantity("yield_strength", "Pa", None),
-            "hardness": table.quantity("hardness", "Pa", None),
-            "brinell": table.quantity("brinell", "Pa", None),
-            "friction": table.within("friction", 0, MOST_FRICTION, None),
-            "conductivity": table.quantity("conductivity", "W/(m*K)", None),
-            "resistivity": table.quantity("resistivity", "ohm*m", None),
-            "bearing_limit": table.quantity("bearing_limit", "Pa", None),
-            "expansion": table.quantity("expansion", "1/K", None, positive=False),
-            "source": table.text("source", ""),
-        }
+        fields = {key: table.get(key) for key in MATERIAL}
         table.close()
         if None not in (fields["E"], fields["nu"], fields["density"]):
             try:
@@ -37,8 +26,8 @@ def read_materials(top: Table) -> dict[str, Material]:
 def read_parts(top: Table, materials: Mapping[str, Material]) -> dict[str, str]:
     """Return the name of the material of each part."""
     parts: dict[str, str] = {}
-    for name, table in top.named("part", required=True).items():
-        material = table.text("material")
+    for name, table in top.named("part").items():
+        material = table.get("material")
         if material is not None and material not in materials:
             known = ", ".join(f'"{m}"' for m in materials)
             top.faults.add(f'part.{name}.material = "{material}" is unknown; known are {known}')
@@ -54,3 +43,48 @@ def read_parts(top: Table, materials: Mapping[str, Material]) -> dict[str, str]:
             parts[name] = material
         table.close()
     return parts
+
+
+MATERIAL: Declared = {
+    "E": quantity("Pa", "Young's modulus.", REQUIRED),
+    "nu": number("Poisson's ratio, below 0.495 for parts.", REQUIRED),
+    "density": quantity("kg/m^3", "Density.", REQUIRED),
+    "yield_strength": quantity("Pa", "Yield strength; gives the hardness where that is left out."),
+    "hardness": quantity(
+        "Pa",
+        (
+            "Hardness of the analytic laws of asperities; 2.8 times the yield strength where left "
+            "out. Without brinell it is the hardness of every law, the same for spots of every size."
+        ),
+    ),
+    "brinell": quantity(
+        "Pa",
+        (
+            'Brinell hardness as a pressure: HB 170 is "1.67 GPa". From 1.3 to 7.6 GPa the solved '
+            "contact and the laws of conductance take the Vickers hardness that indentations of each "
+            "size then have; outside of that, this one number."
+        ),
+    ),
+    "friction": within(0, MOST_FRICTION, "Static coefficient of friction, for the contact law."),
+    "conductivity": quantity("W/(m*K)", "Thermal conductivity; gives the conductance of joints."),
+    "resistivity": quantity("ohm*m", "Electrical resistivity; gives the conductance of joints."),
+    "bearing_limit": quantity("Pa", "Pressure that it bears under a bolt head (p_G of VDI 2230)."),
+    "expansion": quantity(
+        "1/K", "Coefficient of linear thermal expansion; a load that changes temperatures needs it.", positive=False
+    ),
+    "source": text("Where the numbers come from.", ""),
+}
+MATERIALS = Inner(
+    says="Materials of your own, in addition to those of the catalogue.",
+    keys={NAME: Inner(says="One material; parts, bolts and washers name it.", keys=MATERIAL)},
+)
+PARTS = Inner(
+    says="What each part is made of.",
+    required=True,
+    keys={
+        NAME: Inner(
+            says="The part with that name in the geometry.",
+            keys={"material": text("A material of the catalogue or of the study.", REQUIRED)},
+        )
+    },
+)

@@ -7,7 +7,25 @@ from typing import Any
 
 from faying.errors import InputError
 from faying.joint.modal import MOST_MODES, SOLVERS, ModesChoice
-from faying.study.keys.reader import MOST_LOSS, Table, direction, point, quantity
+from faying.study.keys.declared import (
+    QUANTITY,
+    REQUIRED,
+    WORDS,
+    Declared,
+    Inner,
+    count,
+    direction,
+    listed,
+    own,
+    point,
+    quantity,
+    text,
+    truth,
+    within,
+)
+from faying.study.keys.reader import Table
+from faying.study.keys.values import MOST_LOSS
+from faying.study.keys.values import quantity as read_quantity
 
 MOST_POINTS, MOST_PASSES = 1_000_000, 100
 Point = tuple[float, float, float]
@@ -17,14 +35,7 @@ def read_modes(table: Table | None) -> ModesChoice:
     """Read [modes]."""
     if table is None:
         return ModesChoice()
-    choice = ModesChoice(
-        count=table.count("count", 10, most=MOST_MODES),
-        damping=table.text("damping", "hysteretic", ("hysteretic", "viscous")),
-        solver=table.text("solver", None, SOLVERS),
-        shift_frequency=table.quantity("shift_frequency", "Hz", None),
-        levels=table.take("levels", _levels, ModesChoice.levels),
-        intervals=table.truth("intervals", True),
-    )
+    choice = ModesChoice(**{key: table.get(key) for key in MODES})
     table.close()
     return choice
 
@@ -33,7 +44,7 @@ def _levels(value: Any, name: str) -> tuple[float, ...]:
     """Accelerations, rising; none where empty."""
     if not isinstance(value, list):
         raise InputError(f'{name} = {value!r} should be a list, such as ["0.1 m/s^2", "1 m/s^2", "10 m/s^2"], or []')
-    found = tuple(quantity(one, "m/s^2", name) for one in value)
+    found = tuple(read_quantity(one, "m/s^2", name) for one in value)
     if any(b <= a for a, b in pairwise(found)):
         raise InputError(f"{name} = {value!r}: levels must rise")
     return found
@@ -55,14 +66,14 @@ class ResponseChoice:
         """Read [response]."""
         if table is None:
             return None
-        first, last = table.quantity("from", "Hz"), table.quantity("to", "Hz")
+        first, last = table.get("from"), table.get("to")
         if first is not None and last is not None and not first < last:
             table.faults.add(f"response: from = {first:g} Hz must lie below to = {last:g} Hz")
         sides: list[tuple[tuple[Point, Point], ...]] = []
         for key in ("input", "output"):
             pairs = []
-            for one in table.tables(key, required=True):
-                pairs.append((one.take("point", point), one.take("direction", direction)))
+            for one in table.tables(key):
+                pairs.append((one.get("point"), one.get("direction")))
                 one.close()
             sides.append(tuple(pairs))
         choice = cls(
@@ -70,8 +81,8 @@ class ResponseChoice:
             outputs=sides[1],
             first=first,
             last=last,
-            points=table.count("points", 1000, most=MOST_POINTS),
-            structural_loss=table.within("structural_loss", 0, MOST_LOSS, 0.0),
+            points=table.get("points"),
+            structural_loss=table.get("structural_loss"),
         )
         table.close()
         return choice
@@ -87,6 +98,62 @@ def read_order(table: Table | None, names: Sequence[str]) -> tuple[int, ...] | N
             raise InputError(f"{name} = {value!r} should name every bolt: {', '.join(map(repr, names))}")
         return tuple(names.index(v) for v in value)
 
-    found, passes = table.take("order", order), table.count("passes", 1, most=MOST_PASSES)
+    found, passes = table.take("order", order), table.get("passes")
     table.close()
     return None if found is None else found * passes
+
+
+MODES: Declared = {
+    "count": count("Number of elastic modes.", 10, most=MOST_MODES),
+    "damping": text(
+        (
+            "Loss of the joints: the same energy per cycle at every frequency, or dampers as in the "
+            "JK paper, which depend on the mesh."
+        ),
+        "hysteretic",
+        ("hysteretic", "viscous"),
+    ),
+    "solver": text(
+        (
+            'Factorisation; the fastest one found where left out. "mpi" is none, but multigrid over '
+            "as many processes as FAYING_MPI_PROCESSES says, else as there are cores."
+        ),
+        None,
+        SOLVERS,
+    ),
+    "shift_frequency": quantity("Hz", "Frequency about which modes are sought; chosen where left out."),
+    "levels": own(
+        'a list, such as ["0.1 m/s^2", "1 m/s^2", "10 m/s^2"], or []',
+        listed(QUANTITY, 0),
+        ("Accelerations of the point that moves most, rising, at which damping and frequency are found; [] for none."),
+        ModesChoice.levels,
+        read=_levels,
+        unit="m/s^2",
+    ),
+    "intervals": truth(
+        "Whether each frequency has its interval, and waves are drawn where faces have them.",
+        True,
+    ),
+}
+TIGHTENING: Declared = {
+    "order": own("a list that names every bolt", listed(WORDS, 1), "The names of all bolts, in their order.", REQUIRED),
+    "passes": count("How often the order is gone through.", 1, most=MOST_PASSES),
+}
+RESPONSE: Declared = {
+    "from": quantity("Hz", "First frequency.", REQUIRED),
+    "to": quantity("Hz", "Last frequency.", REQUIRED),
+    **{
+        side: Inner(
+            says=says,
+            many=True,
+            required=True,
+            keys={"point": point(where, REQUIRED), "direction": direction(along, REQUIRED)},
+        )
+        for side, says, where, along in (
+            ("input", "A point and a direction of a force.", "The point.", "The direction."),
+            ("output", "A point and a direction of a motion.", "The point.", "The direction."),
+        )
+    },
+    "points": count("Number of frequencies.", 1000, most=MOST_POINTS),
+    "structural_loss": within(0, MOST_LOSS, "Loss factor of the parts themselves.", 0.0),
+}

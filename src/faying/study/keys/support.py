@@ -4,20 +4,16 @@ from typing import Any
 
 from faying.errors import InputError
 from faying.joint.attachments import PointMass, Support
-from faying.study.keys.face import face_name
-from faying.study.keys.reader import Table, point
+from faying.study.keys.declared import REQUIRED, Declared, listed, own, point, quantity
+from faying.study.keys.face import face_name, one_face
+from faying.study.keys.reader import Table
 
 
 def read_support(table: Table) -> Support | None:
     """Read one [[support]]; None where its faults leave none."""
 
-    def axes(value: Any, name: str) -> tuple[str, ...]:
-        if not isinstance(value, list) or not value or any(v not in ("x", "y", "z") for v in value):
-            raise InputError(f'{name} = {value!r} should be some of "x", "y", "z" in a list')
-        return tuple(value)
-
-    face, directions = face_name(table, "face", table.where), table.take("directions", axes, ("x", "y", "z"))
-    stiffness = table.quantity("stiffness", "Pa/m", None)
+    face, directions = face_name(table, "face", table.where), table.get("directions")
+    stiffness = table.get("stiffness")
     table.close()
     if face is None:
         return None
@@ -26,10 +22,35 @@ def read_support(table: Table) -> Support | None:
 
 def read_mass(table: Table) -> PointMass | None:
     """Read one [[mass]]; None where its faults leave none."""
-    mass, face = table.quantity("mass", "kg"), face_name(table, "face", table.where, required=False)
-    place = table.take("point", point, None)
-    offset = table.take("offset", point, (0.0, 0.0, 0.0))
+    mass, face = table.get("mass"), face_name(table, "face", table.where)
+    place = table.get("point")
+    offset = table.get("offset")
     table.close()
     if mass is None:
         return None
     return table.made(lambda: PointMass(mass=mass, face=face, point=place, offset=offset))
+
+
+def _axes(value: Any, name: str) -> tuple[str, ...]:
+    if not isinstance(value, list) or not value or any(v not in ("x", "y", "z") for v in value):
+        raise InputError(f'{name} = {value!r} should be some of "x", "y", "z" in a list')
+    return tuple(value)
+
+
+SUPPORT: Declared = {
+    "face": one_face("The face.", REQUIRED),
+    "directions": own(
+        'some of "x", "y", "z" in a list',
+        listed({"enum": ["x", "y", "z"]}, 1, 3),
+        "Directions in which it is held.",
+        ("x", "y", "z"),
+        read=_axes,
+    ),
+    "stiffness": quantity("Pa/m", "Stiffness per area of an elastic foundation; rigid where left out."),
+}
+MASS: Declared = {
+    "mass": quantity("kg", "The mass.", REQUIRED),
+    "face": one_face("The face that carries it."),
+    "point": point("The point that carries it, in place of a face."),
+    "offset": point("From there to its centre of gravity.", (0.0, 0.0, 0.0)),
+}

@@ -10,6 +10,7 @@ from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.two_faces import COUNTERS, Counter, Faces
 from faying.errors import InputError
 from faying.form.waviness import ScanWaves
+from faying.study.keys.declared import QUANTITY, Declared, file, number, own, quantity, text
 from faying.study.keys.reader import Table
 from faying.surface.fractal import FractalFit
 from faying.surface.read import read_scan
@@ -39,15 +40,7 @@ class SurfaceChoice:
     def of(cls, table: Table) -> "SurfaceChoice":
         """Read one [surface] table."""
         choice = cls(
-            scan=table.file("scan", None),
-            xy_unit=table.text("xy_unit", None),
-            z_unit=table.text("z_unit", None),
-            size=table.take("size", _lengths, None),
-            spacing=table.take("spacing", _lengths, None),
-            method=table.text("method", "psd"),
-            D=table.number("D", None),
-            G=table.quantity("G", "m", None),
-            scan_area=table.quantity("scan_area", "m^2", None),
+            **{key: table.get(key) for key in SURFACE if key != "counter"},
             counter=_counter(table),
         )
         if "scan" not in table.data:
@@ -90,13 +83,13 @@ class SurfaceChoice:
 def _counter(table: Table) -> str:
     value = table.data.get("counter", "same")
     if value in COUNTERS:
-        return table.text("counter", "same") or "same"
+        return str(table.get("counter"))
     if isinstance(value, str) and not (table.faults.folder / value).is_file():
         table.faults.add(
             f'{table.where}.counter = "{value}": no such file; give the scan of the other face, "same" or "smooth"'
         )
         table.data.pop("counter")
-    return str(table.file("counter", "same"))
+    return str(table.existing("counter"))
 
 
 def _lengths(value: Any, name: str) -> tuple[float, float] | float:
@@ -191,3 +184,31 @@ class Surface:
 
 
 NO_SURFACE = Surface(faces=None, origin="none: the contact law brings its own heights")
+
+LENGTHS = 'text, for example "4 mm x 3 mm"'
+SURFACE: Declared = {
+    "scan": file("Scan of one face: X3P, text, or an instrument's format."),
+    "xy_unit": text("Unit of x and y, where the file states none."),
+    "z_unit": text("Unit of the heights, where the file states none."),
+    "size": own(
+        LENGTHS, QUANTITY, "Size of the scan, where the file states neither size nor spacing.", read=_lengths, unit="m"
+    ),
+    "spacing": own(
+        LENGTHS,
+        QUANTITY,
+        "Spacing of the points, where the file states neither size nor spacing.",
+        read=_lengths,
+        unit="m",
+    ),
+    "method": text("Estimator of D and G.", "psd"),
+    "D": number("Fractal dimension of both faces together, between 2 and 3."),
+    "G": quantity("m", "Fractal roughness of both faces together, in the convention of Yan and Komvopoulos."),
+    "scan_area": quantity("m^2", "Area of the scan that D and G come from."),
+    "counter": text(
+        (
+            'The other face: "same" (alike in its statistics, unrelated point by point), "smooth", '
+            "or the file of its scan."
+        ),
+        "same",
+    ),
+}

@@ -1,6 +1,8 @@
 """The hammer test of a study: a list of frequencies, or a file of modes or FRFs."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from typing import Any, Literal
 
@@ -8,7 +10,12 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.joint.loads import preload_index
-from faying.study.keys.reader import Table, direction, point, quantity
+from faying.study.keys.declared import QUANTITY, REQUIRED, WORDS, Declared, file, listed, number, own, quantity, text
+from faying.study.keys.reader import Table
+from faying.study.keys.values import direction as read_direction
+from faying.study.keys.values import point as read_point
+from faying.study.keys.values import quantity as read_quantity
+from faying.study.keys.values import text as read_text
 from faying.typing import Array, Index
 
 QUANTITIES = ("receptance", "mobility", "accelerance")
@@ -89,24 +96,19 @@ def _listed(table: Table, loads: int) -> TestChoice:
             raise InputError(
                 f"{name} has rows of {some} frequencies; give the same modes, one or more, at each preload"
             )
-        return tuple(tuple(quantity(v, "Hz", name) for v in row) for row in value)
-
-    def points(value: Any, name: str) -> tuple[tuple[float, float, float], ...]:
-        if not isinstance(value, list) or not value:
-            raise InputError(f"{name} should be a list of points, each three lengths")
-        return tuple(point(v, name) for v in value)
+        return tuple(tuple(read_quantity(v, "Hz", name) for v in row) for row in value)
 
     frequencies = table.take("frequencies", rows) or ()
     return TestChoice(
-        source=table.text("source", ""),
+        source=table.get("source"),
         frequencies=frequencies,
         losses=_losses(table, [len(row) for row in frequencies]),
-        published=table.take("published", rows, None),
-        published_name=table.text("published_name", "published"),
-        kind=table.text("kind", "test", ("test", "model")),
-        direction=table.take("direction", direction) or (1.0, 0.0, 0.0),
-        points=table.take("points", points) or (),
-        threshold=table.number("threshold", 0.1),
+        published=table.take("published", rows),
+        published_name=table.get("published_name"),
+        kind=table.get("kind"),
+        direction=table.get("direction") or (1.0, 0.0, 0.0),
+        points=table.take("points", _points, REQUIRED) or (),
+        threshold=table.get("threshold"),
     )
 
 
@@ -128,7 +130,7 @@ def _losses(table: Table, modes: list[int]) -> tuple[tuple[float, ...], ...] | N
 
 def _share(value: Any, name: str) -> float:
     """A positive share as a plain number or in percent; nan where nothing was measured."""
-    found = quantity(value, "", name) if isinstance(value, str) else value
+    found = read_quantity(value, "", name) if isinstance(value, str) else value
     if isinstance(found, bool) or not isinstance(found, int | float) or not (0 < found < 2 or found != found):
         raise InputError(
             f'{name} has {value!r}; give a plain number above 0, for example 2e-3, or "0.2 %"; nan for none'
@@ -138,30 +140,101 @@ def _share(value: Any, name: str) -> float:
 
 def _file(table: Table, loads: tuple[float, ...]) -> HammerChoice:
     def load(value: Any, name: str) -> int:
-        wanted = quantity(value, "N", name)
+        wanted = read_quantity(value, "N", name)
         index = preload_index(loads, wanted)
         if index is None:
             known = ", ".join(f"{v / 1e3:g} kN" for v in loads)
             raise InputError(f"{name} = {wanted / 1e3:g} kN is no preload of the study; its first bolt has {known}")
         return index
 
-    def share(value: Any, name: str, most: float) -> float:
+    table.take("frequencies", lambda _value, _name: None, None)
+    return HammerChoice(
+        file=table.get("file") or Path(),
+        load=table.take("load", load, len(loads) - 1),
+        source=table.get("source"),
+        points=table.existing("points"),
+        frame=table.get("frame"),
+        length_unit=table.get("length_unit"),
+        direction=table.take("direction", _axis, None),
+        quantity=table.get("quantity"),
+        tolerance=table.get("tolerance"),
+        least_mac=table.get("least_mac"),
+        greatest_shift=table.get("greatest_shift"),
+    )
+
+
+def _points(value: Any, name: str) -> tuple[tuple[float, float, float], ...]:
+    if not isinstance(value, list) or not value:
+        raise InputError(f"{name} should be a list of points, each three lengths")
+    return tuple(read_point(one, name) for one in value)
+
+
+def _axis(value: Any, name: str) -> str:
+    return read_text(value, name, ("x", "y", "z"))
+
+
+def _above_zero(most: float) -> Callable[[Any, str], float]:
+    """A plain number above 0, up to a greatest."""
+
+    def read(value: Any, name: str) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= most:
-            end = f" and at most {most:g}" if most < float("inf") else ""
+            end = f" and at most {most:g}" if most < inf else ""
             raise InputError(f"{name} = {value!r} should be a plain number above 0{end}, for example 0.3")
         return float(value)
 
-    table.take("frequencies", lambda _value, _name: None, None)
-    return HammerChoice(
-        file=table.file("file") or Path(),
-        load=table.take("load", load, len(loads) - 1),
-        source=table.text("source", ""),
-        points=table.file("points", None),
-        frame=table.file("frame", None),
-        length_unit=table.text("length_unit", None),
-        direction=table.text("direction", None, ("x", "y", "z")),
-        quantity=table.text("quantity", None, QUANTITIES),
-        tolerance=table.quantity("tolerance", "m", None),
-        least_mac=table.take("least_mac", lambda value, name: share(value, name, 1.0), 0.5),
-        greatest_shift=table.take("greatest_shift", lambda value, name: share(value, name, float("inf")), 0.3),
-    )
+    return read
+
+
+FREQUENCIES = "one list of frequencies for each preload"
+NUMBERS = "one list for each preload, a number for each frequency"
+EACH = listed(listed(QUANTITY, 1), 1)
+LOSSES = listed(listed({"type": ["number", "string"]}, 1), 1)
+TEST: Declared = {
+    "frequencies": own(FREQUENCIES, EACH, "Measured frequencies, a list for each preload.", REQUIRED, unit="Hz"),
+    "source": text("Words for the report.", ""),
+    "loss_factors": own(
+        NUMBERS,
+        LOSSES,
+        ("Measured loss factors, a number for each frequency, nan for none: `faying identify` uses them."),
+    ),
+    "damping_ratios": own(
+        NUMBERS, LOSSES, "Measured damping ratios, in place of loss factors, which are twice as much."
+    ),
+    "published": own(FREQUENCIES, EACH, "Frequencies of a published model, a list for each preload.", unit="Hz"),
+    "published_name": text("What tables call that model.", "published"),
+    "kind": text("Whether the frequencies were measured or are those of a model.", "test", ("test", "model")),
+    "direction": own(
+        'three numbers, for example [1, 0, 0]; with file "x", "y" or "z"',
+        {"anyOf": [listed({"type": "number"}, 3, 3), {"enum": ["x", "y", "z"]}]},
+        "Direction of the hammer or sensor.",
+        REQUIRED,
+        read=read_direction,
+    ),
+    "points": own(
+        "a list of points, each three lengths; with file the name of a table of them",
+        {"anyOf": [listed(listed(QUANTITY, 3, 3), 1), WORDS]},
+        "Where the hammer hits or the sensor sits.",
+        unit="m",
+    ),
+    "threshold": number("Share of the largest motion from which the test sees a mode.", 0.1),
+    "file": file("Universal file of modes or FRFs, in place of frequencies.", REQUIRED),
+    "load": own("quantity [N]", QUANTITY, "The preload to compare at; the last where left out.", unit="N"),
+    "frame": file("Table of points of the test with their place in the model."),
+    "length_unit": text("Unit of the positions, where the file states none."),
+    "quantity": text("What the FRFs are, where the file does not say.", None, QUANTITIES),
+    "tolerance": quantity("m", "Largest distance between a point of the test and the outline."),
+    "least_mac": own(
+        "a plain number above 0 and at most 1, for example 0.3",
+        {"type": "number"},
+        "Least MAC of a pair of modes.",
+        0.5,
+        read=_above_zero(1.0),
+    ),
+    "greatest_shift": own(
+        "a plain number above 0, for example 0.3",
+        {"type": "number"},
+        "Greatest relative difference of frequency in a pair.",
+        0.3,
+        read=_above_zero(inf),
+    ),
+}

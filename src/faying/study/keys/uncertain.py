@@ -16,7 +16,8 @@ from faying.form.form import PARAMETERS as SHAPES
 from faying.form.form import VARIED
 from faying.materials import Material
 from faying.study.keys.joint import JointChoice
-from faying.study.keys.reader import Faults, quantity
+from faying.study.keys.reader import Faults
+from faying.study.keys.values import quantity
 from faying.study.keys.varied import swept
 
 # short keys, and what they stand for

@@ -5,6 +5,7 @@ from typing import Any
 from faying.contact.parameter import Parameter
 from faying.form.machining import GAUSSIAN, PROCESSES, RMS_OF_FLATNESS
 from faying.form.waviness import OF_WAVES, PARAMETERS, Waviness
+from faying.study.keys.declared import Declared, of_parameter, text
 from faying.study.keys.reader import Table
 from faying.units import show
 
@@ -20,10 +21,7 @@ def read_waviness(table: Table | None) -> Waviness | None:
     """Read waviness = {...}; None where there is none, or no size that can be used."""
     if table is None:
         return None
-    sizes: dict[str, Any] = {name: table.parameter(name, parameter) for name, parameter in SIZES.items()}
-    sizes["process"] = table.text("process", None, tuple(PROCESSES))
-    sizes["from"] = table.text("from", None, ("scan",))
-    of_waves = {name: table.parameter(name, parameter) for name, parameter in OF_WAVES.items()}
+    sizes, of_waves = ({name: table.get(name) for name in names} for names in (WAYS, OF_WAVES))
     said = [way for way in WAYS if way in table.data]
     table.close()
     if len(said) != 1:
@@ -51,3 +49,15 @@ def _size(way: str, value: Any) -> dict[str, Any]:
     if way == "flatness":
         return {"Wq": RMS_OF_FLATNESS * value, "origin": f"a third of a flatness tolerance of {show(value, 'm')}"}
     return {"Wq": value if way == "Wq" else GAUSSIAN * value, "origin": f"{way} {show(value, 'm')}"}
+
+
+WAVINESS: Declared = {
+    **{name: of_parameter(parameter) for name, parameter in SIZES.items()},
+    "process": text(
+        "What made the faces; the size is the middle of the range of Wa that the process leaves.",
+        None,
+        tuple(PROCESSES),
+    ),
+    "from": text("The size is that of the scan's spectrum, continued to longer waves.", None, ("scan",)),
+    **{name: of_parameter(parameter) for name, parameter in OF_WAVES.items()},
+}

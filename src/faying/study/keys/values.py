@@ -1,0 +1,93 @@
+"""How one value of a study is read: its form, its unit, its range."""
+
+from typing import Any
+
+from faying import units
+from faying.errors import InputError
+
+MOST_FRICTION, MOST_LOSS = 10.0, 2.0  # coefficient of friction, loss factor [-]
+# least and greatest size that a number of a unit has in any bolted structure: beyond them a unit or a power is wrong
+RANGES = {
+    "m": (1e-12, 1e4),
+    "m^2": (1e-24, 1e6),
+    "N": (1e-6, 1e10),
+    "Pa": (1e-3, 1e14),
+    "Pa/m": (1.0, 1e20),
+    "Hz": (1e-6, 1e10),
+    "kg": (1e-12, 1e9),
+    "kg/m^3": (1e-3, 1e6),
+    "m/s^2": (1e-9, 1e9),
+    "N*m": (1e-9, 1e9),
+    "W/(m*K)": (1e-6, 1e6),
+}
+
+
+def quantity(value: Any, unit: str, name: str, *, positive: bool = True) -> float:
+    """Parse one quantity; InputError where the unit is missing or the value not positive."""
+    number = units.parse(value, unit, name=name)
+    if positive and number <= 0:
+        raise InputError(f'{name} = "{value}" must be positive')
+    least, greatest = RANGES.get(unit, (0.0, float("inf")))
+    if (number and not (least <= abs(number) or not positive)) or abs(number) > greatest:
+        low, high = (units.show(end, unit) for end in (least, greatest))
+        raise InputError(f'{name} = "{value}" is beyond what a bolted structure has, {low} to {high}; check its unit')
+    return number
+
+
+def point(value: Any, name: str) -> tuple[float, float, float]:
+    """Convert three lengths with units; InputError that shows the form."""
+    if not isinstance(value, list) or len(value) != 3:
+        raise InputError(f'{name} = {value!r} should be three lengths, for example ["0 mm", "10 mm", "0 mm"]')
+    x, y, z = (quantity(v, "m", name, positive=False) for v in value)
+    return x, y, z
+
+
+def direction(value: Any, name: str) -> tuple[float, float, float]:
+    """Convert three numbers that are not all zero; InputError that shows the form."""
+    if not isinstance(value, list) or len(value) != 3:
+        raise InputError(f"{name} = {value!r} should be three numbers, for example [1, 0, 0]")
+    x, y, z = (number(v, name) for v in value)
+    size = max(abs(x), abs(y), abs(z))
+    if size == 0:
+        raise InputError(f"{name} = {value!r} has no length")
+    if not 1e-9 < size < 1e9:  # whose square is 0 or infinite at the end
+        raise InputError(f"{name} = {value!r} is only a direction; write numbers about 1, for example [1, 0, 0]")
+    return x, y, z
+
+
+def number(value: Any, name: str) -> float:
+    """Check one plain number."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or value != value or abs(value) == float("inf"):
+        raise InputError(f"{name} = {value!r} should be a plain finite number, for example 0.3")
+    return float(value)
+
+
+def whole_number(value: Any, name: str, most: int = 1_000_000) -> int:
+    """A whole number from 1 to `most`. Raises InputError for any other value."""
+    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
+        raise InputError(f"{name} = {value!r} should be a whole number from 1 to {most:,}")
+    return value
+
+
+def within(value: Any, name: str, least: float, greatest: float) -> float:
+    """Check one plain number from the least to the greatest."""
+    found = number(value, name)
+    if not least <= found <= greatest:
+        raise InputError(f"{name} = {found:g} should be a plain number from {least:g} to {greatest:g}")
+    return found
+
+
+def truth(value: Any, name: str) -> bool:
+    """Check true or false."""
+    if not isinstance(value, bool):
+        raise InputError(f"{name} = {value!r} should be true or false, without quotes")
+    return value
+
+
+def text(value: Any, name: str, choices: tuple[str, ...] = ()) -> str:
+    """Check a text, one of some choices where they are given."""
+    if not isinstance(value, str):
+        raise InputError(f"{name} = {value!r} should be text in quotes")
+    if choices and value not in choices:
+        raise InputError(f'{name} = "{value}" should be one of {", ".join(choices)}')
+    return value
