@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import faying
+from faying.decks.conforming import bodies
 from faying.decks.vocabulary import ANSYS_LEFT_OUT, ANSYS_SURFACES, abaqus_kind, nastran_kind
 
 SQUARE = [(0, 0), (20, 0), (20, 20), (0, 20)]
@@ -216,6 +217,21 @@ def test_a_face_named_between_parts_that_share_nodes_is_a_joint(tmp_path, more, 
     mesh = read(tmp_path, column(more))
     assert len(mesh.bodies) == (2 if apart else 1)
     assert len(mesh.points) == (16 if apart else 12)
+
+
+@pytest.mark.parametrize("named", ["steel", "alu"])
+def test_a_face_named_on_one_side_alone_bonds_nothing(named):
+    """Two cubes on each other; the side between them as a face of one of them."""
+    blocks = {"steel": (np.arange(8)[None],), "alu": (np.arange(4, 12)[None],)}
+    faces = {"mid": (np.array([[4, 5, 6, 7]]),)}
+    assert bodies(blocks, faces, {"mid": named}, 12).pairs == ()
+    assert bodies(blocks, {}, {}, 12).pairs == (("steel", "alu"),)
+
+
+def test_a_set_of_the_file_keeps_its_name(tmp_path):
+    mesh = read(tmp_path, column("*NSET, NSET=steel.alu\n1,2,3,4\n"))
+    assert mesh.points[mesh.face_nodes("steel.alu")][:, 2] == pytest.approx(0)
+    assert mesh.is_shared("alu.steel")
 
 
 def test_a_face_on_a_part_of_what_is_shared_is_refused(tmp_path):

@@ -4,12 +4,18 @@ An answer is {"outcome": "read" | "refused" | "fault", "text": ...}. A crash, a 
 parent: the answer does not come.
 """
 
+import contextlib
+import io
 import json
 import resource
 import sys
+import tempfile
+import tomllib
 import traceback
 import warnings
 from pathlib import Path
+
+from faying import FayingError
 
 MEMORY = 2 * 2**30  # beyond what the imports take
 
@@ -21,7 +27,7 @@ def scan(path, **given):
 
 
 def uff(path):
-    from faying import FayingError, read_uff
+    from faying import read_uff
 
     file = read_uff(path)
     size = len(file.functions) + len(file.shapes)
@@ -102,7 +108,75 @@ def study(path):
     return 1
 
 
+def result(path):
+    import faying
+
+    return len(repr(faying.load(path)))
+
+
+def new(path):
+    """What `faying new` writes of a mesh file, read as a study."""
+    from faying.setup.new import Answers, find, study_text
+    from faying.study import Study
+
+    out = Path(path).with_name("new.toml")
+    text, _ = study_text(find(Path(path), "mm"), Path(path), out, Answers(scan=Path(path).with_name("a.csv")))
+    try:
+        Study.from_dict(tomllib.loads(text), folder=out.parent, where="new.toml")
+    except FayingError as fault:
+        missing = ("is missing",)  # what the user fills in
+        if not any(word in str(fault) for word in missing):
+            raise AssertionError(f"its own study is refused: {fault}") from None
+    return len(text)
+
+
+def command(words, path):
+    """A command in this process, in a folder of its own."""
+    from faying.cli.main import cli
+
+    with tempfile.TemporaryDirectory(dir=Path(path).parent) as folder:
+        filled = [str(path) if word == "FILE" else word.replace("OUT", folder) for word in words]
+        with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()):
+            cli.main(args=filled, standalone_mode=False)
+    return len(out.getvalue()) + 1
+
+
+def attach(path):
+    law = beside(path, "law-study.toml")
+    words = ["attach", "FILE", "--face-a", "p0.right", "--face-b", "p1.left", "--unit", "mm", "--law", law]
+    return command([*words, "--pressure", "5 MPa", "--to", "calculix", "--out", "OUT/joint"], path)
+
+
+def condense(path):
+    return command(["condense", "FILE", "--json", "--progress", "none"], path)
+
+
+def body(path):
+    """A request of the page with a mutated body, to each route that takes JSON; it answers, or names a fault."""
+    from faying.app.project import Project
+    from faying.app.routes import Request, Session, answered
+
+    data, size = Path(path).read_bytes(), 0
+    with tempfile.TemporaryDirectory(dir=Path(path).parent) as folder:
+        session = Session(Project.at(Path(folder)))
+        for route in ("look", "save", "check", "read", "faces", "scan"):
+            for method in ("POST", "PUT", "GET"):
+                request = Request(query={"name": "study.toml"}, body=io.BytesIO(data), size=len(data))
+                answer = answered(session, method, route, request)
+                size += len(answer or b"")
+                assert b"a fault inside Faying" not in (answer or b""), answer
+                if answer:
+                    json.loads(answer, parse_constant=lambda word: 1 / 0)  # JSON never holds NaN
+        session.close()
+    return size
+
+
 READERS = {
+    "result": result,
+    "new": new,
+    "attach": attach,
+    "condense": condense,
+    "body": body,
     "scan": scan,
     "scan units": lambda path: scan(path, xy_unit="mm", z_unit="um"),
     "scan matrix": lambda path: scan(path, z_unit="nm", size=40e-6),
@@ -124,7 +198,6 @@ READERS = {
 def main():
 
     import faying
-    from faying import FayingError
     from faying.surface import instruments
 
     instruments._library()

@@ -1,5 +1,6 @@
 """Small valid inputs of every reader, written into a folder; each with the name of its reader in `child.READERS`."""
 
+import json
 import zipfile
 
 import numpy as np
@@ -33,6 +34,25 @@ point = ["1 mm", "2 mm", "0 mm"]
 direction = [0, 0, 1]
 """
 )
+
+
+MORE_KEYS = """
+[uncertain]
+preload = { scatter = "25 %" }
+stiffness = { distribution = "lognormal", median = 1, sd_ln = 0.6 }
+E = "200 GPa +- 4 GPa"
+friction = "0.1 to 0.2"
+[backbone]
+mode = 2
+amplitude = ["50 m/s^2", "2000 m/s^2"]
+friction = 0.2
+harmonics = 1
+"""
+FORM = """
+[joint.form]
+crown_along = "2 um"
+crown_across = "1 um"
+"""
 
 
 SYSTEMS = (
@@ -189,6 +209,20 @@ def studies(folder):
     mesh = row([0.05, 0.04], [2, 1], kinds=("hex8", "hex8"), sections=((2, 1), (2, 1)), width=0.02, height=0.01)
     (folder / "model.inp").write_text(meshfiles.abaqus(mesh))
     yield "study", folder / "study.toml"
+    (folder / "more.toml").write_text(STUDY + MORE_KEYS)
+    yield "study", folder / "more.toml"
+    (folder / "form.toml").write_text(STUDY.replace("[[bolt]]", FORM + "[[bolt]]", 1))
+    yield "study", folder / "form.toml"
+    (folder / "law-study.toml").write_text(meshfiles.STUDY)
+    for name in ("attach.inp", "new.inp"):
+        (folder / name).write_text(meshfiles.abaqus(mesh) + ("" if name[0] == "a" else MORE))
+        yield name.partition(".")[0], folder / name
+    (folder / "condense.toml").write_text(meshfiles.STUDY)
+    yield "condense", folder / "condense.toml"
+    (folder / "body.json").write_text(
+        json.dumps({"text": STUDY, "name": "study.toml", "before": "", "arguments": ["run"]})
+    )
+    yield "body", folder / "body.json"
 
 
 def records(folder):
@@ -199,6 +233,12 @@ def records(folder):
         groups={"g": netcdf.Group(variables={"b": netcdf.Variable(dims=("n",), values=np.arange(20))})},
     )
     yield "netcdf", netcdf.write(folder / "tree.nc", tree)
+    from tests.helpers.results import small_result
+
+    yield "result", small_result().save(folder / "result.nc")
+    sealed = (folder / "result.nc").read_bytes()
+    (folder / "foreign.nc").write_bytes(sealed[:-78])  # without its checksum HDF5 reads it
+    yield "result", folder / "foreign.nc"
     yield "arrays", files.write_arrays(folder / "a.npz", {"a": np.arange(50.0), "b": np.eye(4)})
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from faying.distribution import Distribution
 from faying.errors import InputError
-from faying.identify.shares import shares
+from faying.identify.shares import _indices, shares
 from faying.identify.surrogate import Surrogate
 
 TURN = Distribution(kind="uniform", centre=0, spread=np.pi)
@@ -59,6 +59,67 @@ def test_of_a_surrogate():
 def test_one_input_has_all_of_it():
     found = shares(lambda x: x**2, [NORMAL])
     assert (found.first, found.total) == ([[1]], [[1]])
+
+
+def by_definition(f_A, f_B, f_AB):
+    """Table 2 (b) and (f) of Saltelli et al. 2010 for one output and one input, over the variance of both samples."""
+    variance = np.var(np.concatenate([f_A, f_B]))
+    centred = f_B - np.concatenate([f_A, f_B]).mean()
+    return np.mean(centred * (f_AB - f_A)) / variance, np.mean((f_AB - f_A) ** 2) / 2 / variance
+
+
+def test_a_weight_is_as_many_points():
+    """The indices of points with whole weights are those of the points repeated as often."""
+    rng = np.random.default_rng(3)
+    f_A, f_B, f_AB = rng.standard_normal((3, 24)) + np.array([[5], [2], [0]])
+    counts = rng.multinomial(24, np.full(24, 1 / 24))
+    found = _indices(f_A[None], f_B[None], f_AB[None, None], counts[None].astype(float))[:, 0, 0, 0]
+    centre = np.concatenate([f_A, f_B]).mean()  # the bootstrap keeps that of all points
+    a, b, ab = (np.repeat(f, counts) for f in (f_A, f_B, f_AB))
+    variance = np.var(np.concatenate([a, b]))
+    assert found == pytest.approx([np.mean((b - centre) * (ab - a)) / variance, by_definition(a, b, ab)[1]], rel=1e-12)
+
+
+def test_intervals_are_those_of_another_bootstrap():
+    """5 and 95 % of resampled points, over 40 outputs whose errors hardly correlate."""
+    waves = np.arange(1, 41)
+    asked = []
+
+    def outputs(x):
+        asked.extend(x)
+        return np.sin(waves * x[:, :1] + waves) + 0.7 * np.cos(waves * x[:, 1:])
+
+    found = shares(outputs, [TURN, TURN], count=256)
+    A, B = np.array(asked[:256]), np.array(asked[256:512])
+    f_A, f_B, f_AB = (outputs(x).T for x in (A, B, np.column_stack([B[:, 0], A[:, 1]])))
+    rng = np.random.default_rng(8)
+    low, high = np.zeros(40), np.zeros(40)
+    for k in range(40):
+        repeats = []
+        for _ in range(300):
+            some = rng.integers(0, 256, 256)
+            repeats.append(by_definition(f_A[k, some], f_B[k, some], f_AB[k, some])[1])
+        low[k], high[k] = np.quantile(repeats, [0.05, 0.95])
+    width = high - low
+    assert np.mean((found.total_interval[0, :, 0] - low) / width) == pytest.approx(0, abs=0.05)
+    assert np.mean((found.total_interval[1, :, 0] - high) / width) == pytest.approx(0, abs=0.05)
+
+
+def test_shares_far_above_one_are_refused():
+    """Where points do not stand for their input, as after an interrupt, a share of 400 % comes out."""
+    done = []
+
+    def changing(x):
+        done.append(len(x))
+        return (1.0 if len(done) <= 2 else 3.0) * x[:, :1]
+
+    with pytest.raises(InputError, match=r"a share of \d{3}% of the variance came out"):
+        shares(changing, [NORMAL, NORMAL], count=1024)
+
+
+def test_what_varies_by_a_millionth_has_shares():
+    found = shares(lambda x: 1e3 + 1e-3 * x[:, :1], [NORMAL, NORMAL], count=256)
+    assert found.first[0] == pytest.approx([1, 0], abs=0.05)
 
 
 def test_faults():

@@ -6,7 +6,7 @@ from scipy import special, stats
 
 from faying.distribution import Distribution
 from faying.errors import InputError
-from faying.identify.tempering import temper
+from faying.identify.tempering import _systematic, temper
 
 NORMAL = Distribution(kind="normal", centre=0, spread=1)
 
@@ -140,3 +140,13 @@ def test_the_same_seed_gives_the_same_samples_and_progress_is_told():
     assert not np.array_equal(runs[0].samples, runs[2].samples)
     assert told[0][0] == "sampling"
     assert told[-1] == ("sampling", 1000, 1000)
+
+
+def test_resampling_takes_each_particle_as_often_as_its_weight_says():
+    """Systematic resampling: floor or ceiling of n w, and n w on average; a weight of 0 is never taken."""
+    weights = np.array([0.0, 0.07, 0.31, 0.02, 0.6, 0.0])
+    rng = np.random.default_rng(2)
+    copies = np.array([np.bincount(_systematic(weights, rng), minlength=6) for _ in range(4000)])
+    assert np.all(np.abs(copies - 6 * weights) < 1)
+    assert np.all(copies[:, [0, 5]] == 0)
+    assert copies.mean(axis=0) == pytest.approx(6 * weights, abs=4 * 0.5 / np.sqrt(4000))

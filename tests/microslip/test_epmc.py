@@ -18,6 +18,8 @@ def test_one_harmonic_is_the_exact_integral_of_the_hysteresis(stiffness, limits)
     epmc = Epmc(model=oscillator(slider(stiffness, limits)), harmonics=1, samples=1024, most_sliding=2)
     curve = epmc.follow(0.05, 10.0, per_decade=3)
     assert curve.code == "amplitude"
+    assert 9.98 <= curve.points[-1].level < 10.5
+    assert epmc.follow(0.05, 11.0, known=curve.points, per_decade=3).points[-1].level >= 10.97
     for point in curve.points:
         in_phase, loss = describing(stiffness, limits, point.amplitude)
         squared = 3 + in_phase
@@ -32,6 +34,7 @@ def test_instants_of_a_cycle_count_by_their_square():
         point = Epmc(model=oscillator(slider(1.0, 0.5)), harmonics=1, samples=samples).solve(2.0)
         errors.append(abs(point.frequency - np.sqrt(3 + describing(1.0, 0.5, 2.0)[0])))
     assert errors[2] < errors[0] / 8
+    assert errors[0] < (2 * np.pi / 64) ** 2 / 12 / 8  # of the trapezoidal rule; 16 instants leave four times as much
 
 
 def test_no_limit_of_friction_leaves_the_linear_mode():
@@ -62,6 +65,29 @@ def test_what_the_joint_dissipates_is_what_the_damping_takes(harmonics):
         for k in (2 * h - 1, 2 * h)
     )
     assert point.dissipated[0].sum() == pytest.approx(by_damping, rel=1e-6)
+
+
+def test_what_a_point_says_follows_from_its_motion():
+    """Norm, level and share of other modes, from the Fourier coefficients in modal coordinates."""
+    model = chain([1.0, 0.7], [3.0, 2.0], slider(*IWAN))
+    row = np.array([0.3, -1.0])
+    point = Epmc(model=model, observer=row, tolerance=1e-11, samples=256).solve(0.6)
+    X, w = point.coordinates, point.frequency
+    assert w < 0.97 * model.modes[0][0]  # far from the linear limit
+    q = X @ model.mass @ model.modes[1]
+    assert (q[1:3] ** 2).sum() == pytest.approx(0.6**2, rel=1e-9)
+    assert abs(q[2, 1]) > 1e-4  # the other mode lags, so that the sine has a share of the norm
+    assert point.level == pytest.approx(w**2 * np.hypot(*(X[1:3] @ row)), rel=1e-9)
+    q[1:3, 0] = 0
+    assert point.other_modes == pytest.approx(np.sqrt((q[1:] ** 2).sum()) / 0.6, rel=1e-9)
+
+
+def test_a_curve_ends_where_a_fifth_of_the_motion_is_of_other_modes():
+    epmc = Epmc(model=oscillator(slider(*IWAN)))
+    point = epmc.solve(0.1)
+    assert epmc._ended(replace(point, other_modes=0.19), 1.0) is None
+    code, reason = epmc._ended(replace(point, other_modes=0.21), 1.0)
+    assert (code, "21%" in reason) == ("other-modes", True)
 
 
 def test_known_points_go_on_as_if_nothing_had_happened():

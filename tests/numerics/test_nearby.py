@@ -6,7 +6,7 @@ from scipy.sparse import diags_array
 
 from faying.errors import NotConverged
 from faying.numerics.modes import lowest_modes
-from faying.numerics.nearby import NearbyModes, nearby_modes
+from faying.numerics.nearby import NearbyModes, _sharper, nearby_modes
 from faying.numerics.solve import factorise
 
 N = 60
@@ -63,3 +63,53 @@ def test_another_factorisation_on_the_way_changes_nothing_but_the_rounds():
     found = near.under(changed, 6, tolerance=1e-12, rounds=4)
     wanted = lowest_modes(changed, M, 7, shift_frequency=5.0)
     assert found.frequencies[1:] == pytest.approx(wanted.frequencies[1:], rel=1e-11)
+
+
+def pair(soft, stiff):
+    """Two chains that nothing joins, each held at one end by a spring: no motion of one is of the other."""
+    k = np.full(N, 1e6)
+    k[0], k[N // 2] = soft, stiff
+    k[N // 2 + 1 :] *= 1e4  # the second hardly bends below the modes of the first
+    main = k + np.append(k[1:], 0)
+    main[N // 2 - 1] -= k[N // 2]
+    off = -k[1:].copy()
+    off[N // 2 - 1] = 0
+    return diags_array([off, main, off], offsets=[-1, 0, 1]).tocsr(), diags_array(np.full(N, 0.1)).tocsr()
+
+
+def at(fraction, count):
+    """Spring that puts the second chain, nearly rigid, between modes count - 1 and count of the first."""
+    squared = np.linalg.eigvalsh(pair(1e6, 1e10)[0].toarray()[: N // 2, : N // 2]) / 0.1
+    return 0.1 * (N // 2) * (squared[count - 2] + fraction * (squared[count - 1] - squared[count - 2]))
+
+
+BEYOND = at(0.5, 20)  # beyond the basis of the modes before
+
+
+@pytest.mark.parametrize("fraction", [0.2, 0.5, 0.8, 0.99])
+@pytest.mark.parametrize("count", [3, 6])
+def test_a_mode_of_another_symmetry_that_comes_down_is_found(fraction, count):
+    """None of the modes before has a motion of the second chain, so no residual of theirs shows it."""
+    K, M = pair(1e6, BEYOND)
+    modes = lowest_modes(K, M, 12, shift_frequency=5.0)
+    changed = pair(1e6, at(fraction, count))[0]
+    found = NearbyModes(modes, K, M, rigid=0).under(changed, count)
+    wanted = lowest_modes(changed, M, count, shift_frequency=5.0).frequencies
+    assert found.frequencies == pytest.approx(wanted, rel=1e-7)
+
+
+def test_it_is_found_after_a_basis_that_was_cut_back():
+    K, M = pair(1e6, BEYOND)
+    near = NearbyModes(lowest_modes(K, M, 12, shift_frequency=5.0), K, M, rigid=0, most=20)
+    for soft in (3e5, 1e5, 3e6):
+        near.under(pair(soft, BEYOND)[0], 6)
+    changed = pair(2e6, at(0.5, 4))[0]
+    wanted = lowest_modes(changed, M, 6, shift_frequency=5.0).frequencies
+    assert near.under(changed, 6).frequencies == pytest.approx(wanted, rel=1e-7)
+
+
+def test_the_residual_of_a_mode_near_another_must_be_smaller():
+    """Ten times the relative distance to the nearest, at most 1; neighbours nearer than the target do no harm."""
+    squared = np.array([1.0, 1.002, 3.0, 3.3, 9.0])
+    assert _sharper(squared, np.full(4, 1e-6)) == pytest.approx([0.02, 0.02 / 1.002, 1.0, 10 * 0.3 / 3.3], rel=1e-9)
+    assert _sharper(squared, np.full(2, 0.1)) == pytest.approx([1.0, 1.0])

@@ -74,7 +74,7 @@ def bodies(
     for k, a in enumerate(names):
         for b in names[k + 1 :]:
             met = np.intersect1d(skins[a], skins[b])
-            if len(met) and not np.isin(met, marked[a]).any() and not np.isin(met, marked[b]).any():
+            if len(met) and not np.isin(met, np.concatenate([marked[a], marked[b]])).any():
                 pairs.append((a, b))
                 counts.append(len(np.intersect1d(own[a], own[b])))
                 for one, two in ((a, b), (b, a)):

@@ -21,6 +21,7 @@ START = 1e-2  # residual of modes, as `lowest_modes` takes it, that are to be re
 REFINED = 1e-9  # estimated relative error of the squared frequencies of refined modes
 WATCHED = 4  # modes beyond those wanted that must have found their place above them
 PLACED = 1e-2  # estimated relative error of their squared frequencies
+SEEN = 0.9  # share of the changed unknowns that must have been looked at before
 EVERYWHERE = 6  # vectors of no symmetry that each new stiffness begins with
 SEED = 20261124
 LEAST = 1e-10  # share of a new vector that must be new
@@ -48,7 +49,7 @@ class NearbyModes:
         self.span = Span(mass, stiffness, modes.shapes)
         self.modes = replace(modes, shapes=modes.shapes[:, :0].copy())  # they are in the basis
         self.rigid, self._most = rigid, most
-        self._looked, self._random = False, np.random.default_rng(SEED)
+        self._looked, self._random = NOWHERE[0], np.random.default_rng(SEED)
         self._changed: tuple[Any, Any, Index] | None = None  # of the last stiffness
         self._at = NOWHERE
         self.diagonal = stiffness.diagonal() + modes.shift * mass.diagonal()
@@ -98,8 +99,8 @@ class NearbyModes:
         span = self.span
         first = None
         touched = self._change(stiffness)[1]
-        if len(touched) and not self._looked:  # else these are modes that have been looked for everywhere already
-            self.look_everywhere()
+        if len(touched) and np.isin(touched, self._looked).mean() < SEEN:  # else they have been looked for already
+            self.look_everywhere(touched)
         targets = np.full(count + WATCHED, PLACED)
         targets[:count] = tolerance
         errors, settled = np.ones(len(targets)), np.zeros(len(targets))
@@ -190,11 +191,13 @@ class NearbyModes:
                 self._changed = stiffness, change[touched][:, touched], touched
         return self._changed[1:]
 
-    def look_everywhere(self) -> None:
-        """Take new directions of all kinds into the basis.
+    def look_everywhere(self, touched: Index = NOWHERE[0]) -> None:
+        """Take new directions of all kinds into the basis, and what forces at the changed unknowns (k,) move.
 
         The residuals of modes of one symmetry have none of another: a mode that comes down from beyond the basis would
         be missed by all of them, and nothing would tell. Whoever goes to a stiffness far from those before asks again.
+        What a change moves is a response to forces where it acts: a part that hangs on the changed springs alone is
+        found by them, while in other directions all that is softer hides it.
         """
         mass, factor = self.span.mass, self.modes.factorisation
         found = self._random.standard_normal((mass.shape[0], EVERYWHERE))
@@ -202,7 +205,12 @@ class NearbyModes:
             found = factor.solve(product(mass, found))
             found /= np.sqrt(np.einsum("ij,ij->j", found, product(mass, found)))
         self.span.add(found, least=LEAST)
-        self._looked = True
+        if len(touched):
+            forces = np.zeros((mass.shape[0], min(EVERYWHERE, len(touched))))
+            forces[touched] = self._random.standard_normal((len(touched), forces.shape[1]))
+            moved = factor.solve(forces)
+            self.span.add(moved / np.sqrt(np.einsum("ij,ij->j", moved, product(mass, moved))), least=LEAST)
+            self._looked = touched
 
     def _found(self, values: Array, inner: Array, order: Index, error: Array, shapes: bool) -> Modes:
         return replace(
@@ -217,7 +225,7 @@ class NearbyModes:
         span = self.span
         if self._most is not None and span.vectors.shape[1] > self._most:
             span.turn(inner[:, : 3 * self._most // 4])
-            self._looked, self._at = False, NOWHERE
+            self._looked, self._at = NOWHERE[0], NOWHERE
 
 
 class Measure:

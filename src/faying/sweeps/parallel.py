@@ -1,11 +1,15 @@
 """Chunks of evaluations, here, in processes of this machine or on a Dask cluster."""
 
+import os
+import threading
+import time
 from collections.abc import Callable, Iterable, Sequence
 
 from faying.typing import Array
 
 Rows = dict[str, Array]
 Work = Callable[[Sequence[int]], Rows]
+LOOK = 0.5  # s between two looks of a worker for its parent
 
 
 def each(
@@ -36,8 +40,25 @@ def each(
         return
     from joblib import Parallel, delayed
 
-    yield from Parallel(n_jobs=jobs, return_as="generator_unordered")(delayed(_done)(work, c) for c in chunks)
+    pool = Parallel(
+        n_jobs=jobs, return_as="generator_unordered", backend="loky", initializer=end_with, initargs=(os.getpid(),)
+    )
+    yield from pool(delayed(_done)(work, c) for c in chunks)
 
 
 def _done(work: Work, indices: Sequence[int]) -> tuple[Sequence[int], Rows]:
     return indices, work(indices)
+
+
+def end_with(parent: int) -> None:
+    """End this process soon after its parent, who may be killed in the middle of a chunk that takes minutes.
+
+    Windows keeps the number of a parent that is gone: there, a worker ends with its chunk.
+    """
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(LOOK)
+        os._exit(1)
+
+    threading.Thread(target=watch, name=f"parent {parent}", daemon=True).start()
