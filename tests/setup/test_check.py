@@ -21,6 +21,7 @@ from faying.setup import new, template
 from faying.setup.check import check
 from faying.setup.expected import Expected, unknowns_of
 from faying.study import Study
+from tests.helpers import studies
 from tests.helpers.boxes import row
 from tests.helpers.laps import lapped
 from tests.helpers.meshfiles import STUDY, abaqus
@@ -184,24 +185,30 @@ at = [{}]
 }
 
 
-@pytest.mark.parametrize("table", TABLES)
+def with_points(folder, tables, place):
+    """The template's study under JK with points of some tables at a place."""
+    studies.write(folder / "s.toml")
+    text = (folder / "s.toml").read_text() + "".join(TABLES[one].replace("{}", place) for one in tables)
+    (folder / "s.toml").write_text(text)
+    return folder / "s.toml"
+
+
+def test_points_on_the_structure(tmp_path):
+    study = with_points(tmp_path, TABLES, '"40 mm", "15 mm", "-15 mm"')
+    assert [one.text for one in check(study).faults] == []
+    Case.of(Study.read(study))
+
+
 @pytest.mark.parametrize(
-    ("place", "near"),
-    [('"80 m", "0 mm", "0 mm"', False), ('"90 mm", "22 mm", "-50 mm"', False), ('"40 mm", "15 mm", "-15 mm"', True)],
+    ("table", "place"),
+    [(table, '"80 m", "0 mm", "0 mm"') for table in TABLES] + [("test", '"90 mm", "22 mm", "-50 mm"')],
 )
-def test_points_far_from_the_structure(tmp_path, table, place, near):
+def test_points_far_from_the_structure(tmp_path, table, place):
     """In the words of `faying run`, which meshes first; check has no nodes and measures from the faces."""
-    template.write(tmp_path / "s.toml")
-    text = (tmp_path / "s.toml").read_text() + TABLES[table].replace("{}", place)
-    (tmp_path / "s.toml").write_text(text)
-    told = [one.text for one in check(tmp_path / "s.toml").faults]
-    assert near == (told == []), told
-    study = Study.read(tmp_path / "s.toml")
-    if near:
-        Case.of(study)
-        return
+    path = with_points(tmp_path, [table], place)
+    told = [one.text for one in check(path).faults]
     with pytest.raises(faying.InputError) as fault:
-        Case.of(study)
+        Case.of(Study.read(path))
     before, said, after = r"(?P<a>.*nearest node to )", told[0], r" mm away; (?P<b>.*)"
     shapes = [re.match(before + r"(?P<p>\(.*?\) mm is) (?P<d>\S+)" + after, t) for t in (said, str(fault.value))]
     assert shapes[0] is not None

@@ -126,7 +126,7 @@ def coarse(path):
     sizes = {name: 1.6 * size for name, size in study.geometry.face_size.items()}
     geometry = replace(study.geometry, size=1.6 * study.geometry.size, face_size=sizes)
     # the blocks are 30 mm wide: waves from 8 to 15 mm in place of those above the side of the scan
-    return replace(study, geometry=geometry, modes=ModesChoice(count=4))
+    return replace(study, geometry=geometry, modes=ModesChoice(count=4, levels=()))
 
 
 @pytest.fixture(scope="module")

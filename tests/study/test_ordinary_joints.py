@@ -61,7 +61,7 @@ def test_the_thread_pulls_evenly_over_the_length_that_it_engages(fitted):
 
 
 def test_the_screwed_joint_carries_its_preload_and_lies_between_free_and_bonded(screwed):
-    found = run(screwed)
+    found = run(replace(screwed, modes=replace(screwed.modes, intervals=False)))
     force = sum(bolt.preload[0] for bolt in screwed.bolts)
     assert found.pressure[0] @ found.weights == pytest.approx(force, rel=1e-6)
     assert np.all(found.free <= found.frequencies[0])
@@ -82,27 +82,34 @@ def test_a_thread_longer_than_its_hole_is_refused(screwed, fitted):
         replace(deep, faces=seats).placed(mesh)
 
 
-@pytest.mark.parametrize("raised", [0.0, 2.0])
-def test_flanges_have_six_bolts_and_pass_the_check(tmp_path, raised):
-    """A pipe stands on the seats, and raised faces leave 4 mm between the holes of both flanges."""
-    path = flanges(tmp_path / "flanges.step", raised=raised, pipe=20.0)
+@pytest.fixture(scope="module", params=[0.0, 2.0])
+def flanged(request, tmp_path_factory):
+    """Flanges with raised faces of so many mm: path, study, structure."""
+    folder = tmp_path_factory.mktemp("flanges")
+    path = flanges(folder / "flanges.step", raised=request.param, pipe=20.0)
     study = Study.read(proposed(path, "15 mm"))
+    return request.param, path, study, build(study)
+
+
+def test_flanges_have_six_bolts_and_pass_the_check(flanged):
+    """A pipe stands on the seats, and raised faces leave 4 mm between the holes of both flanges."""
+    raised, path, study, structure = flanged
     assert len(study.joints) == 1
     assert [bolt.fastener.thread.diameter for bolt in study.bolts] == pytest.approx([10e-3] * 6)
     done = CliRunner().invoke(cli, ["check", str(path.with_suffix(".toml"))])
     assert done.exit_code == 0, done.output
     assert "0 faults" in done.output
-    lengths = [bolt.length for bolt in build(study).fitted_bolts]
+    lengths = [bolt.length for bolt in structure.fitted_bolts]
     assert lengths == pytest.approx([2e-3 * (12 + raised)] * 6, rel=1e-6)
 
 
-def test_a_head_over_the_edge_of_a_wide_hole_is_refused(tmp_path):
+def test_a_head_over_the_edge_of_a_wide_hole_is_refused(flanged):
     """A bolt whose axis runs inside the pipe has nothing to press on."""
-    study = Study.read(proposed(flanges(tmp_path / "flanges.step", pipe=20.0), "15 mm"))
+    _, _, study, structure = flanged
     bolt = study.bolts[0]
     inside = (20e-3, 0.0, bolt.at[2])
     with pytest.raises(faying.InputError, match="beside the centre of the hole"):
-        replace(bolt, at=inside).placed(build(study).mesh)
+        replace(bolt, at=inside).placed(structure.mesh)
 
 
 def test_faces_that_are_meant_together_by_their_numbers():
