@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from scipy.sparse import diags_array
+from scipy.optimize import brentq
+from scipy.sparse import csr_array, diags_array
 
 from faying.errors import NotConverged
 from faying.numerics.modes import lowest_modes
-from faying.numerics.nearby import NearbyModes, _sharper, nearby_modes
+from faying.numerics.nearby import Measure, NearbyModes, _sharper, nearby_modes
 from faying.numerics.solve import factorise
 
 N = 60
@@ -65,11 +66,11 @@ def test_another_factorisation_on_the_way_changes_nothing_but_the_rounds():
     assert found.frequencies[1:] == pytest.approx(wanted.frequencies[1:], rel=1e-11)
 
 
-def pair(soft, stiff):
+def pair(soft, stiff, inside=1e10):
     """Two chains that nothing joins, each held at one end by a spring: no motion of one is of the other."""
     k = np.full(N, 1e6)
     k[0], k[N // 2] = soft, stiff
-    k[N // 2 + 1 :] *= 1e4  # the second hardly bends below the modes of the first
+    k[N // 2 + 1 :] = inside
     main = k + np.append(k[1:], 0)
     main[N // 2 - 1] -= k[N // 2]
     off = -k[1:].copy()
@@ -98,11 +99,45 @@ def test_a_mode_of_another_symmetry_that_comes_down_is_found(fraction, count):
     assert found.frequencies == pytest.approx(wanted, rel=1e-7)
 
 
+@pytest.mark.parametrize("inside", [5e7, 2e8])
+def test_a_mode_whose_shape_is_not_yet_known_is_watched_above_those_wanted(inside):
+    """It bends, so that its first estimate lies above its place, and above the last mode that is asked for."""
+    squared = np.linalg.eigvalsh(pair(1e6, 1e10)[0].toarray()[: N // 2, : N // 2]) / 0.1
+    target = squared[1] + 0.999 * (squared[2] - squared[1])
+
+    def off(logarithm):
+        second = pair(1e6, np.exp(logarithm), inside)[0].toarray()[N // 2 :, N // 2 :]
+        return np.linalg.eigvalsh(second)[0] / 0.1 - target
+
+    spring = np.exp(brentq(off, np.log(1e2), np.log(1e9)))
+    K, M = pair(1e6, 1e9, inside)
+    modes = lowest_modes(K, M, 4, shift_frequency=5.0)
+    changed = pair(1e6, spring, inside)[0]
+    wanted = lowest_modes(changed, M, 3, shift_frequency=5.0).frequencies
+    assert NearbyModes(modes, K, M, rigid=0).under(changed, 3).frequencies == pytest.approx(wanted, rel=1e-7)
+
+
+def test_a_guessed_energy_is_not_below_one_that_others_have_shown():
+    """A residual that was stiff and turns soft, in pairs that move alike easily and against each other hardly."""
+    block = np.array([[2.0, -1.9], [-1.9, 2.0]])
+    K = csr_array(np.kron(np.eye(3), block))
+    measure = Measure(K.diagonal(), factorise(K), 3)
+    soft, stiff = np.array([1.0, 1.0]), np.array([1.0, -1.0])
+    left = np.zeros((6, 3))
+    for k, some in enumerate((soft, soft, stiff)):
+        left[2 * k : 2 * k + 2, k] = some
+    found, _ = measure.solved(left, np.ones(3), np.arange(3))
+    assert found == pytest.approx([2 / 0.1, 2 / 0.1, 2 / 3.9], rel=1e-9)
+    turned = np.concatenate([np.zeros(4), soft])[:, None]
+    assert measure.guessed(turned, np.ones(1), np.array([2]))[0] >= 2 / 0.1
+
+
 def test_it_is_found_after_a_basis_that_was_cut_back():
     K, M = pair(1e6, BEYOND)
-    near = NearbyModes(lowest_modes(K, M, 12, shift_frequency=5.0), K, M, rigid=0, most=20)
-    for soft in (3e5, 1e5, 3e6):
-        near.under(pair(soft, BEYOND)[0], 6)
+    near = NearbyModes(lowest_modes(K, M, 12, shift_frequency=5.0), K, M, rigid=0, most=14)
+    for soft, stiff in ((2e6, 2 * BEYOND), (3e5, BEYOND), (1e5, BEYOND), (3e6, BEYOND), (2e5, BEYOND)):
+        near.under(pair(soft, stiff)[0], 6)
+    near.under(pair(2.02e5, BEYOND)[0], 6, rounds=2)  # what is left of it serves a stiffness nearby at once
     changed = pair(2e6, at(0.5, 4))[0]
     wanted = lowest_modes(changed, M, 6, shift_frequency=5.0).frequencies
     assert near.under(changed, 6).frequencies == pytest.approx(wanted, rel=1e-7)
