@@ -55,7 +55,7 @@ def timed(work):
 
 
 def main():
-    from faying.answer import load_cases
+    from faying.answer import load_answers
     from faying.case.case import Case, Progress
     from faying.case.engine import engine_of
 
@@ -75,9 +75,9 @@ def main():
 
         springs = case.structure.springs(state.pressures)
         base, factor = timed(
-            lambda c=case, s=state, k=springs, e=engine: load_cases.preloaded_case(c, s, k, e, modes=False)
+            lambda c=case, s=state, k=springs, e=engine: load_answers.preloaded_case(c, s, k, e, modes=False)
         )
-        found, ten = timed(lambda base=base, plan=plan: load_cases.answers(base, plan.load_cases, Progress(0)))
+        found, ten = timed(lambda base=base, plan=plan: load_answers.answers(base, plan.load_cases, Progress(0)))
         print(
             f"{case.structure.mesh.unknowns:7,} unknowns: two preloads {first + second:.2f} s, factorisation "
             f"{factor:.2f} s, ten cases {ten:.2f} s; opened up to {found.opened.max():.0%}, superposition off by up "

@@ -62,6 +62,7 @@ LIMITS = frozenset(
         "not-mixed",
         "loads-stick",
         "load-yields",
+        "load-intervals",
     }
 )
 NUMBER = re.compile(r"(?<![\w.])\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?(?![\w])")

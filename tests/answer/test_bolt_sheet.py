@@ -192,14 +192,14 @@ def test_the_preload_is_chosen(made):
 
 
 def test_scatter_follows_the_way_of_tightening(made):
-    from faying.answer.bolt_sheet import _scatter
+    from faying.answer.bolt_sheet import preload_scatter
 
     hydraulic = made(bolt_sheet={"tightening": "hydraulic"})
-    assert _scatter(hydraulic, "bolt", choice_for(hydraulic, "bolt"))[0] == 0.23
+    assert preload_scatter(hydraulic, "bolt", choice_for(hydraulic, "bolt"))[0] == 0.23
     uncertain = made(
         bolt=BOLT | {"preload": "6 kN"}, uncertain={"preload": {"tightening": "yield or angle controlled"}}
     )
-    assert _scatter(uncertain, "bolt", choice_for(uncertain, "bolt"))[0] == pytest.approx(0.12, rel=1e-3)
+    assert preload_scatter(uncertain, "bolt", choice_for(uncertain, "bolt"))[0] == pytest.approx(0.12, rel=1e-3)
 
 
 def test_a_bolt_has_its_own_table(made):

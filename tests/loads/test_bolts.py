@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import faying
-from faying.answer.load_cases import of_state, solved, statics_of
+from faying.answer.load_answers import of_state, solved, statics_of
 from faying.loads.acting import acting, nothing
 from tests.bolt.test_solid_bolt import structure
 from tests.helpers.voxels import bolted

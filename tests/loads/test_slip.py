@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import faying
-from faying.answer.load_cases import of_state, statics_of
+from faying.answer.load_answers import of_state, statics_of
 from faying.fe.interface import join
 from faying.joint.attachments import Support
 from faying.joint.joint import FittedJoint

@@ -5,7 +5,7 @@ import pytest
 from scipy.sparse.linalg import spsolve
 
 import faying
-from faying.answer.load_cases import of_state, statics_of
+from faying.answer.load_answers import of_state, statics_of
 from faying.joint.attachments import Support
 from faying.loads.acting import acting, nothing
 from tests.helpers.plates import plates, stacked

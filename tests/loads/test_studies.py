@@ -175,3 +175,41 @@ def test_names_that_the_geometry_lacks_are_named(study, tmp_path):
         faying.load_cases(tmp_path / "study.toml")
     assert "load 'push' names the face 'upper.sea', which does not exist" in str(fault.value).replace('"', "'")
     assert "temperature of 'nut', which is no part and no bolt" in str(fault.value)
+
+
+def test_intervals_follow_preload_and_friction(study, tmp_path):
+    """A force of the bolt is its preload and a change that hardly moves; use of friction goes as 1/(mu F)."""
+    text = study.read_text().replace("friction = 0.25", 'friction = "0.25 +- 0.02"')
+    text = text.replace('preload = ["2 kN", "6 kN"]', 'preload = "6 kN"')
+    start, end = text.index('[[load]]\nname = "push"'), len(text)
+    text = text[:start] + PUSH + text[end:] + "\n[[bolt_sheet]]\ntightening_factor = 1.5\nhead_friction = 0.1\n"
+    (tmp_path / "two-blocks.step").write_bytes((study.parent / "two-blocks.step").read_bytes())
+    file = tmp_path / "study.toml"
+    file.write_text(text)
+    found = faying.load_cases(file, modes=False, intervals=True)
+    some, scatter = found.intervals, 0.5 / 2.5  # (alpha - 1)/(alpha + 1), two standard deviations
+    half = 1.6449 * scatter / 2
+    row = found.cases.index("aside")
+    low, high = some.bolt_force[:, row, 0]
+    assert (high - low) / 2 == pytest.approx(half * 6000, rel=0.02)
+    assert (high + low) / 2 == pytest.approx(found.bolt_force[row, 0], rel=1e-12)
+    # one input at its end: mu at its 5 % end, F at its own; their logarithms add in squares
+    wide = np.hypot(np.log(1 - half), np.log(1 - 1.6449 * 0.02 / 0.25))
+    use = found.friction_needed_worst[row, 0] / 0.25
+    assert np.log(some.slip_use[:, row, 0] / use) == pytest.approx([-wide, wide], rel=0.03)
+    assert np.all(some.slip_margin[0] <= found.slip_margin_worst)
+    assert np.all(some.slip_margin[1] >= found.slip_margin_worst)
+    assert some.check[row] < 0.03
+    assert len(some.inputs) == 2
+    assert faying.LoadCases.load(found.save(tmp_path / "kept.nc")) == found
+    assert "90 % intervals over preload of bolt +-20%" in " ".join(terminal(found).split())
+
+
+PUSH = """
+[[load]]
+name = "aside"
+[[load.force]]
+face = { part = "upper", normal = "+x" }
+force = ["200 N", "0 N", "0 N"]
+point = ["40 mm", "0 mm", "0 mm"]
+"""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from faying.answer.load_cases import answers, preloaded_case
+from faying.answer.load_answers import answers, preloaded_case
 from faying.case.case import Case, Progress
 from faying.case.engine import Engine
 from faying.case.solve import LoadedCase

@@ -210,7 +210,7 @@ def _thread(bolt: Bolt | SolidBolt) -> list[Quantity]:
     ]
 
 
-def _scatter(study: Study, bolt: str, choice: BoltSheetChoice) -> tuple[float, str]:
+def preload_scatter(study: Study, bolt: str, choice: BoltSheetChoice) -> tuple[float, str]:
     """Half of the range of the preload over its mean [-], and where that comes from."""
     if choice.tightening_factor is not None:
         return (choice.tightening_factor - 1) / (choice.tightening_factor + 1), "from tightening_factor"
@@ -226,7 +226,7 @@ def _scatter(study: Study, bolt: str, choice: BoltSheetChoice) -> tuple[float, s
 
 
 def _tightening(study: Study, bolt: Bolt | SolidBolt, choice: BoltSheetChoice, force: float) -> list[Quantity]:
-    scatter, origin = _scatter(study, bolt.name, choice)
+    scatter, origin = preload_scatter(study, bolt.name, choice)
     stated = getattr(bolt, "friction", None) or (None, None)
     out = [
         _quantity("F_V", "preload", "N", force, ""),

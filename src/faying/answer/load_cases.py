@@ -1,73 +1,22 @@
-"""Load cases on a study or on a structure that is solved: bolts, opening, slip, modes about the loaded state."""
+"""Load cases on a study or on a structure that is solved."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-from faying.case.case import Case, Progress
-from faying.case.engine import Engine, engine_of
-from faying.case.provenance import provenance
+from faying.answer.load_answers import answers, of_state, preloaded
+from faying.answer.load_intervals import intervals_of
+from faying.case.case import Progress
 from faying.errors import InputError
-from faying.joint.equilibrium import PreloadState
 from faying.joint.loads import preload_index
-from faying.joint.modal import ModalProblem, ModesChoice
-from faying.joint.shared_modes import SharedModes
-from faying.joint.springs import Springs
 from faying.joint.state import State
-from faying.joint.structure import Structure
-from faying.joint.support_check import check_motions
-from faying.loads.acting import Acting, acting, nothing
-from faying.loads.answers import Regions, bolt_answers, joint_answers
-from faying.loads.contact import LoadedContact
 from faying.loads.load import Load, in_order
-from faying.loads.remarks import load_notes
-from faying.loads.statics import LoadedState, LoadStatics
-from faying.measured.mac import Weighted
 from faying.misuse import checked_call
-from faying.notes import Note
-from faying.numerics.changed import Changed
-from faying.numerics.shifted import Shifted
-from faying.numerics.single import factorise_roughly
 from faying.progress import Report
 from faying.result.load_cases import LoadCases
-from faying.result.provenance import Provenance
-from faying.study.keys.bolt_sheet import choice_of
 from faying.study.study import Study
-from faying.typing import Array
 from faying.units import positive, show
 
-NOT_FROM_FILES = Provenance(study="", files={}, versions={}, date="")
 STAGES = 5  # that are reported, beside the modes of each case
-
-
-@dataclass(frozen=True, kw_only=True)
-class Preloaded:
-    """A structure under its preload, ready for load cases.
-
-    Args:
-        title: What results call it.
-        structure, preload, springs: The structure, its equilibrium, the springs of its joints.
-        factor: What solves near the stiffness with these springs.
-        rest: Frequencies [Hz] and shapes (unknowns, m) of its modes; None where none are asked for.
-        modes: Frequencies and shapes under other springs.
-        notes: What there was to say so far.
-        provenance: What it was made from.
-        head_friction: Of each bolt [-], NaN where none is said apart from the bolt itself.
-    """
-
-    title: str
-    structure: Structure
-    preload: PreloadState
-    springs: Sequence[Springs[Any]]
-    factor: Any
-    rest: tuple[Array, Any] | None
-    modes: Callable[[Sequence[Springs[Any]]], tuple[Array, Any]]
-    notes: tuple[Note, ...] = ()
-    provenance: Provenance = NOT_FROM_FILES
-    head_friction: Array | None = None
 
 
 @checked_call
@@ -77,6 +26,7 @@ def load_cases(
     *,
     preload: float | str | None = None,
     modes: bool = True,
+    intervals: bool = False,
     report: Report | None = None,
 ) -> LoadCases:
     """Find what a preloaded structure does under load cases: statics with the law of its joints, friction and opening.
@@ -87,6 +37,8 @@ def load_cases(
         preload: Which preload of the study, force of the first bolt [N] or text such as "8 kN"; the greatest where
             None. A state has its own.
         modes: Whether to find the modes about each loaded state.
+        intervals: Whether to find 90 % intervals of bolt forces, use of friction and opening, where the preload
+            scatters as [[bolt_sheet]] or [uncertain] say, and friction as [uncertain] does. For a study alone.
         report: Is called with what is being done.
 
     Returns:
@@ -100,6 +52,8 @@ def load_cases(
     if isinstance(what, State):
         if preload is not None:
             raise InputError("preload: a state has its own preload; leave it out, or solve the structure under another")
+        if intervals:
+            raise InputError("intervals: a state says nothing of scatter; give a study in place of it")
         if loads is None:
             raise InputError("loads: a state has no load cases of its own; give loads=[Load(...)]")
         progress = Progress(STAGES + len(loads) * modes, report)
@@ -107,11 +61,14 @@ def load_cases(
     plan = Study.read(what)
     found = plan.load_cases if loads is None else tuple(loads)
     number = _number(plan, preload)
-    progress = Progress(STAGES + len(found) * modes, report)
     if not found:
         raise InputError("the study has no load case; add [[load]], or give loads=[Load(...)]")
     in_order(found)  # names its faults before anything is solved
-    return answers(preloaded(plan, number, progress, modes=modes), found, progress)
+    more = len(plan.bolts) + len(plan.joints) + 1 if intervals else 0
+    progress = Progress(STAGES + len(found) * modes + more, report)
+    base = preloaded(plan, number, progress, modes=modes)
+    out = answers(base, found, progress)
+    return intervals_of(plan, number, base, found, out, progress) if intervals else out
 
 
 def _number(study: Study, preload: float | str | None) -> int:
@@ -124,215 +81,3 @@ def _number(study: Study, preload: float | str | None) -> int:
         known = ", ".join(show(load, "N") for load in study.loads)
         raise InputError(f"the study has no preload of {show(wanted, 'N')}; it has {known}")
     return number
-
-
-def preloaded(study: Study, number: int, progress: Progress, *, modes: bool) -> Preloaded:
-    """Solve a study at one of its preloads, counted from 0."""
-    bare = replace(
-        study,
-        response=None,
-        hammer=None,
-        backbone=None,
-        alternatives=(),
-        modes=replace(study.modes, levels=(), intervals=False),
-    )
-    case = Case.of(bare, progress)
-    engine = engine_of("reanalysis", case)
-    progress.begin(f"preload {show(study.loads[number], 'N')}")
-    state = engine.preload(number)
-    springs = case.structure.springs(state.pressures)
-    return preloaded_case(case, state, springs, engine, modes=modes)
-
-
-def preloaded_case(
-    case: Case, state: PreloadState, springs: Sequence[Springs[Any]], engine: Engine, *, modes: bool
-) -> Preloaded:
-    """A case whose preload is known, ready for load cases."""
-    study, structure = case.study, case.structure
-
-    def found(under: Sequence[Springs[Any]]) -> tuple[Array, Any]:
-        vibration = engine.vibrate(under)
-        return vibration.damped.frequencies, vibration.damped.shapes
-
-    rest, factor = None, None
-    if modes:
-        vibration = engine.vibrate(springs)
-        rest, factor = (vibration.damped.frequencies, vibration.damped.shapes), vibration.modes.factorisation
-    friction = [choice_of(study.bolt_sheets, bolt.name).head_friction for bolt in study.bolts]
-    return Preloaded(
-        title=study.title,
-        structure=structure,
-        preload=state,
-        springs=springs,
-        factor=factor or near_factor(structure, springs, study.modes.solver),
-        rest=rest,
-        modes=found,
-        notes=case.notes,
-        provenance=provenance(study),
-        head_friction=np.array([np.nan if one is None else one for one in friction]),
-    )
-
-
-def of_state(state: State, modes: bool) -> Preloaded:
-    """A state of a structure, ready for load cases; modes: whether those about loaded states are asked for."""
-    structure = state.structure
-    problem = ModalProblem(structure=structure, choice=ModesChoice(count=len(state.modes)))
-    shared = SharedModes()
-
-    def found(under: Sequence[Springs[Any]]) -> tuple[Array, Array]:
-        result, _ = shared.of(problem, under)
-        check_motions(structure, result)
-        some = slice(structure.rigid_count, structure.rigid_count + problem.choice.count)
-        return result.frequencies[some], result.shapes[:, some]
-
-    return Preloaded(
-        title="structure",
-        structure=structure,
-        preload=state.preload,
-        springs=state.springs,
-        factor=state.vibration.modes.factorisation,
-        rest=found(state.springs) if modes else None,
-        modes=found,
-        notes=state.notes,
-    )
-
-
-def near_factor(structure: Structure, springs: Sequence[Springs[Any]], solver: str | None) -> Any:
-    """A factorisation near the stiffness under the springs of the joints."""
-    stiffness = (structure.vibrating[0] + structure.sprung(springs)).tocsr()
-    shift = (2 * np.pi * structure.shift_frequency) ** 2
-    matrix = Shifted(stiffness=stiffness, mass=structure.vibrating[1], shift=shift)
-    return factorise_roughly(matrix, rigid=structure.rigid, solver=structure.solver(solver))
-
-
-def statics_of(base: Preloaded) -> LoadStatics:
-    """Return the statics of a preloaded structure. Raises InputError for joints with springs per node."""
-    structure = base.structure
-    by_node = [joint.name for joint in structure.joints if joint.per_node]
-    if by_node:
-        raise InputError(
-            f"joint {by_node[0]!r} has springs per node, which are fitted to one preload and neither open nor slip; "
-            "leave springs out of the joint for load cases"
-        )
-    pairs = [
-        (joint.interface, LoadedContact.of(joint.interface, joint.law, s, base.preload.displacement, joint.friction))
-        for joint, s in zip(structure.joints, base.springs, strict=True)
-    ]
-    return LoadStatics(
-        stiffness=Changed(before=structure.vibrating[0], change=structure.sprung(base.springs)),
-        factor=base.factor,
-        held_back=structure.held_back,
-        joints=pairs,
-        displacement=base.preload.displacement,
-        rigid=structure.rigid,
-        fixed=structure.fixed,
-    )
-
-
-def solved(
-    statics: LoadStatics, rest: LoadedState, loads: Sequence[Load], acts: dict[str, Acting]
-) -> dict[str, list[LoadedState]]:
-    """The states on the way to each case: those that start from the same place go together."""
-    friction = any(contact.friction is not None for _, contact in statics.joints)
-    found: dict[str, list[LoadedState]] = {}
-    left = list(loads)
-    while left:
-        ready = [load for load in left if load.after is None or load.after in found]
-        cases = []
-        for load in ready:
-            start = rest if load.after is None else found[load.after][-1]
-            cases.append((load.name, start, acts[load.name], load.increments if friction else 1))
-        for load, states in zip(ready, statics.solve(cases), strict=True):
-            found[load.name] = states
-        left = [load for load in left if load not in ready]
-    return found
-
-
-def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> LoadCases:
-    """Solve all cases on a preloaded structure."""
-    structure = base.structure
-    progress.begin("loads")
-    acts = acting(structure, in_order(loads))
-    statics = statics_of(base)
-    contacts = [contact for _, contact in statics.joints]
-    linear = dict(zip(acts, statics.linear(list(acts.values())), strict=True))
-    found = solved(statics, statics.rest_state(nothing(structure)), loads, acts)
-    states = [found[load.name][-1] for load in loads]
-    motions = [statics.motion(state) for state in states]
-    straight = [linear[load.name] for load in loads]
-    dissipated = [np.sum([one.dissipated for one in found[load.name]], axis=0) for load in loads]
-    regions = Regions.of(structure)
-    forces = np.array(base.preload.bolt_forces)
-    bolts = bolt_answers(structure, contacts, forces, list(zip(states, motions, straight, strict=True)), regions)
-    if base.head_friction is not None:
-        said = np.where(np.isnan(base.head_friction), bolts.head_friction, base.head_friction)
-        bolts = replace(bolts, head_friction=said)
-    joints = joint_answers(structure, contacts, states, dissipated, regions)
-    pressures = [[-traction[:, 0] for traction in state.tractions] for state in states]
-    interfaces = [joint.interface for joint in structure.joints]
-    shears = [np.concatenate([np.linalg.norm(one[:, 1:], axis=1) for one in state.tractions]) for state in states]
-    modes = _modes(base, loads, pressures, progress)
-    return LoadCases(
-        title=base.title,
-        preload=float(forces[0]),
-        cases=tuple(load.name for load in loads),
-        after=tuple(load.after or "" for load in loads),
-        bolts=tuple(bolt.name for bolt in structure.bolts),
-        joints=tuple(joint.name for joint in structure.joints),
-        superposition=_departure(motions, straight, bolts.bolt_force - forces, bolts.bolt_force_linear - forces),
-        displacement=np.array([_greatest(one) for one in motions]),
-        error=np.array([state.error for state in states]),
-        bolt_preload=forces,
-        friction=np.array([np.nan if one.friction is None else one.friction for one in contacts]),
-        normal_preload=np.array([float(one.weights @ one.pressure) for one in contacts]),
-        positions=np.concatenate([one.positions for one in interfaces]),
-        areas=np.concatenate([one.weights for one in interfaces]),
-        joint_of_point=np.concatenate([np.full(len(one.weights), k) for k, one in enumerate(interfaces)]),
-        rest_pressure=np.concatenate([one.pressure for one in contacts]),
-        pressure=np.array([np.concatenate(one) for one in pressures]),
-        shear=np.array(shears),
-        notes=(*base.notes, *load_notes(structure, contacts, [load.name for load in loads], pressures, bolts, joints)),
-        provenance=base.provenance,
-        **vars(bolts),
-        **vars(joints),
-        **modes,
-    )
-
-
-def _departure(motions: Sequence[Array], straight: Sequence[Array], change: Array, linear: Array) -> Array:
-    """How far the answers are from the linear ones, over these: of displacement or bolt forces, the greater (case,)."""
-    out = []
-    for moved, line, here, there in zip(motions, straight, change, linear, strict=True):
-        size, force = _greatest(line), float(np.abs(there).max(initial=0.0))
-        apart = _greatest(moved - line) / size if size > 0 else float(_greatest(moved) > 0)
-        by_force = float(np.abs(here - there).max(initial=0.0)) / force if force > 0 else 0.0
-        out.append(max(apart, by_force))
-    return np.array(out)
-
-
-def _greatest(motion: Array) -> float:
-    """The greatest displacement of a node [m]."""
-    return float(np.linalg.norm(motion.reshape(-1, 3), axis=1).max())
-
-
-def _modes(
-    base: Preloaded, loads: Sequence[Load], pressures: Sequence[Sequence[Array]], progress: Progress
-) -> dict[str, Any]:
-    """Frequencies about each loaded state, each paired with the mode at rest that it is most like."""
-    if base.rest is None:
-        return {}
-    from scipy.optimize import linear_sum_assignment
-
-    rest, shapes = base.rest
-    mass = base.structure.vibrating[1]
-    before = Weighted.of(shapes, mass)
-    frequencies, alike = [], []
-    for load, pressure in zip(loads, pressures, strict=True):
-        progress.begin(f"modes under {load.name}")
-        here, moved = base.modes(base.structure.springs(list(pressure)))
-        table = before.mac(Weighted.of(moved, mass))  # rows: modes under the load
-        rows, columns = linear_sum_assignment(table.T, maximize=True)
-        order = columns[np.argsort(rows)]
-        frequencies.append(here[order])
-        alike.append(table.T[np.arange(len(order)), order])
-    return {"rest_frequency": rest, "frequency": np.array(frequencies), "likeness": np.array(alike)}

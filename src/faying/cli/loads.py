@@ -11,6 +11,7 @@ from faying.cli.progress import Form, Shown, progress_options
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--preload", metavar="FORCE", help='Which of the study\'s preloads, such as "8 kN" (default: greatest).')
 @click.option("--no-modes", is_flag=True, help="Leave out the modes about each loaded state.")
+@click.option("--intervals", is_flag=True, help="Find 90 % intervals over the scatter of preload and friction.")
 @click.option("--out", type=click.Path(path_type=Path), help="Write all numbers and pressure maps as NetCDF (.nc).")
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw the pressure (svg, png, pdf).")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
@@ -19,6 +20,7 @@ def command(
     study: Path,
     preload: str | None,
     no_modes: bool,
+    intervals: bool,
     out: Path | None,
     plot: Path | None,
     as_json: bool,
@@ -34,7 +36,7 @@ def command(
     if plot is not None:
         check_ending(plot)
     with Shown("loads", progress) as report:
-        found = load_cases(study, preload=preload, modes=not no_modes, report=report)
+        found = load_cases(study, preload=preload, modes=not no_modes, intervals=intervals, report=report)
     files = [] if out is None else [found.save(out)]
     files += [] if plot is None else [save(figure(found), plot)]
     if as_json:

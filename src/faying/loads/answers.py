@@ -18,7 +18,7 @@ from faying.numerics.product import product
 from faying.typing import Array, Index
 
 NAN = float("nan")
-NOTHING = 1e-5  # of a bolt's preload: of a smaller working load no share is told
+NOTHING = 1e-3  # of a bolt's preload: of a smaller working load no share is told, for bending changes the force, too
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,6 +7,7 @@ import numpy as np
 
 from faying.output.table import Rows, text
 from faying.result.load_cases import ENOUGH, LoadCases
+from faying.typing import Array
 from faying.units import show
 
 WIDTH = 80
@@ -28,6 +29,7 @@ def terminal(found: LoadCases) -> str:
         lines += [text(joint_rows(found, k), left=(0,)), ""]
     modes = mode_rows(found)
     lines += ["frequency under each load [Hz], and its change", text(modes), ""] if modes else []
+    lines += interval_lines(found)
     lines += _wrapped(SCOPE)
     for note in found.notes:
         lines += wrap(note.text, WIDTH, initial_indent="- ", subsequent_indent="  ", break_long_words=False)
@@ -98,6 +100,40 @@ def mode_rows(found: LoadCases) -> Rows:
         ]
         rows.append([str(m + 1), f"{rest:.2f}", *cells])
     return rows
+
+
+def interval_lines(found: LoadCases) -> list[str]:
+    """Return the table of the intervals with what scatters; nothing where none were asked for."""
+    some = found.intervals
+    if some is None:
+        return []
+    rows: Rows = [["load", "least bolt [kN]", "margin of joint", "of head", "opens", "check"]]
+    slip, head = some.slip_margin, some.head_margin
+    for k, name in enumerate(found.cases):
+        bolt = int(np.argmin(some.bolt_force[0, k]))
+        low, high = some.bolt_force[:, k, bolt] / 1e3
+        rows.append(
+            [
+                _cut(name, 18),
+                f"{low:.3g} to {high:.3g}",
+                _least(slip[:, k]),
+                _least(head[:, k]),
+                " to ".join(f"{one:.0%}" for one in some.opened[:, k].max(axis=1)),
+                f"{some.check[k]:.0%}",
+            ]
+        )
+    words = (
+        f"90 % intervals over {'; '.join(some.inputs)}. The check says by how much first order is off where all move."
+    )
+    return [*_wrapped(words), text(rows, left=(0,)), ""]
+
+
+def _least(bounds: Array) -> str:
+    """The interval of whichever has the least lower bound (bound, n); a dash where none is known."""
+    if np.isnan(bounds[0]).all():
+        return "-"
+    k = int(np.nanargmin(bounds[0]))
+    return f"{margin(bounds[0, k])} to {margin(bounds[1, k])}"
 
 
 def margin(value: float) -> str:

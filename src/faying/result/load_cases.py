@@ -21,6 +21,35 @@ ENOUGH = 0.01  # departure from the linear answer up to which superposition does
 MAPS = ("point",)  # dimensions of what only a file holds, not the JSON
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LoadIntervals:
+    """90 % intervals of load cases: the lower and the upper bound of each answer.
+
+    inputs: what scatters, in words.
+    """
+
+    inputs: tuple[str, ...]
+    bolt_force: Array = variable("bound", "case", "bolt", unit="N", long_name="force of the bolt", gaps=True)
+    slip_use: Array = variable(
+        "bound", "case", "joint", unit="1", long_name="friction that the worst part needs, over its friction", gaps=True
+    )
+    head_use: Array = variable(
+        "bound", "case", "bolt", unit="1", long_name="friction that a head needs, over its friction", gaps=True
+    )
+    opened: Array = variable("bound", "case", "joint", unit="1", long_name="share of the joint that opens", gaps=True)
+    check: Array = variable("case", unit="1", long_name="greatest departure from first order, over the answer")
+
+    @property
+    def slip_margin(self) -> Array:
+        """Bounds of the margin against slip of the worst part (bound, case, joint)."""
+        return _margin(np.ones_like(self.slip_use), self.slip_use)[::-1]
+
+    @property
+    def head_margin(self) -> Array:
+        """Bounds of the margin against slip of each head (bound, case, bolt)."""
+        return _margin(np.ones_like(self.head_use), self.head_use)[::-1]
+
+
 @checked_call
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class LoadCases(Recorded):
@@ -128,6 +157,7 @@ class LoadCases(Recorded):
     rest_pressure: Array = variable("point", unit="Pa", long_name="pressure before any load", group="points")
     pressure: Array = variable("case", "point", unit="Pa", long_name="pressure", group="points")
     shear: Array = variable("case", "point", unit="Pa", long_name="shear by the load", group="points")
+    intervals: LoadIntervals | None = None
     notes: tuple[Note, ...] = ()
     provenance: Provenance = field(default_factory=lambda: Provenance(study="", files={}, versions={}, date=""))
 
@@ -195,6 +225,9 @@ class LoadCases(Recorded):
             "joints": list(self.joints),
             **in_units(self, without=MAPS),
             **{name: {"unit": "1", "values": listed(one)} for name, one in finite.items()},
+            "intervals": None
+            if self.intervals is None
+            else {"inputs": list(self.intervals.inputs), **in_units(self.intervals)},
             "superposition_does": [bool(one) for one in self.superposes],
             "notes": [note.text for note in self.notes],
         }
@@ -223,5 +256,6 @@ class LoadCases(Recorded):
 
 
 def _margin(friction: Array, needed: Array) -> Array:
-    """Friction over what is needed of it; infinite where nothing is, NaN where the friction is not known."""
-    return np.asarray(np.where(needed > 0, friction / np.where(needed > 0, needed, 1.0), friction + np.inf))
+    """Friction over what is needed of it; infinite where nothing is, NaN where one of them is not known."""
+    margin = np.where(needed > 0, friction / np.where(needed > 0, needed, 1.0), friction + np.inf)
+    return np.asarray(np.where(np.isnan(needed), np.nan, margin))
