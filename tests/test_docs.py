@@ -43,8 +43,8 @@ def checkout(tmp_path, monkeypatch):
     return tmp_path
 
 
-# a minute and more: tests/identify, tests/measured and tests/halfspace have the same in small
-LONG = {"intervals.md", "with-intervals.md", "hammer-test.md", "speed.md"}
+# a minute and more: tests/loads, tests/identify, tests/measured and tests/halfspace have the same in small
+LONG = {"bracket-under-10-g.md", "intervals.md", "with-intervals.md", "hammer-test.md", "speed.md"}
 COMMANDED = [pytest.param(p, marks=[pytest.mark.slow] * (p.name in LONG), id=str(p.relative_to(ROOT))) for p in PAGES]
 
 

@@ -45,7 +45,7 @@ HAND = {
     "F_Mmax": lambda v: v["alpha_A"] * v["F_Mmin"],
     "M_G": lambda v: v["F_Mmax"] * (0.16 * v["P"] + 0.58 * v["d_2"] * v["mu_G"]),
     "sigma_redM": lambda v: mises(v["F_Mmax"] / (pi * v["d_0"] ** 2 / 4), 12 * v["M_G"] / (pi * v["d_0"] ** 3)),
-    "F_Smax": lambda v: v["F_Mmax"] + v["Phi"] * v["F_Ao"],
+    "F_Smax": lambda v: v["F_Mmax"] + v["Phi"] * v["F_Ao"] + v["F_thg"],
     "sigma_redB": lambda v: mises(v["F_Smax"] / (pi * v["d_0"] ** 2 / 4), 8 * v["M_G"] / (pi * v["d_0"] ** 3)),
     "sigma_ASV": lambda v: (127.5 / (v["d"] * 1e3) + 38.25) * 1e6,
     "sigma_a": lambda v: v["Phi"] * (v["F_Ao"] - v["F_Au"]) / 2 / v["A_S"],
@@ -266,21 +266,23 @@ PULL = {
     "temperature": {"bolt": "15 K"},
 }
 OTHER = {"name": "press", "force": [{"face": "upper.seat", "force": ["0 N", "0 N", "-400 N"]}]}
+ICY = {"name": "icy", "temperature": {"bolt": "-25 K"}}
 HELD = {"face": {"part": "lower", "normal": "-z", "all": True}}
 
 
 def test_loads_of_the_sheet_are_those_of_a_case(made):
     """Working load, load across, share and loss by heat are those that the case has; all rows follow from them."""
-    cases = {"support": [HELD], "load": [PULL, OTHER]}
-    study = made(bolt_sheet={"load": ["pull", "press"]}, **cases)
+    study = made(bolt_sheet={"load": ["pull", "press", "icy"]}, support=[HELD], load=[PULL, OTHER, ICY])
     (sheet,) = bolt_sheet(study).sheets
     bare = {key: value for key, value in PULL.items() if key != "temperature"}
     warm = {"name": "warm", "temperature": PULL["temperature"]}
-    found = faying.load_cases(made(support=[HELD], load=[PULL, OTHER, bare | {"name": "cold"}, warm]), modes=False)
+    found = faying.load_cases(made(support=[HELD], load=[PULL, OTHER, bare | {"name": "cold"}, warm, ICY]), modes=False)
     change = dict(zip(found.cases, found.bolt_force[:, 0] - found.bolt_preload[0], strict=True))
     values = {one.symbol: one.value for row in sheet.rows for one in row.inputs}
     assert (values["F_Au"], values["F_Ao"]) == pytest.approx((-400, 900), rel=1e-6)
-    assert values["F_Q"] == pytest.approx(found.transverse_load[0, 0], rel=1e-6)
+    assert values["F_Q"] == pytest.approx(found.transverse_load[found.index("cold"), 0], rel=1e-4)
+    assert values["F_thg"] == pytest.approx(change["icy"], rel=1e-6)  # of a bolt that shrinks
+    assert values["F_thg"] > 100
     assert values["F_th"] == pytest.approx(-change["warm"], rel=1e-6)
     assert values["F_th"] > 100
     # heat and force act on a joint that hardens: the share of the force depends on both by a little
@@ -290,7 +292,7 @@ def test_loads_of_the_sheet_are_those_of_a_case(made):
         given = {one.symbol: one.value for one in row.inputs}
         if None not in given.values():
             assert row.result.value == pytest.approx(HAND[row.result.symbol](given), rel=1e-9)
-    assert "of load 'pull' and 'press'" in sheet.row("F_Smax").inputs[-1].name
+    assert "of load 'pull' and 'press' and 'icy'" in sheet.row("F_Smax").inputs[2].name
 
 
 @pytest.mark.parametrize(

@@ -105,6 +105,7 @@ EXAMPLE = {
     "f_Zd": 0.0,
     "F_th": None,
     "F_thd": 0.0,
+    "F_thg": 0.0,
     "F_Q": 0.0,
     "F_KP": 0.0,
     "mu_T": 0.2,
@@ -210,3 +211,9 @@ def test_a_limit_below_nothing_is_used_up():
         (row,) = evaluate([step], known(a=a, b=b))
         assert row.verdict == verdict
         assert row.to_dict()["verdict"] == verdict
+
+
+def test_a_bolt_that_heat_tightens_carries_the_gain():
+    plain, hot = sheet(), sheet(F_thg=500.0)
+    assert hot["F_Smax"].result.value == pytest.approx(plain["F_Smax"].result.value + 500.0)
+    assert hot["p_B"].result.value > plain["p_B"].result.value

@@ -11,10 +11,11 @@ from faying.case.engine import Engine
 from faying.case.solve import LoadedCase
 from faying.loads.load import Load
 from faying.result.bolts import BoltNumbers
+from faying.result.load_cases import LoadCases
 from faying.study.keys.bolt_sheet import choice_of
-from faying.typing import Array
 
 HEAT = "heat of "  # stands before the name of a case of which the temperatures alone act
+COLD = "without heat: "  # the same of what else acts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,13 +26,15 @@ class BoltLoad:
         axial: Least and greatest working load [N].
         transverse: Greatest load across the bolt [N].
         introduction: n, that makes the load factor the one that was found under the greatest working load [-].
-        thermal_loss: Greatest loss of preload by temperature [N]; None where no case has one.
+        thermal_loss: Greatest loss of preload by temperature [N]; None where no case changes a temperature.
+        thermal_gain: Greatest gain of preload by temperature [N].
     """
 
     axial: tuple[float, float]
     transverse: float
     introduction: float
     thermal_loss: float | None
+    thermal_gain: float
 
 
 def bolt_loads(
@@ -40,7 +43,8 @@ def bolt_loads(
     """Return what the cases that [[bolt_sheet]] names are to each bolt, by its index; those without one are left out.
 
     The change of a bolt's force is n Phi_K F_A and what temperature makes of it, with Phi_K of a load at the seats: the
-    temperatures of a case are solved for apart.
+    temperatures of a case are solved for apart. Shear by temperature gives way once it slips, and is none that friction
+    has to carry.
     """
     study = case.study
     wanted = {k: choice_of(study.bolt_sheets, bolt.name).loads for k, bolt in enumerate(study.bolts)}
@@ -48,37 +52,42 @@ def bolt_loads(
     if not names:
         return {}
     asked = _with_needs(study.load_cases, names)
-    heat = [_heat_of(asked, name) for name in names]
-    loads = (*asked, *(one for one in heat if one is not None))
     base = preloaded_case(case, state.preload, state.springs, engine, modes=False)
-    found = answers(base, loads, progress)
-    out = {}
-    for k, some in wanted.items():
-        if not some:
-            continue
-        rows = [found.index(name) for name in some]
-        working, change = found.working_load[rows, k], found.bolt_force[rows, k] - found.bolt_preload[k]
-        lost = np.array(
-            [_change(found.cases, found.bolt_force[:, k], HEAT + name, found.bolt_preload[k]) for name in some]
-        )
-        most = int(np.argmax(np.abs(working)))
-        share = float(numbers.load_factor[0, k])
-        known = np.isfinite(found.load_factor[rows[most], k]) and share > 0
-        factor = (change[most] - lost[most]) / working[most] / share if known else 1.0
-        ends = working if len(some) > 1 else np.append(working, 0.0)
-        heated = any(HEAT + name in found.cases for name in some)
-        out[k] = BoltLoad(
-            axial=(float(ends.min()), float(ends.max())),
-            transverse=float(found.transverse_load[rows, k].max()),
-            introduction=float(factor),
-            thermal_loss=float((-lost).max()) if heated else None,
-        )
+    found = answers(base, (*asked, *_parted(asked, names)), progress)
+    return {k: _bolt_load(found, k, some, float(numbers.load_factor[0, k])) for k, some in wanted.items() if some}
+
+
+def _parted(asked: Sequence[Load], names: Sequence[str]) -> list[Load]:
+    """For each case of these names that has temperatures: a case of them alone, and one without them."""
+    out, by_name = [], {load.name: load for load in asked}
+    for name in names:
+        changes = {what: change for what, change in _temperatures(by_name, name).items() if change}
+        if changes:
+            out.append(Load(HEAT + name, temperature=changes))
+            without = {what: -change for what, change in changes.items()}
+            out.append(Load(COLD + name, combine={name: 1.0}, temperature=without))
     return out
 
 
-def _change(cases: Sequence[str], forces: Array, name: str, rest: float) -> float:
-    """Change [N] of a bolt's force under a case; 0 where there is none of that name."""
-    return float(forces[cases.index(name)] - rest) if name in cases else 0.0
+def _bolt_load(found: LoadCases, k: int, names: Sequence[str], share: float) -> BoltLoad:
+    """What cases are to one bolt; share: its load factor Phi_K for a load at the seats."""
+    rows = [found.index(name) for name in names]
+    change = found.bolt_force[:, k] - found.bolt_preload[k]
+    heat = np.array([change[found.index(HEAT + name)] if HEAT + name in found.cases else 0.0 for name in names])
+    across = [COLD + name if COLD + name in found.cases else name for name in names]
+    working = found.working_load[rows, k]
+    most = int(np.argmax(working if working.max() > 0 else np.abs(working)))
+    known = np.isfinite(found.load_factor[rows[most], k]) and share > 0
+    factor = (change[rows[most]] - heat[most]) / working[most] / share if known else 1.0
+    ends = working if len(rows) > 1 else np.append(working, 0.0)
+    heated = any(HEAT + name in found.cases for name in names)
+    return BoltLoad(
+        axial=(float(ends.min()), max(float(ends.max()), 0.0)),
+        transverse=max(float(found.transverse_load[found.index(name), k]) for name in across),
+        introduction=float(factor),
+        thermal_loss=max(float((-heat).max()), 0.0) + 0.0 if heated else None,
+        thermal_gain=max(float(heat.max()), 0.0),
+    )
 
 
 def _with_needs(loads: Sequence[Load], names: Sequence[str]) -> tuple[Load, ...]:
@@ -92,12 +101,6 @@ def _with_needs(loads: Sequence[Load], names: Sequence[str]) -> tuple[Load, ...]
             kept.add(name)
             left += by_name[name].needs
     return tuple(load for load in loads if load.name in kept)
-
-
-def _heat_of(loads: Sequence[Load], name: str) -> Load | None:
-    """A case of the temperatures of another one alone, those that it combines included; None where it has none."""
-    changes = _temperatures({load.name: load for load in loads}, name)
-    return Load(HEAT + name, temperature=changes) if any(changes.values()) else None
 
 
 def _temperatures(loads: dict[str, Load], name: str) -> dict[str, float]:

@@ -158,7 +158,7 @@ def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: Bo
         for one in (
             *_thread(bolt),
             *_tightening(case.study, bolt, choice, force),
-            *_loads(case, index, choice),
+            *_loads(case, index, choice, 0.0 if found is None else found.thermal_gain),
             *_compliances(numbers, index, choice),
             *_seats(case, index, numbers, force, choice),
         )
@@ -242,7 +242,7 @@ def _tightening(study: Study, bolt: Bolt | SolidBolt, choice: BoltSheetChoice, f
     return out
 
 
-def _loads(case: Case, index: int, choice: BoltSheetChoice) -> list[Quantity]:
+def _loads(case: Case, index: int, choice: BoltSheetChoice, gain: float) -> list[Quantity]:
     stack = stack_of(case.structure, index)
     joints = case.structure.joints if stack is None else [case.structure.joints[k] for k in stack.joints]
     frictions = [joint.friction for joint in joints]
@@ -255,6 +255,7 @@ def _loads(case: Case, index: int, choice: BoltSheetChoice) -> list[Quantity]:
     across = choice.transverse if choice.transverse is not None or not stated else 0.0
     asked = choice.clamp if choice.clamp is not None or not stated else 0.0
     thermal = choice.thermal_loss
+    gain = max(gain, -(thermal or 0.0))
     under = f", of load {' and '.join(map(repr, choice.loads))}" if choice.loads else ""
     return [
         _quantity("mu_T", "friction of the joint", "", friction, "joint.friction or bolt_sheet.slip_friction"),
@@ -272,6 +273,7 @@ def _loads(case: Case, index: int, choice: BoltSheetChoice) -> list[Quantity]:
         _quantity("F_Ao", "greatest working load" + under, "N", high, "bolt_sheet.axial"),
         _quantity("n", "load introduction factor" + under, "", choice.introduction, ""),
         _quantity("F_th", "loss by temperature" + under, "N", thermal, "bolt_sheet.thermal_loss"),
+        _quantity("F_thg", "gain by temperature" + under * (gain > 0), "N", gain, ""),
         _quantity("F_thd", "loss by temperature" + " (not given: none)" * (thermal is None), "N", thermal or 0.0, ""),
     ]
 

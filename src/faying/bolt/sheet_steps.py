@@ -225,11 +225,11 @@ def _stresses() -> tuple[Step, ...]:
         _step(
             "R8",
             "greatest bolt force",
-            "greatest assembly preload + load factor times the greatest working load",
-            "F_Mmax Phi F_Ao",
+            "greatest assembly preload + load factor times the greatest working load + gain by temperature",
+            "F_Mmax Phi F_Ao F_thg",
             symbol="F_Smax",
             unit="N",
-            function=lambda F, Phi, A: F + Phi * A,
+            function=lambda F, Phi, A, gain: F + Phi * A + gain,
         ),
         _step(
             "R8",

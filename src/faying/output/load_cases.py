@@ -11,6 +11,7 @@ from faying.typing import Array
 from faying.units import show
 
 WIDTH = 80
+BESIDE = 3  # cases in one table of frequencies
 MOST_MODES = 10  # that the table of frequencies has
 SCOPE = (
     "Forces in N where no unit stands, moments in N m, pressures in MPa. F_A: load that pulls the parts apart at a "
@@ -27,8 +28,9 @@ def terminal(found: LoadCases) -> str:
     for k in range(len(found.cases)):
         lines += [*_wrapped(heading(found, k)), text(bolt_rows(found, k), left=(0,)), ""]
         lines += [text(joint_rows(found, k), left=(0,)), ""]
-    modes = mode_rows(found)
-    lines += ["frequency under each load [Hz], and its change", text(modes), ""] if modes else []
+    for first in range(0, len(found.cases), BESIDE):
+        modes = mode_rows(found, slice(first, first + BESIDE))
+        lines += ["frequency under each load [Hz], and its change", text(modes), ""] if modes else []
     lines += interval_lines(found)
     lines += _wrapped(SCOPE)
     for note in found.notes:
@@ -88,15 +90,15 @@ def joint_rows(found: LoadCases, k: int) -> Rows:
     return rows
 
 
-def mode_rows(found: LoadCases) -> Rows:
-    """Return one row for each mode, with its frequency under every case; empty where no modes were asked for."""
+def mode_rows(found: LoadCases, some: slice = slice(None)) -> Rows:
+    """Return one row for each mode, with its frequency under some cases; empty where no modes were asked for."""
     if found.rest_frequency is None or found.frequency is None or found.frequency_change is None:
         return []
-    rows: Rows = [["mode", "preload", *(_cut(name, 18) for name in found.cases)]]
+    rows: Rows = [["mode", "preload", *(_cut(name, 18) for name in found.cases[some])]]
     for m, rest in enumerate(found.rest_frequency[:MOST_MODES]):
         cells = [
             f"{f:.2f} {change:+.2%}"
-            for f, change in zip(found.frequency[:, m], found.frequency_change[:, m], strict=True)
+            for f, change in zip(found.frequency[some, m], found.frequency_change[some, m], strict=True)
         ]
         rows.append([str(m + 1), f"{rest:.2f}", *cells])
     return rows
