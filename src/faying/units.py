@@ -85,7 +85,12 @@ def _pint_factor(text: str, unit: str) -> float | None:
         re.sub(r"(?<=[^\W\d_])\s*\.\s*(?=[^\W\d_])", "*", text).replace("·", "*").replace("²", "^2").replace("³", "^3")
     )
     try:
-        return float(_registry().Quantity(1.0, plain).to(unit).magnitude)
+        nothing, one = (float(_registry().Quantity(value, plain).to(unit).magnitude) for value in (0.0, 1.0))
+        if nothing:
+            raise InputError(f"{text!r} has a zero of its own; give a difference, in K")
+        return one
+    except InputError:
+        raise
     except pint.errors.DimensionalityError:
         return None
     except Exception:  # pint's parser lets errors of many kinds through

@@ -21,7 +21,7 @@ SIMPLE = faying.Material(name="simple", E=200e9, nu=0.0, density=7800.0, expansi
 
 def even(k_n=K, k_t=0.8 * K):
     """A law of the same stiffness at every pressure: p = k w, until the faces part."""
-    return JointLaw(model=Given(k_n=lambda p: np.full(p.shape, k_n), k_t=lambda p: np.full(p.shape, k_t)))
+    return JointLaw(model=Given(k_n=lambda p: np.where(p > 0, k_n, 0.0), k_t=lambda p: np.where(p > 0, k_t, 0.0)))
 
 
 @dataclass(frozen=True)

@@ -51,6 +51,26 @@ def test_a_load_at_the_seats_is_shared_as_the_compliances_say_until_the_joint_op
     assert {note.code for note in found.notes} >= {"load-opens"}
 
 
+def test_modes_keep_their_frequency_while_a_joint_of_one_stiffness_is_shut(free):
+    """Under any such load; where the joint opens, the bolt alone holds the bars together, and they are softer."""
+    made, state = free
+    opens = PRELOAD / (1 - made.share)
+    found = faying.load_cases(state, [pair("shut", 0.9 * opens), pair("open", 1.2 * opens)])
+    assert found.rest_frequency == pytest.approx(state.modes.frequencies, rel=1e-6)
+    assert found.frequency_change[0] == pytest.approx(0, abs=1e-7)
+    assert np.all(found.frequency_change[1] < -0.1)
+    assert found.likeness[0] == pytest.approx(1, abs=1e-3)
+
+
+def test_a_joint_without_friction_carries_pressure_alone():
+    """Its shear is nothing, and the load at the seats is shared as with friction."""
+    made = bars(friction=0.0)
+    found = faying.load_cases(made.structure.solve(PRELOAD, modes=2), [pair("pull", 2000.0)], modes=False)
+    assert found.bolt_force[0, 0] == pytest.approx(PRELOAD + 2000 * made.share, rel=1e-7)
+    assert found.shear_force[0, 0] == pytest.approx(0, abs=1e-6)
+    assert found.slip_margin.shape == (1, 1)
+
+
 def test_heat_of_bolt_and_bars(free):
     """dF = l (alpha_P dT_P - alpha_S dT_S)/(delta_S + delta_P), and nothing where all is heated alike."""
     made, state = free

@@ -49,7 +49,7 @@ def study(tmp_path_factory):
     """Two blocks under a bolt with a shank, coarsely meshed, with three load cases."""
     file = tmp_path_factory.mktemp("loads") / "study.toml"
     write(file)
-    text = file.read_text().replace('size = "8 mm" ', 'size = "15 mm" ').replace('"upper.joint" = "4 mm"\n', "", 1)
+    text = file.read_text().replace('size = "8 mm" ', 'size = "20 mm" ').replace('"upper.joint" = "4 mm"\n', "", 1)
     text = text.replace("[geometry.face_size]", "# no finer faces", 1).replace("count = 6", "count = 3")
     text = text.replace('springs = "per-area"', "friction = 0.25")
     for key in ("diameter", "material", "grade"):
@@ -146,6 +146,10 @@ def test_the_command(study, tmp_path, capsys):
         (('after = "pull"', 'after = "pul"'), "names the load 'pul', which is not there; there are '10 g', 'pull'"),
         (('name = "push"', 'name = "pull"'), "two loads are called 'pull'"),
         (('temperature = { bolt = "20 K"', 'temperature = { bolt = "20"'), 'temperature.bolt = "20" has no unit'),
+        (
+            ('temperature = { bolt = "20 K"', 'temperature = { bolt = "20 degC"'),
+            "has a zero of its own; give a difference",
+        ),
         (('force = ["300 N", "0 N", "0 N"]', 'force = ["300 N", "0 N"]'), "should be three components, for example"),
         (("increments = 3", "increment = 3"), "increment is not a key that a study has; did you mean increments"),
         (('face = "upper.seat"\nforce', "force"), "a force needs a face, or a point"),

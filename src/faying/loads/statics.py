@@ -21,6 +21,7 @@ from faying.errors import NotConverged
 from faying.joint.equilibrium import admissible
 from faying.loads.acting import Acting
 from faying.loads.contact import ContactState, LoadedContact
+from faying.memory import require
 from faying.numerics.product import combined, product
 from faying.numerics.span import Columns, extension
 from faying.typing import Array, Index
@@ -30,6 +31,7 @@ TOLERANCE = 1e-7  # the same of a state with opening and friction
 ON_THE_WAY = 1e-2  # the same at increments before the last, which tell no more than the way
 ROUNDED = 1e-6  # error below which an answer stands where rounding lets it fall no further
 STILL = 5  # rounds in which an error does not halve: it stands
+MORE = 4  # times what vectors and their images take, while they are made
 ROUNDS = 80  # of new vectors
 NEWTON_STEPS = 30
 HALVINGS = 6
@@ -357,6 +359,11 @@ class LoadStatics:
 
         size: about the root of twice the energy [J^0.5] of each (k,), by which small ones count as much as great ones.
         """
+        require(
+            MORE * 16.0 * self.stiffness.shape[0] * new.shape[1],
+            f"load cases of {self.stiffness.shape[0]:,} unknowns with {self.size} vectors, and more vectors",
+            "solve fewer cases at a time",
+        )
         new = new[:, size > 0] / size[size > 0]
         if not new.shape[1]:
             return 0
