@@ -21,6 +21,7 @@ from faying.measured.model import FullResponse
 from faying.result.backbone import Backbone, Witness
 from faying.result.bolts import BoltNumbers
 from faying.result.fields import declared
+from faying.result.load_cases import LoadCases, LoadIntervals
 from faying.result.result import Comparison, Receptance, Result
 from faying.study.keys import uncertain, varied
 from faying.surface.estimators.table import ESTIMATORS
@@ -38,6 +39,8 @@ GROUPS = {
     "bolt_numbers": BoltNumbers,
     "A backbone": Backbone,
     "witness of a backbone": Witness,
+    "Load cases": LoadCases,
+    "intervals of load cases": LoadIntervals,
 }
 
 
