@@ -1,6 +1,7 @@
 """The study file: what a user writes in TOML, checked and in SI units."""
 
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Self
@@ -13,6 +14,7 @@ from faying.joint.modal import ModesChoice
 from faying.loads.load import Load
 from faying.materials import Material
 from faying.misuse import checked_call
+from faying.study.change import change_line, with_value
 from faying.study.keys.alternative import AlternativeChoice
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.keys.bolt import read_bolt
@@ -40,7 +42,8 @@ class Study:
     Args:
         title, folder: what it is called; where file names start from.
         name: of the study file, without its suffix.
-        text: the study file as it was read; files: all files that it names, so that a result depends on them.
+        text, data: the study file as it was read, and its tables.
+        files: all files that it names, so that a result depends on them.
         materials, parts: materials by name; name of the material of each part.
         geometry, surface, law, joints, bolts, supports, masses, modes, response, test, hammer: the tables of the file.
         bonds: joints whose faces are welded or glued; `joints` are the others.
@@ -76,6 +79,7 @@ class Study:
     bolt_sheets: tuple[BoltSheetChoice, ...] = ()
     load_cases: tuple[Load, ...] = ()
     text: str = field(default="", repr=False)
+    data: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
     files: tuple[Path, ...] = ()
 
     @property
@@ -95,6 +99,23 @@ class Study:
     def law_of(self, joint: JointChoice) -> LawChoice:
         """The law of a joint: its own, or that of the study."""
         return joint.law or self.law
+
+    @checked_call
+    def with_(self, path: str, value: Any) -> "Study":
+        """Return the study with one thing changed, read anew with all its checks.
+
+        Args:
+            path: A key, as `geometry.size`; in a list of tables for all entries, as `bolt.preload`, or for one by its
+                name, as `bolt.left.preload`. Quotes stand around a name with blanks.
+            value: Text with a unit, as in the file, or numbers in SI units; a mapping for a whole table; None takes the
+                key out.
+
+        Raises:
+            InputError: The path leads nowhere, or what is written there cannot be; with what is allowed.
+        """
+        data = with_value(self.data, path, value)
+        text = f"{self.text.rstrip()}\n{change_line(path, value)}\n"
+        return replace(Study.from_dict(data, folder=self.folder, where=f"{path} changed", text=text), name=self.name)
 
     @classmethod
     def read(cls, path: "str | Path | Study") -> "Study":
@@ -122,6 +143,7 @@ class Study:
     def from_dict(cls, data: dict[str, Any], *, folder: Path, where: str = "study", text: str = "") -> Self:
         """Check a study given as nested dictionaries (as TOML gives them); file names are relative to `folder`."""
         faults = Faults(folder=folder)
+        written = data
         data, inside = lifted(data)
         top = Table(data, "", faults, STUDY)
         title = top.get("title")
@@ -176,6 +198,7 @@ class Study:
             bolt_sheets=sheets,
             load_cases=cases,
             text=text,
+            data=written,
             files=tuple(dict.fromkeys(faults.files)),
         )
 
