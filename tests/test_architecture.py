@@ -133,3 +133,16 @@ def test_no_module_imports_in_a_circle():
 def test_only_units_imports_pint():
     users = {path.name for path in MODULES if "import pint" in path.read_text()}
     assert users == {"units.py"}
+
+
+TWICE = {"JK"}  # the law of a fractal surface, and one cap of it, each by its name in the literature
+
+
+def test_every_class_has_a_name_of_its_own():
+    names = [
+        node.name
+        for path in MODULES
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.ClassDef) and not node.name.startswith("_")
+    ]
+    assert {name for name in names if names.count(name) > 1} == TWICE

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from faying.asperity_fe.body import Body, State
+from faying.asperity_fe.body import Body, CapState
 from faying.asperity_fe.element import Quads
 from faying.asperity_fe.far import FarField, shared
 from faying.asperity_fe.mesh import cap_mesh
@@ -116,7 +116,7 @@ def test_tangent_is_the_derivative_of_the_forces():
     body = Body(elements=np.arange(len(mesh.quads)), **settings_)
     random = np.random.default_rng(5)
     u = 5e-4 * random.standard_normal(body.size)
-    state = State(plastic=body.virgin.plastic, hardened=body.virgin.hardened + 1e-4)
+    state = CapState(plastic=body.virgin.plastic, hardened=body.virgin.hardened + 1e-4)
     balance = body.balance(u, state)
     assert balance.returned.yielding.mean() > 0.5
     matrix = body.tangent(balance.returned)

@@ -8,7 +8,7 @@ import pytest
 import faying
 from faying.decks.deck import CondensedDeck
 from faying.decks.programs import CONDENSED, module_of
-from faying.decks.system import System
+from faying.decks.system import UnitSystem
 from faying.decks.write import write_condensed
 from faying.export.condensed import carried
 
@@ -37,7 +37,7 @@ def deck(unit="mm", force="N", first=(0.01, -0.02, 0.03), second=(0.01, -0.02, 0
         element=40,
         stiffness=turn.T @ K @ turn,
         loss=turn.T @ C @ turn,
-        system=System(unit, force),
+        system=UnitSystem(unit, force),
         facts=("a joint",),
     )
 

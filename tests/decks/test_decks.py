@@ -11,7 +11,7 @@ from hypothesis.extra.numpy import arrays
 import faying
 from faying.decks import abaqus, aster, calculix, mapdl, nastran
 from faying.decks.deck import real, springs_of
-from faying.decks.system import System
+from faying.decks.system import UnitSystem
 from faying.decks.write import SOLVERS, write
 from tests.helpers import readers
 from tests.helpers.models import K_N, K_T, LOSS_N, deck_of, two
@@ -127,16 +127,16 @@ def test_the_listing_of_matrix27_line_by_line():
 
 def test_units():
     """A spring of 1 kN/mm, a damper, a pressure and a mass in three systems."""
-    assert System("mm").stiffness * 1e6 == pytest.approx(1e3)
-    assert System("mm").pressure * 5e6 == pytest.approx(5.0)
-    assert System("mm").density * 2e13 == pytest.approx(2e4)
-    assert System("mm").mass * 7800 / System("mm").metre ** 3 == pytest.approx(7.8e-9)
-    assert System("m").stiffness == System("m").pressure == System("m").mass == 1.0
-    inch = System("inch", "lbf")
+    assert UnitSystem("mm").stiffness * 1e6 == pytest.approx(1e3)
+    assert UnitSystem("mm").pressure * 5e6 == pytest.approx(5.0)
+    assert UnitSystem("mm").density * 2e13 == pytest.approx(2e4)
+    assert UnitSystem("mm").mass * 7800 / UnitSystem("mm").metre ** 3 == pytest.approx(7.8e-9)
+    assert UnitSystem("m").stiffness == UnitSystem("m").pressure == UnitSystem("m").mass == 1.0
+    inch = UnitSystem("inch", "lbf")
     assert inch.pressure * 6894.757293168 == pytest.approx(1.0)
     assert inch.stiffness * 175.1268369864 == pytest.approx(1.0)
     with pytest.raises(faying.InputError, match="unit of force"):
-        _ = System("mm", "parsec").newton
+        _ = UnitSystem("mm", "parsec").newton
     a, b = (readers.one_way(calculix.spring2(deck_of(mesh(), unit=unit))) for unit in ("mm", "m"))
     assert np.abs(1e3 * a - b).max() < 1e-9 * np.abs(b).max()
 

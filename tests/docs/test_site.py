@@ -18,7 +18,7 @@ from faying.result.backbone import Backbone
 from faying.result.bolts import BoltNumbers
 from faying.result.fields import declared
 from faying.result.load_cases import LoadCases
-from faying.result.result import Comparison, Receptance, Result
+from faying.result.result import MeasuredComparison, Receptance, Result
 
 pytest.importorskip("sphinx", reason="the site needs the group docs")
 
@@ -157,7 +157,7 @@ def test_every_study_key_stands_in_the_reference_with_its_default(site):
 
 def test_every_variable_of_a_result_stands_in_the_reference(site):
     text = Page(site / "reference" / "results.html").text
-    for kind in (Result, Receptance, Comparison, BoltNumbers, Backbone, LoadCases):
+    for kind in (Result, Receptance, MeasuredComparison, BoltNumbers, Backbone, LoadCases):
         for name, one in declared(kind).items():
             assert f" {one.name or name} " in text, name
 

@@ -6,7 +6,7 @@ import pytest
 import faying
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
-from faying.fe.response import Vibration, frequency_response
+from faying.fe.response import ForcedVibration, frequency_response
 from faying.numerics.damped import damped_modes
 from faying.numerics.modes import lowest_modes
 from tests.helpers.boxes import stack
@@ -42,7 +42,9 @@ def respond(bar, forces, outputs, **changes):
     _, K, M, loss, modes, damped = bar
     given = {"frequencies": FREQUENCIES, "rigid": 6, "structural_loss": ETA} | changes
     names = ("rigid", "kind", "structural_loss", "parts")
-    vibration = Vibration(stiffness=K, mass=M, loss=loss, **{name: given.pop(name) for name in names if name in given})
+    vibration = ForcedVibration(
+        stiffness=K, mass=M, loss=loss, **{name: given.pop(name) for name in names if name in given}
+    )
     return frequency_response(vibration, modes, damped, forces=forces, outputs=outputs, **given)
 
 
@@ -99,7 +101,7 @@ def test_a_lossy_joint_against_the_full_equations(kind):
     push = np.zeros((K.shape[0], 1))
     push[[1, 5, 40], 0] = 1.0, -0.5, 0.7
     frequencies = np.array([50.0, 400.0, 1300.0, 3000.0])
-    vibration = Vibration(stiffness=K, mass=M, loss=loss, rigid=6, kind=kind)
+    vibration = ForcedVibration(stiffness=K, mass=M, loss=loss, rigid=6, kind=kind)
     found = frequency_response(vibration, modes, damped, forces=push, outputs=push, frequencies=frequencies, checks=4)
     for i, f in enumerate(frequencies):
         w = 2 * np.pi * f
@@ -131,7 +133,7 @@ def test_structural_loss_is_that_of_the_parts_alone(bar):
 
     def width(span, **changes):
         lines = np.linspace(1 - span, 1 + span, 2001) * axial
-        vibration = Vibration(stiffness=soft, mass=M, loss=nothing, rigid=6, structural_loss=ETA, **changes)
+        vibration = ForcedVibration(stiffness=soft, mass=M, loss=nothing, rigid=6, structural_loss=ETA, **changes)
         found = frequency_response(vibration, modes, damped, forces=force, outputs=force, frequencies=lines)
         power = np.abs(found.receptance[:, 0, 0]) ** 2
         high = lines[power > power.max() / 2]
@@ -152,7 +154,7 @@ def test_the_residual_is_that_of_the_full_equations(bar, eta):
     push = end_force(mesh, L)[:, None]
     where = np.array([3.0, 4000.0, 70e3])  # rigid motion, resonance, beyond the basis
     every = np.eye(K.shape[0])
-    vibration = Vibration(stiffness=K, mass=M, loss=loss, rigid=6, structural_loss=eta)
+    vibration = ForcedVibration(stiffness=K, mass=M, loss=loss, rigid=6, structural_loss=eta)
     found = frequency_response(vibration, modes, damped, forces=push, outputs=every, frequencies=where, checks=3)
     norm = (K + modes.shift * M).toarray()
     for u, error, f in zip(found.receptance[:, :, 0], found.error, where, strict=True):

@@ -13,7 +13,7 @@ from faying.errors import InputError, NotConverged
 from faying.halfspace import error_bound, solve_half_space
 from faying.halfspace.bounded import SAMPLE, _in_order
 from faying.halfspace.cells import Cells
-from faying.halfspace.conjugate import System
+from faying.halfspace.conjugate import CellSystem
 from faying.halfspace.kernels import normal_kernel, shear_kernel
 from faying.halfspace.solve import memory_needed
 
@@ -154,7 +154,7 @@ def test_the_preconditioner_is_symmetric_and_positive_and_keeps_totals(seed, sha
     random = np.random.default_rng(seed)
     mask = random.random(shape[0] * shape[1]) < share
     mask[:2] = True
-    system = System(kernel, Cells(kernel, mask))
+    system = CellSystem(kernel, Cells(kernel, mask))
     a, b = random.standard_normal((2, kernel.components, int(mask.sum()))).astype(np.float32)
     Ma, Mb = system.preconditioned(a), system.preconditioned(b)
     size = float(np.sqrt(np.vdot(a, Ma) * np.vdot(b, Mb)))

@@ -9,8 +9,8 @@ from scipy.integrate import quad
 from faying.errors import InputError, NotConverged
 from faying.halfspace import solve_half_space
 from faying.halfspace import tangent as module
-from faying.halfspace.arrays import Place
-from faying.halfspace.conjugate import System
+from faying.halfspace.arrays import ArrayLibrary
+from faying.halfspace.conjugate import CellSystem
 from faying.halfspace.kernels import shear_kernel
 
 N = 128
@@ -139,12 +139,15 @@ def test_impossible_slip_is_refused(X, mu, text):
 @pytest.mark.parametrize("share", [0.03, 0.3, 0.95])
 def test_what_is_said_of_the_error_of_a_stiffness_is_near_it(rough, share, monkeypatch):
     h = rough(96)
-    kernel, touching = shear_kernel(h.shape, 1.0, 0.3, periodic=True, place=Place()), h > np.quantile(h, 1 - share)
+    kernel, touching = (
+        shear_kernel(h.shape, 1.0, 0.3, periodic=True, place=ArrayLibrary()),
+        h > np.quantile(h, 1 - share),
+    )
     monkeypatch.setattr(module, "ENOUGH", 1e-13)
     exact = module.stiffness_on(kernel, touching)
     said = []
-    energy = System.energy
-    monkeypatch.setattr(System, "energy", lambda *a: said.append(energy(*a)) or said[-1])
+    energy = CellSystem.energy
+    monkeypatch.setattr(CellSystem, "energy", lambda *a: said.append(energy(*a)) or said[-1])
     monkeypatch.setattr(module, "ENOUGH", 1.0)
     once = module.stiffness_on(kernel, touching)
     assert len(said) == 2

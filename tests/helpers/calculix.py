@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from faying.asperity_fe.body import State
+from faying.asperity_fe.body import CapState
 from faying.asperity_fe.mesh import cap_mesh
 from faying.asperity_fe.model import build
 
@@ -33,7 +33,7 @@ def history(model, displacement, steps):
     state, at, out = model.body.virgin, None, []
     for d in np.linspace(0, np.sqrt(displacement), steps + 1)[1:] ** 2:
         at = model.press(float(d), at, state)
-        state = State(plastic=at.balance.returned.plastic, hardened=at.balance.returned.hardened)
+        state = CapState(plastic=at.balance.returned.plastic, hardened=at.balance.returned.hardened)
         out.append((float(d), model.body.surface[at.pressing]))
     return out, model.contact(at).force
 

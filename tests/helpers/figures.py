@@ -34,7 +34,7 @@ from faying.output import report, report_measured
 from faying.output.figures import asperity, sweep
 from faying.result import Receptance, backbone_figure, load_cases_figure
 from faying.result.backbone import Witness
-from faying.result.result import Comparison
+from faying.result.result import MeasuredComparison
 from faying.study.keys.uncertain import Input
 from faying.surface import figure as surface
 from faying.surface.form import prepared
@@ -164,7 +164,7 @@ def result():
         level_error=0 * damping,
         alternatives=("JK",),
         alternative_frequencies=1.01 * f[None],
-        comparison=Comparison(
+        comparison=MeasuredComparison(
             source="hammer test",
             frequencies=test,
             predicted=np.take_along_axis(f, paired, axis=1),

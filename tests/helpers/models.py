@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from faying.decks.deck import Contact, JointDeck
-from faying.decks.system import System
+from faying.decks.deck import ContactProperty, JointDeck
+from faying.decks.system import UnitSystem
 from faying.fe.interface import join
 from faying.fe.mesh import Mesh
 from faying.joint.pairs import consistent, lumped
@@ -44,14 +44,14 @@ def pairs_of(mesh, coupling="nodes", seed=None):
 def deck_of(mesh, coupling="nodes", seed=1, unit="mm", frequency=500.0, **changes):
     pairs = pairs_of(mesh, coupling, seed)
     p = np.geomspace(1e5, 1e7, 50)
-    contact = Contact(
+    contact = ContactProperty(
         approach=p / K_N, pressure=p, k_n=K_N, k_t=K_T, loss_n=LOSS_N, mean_pressure=5e6, friction=0.2, given=False
     )
     deck = JointDeck(
         pairs=pairs,
         mesh=mesh,
         faces=FACES,
-        system=System(unit),
+        system=UnitSystem(unit),
         facts=("a joint", "law: by hand"),
         viscous=None if frequency is None else pairs.loss / (2 * np.pi * frequency),
         frequency=frequency,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array, random_array
 
-from faying.numerics.changed import Changed, whole
+from faying.numerics.changed import UpdatedStiffness, whole
 from faying.numerics.modes import lowest_modes
 from faying.numerics.nearby import NearbyModes
 
@@ -21,7 +21,7 @@ def pair():
 
 
 def test_products_diagonal_and_sum_are_those_of_the_sum(pair):
-    both, total = Changed(before=pair[0], change=pair[1]), (pair[0] + pair[1]).toarray()
+    both, total = UpdatedStiffness(before=pair[0], change=pair[1]), (pair[0] + pair[1]).toarray()
     assert both.shape == total.shape
     assert both.touched.tolist() == [20, 60, 61, 150, 199]
     rng = np.random.default_rng(0)
@@ -38,14 +38,14 @@ def test_large_matrices_too():
     before = random_array((30_000, 30_000), density=3e-4, format="csr", rng=rng)
     change = csr_array(([2.0, -3.0], ([5, 7], [7, 5])), shape=before.shape)
     vectors = rng.standard_normal((30_000, 3))
-    assert Changed(before=before, change=change) @ vectors == pytest.approx((before + change) @ vectors)
+    assert UpdatedStiffness(before=before, change=change) @ vectors == pytest.approx((before + change) @ vectors)
 
 
 def test_modes_of_a_changed_stiffness_are_those_of_the_sum(pair):
     mass = csr_array(np.eye(200))
     modes = lowest_modes(pair[0], mass, 8, shift_frequency=0.01)
     near = NearbyModes(modes, pair[0], mass, rigid=0)
-    both = Changed(before=pair[0], change=pair[1])
+    both = UpdatedStiffness(before=pair[0], change=pair[1])
     found = near.under(both, 4, tolerance=1e-9)
     exact = np.sqrt(np.linalg.eigvalsh(whole(both).toarray())[:4]) / (2 * np.pi)
     assert found.frequencies[:4] == pytest.approx(exact, rel=1e-8)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse import diags_array
 
-from faying.numerics.span import Columns, Span, extension
+from faying.numerics.span import GrowingColumns, Span, extension
 
 N = 40
 MASS = diags_array(np.geomspace(1e-3, 1e3, N)).tocsr()
@@ -50,7 +50,7 @@ def test_a_span_keeps_its_projection(columns):
 def test_columns_grow_under_a_view_and_after_a_turn_without_losing_any():
     """Growth moves the numbers where nobody looks at them; a view that is held keeps what it showed."""
     blocks = [drawn(k, seed=k) for k in (5, 3, 1, 4)]
-    columns, wanted = Columns(blocks[0]), blocks[0]
+    columns, wanted = GrowingColumns(blocks[0]), blocks[0]
     held = []
     for block in blocks[1:]:
         columns.add(block)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from faying.result.interval import Interval
-from faying.result.result import Comparison
+from faying.result.result import MeasuredComparison
 from faying.result.score import Score
 
 SCORE = 1.6448536
@@ -55,7 +55,7 @@ def result(test, predicted, low=None, high=None, modes=None):
     test, predicted = np.asarray(test, dtype=float), np.asarray(predicted, dtype=float)
     modes = np.tile(np.arange(test.shape[1]), (len(test), 1)) if modes is None else np.asarray(modes)
     return SimpleNamespace(
-        comparison=Comparison(source="made up", frequencies=test, predicted=predicted, modes=modes),
+        comparison=MeasuredComparison(source="made up", frequencies=test, predicted=predicted, modes=modes),
         loads=np.arange(1, len(test) + 1) * 1e3,
         bonded=np.full(test.shape[1], 200.0),
         free=np.full(test.shape[1], 50.0),

@@ -22,7 +22,7 @@ from faying.result.backbone import Backbone, Witness
 from faying.result.bolts import BoltNumbers
 from faying.result.fields import declared
 from faying.result.load_cases import LoadCases, LoadIntervals
-from faying.result.result import Comparison, Receptance, Result
+from faying.result.result import MeasuredComparison, Receptance, Result
 from faying.study.keys import uncertain, varied
 from faying.surface.estimators.table import ESTIMATORS
 from faying.units import EXAMPLES
@@ -33,7 +33,7 @@ from faying_reference.study_keys import Key, keys
 GROUPS = {
     "result.nc": Result,
     "response": Receptance,
-    "comparison": Comparison,
+    "comparison": MeasuredComparison,
     "hammer": ModalComparison,
     "full response": FullResponse,
     "bolt_numbers": BoltNumbers,

@@ -12,11 +12,11 @@ from faying.case.case import Case, materials_at
 from faying.case.solve import LoadedCase
 from faying.contact.conductance import contact_conductance
 from faying.errors import InputError
-from faying.joint.clamping import Clamping, Stack, clamping, stack_of
+from faying.joint.clamping import ClampedStack, Clamping, clamping, stack_of
 from faying.joint.strength import seat_area, seat_limit
 from faying.joint.structure import Structure
 from faying.materials import ContactPair
-from faying.numerics.changed import Changed
+from faying.numerics.changed import UpdatedStiffness
 from faying.result.bolts import BoltNumbers
 from faying.study.keys.surface import Surface
 from faying.surface.roughness import mean_peak_to_valley
@@ -66,7 +66,7 @@ def bolt_numbers(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Arra
 
 
 def _clamped(structure: Structure, state: LoadedCase, before: Sequence[Clamping]) -> Clamping:
-    stiffness = Changed(before=structure.vibrating[0], change=structure.sprung(state.springs))
+    stiffness = UpdatedStiffness(before=structure.vibrating[0], change=structure.sprung(state.springs))
     like = np.concatenate([one.motions for one in before], axis=1) if before else None
     return clamping(structure, stiffness, state.modes, state.springs, like=like)
 
@@ -123,7 +123,7 @@ def _lost(structure: Structure, found: Sequence[Clamping], embedding: Array) -> 
     return np.asarray(np.where(carried > CARRIES, embedding, np.nan_to_num(embedding)).sum(axis=2))
 
 
-def _guide(height: Callable[[int], float], stack: Stack | None) -> float:
+def _guide(height: Callable[[int], float], stack: ClampedStack | None) -> float:
     """Embedding [m] of thread, both seats and the joints of a bolt by the guideline; NaN where no scan gives Rz.
 
     height: Rz [m] of the surface of each joint. The seats are taken to be as rough as the roughest of these joints.

@@ -7,7 +7,7 @@ import numpy as np
 
 from faying.answer.wave_band import Draws, WaveBand
 from faying.case.case import Case
-from faying.case.changed import Changed, can_change, frequencies_of
+from faying.case.changed import ChangedCase, can_change, frequencies_of
 from faying.case.ends import Pair, at_median_ratio, quantiles
 from faying.case.mesh_error import MeshError
 from faying.case.scatter import ENDS, SCATTER, SCORE, default, mode_sd, stated, structure_sd
@@ -32,10 +32,10 @@ def intervals(
     """
     if not case.study.modes.intervals:
         return None, None, []
-    changes: dict[str, list[Changed]] = {}
+    changes: dict[str, list[ChangedCase]] = {}
     draws = Draws(wavy=[None] * len(case.structure.joints))
     if can_change(case):
-        draws, plain = Draws.of(case), Changed.nothing(case)
+        draws, plain = Draws.of(case), ChangedCase.nothing(case)
         changes["waves"] = [replace(plain, gaps=draws.gaps(case, seed)) for seed in draws.drawn]
         # about the median of k_t/k_n: where Mindlin's ratio holds the faces, the law would hardly matter
         laws = [at_median_ratio(case, joint) for joint in case.structure.joints]

@@ -25,7 +25,7 @@ from faying.loads.remarks import load_notes
 from faying.loads.statics import LoadedState, LoadStatics
 from faying.measured.mac import Weighted
 from faying.notes import Note
-from faying.numerics.changed import Changed
+from faying.numerics.changed import UpdatedStiffness
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import factorise_roughly
 from faying.result.load_cases import LoadCases
@@ -159,7 +159,7 @@ def statics_of(base: Preloaded) -> LoadStatics:
         for joint, s in zip(structure.joints, base.springs, strict=True)
     ]
     return LoadStatics(
-        stiffness=Changed(before=structure.vibrating[0], change=structure.sprung(base.springs)),
+        stiffness=UpdatedStiffness(before=structure.vibrating[0], change=structure.sprung(base.springs)),
         factor=base.factor,
         held_back=structure.held_back,
         joints=pairs,

@@ -30,7 +30,7 @@ from faying.mpi.over_mpi import OverMpi
 from faying.notes import Note
 from faying.numerics.solve import chosen, is_mpi
 from faying.progress import Report
-from faying.result import BoltNumbers, Comparison, Receptance, Result
+from faying.result import BoltNumbers, MeasuredComparison, Receptance, Result
 from faying.study.study import Study
 from faying.typing import Array
 
@@ -204,7 +204,7 @@ def _stacked(rows: Sequence[Array | None]) -> Array | None:
     return np.stack(kept) if len(kept) == len(rows) else None
 
 
-def _predicted(other: Alternative, comparison: Comparison) -> Array:
+def _predicted(other: Alternative, comparison: MeasuredComparison) -> Array:
     """Frequencies [Hz] that another law predicts of the test's modes; NaN where it has no answer."""
     if other.case is not None:
         case, states = other.case, other.states

@@ -9,7 +9,7 @@ from faying.case.solve import LoadedCase
 from faying.measured.mac import Weighted
 from faying.measured.pairing import Paired, changes, pair_over_loads
 from faying.notes import Note
-from faying.result import Comparison
+from faying.result import MeasuredComparison
 from faying.typing import Array
 
 
@@ -49,7 +49,7 @@ def encounters(states: Sequence[LoadedCase], steps: Sequence[Array]) -> list[Not
 
 def compared(
     case: Case, states: Sequence[LoadedCase], shapes: Sequence[Array], steps: Sequence[Array]
-) -> tuple[Comparison | None, list[Note]]:
+) -> tuple[MeasuredComparison | None, list[Note]]:
     """Pair the test's frequencies with the computed modes, followed over the loads; see `pair_frequencies`.
 
     shapes: (m, nodes, 3) at each load; steps: MAC from load to load.
@@ -61,7 +61,7 @@ def compared(
     here, axis = test.seen(case.structure.mesh.points)
     motion = [np.abs(found[:, here] @ axis).max(axis=1) for found in shapes]
     pairs = pair_over_loads(measured, [s.damped.frequencies for s in states], motion, steps, threshold=test.threshold)
-    comparison = Comparison(
+    comparison = MeasuredComparison(
         source=test.source,
         frequencies=measured,
         predicted=pairs.predicted,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from faying.asperity_fe.element import Quads
-from faying.asperity_fe.mesh import Mesh
+from faying.asperity_fe.mesh import CapMesh
 from faying.asperity_fe.plasticity import Flow, Returned, return_map
 from faying.materials import Material
 from faying.typing import Array, Index
@@ -17,7 +17,7 @@ SOFT = 1e-7  # share of the elastic stiffness kept along the direction of flow, 
 
 
 @dataclass(frozen=True, kw_only=True)
-class State:
+class CapState:
     """Plastic strain (p, 4), tensor shear, and equivalent plastic strain (p,) at the Gauss points."""
 
     plastic: Array
@@ -49,7 +49,7 @@ class Body:
     component) kept at zero; elements: those of the mesh that belong to this body; far: what they rest on, if anything.
     """
 
-    mesh: Mesh
+    mesh: CapMesh
     materials: Sequence[Material]
     hardening: Sequence[float]
     constrained: Index
@@ -81,10 +81,10 @@ class Body:
         )
 
     @cached_property
-    def virgin(self) -> State:
+    def virgin(self) -> CapState:
         """The state before any load."""
         points = 4 * len(self.elements)
-        return State(plastic=np.zeros((points, 4)), hardened=np.zeros(points))
+        return CapState(plastic=np.zeros((points, 4)), hardened=np.zeros(points))
 
     # degrees of freedom
 
@@ -140,7 +140,7 @@ class Body:
         local = np.append(unknowns, 0.0)[self._dofs]
         return np.asarray((self._B @ local[..., None]).reshape(-1, 4))
 
-    def balance(self, unknowns: Array, state: State) -> Balance:
+    def balance(self, unknowns: Array, state: CapState) -> Balance:
         """Forces and energy of a displacement reached in one step from `state`."""
         returned = return_map(self.flow, self.strain(unknowns), state.plastic, state.hardened)
         pull = (returned.stress * self._weight[:, None]).reshape(-1, 1, 16)

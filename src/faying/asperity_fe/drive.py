@@ -8,11 +8,11 @@ from typing import Literal
 
 import numpy as np
 
-from faying.asperity_fe.body import State
-from faying.asperity_fe.equilibrium import Equilibrium
+from faying.asperity_fe.body import CapState
+from faying.asperity_fe.equilibrium import CapEquilibrium
 from faying.asperity_fe.mesh import cap_mesh, rim_radius
-from faying.asperity_fe.model import Model, build, expected_radius
-from faying.asperity_fe.result import AsperityResult, Field, History
+from faying.asperity_fe.model import CapModel, build, expected_radius
+from faying.asperity_fe.result import AsperityResult, CapField, History
 from faying.errors import InputError, NotConverged
 from faying.materials import RIGID, ContactPair, Material
 
@@ -154,11 +154,11 @@ class _Run:
     """One history being driven; every step is kept as it is found."""
 
     def __init__(
-        self, model: Model, steps: int, targets: list[float], progress: Callable[[float], None] | None
+        self, model: CapModel, steps: int, targets: list[float], progress: Callable[[float], None] | None
     ) -> None:
         self.model, self.steps, self.targets, self.progress = model, steps, targets, progress
-        self.state: State = model.body.virgin
-        self.at: Equilibrium | None = None
+        self.state: CapState = model.body.virgin
+        self.at: CapEquilibrium | None = None
         self.rows: list[tuple[float, float, float, float, float, float, int]] = []
         self.residual: float | None = None
         self.factorisations = 0
@@ -254,7 +254,7 @@ class _Run:
             self.factorisations += self.model.factors.factorisations
             self.model, self.at, self.state = self.model.enlarged(self.at, self.state)
         returned = found.balance.returned
-        self.state = State(plastic=returned.plastic, hardened=returned.hardened)
+        self.state = CapState(plastic=returned.plastic, hardened=returned.hardened)
         self.at = found
         contact = self.model.contact(found)
         low, high = contact.bounds
@@ -289,7 +289,7 @@ class _Run:
                 yielding=volume,
                 iterations=iterations.astype(np.int64),
             ),
-            field=Field(
+            field=CapField(
                 nodes=mesh.nodes,
                 displacement=self.model.displacement_of(self.at),
                 quads=mesh.quads,

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.asperity_fe.body import Balance, Body, State
+from faying.asperity_fe.body import Balance, Body, CapState
 from faying.errors import NotConverged
 from faying.numerics.solve import Repeatable, factorise
 from faying.typing import Array, Index
@@ -22,7 +22,7 @@ ITERATIONS = 40
 
 
 @dataclass(frozen=True, kw_only=True)
-class Equilibrium:
+class CapEquilibrium:
     """unknowns (n,) [m]; balance; pressing: places in `body.touching` of the nodes in contact; iterations."""
 
     unknowns: Array
@@ -31,7 +31,7 @@ class Equilibrium:
     iterations: int
 
 
-class Solver:
+class CapSolver:
     """Solves with the tangents of one body; the symbolic part of the factorisation is done once."""
 
     def __init__(self, body: Body, name: str | None = None) -> None:
@@ -49,7 +49,7 @@ class Solver:
         return self._factor.solve(right)
 
 
-def follow(body: Body, solver: Solver, at: Equilibrium, moves: Array) -> Array:
+def follow(body: Body, solver: CapSolver, at: CapEquilibrium, moves: Array) -> Array:
     """Predict the displacement after the nodes in contact have moved by `moves`: one solution with the tangent."""
     pinned = body.touching[at.pressing]
     matrix = body.tangent(at.balance.returned)
@@ -67,8 +67,8 @@ def _mask(size: int, places: Index) -> Any:
 
 
 def balanced(
-    body: Body, solver: Solver, start: Array, state: State, room: Array, tolerance: float = TOLERANCE
-) -> Equilibrium:
+    body: Body, solver: CapSolver, start: Array, state: CapState, room: Array, tolerance: float = TOLERANCE
+) -> CapEquilibrium:
     """Find the equilibrium reached in one step from `state`.
 
     start (n,): where to begin; room (s,): how far each surface node may rise before the plane stops it [m].
@@ -87,7 +87,7 @@ def balanced(
         imbalance = float(np.linalg.norm(now.force[loose])) / scale if scale else 0.0
         if imbalance < tolerance:
             pressing = np.flatnonzero(~loose[body.touching])
-            return Equilibrium(unknowns=x, balance=now, pressing=pressing, iterations=iteration)
+            return CapEquilibrium(unknowns=x, balance=now, pressing=pressing, iterations=iteration)
         right = np.where(loose, -now.force, 0.0)
         step = solver(body.fixed(body.tangent(now.returned), pinned), right)
         step[pinned] = 0.0

@@ -17,7 +17,7 @@ CAP, LAYER, SUBSTRATE = 0, 1, 2
 
 
 @dataclass(frozen=True, kw_only=True)
-class Mesh:
+class CapMesh:
     """Nodes and quadrilaterals of one asperity.
 
     nodes (n, 2): radius and height [m], the height counted from the base of the cap; quads (m, 4): counter-clockwise;
@@ -81,7 +81,7 @@ def cap_mesh(
     domain: float | None,
     layer_thickness: float = 0.0,
     growth: float = 1.08,
-) -> Mesh:
+) -> CapMesh:
     """Mesh the cap and, unless `domain` is None, the block under it.
 
     R, h_a: radius and height of the cap [m]; contact_radius: the largest expected [m]; elements: their number over
@@ -104,7 +104,7 @@ def cap_mesh(
     )
 
 
-def _cap(R: float, h_a: float, *, across: _Grading, down: _Grading) -> Mesh:
+def _cap(R: float, h_a: float, *, across: _Grading, down: _Grading) -> CapMesh:
     """The cap alone, on its base; its nodes go row by row from the top, the node of the rim last."""
     r_a = rim_radius(R, h_a)
     arc = across.split(0.0, R * (np.pi / 2 if h_a == R else asin(r_a / R)))
@@ -118,7 +118,7 @@ def _cap(R: float, h_a: float, *, across: _Grading, down: _Grading) -> Mesh:
     number = np.zeros((rows + 1, columns + 1), np.int64)
     number[:, :columns] = np.arange((rows + 1) * columns).reshape(rows + 1, columns)
     number[:, columns] = (rows + 1) * columns  # the rim: one node for all rows
-    return Mesh(
+    return CapMesh(
         nodes=np.concatenate([points[:, :columns].reshape(-1, 2), np.array([[r_a, 0.0]])]),
         quads=_grid(number),
         body=np.full(rows * columns, CAP),
@@ -129,7 +129,7 @@ def _cap(R: float, h_a: float, *, across: _Grading, down: _Grading) -> Mesh:
     )
 
 
-def _on_block(cap: Mesh, *, across: _Grading, down: _Grading, stops: list[float]) -> Mesh:
+def _on_block(cap: CapMesh, *, across: _Grading, down: _Grading, stops: list[float]) -> CapMesh:
     """The cap on a block of depth and radius stops[-1] - stops[0].
 
     `stops` [m], from the top of the cap down, begin with its height; a layer's lower face is the second of three.
@@ -147,7 +147,7 @@ def _on_block(cap: Mesh, *, across: _Grading, down: _Grading, stops: list[float]
     below[1:] = start + np.arange(below[1:].size).reshape(below[1:].shape)
     grid_r, grid_z = np.meshgrid(radii, z)
     in_layer = np.arange(len(z)) < (len(pieces[0]) if len(pieces) > 1 else 0)
-    return Mesh(
+    return CapMesh(
         nodes=np.concatenate(
             [
                 cap.nodes,

@@ -6,10 +6,10 @@ from math import sqrt
 
 import numpy as np
 
-from faying.asperity_fe.body import Body, State
-from faying.asperity_fe.equilibrium import Equilibrium, Solver, balanced, follow
+from faying.asperity_fe.body import Body, CapState
+from faying.asperity_fe.equilibrium import CapEquilibrium, CapSolver, balanced, follow
 from faying.asperity_fe.far import FarField, elastic_stress, shared
-from faying.asperity_fe.mesh import Mesh
+from faying.asperity_fe.mesh import CapMesh
 from faying.materials import Material
 from faying.typing import Array, Index
 
@@ -17,7 +17,7 @@ PLASTIC_RADIUS = 2.5  # radius of the part that may yield, over the contact radi
 
 
 @dataclass(frozen=True, kw_only=True)
-class Contact:
+class PlaneContact:
     """What the plane feels: force [N]; radius of the contact and its bounds [m], on the deformed surface."""
 
     force: float
@@ -26,10 +26,10 @@ class Contact:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Model:
+class CapModel:
     """Mesh, materials and supports of one asperity; plastic flow is followed within `plastic_radius` [m]."""
 
-    mesh: Mesh
+    mesh: CapMesh
     h_a: float
     materials: tuple[Material, ...]
     hardening: tuple[float, ...]
@@ -67,15 +67,15 @@ class Model:
         return near if self.far is None else replace(near, far=self.far.spring)
 
     @cached_property
-    def factors(self) -> Solver:
+    def factors(self) -> CapSolver:
         """The factorisations of this model's tangents."""
-        return Solver(self.body, self.solver)
+        return CapSolver(self.body, self.solver)
 
     def room(self, displacement: float) -> Array:
         """How far each surface node may rise before the plane stops it [m]."""
         return np.asarray(self.h_a - displacement - self.mesh.nodes[self.body.surface, 1])
 
-    def press(self, displacement: float, at: Equilibrium | None, state: State) -> Equilibrium:
+    def press(self, displacement: float, at: CapEquilibrium | None, state: CapState) -> CapEquilibrium:
         """Find the equilibrium with the plane at `displacement` [m], in one step from `state`, starting from `at`."""
         room = self.room(displacement)
         if at is None:
@@ -85,13 +85,13 @@ class Model:
             start = follow(self.body, self.factors, at, moves)
         return balanced(self.body, self.factors, start, state, room)
 
-    def utilisation(self, at: Equilibrium) -> float:
+    def utilisation(self, at: CapEquilibrium) -> float:
         """Largest von Mises stress over yield strength in the part that is taken as elastic."""
         if self.far is None:
             return 0.0
         return self.far.utilisation(at.unknowns[self.body.unknown_of_dof[self.far.border]])
 
-    def displacement_of(self, at: Equilibrium) -> Array:
+    def displacement_of(self, at: CapEquilibrium) -> Array:
         """Displacement of every node (n, 2) [m]."""
         moved = self.body.spread(at.unknowns)
         if self.far is not None:
@@ -102,7 +102,7 @@ class Model:
             moved = np.where(ours[:, None], moved, rest)
         return moved
 
-    def stress_of(self, at: Equilibrium) -> tuple[Array, Array]:
+    def stress_of(self, at: CapEquilibrium) -> tuple[Array, Array]:
         """Stress (m, 4) [Pa] and equivalent plastic strain (m,) of every element, means over its four points."""
         stress = np.zeros((len(self.mesh.quads), 4))
         strain = np.zeros(len(self.mesh.quads))
@@ -114,7 +114,7 @@ class Model:
             stress[far.elements] = hooke.reshape(-1, 4, 4).mean(axis=1)
         return stress, strain
 
-    def enlarged(self, at: Equilibrium, state: State) -> tuple["Model", Equilibrium, State]:
+    def enlarged(self, at: CapEquilibrium, state: CapState) -> tuple["CapModel", CapEquilibrium, CapState]:
         """Return the model with a larger part that may yield, and the same equilibrium and state in it."""
         larger = replace(self, plastic_radius=1.4 * self.plastic_radius)
         field = self.displacement_of(at).reshape(-1)
@@ -125,24 +125,24 @@ class Model:
         points = (4 * place[:, None] + np.arange(4)).reshape(-1)
         plastic, hardened = larger.body.virgin.plastic.copy(), larger.body.virgin.hardened.copy()
         plastic[points], hardened[points] = state.plastic, state.hardened
-        wider = State(plastic=plastic, hardened=hardened)
+        wider = CapState(plastic=plastic, hardened=hardened)
         balance = larger.body.balance(unknowns, wider)
-        same = Equilibrium(unknowns=unknowns, balance=balance, pressing=at.pressing, iterations=0)
+        same = CapEquilibrium(unknowns=unknowns, balance=balance, pressing=at.pressing, iterations=0)
         return larger, same, wider
 
-    def contact(self, at: Equilibrium) -> Contact:
+    def contact(self, at: CapEquilibrium) -> PlaneContact:
         """Read force and contact radius off an equilibrium."""
         body = self.body
         count = len(at.pressing)
         if not count:
-            return Contact(force=0.0, radius=0.0, bounds=(0.0, 0.0))
+            return PlaneContact(force=0.0, radius=0.0, bounds=(0.0, 0.0))
         moved = body.spread(at.unknowns)[body.surface]
         r = self.mesh.nodes[body.surface, 0] + moved[:, 0]
         height = self.mesh.nodes[body.surface, 1] + moved[:, 1]
         last = int(at.pressing[-1])
         gap = height[at.pressing].mean() - height
         press = np.maximum(-at.balance.force[body.touching[: last + 1]], 0.0)
-        return Contact(force=float(press.sum()), radius=_edge(r, gap, press), bounds=_bounds(r, last))
+        return PlaneContact(force=float(press.sum()), radius=_edge(r, gap, press), bounds=_bounds(r, last))
 
 
 def _bounds(r: Array, last: int) -> tuple[float, float]:
@@ -180,17 +180,17 @@ def _edge(r: Array, gap: Array, press: Array) -> float:
 
 def build(
     *,
-    mesh: Mesh,
+    mesh: CapMesh,
     h_a: float,
     materials: tuple[Material, ...],
     hardening: tuple[float, ...],
     sliding: bool,
     contact_radius: float,
     solver: str | None,
-) -> Model:
+) -> CapModel:
     """Support an asperity: axis and outer wall keep their radius, the foot its height (and, bonded, its radius)."""
     constrained = np.concatenate([2 * mesh.axis, 2 * mesh.base + 1, 2 * mesh.wall, [] if sliding else 2 * mesh.base])
-    return Model(
+    return CapModel(
         mesh=mesh,
         h_a=h_a,
         materials=materials,

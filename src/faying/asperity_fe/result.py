@@ -26,7 +26,7 @@ class History:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Field:
+class CapField:
     """The asperity at the last step: nodes (n, 2) before the load and their displacement (n, 2) [m], radius and height;
     quads (m, 4); body (m,): 0 cap, 1 layer, 2 substrate; stress (m, 4) [Pa]: rr, zz, hoop, rz; equivalent plastic
     strain (m,)."""
@@ -47,7 +47,7 @@ class AsperityResult:
     """
 
     history: History
-    field: Field
+    field: CapField
     residual: float | None
     unknowns: int
     factorisations: int

@@ -8,7 +8,7 @@ from typing import Any, Literal, overload
 import numpy as np
 
 from faying.backbones.choice import chosen, friction_of, load_index, names
-from faying.backbones.result import Curve, collected
+from faying.backbones.result import BackboneCurve, collected
 from faying.backbones.store import CurveStore
 from faying.case.alternative import changed, study_with
 from faying.case.case import Case, checked_laws, law_reasons, read_for, surfaces_of
@@ -425,7 +425,7 @@ class _Prepared:
         known: Sequence[EpmcPoint],
         keep: Callable[[int, EpmcPoint], None],
         progress: _Progress,
-    ) -> Curve:
+    ) -> BackboneCurve:
         """Follow the curve, from the points that are known."""
         node, direction, observer = self.observed()
         epmc = self.basis.epmc(self.laws(friction), harmonics=self.choice.harmonics, samples=SAMPLES, observer=observer)
@@ -442,7 +442,7 @@ class _Prepared:
 
         line: EpmcCurve = epmc.follow(low, high, known=known, keep=found)
         progress.within("error bounds", 0.85)
-        return Curve(
+        return BackboneCurve(
             case=self.case,
             choice=self.choice,
             load=self.load,

@@ -31,7 +31,7 @@ NOTED = 0.05  # error bound of damping from which there is a note
 
 
 @dataclass(frozen=True, kw_only=True)
-class Curve:
+class BackboneCurve:
     """A curve with all that it was made from; residuals: of each point, in energy."""
 
     case: Case
@@ -47,7 +47,7 @@ class Curve:
     rest_damping: float
 
 
-def collected(curve: Curve, *, bounded: bool = True) -> Backbone:
+def collected(curve: BackboneCurve, *, bounded: bool = True) -> Backbone:
     """Return the curve as it is kept; where not `bounded`, without error bounds, static cycle and notes."""
     study, structure, line = curve.case.study, curve.case.structure, curve.line
     low = curve.choice.amplitude[0]
@@ -103,7 +103,7 @@ def measured_points(path: Path | None) -> dict[str, Any]:
     return {**found, "measured_source": path.name}
 
 
-def _along(curve: Curve, points: Sequence[EpmcPoint]) -> dict[str, Any]:
+def _along(curve: BackboneCurve, points: Sequence[EpmcPoint]) -> dict[str, Any]:
     """What each point of the curve has."""
     weights = [joint.weights for joint in curve.epmc.model.joints]
 
@@ -127,7 +127,7 @@ def _along(curve: Curve, points: Sequence[EpmcPoint]) -> dict[str, Any]:
     }
 
 
-def _bolt_forces(curve: Curve, points: Sequence[EpmcPoint]) -> Array:
+def _bolt_forces(curve: BackboneCurve, points: Sequence[EpmcPoint]) -> Array:
     """Amplitude of each bolt's force [N] (points, bolts): half of its range in a cycle."""
     rows = curve.case.structure.pulls @ curve.basis.basis.vectors
     phase = np.linspace(0, 2 * np.pi, 64, endpoint=False)
@@ -137,7 +137,7 @@ def _bolt_forces(curve: Curve, points: Sequence[EpmcPoint]) -> Array:
     return np.asarray((cycles.max(axis=2) - cycles.min(axis=2)) / 2)
 
 
-def error_bounds(curve: Curve, points: Sequence[EpmcPoint]) -> ErrorBounds:
+def error_bounds(curve: BackboneCurve, points: Sequence[EpmcPoint]) -> ErrorBounds:
     """What changes at the largest amplitude when the computation is made coarser, or at one before where that fails."""
     for last in points[: -TRIED - 1 : -1]:
         found = _bounds_at(curve.epmc, last)
@@ -170,7 +170,7 @@ def _bounds_at(epmc: Epmc, last: EpmcPoint) -> ErrorBounds:
     )
 
 
-def _witness(curve: Curve, points: Sequence[EpmcPoint]) -> Witness | None:
+def _witness(curve: BackboneCurve, points: Sequence[EpmcPoint]) -> Witness | None:
     levels = [p.level for p in points]
     wanted = [levels[-1] / APART**k for k in range(WITNESSES) if levels[-1] / APART**k >= levels[0]]
     rows = []
@@ -194,7 +194,7 @@ def _witness(curve: Curve, points: Sequence[EpmcPoint]) -> Witness | None:
     )
 
 
-def _notes(curve: Curve, bounds: ErrorBounds, witness: Witness | None) -> list[Note]:
+def _notes(curve: BackboneCurve, bounds: ErrorBounds, witness: Witness | None) -> list[Note]:
     case, line, load = curve.case, curve.line, curve.load
     preload = curve.basis.preload
     out = [note for note in case.notes if note.code != "no-loss"]  # the loss is that of slip here
@@ -231,7 +231,7 @@ def _notes(curve: Curve, bounds: ErrorBounds, witness: Witness | None) -> list[N
     return list(dict.fromkeys(out))
 
 
-def _differences(curve: Curve, witness: Witness) -> list[Note]:
+def _differences(curve: BackboneCurve, witness: Witness) -> list[Note]:
     """Say where the static cycle gives another damping, and what they do not share."""
     out = []
     for level, change in zip(witness.acceleration, witness.damping_change, strict=True):

@@ -8,11 +8,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from faying.bolt.compliance import HEADS, Head, Section, bolt_sections
+from faying.bolt.compliance import HEADS, BoltSection, Head, bolt_sections
 from faying.bolt.tapped import INSIDE, RoundHole, engaged_length, round_hole
 from faying.bolt.threads import THICKEST, THINNEST, Fastener, Thread
 from faying.errors import InputError
-from faying.fe.attach import Band, Ring, mean_motion
+from faying.fe.attach import DepthBand, Ring, mean_motion
 from faying.fe.elasticity import Solid
 from faying.fe.faces import NamedFaces, face_centre
 from faying.fe.holes import Hole, holes
@@ -355,7 +355,7 @@ class Bolt:
             length=free + min(INSIDE * diameter, engaged),
             inside=min(INSIDE * diameter, engaged),
             ring=self._seat(found, alone=False),
-            thread=Band(point=hole.point, axis=hole.axis, low=0.0, high=engaged),
+            thread=DepthBand(point=hole.point, axis=hole.axis, low=0.0, high=engaged),
         )
 
     def _hole(self, mesh: NamedFaces, faces: Sequence[str], point: Array, axis: Array) -> Hole | None:
@@ -454,7 +454,7 @@ class BoltPlace:
     axis: Array
     length: float
     ring: tuple[float, float] | None
-    thread: Band | None = None
+    thread: DepthBand | None = None
     inside: float = 0.0
 
     @property
@@ -500,7 +500,7 @@ def _thread_notes(bolt: Bolt, metric: Thread | None) -> list[Note]:
     return [Note(code="bolt-pitch", text=text)]
 
 
-def _chosen(bolt: Bolt, ring: tuple[float, float] | None, thread: Band | None) -> tuple[Note, ...]:
+def _chosen(bolt: Bolt, ring: tuple[float, float] | None, thread: DepthBand | None) -> tuple[Note, ...]:
     notes = []
     if ring is not None and bolt.seat is None and not bolt.washers:
         inner, outer = (show(d, "m") for d in ring)
@@ -534,7 +534,7 @@ class FittedBolt:
     ring: tuple[float, float] | None
     extent: tuple[float, float]
     free: float
-    thread: Band | None = None
+    thread: DepthBand | None = None
     E_tapped: float | None = None
 
     @property
@@ -602,14 +602,14 @@ class FittedBolt:
         return None
 
     @cached_property
-    def sections(self) -> tuple[Section, ...]:
+    def sections(self) -> tuple[BoltSection, ...]:
         """Cylinders in series that stand for the bolt, washers aside (VDI 2230); none without a shank."""
         bolt, thread = self.bolt, self.bolt.metric
         if bolt.diameter is None or bolt.material is None:
             return ()
         if thread is None:
             area = pi / 4 * bolt.diameter**2
-            return (Section(name="shank", length=self.length, area=area, E=bolt.material.E),)
+            return (BoltSection(name="shank", length=self.length, area=area, E=bolt.material.E),)
         reduced = not isclose(bolt.diameter, thread.diameter, rel_tol=1e-6)
         default = self.free if reduced else 0.0
         return bolt_sections(

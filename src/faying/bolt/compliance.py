@@ -17,7 +17,7 @@ TAPPED = 0.33  # with the modulus of the part that is tapped
 
 
 @dataclass(frozen=True, kw_only=True)
-class Section:
+class BoltSection:
     """A cylinder that stands for one piece of a bolt.
 
     Args:
@@ -48,7 +48,7 @@ def bolt_sections(
     head: Head = "hexagon",
     engaged: float | None = None,
     E_tapped: float | None = None,
-) -> tuple[Section, ...]:
+) -> tuple[BoltSection, ...]:
     """Return the cylinders in series whose compliances sum to delta_S, from the head to the nut or tapped hole.
 
     Args:
@@ -89,5 +89,7 @@ def bolt_sections(
         ("nut", NUT * d, nominal, E) if E_tapped is None else ("tapped hole", TAPPED * d, nominal, E_tapped),
     ]
     return tuple(
-        Section(name=name, length=length, area=area, E=modulus) for name, length, area, modulus in pieces if length > 0
+        BoltSection(name=name, length=length, area=area, E=modulus)
+        for name, length, area, modulus in pieces
+        if length > 0
     )

@@ -16,7 +16,7 @@ TOLERANCE = 2e-4  # of a frequency, where what is changed moves one by a thousan
 
 
 @dataclass(frozen=True, kw_only=True)
-class Changed:
+class ChangedCase:
     """A case with other laws, gaps [m] (q,) and forces on all joints and bolts; factor: on the force of each bolt."""
 
     laws: Sequence[JointLaw]
@@ -24,7 +24,7 @@ class Changed:
     factor: float = 1.0
 
     @classmethod
-    def nothing(cls, case: Case) -> "Changed":
+    def nothing(cls, case: Case) -> "ChangedCase":
         """The case as it is."""
         joints = case.structure.joints
         return cls(laws=[joint.law for joint in joints], gaps=[joint.interface.gap for joint in joints])
@@ -36,7 +36,7 @@ def can_change(case: Case) -> bool:
     return not (ordered or viscous or any(joint.per_node for joint in case.structure.joints))
 
 
-def frequencies_of(case: Case, states: Sequence[LoadedCase], changes: Sequence[Changed]) -> list[Array]:
+def frequencies_of(case: Case, states: Sequence[LoadedCase], changes: Sequence[ChangedCase]) -> list[Array]:
     """Frequencies [Hz] (loads, m) of each change; the basis is made for the first and the last load of all of them.
 
     Raises NotConverged where a change has no equilibrium.

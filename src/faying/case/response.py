@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.fe.response import Response, Vibration, frequency_response
+from faying.fe.response import ForcedVibration, FrequencyResponse, frequency_response
 from faying.joint.attachments import nearest_node
 from faying.joint.structure import Structure
 from faying.measured.model import FullResponse
@@ -91,11 +91,11 @@ class LoadedStructure:
         outputs: tuple[Array, Array],
         inputs: tuple[Array, Array],
         more: Array | None = None,
-    ) -> Response:
+    ) -> FrequencyResponse:
         """The response at points, and of what the columns of `more` (unknowns, k) read of a displacement."""
         spec = self.study.response
         eta = 0.0 if spec is None else spec.structural_loss
-        vibration = Vibration(
+        vibration = ForcedVibration(
             stiffness=whole(self.stiffness),
             mass=self.mass,
             loss=self.loss,

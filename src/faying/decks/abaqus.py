@@ -19,7 +19,7 @@ import numpy as np
 from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real
 from faying.decks.keywords import DATA, Block, blocks, elements, orientations, table
 from faying.decks.raw import Pretension, RawMesh, index, read_text
-from faying.decks.scope import Items, Scope, Span, placed, take
+from faying.decks.scope import Items, NumberSpan, Scope, placed, take
 from faying.decks.vocabulary import left_out
 from faying.errors import ReadError
 from faying.fe.elements import SOLIDS
@@ -168,7 +168,7 @@ def _resolved(
             instance = as_written.get(given.upper())
             if instance is None:
                 raise ReadError(f"set {written[name]!r} is of the instance {given!r}, which the file does not hold")
-            if isinstance(what, Span):
+            if isinstance(what, NumberSpan):
                 there = np.intersect1d(what.numbers + shifts[instance], instances[instance][1])
                 found.append(there)
                 if what.numbers[-1] + shifts[instance] > instances[instance][1].max(initial=0):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from faying.decks.system import System
+from faying.decks.system import UnitSystem
 from faying.errors import InputError
 from faying.fe.mesh import Mesh
 from faying.joint.pairs import NodePairs
@@ -15,7 +15,7 @@ NOTHING = 1e-14  # of the largest of a block: entries below it are rounding
 
 
 @dataclass(frozen=True, kw_only=True)
-class Contact:
+class ContactProperty:
     """The law as a contact property.
 
     Pressure [Pa] against approach [m], k_n, k_t [Pa/m] and loss factor at the mean pressure.
@@ -45,13 +45,13 @@ class JointDeck:
     pairs: NodePairs
     mesh: Mesh
     faces: tuple[str, str]
-    system: System
+    system: UnitSystem
     facts: tuple[str, ...]
     viscous: Array | None = None
     paper: bool = False
     frequency: float | None = None
     first_element: int = 1
-    contact: Contact | None = None
+    contact: ContactProperty | None = None
 
     @property
     def ends(self) -> tuple[Index, Index]:
@@ -136,7 +136,7 @@ class CondensedDeck:
     element: int
     stiffness: Array
     loss: Array
-    system: System
+    system: UnitSystem
     facts: tuple[str, ...]
 
     def in_units(self, matrix: Array) -> Array:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.decks.deck import Contact, JointDeck, grouped, real
+from faying.decks.deck import ContactProperty, JointDeck, grouped, real
 from faying.decks.raw import read_text
 from faying.errors import InputError, ReadError
 from faying.typing import Array, Index
@@ -128,7 +128,7 @@ def elements(
     return lines, number
 
 
-def table(deck: JointDeck) -> tuple[list[str], Contact]:
+def table(deck: JointDeck) -> tuple[list[str], ContactProperty]:
     """Lines of pressure and overclosure in the deck's units, and the contact they came from."""
     contact = deck.contact
     if contact is None:

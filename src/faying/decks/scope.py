@@ -25,14 +25,14 @@ _REFERENCES = {"COUPLING", "RIGID BODY", "KINEMATIC COUPLING", "DISTRIBUTING COU
 
 
 @dataclass(frozen=True)
-class Span:
+class NumberSpan:
     """Numbers of GENERATE: those that there are among them."""
 
     numbers: Index
 
 
 @dataclass(frozen=True)
-class Section:
+class PretensionSection:
     """A pre-tension section: its words, the surface or the beam, the node that is pulled, and the direction."""
 
     text: str
@@ -41,7 +41,7 @@ class Section:
     axis: tuple[float, float, float] | None
 
 
-Items = list[tuple[str, "Index | str | Span"]]
+Items = list[tuple[str, "Index | str | NumberSpan"]]
 
 
 @dataclass
@@ -58,7 +58,7 @@ class Scope:
     surfaces: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
     others: list[Index] = field(default_factory=list)  # numbers of elements that are no solids
     made: list[str] = field(default_factory=list)  # element sets that *ELEMENT itself names
-    bolts: list["Section"] = field(default_factory=list)
+    bolts: list["PretensionSection"] = field(default_factory=list)
     loads: list[tuple[str, float]] = field(default_factory=list)  # node or set, and its force in direction 1
     left_out: dict[str, list[str]] = field(default_factory=dict)  # keywords by their kind
     unknown: list[str] = field(default_factory=list)
@@ -175,7 +175,7 @@ def _key(sets: Mapping[str, object], name: str) -> str:
     return next((key for key in sets if key.upper() == name.upper()), name)
 
 
-def _add(sets: dict[str, Items], name: str, instance: str, what: Index | str | Span) -> None:
+def _add(sets: dict[str, Items], name: str, instance: str, what: Index | str | NumberSpan) -> None:
     sets.setdefault(_key(sets, name), []).append((instance, what))
 
 
@@ -244,7 +244,7 @@ def _bolt(block: Block, scope: Scope) -> None:
     given = [float(word) for word in block.words()[:3]]
     text = f"{block.where}: *PRE-TENSION SECTION, {said}{along}"
     scope.bolts.append(
-        Section(
+        PretensionSection(
             text=text,
             surface=block.options.get("SURFACE", ""),
             node=block.options.get("NODE", ""),
@@ -264,7 +264,7 @@ def _set(block: Block, sets: dict[str, Items], name: str | None) -> None:
     if "GENERATE" in block.options:
         for row in block.rows():
             first, last, *step = (int(word) for word in row if word)
-            _add(sets, name, instance, Span(ranged(first, last, step[0] if step else 1, block.where)))
+            _add(sets, name, instance, NumberSpan(ranged(first, last, step[0] if step else 1, block.where)))
         return
     numbers = []
     for word in block.words():

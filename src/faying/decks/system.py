@@ -6,7 +6,7 @@ from faying import units
 
 
 @dataclass(frozen=True)
-class System:
+class UnitSystem:
     """Units of a deck, such as mm and N, from which MPa, tonne and N s/mm follow."""
 
     length: str

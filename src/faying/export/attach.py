@@ -10,8 +10,8 @@ import numpy as np
 
 from faying import units
 from faying.case.case import checked_mesh, joint_law, structure_of, surfaces_of
-from faying.decks.deck import Contact, JointDeck
-from faying.decks.system import System
+from faying.decks.deck import ContactProperty, JointDeck
+from faying.decks.system import UnitSystem
 from faying.errors import InputError
 from faying.fe.faces import face_centre
 from faying.fe.interface import Interface, join
@@ -133,7 +133,7 @@ def attach(
         )
     area = pairs.area if pairs.lumped else interface.weights
     flags = _flags(law, used, area)
-    system = System(unit, force_unit)
+    system = UnitSystem(unit, force_unit)
     mean = float(area @ used / area.sum())
     p, force = system.pressure, f"{force_unit}/{unit}2"
     said = f"pressure: {said}; least {used.min() * p:.6g}, mean {mean * p:.6g}, greatest {used.max() * p:.6g} {force}"
@@ -153,7 +153,7 @@ def attach(
     return Attachment(deck=deck, interface=interface, materials=materials, notes=tuple(dict.fromkeys([*notes, *flags])))
 
 
-def _facts(law: JointLaw, pairs: NodePairs, interface: Interface, system: System, pressure: str) -> tuple[str, ...]:
+def _facts(law: JointLaw, pairs: NodePairs, interface: Interface, system: UnitSystem, pressure: str) -> tuple[str, ...]:
     """What the head of a deck says of its joint."""
     k_n, k_t = (total * system.stiffness for total in pairs.totals())
     unit, force = system.length, system.force
@@ -342,7 +342,7 @@ def _paper_dampers(pairs: NodePairs, mesh: Mesh, materials: Mapping[str, Materia
     return np.asarray(np.einsum("pik,pi,pil->pkl", pairs.frames, c, pairs.frames))
 
 
-def _contact(law: JointLaw, spec: JointChoice, greatest: float, mean: float) -> Contact | None:
+def _contact(law: JointLaw, spec: JointChoice, greatest: float, mean: float) -> ContactProperty | None:
     """Sample the law from a ten-thousandth of the end of the table, three times the greatest pressure."""
     if mean <= law.least_pressure or spec.form is not None:
         return None
@@ -351,7 +351,7 @@ def _contact(law: JointLaw, spec: JointChoice, greatest: float, mean: float) -> 
     approach = np.array([law.approach(float(p)) for p in pressure])
     (k_n,), (k_t,) = law.stiffness(np.array([mean]))
     (loss_n,), _ = law.loss(np.array([mean]))
-    return Contact(
+    return ContactProperty(
         approach=approach,
         pressure=pressure,
         k_n=float(k_n),

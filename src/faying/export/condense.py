@@ -10,7 +10,7 @@ from faying import units
 from faying.case.case import Case, Progress
 from faying.case.preloads import settled
 from faying.decks.deck import CondensedDeck
-from faying.decks.system import System
+from faying.decks.system import UnitSystem
 from faying.errors import InputError
 from faying.export.condensed import CondensedJoint, condensed_modes
 from faying.joint.loads import preload_index
@@ -67,7 +67,7 @@ class Condensed:
         """The joint in the units of a model, ready to be written. Raises InputError for numbers that are no numbers."""
         if min(nodes) < 1 or nodes[0] == nodes[1] or element < 1:
             raise InputError(f"nodes {nodes[0]} and {nodes[1]}, element {element}: give two nodes, numbers from 1 on")
-        system = System(unit, force_unit)
+        system = UnitSystem(unit, force_unit)
         stiffness, loss = self.joint.between(*self.points)
         facts = (
             f"Joint {self.name!r} of {self.study!r} at {self.load / 1e3:g} kN as one 6 x 6 stiffness between two "

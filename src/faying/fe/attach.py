@@ -29,7 +29,7 @@ class Ring:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Band:
+class DepthBand:
     """The part of a face between two depths [m] along an axis: point (3,) [m] on it and unit direction (3,)."""
 
     point: Array
@@ -43,7 +43,7 @@ class Band:
         return np.asarray((depth >= self.low) & (depth <= self.high), dtype=float)
 
 
-def mean_motion(points: Array, blocks: Blocks, at: Array, region: Ring | Band | None = None) -> Any:
+def mean_motion(points: Array, blocks: Blocks, at: Array, region: Ring | DepthBand | None = None) -> Any:
     """Sparse operator (6, 3n) from displacements to the mean translation [m] and rotation [rad] of a face about `at`.
 
     The rigid motion nearest to the face's own in the mean square over its area (or that of a region of it). Its

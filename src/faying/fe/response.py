@@ -16,7 +16,7 @@ STATIC = 1e-8  # accuracy of the response at the shift
 
 
 @dataclass(frozen=True, kw_only=True)
-class Response:
+class FrequencyResponse:
     """Receptance (frequency, output, input) [m/N] at frequencies [Hz], and the residual of the full equations.
 
     error (f,): at a few of the frequencies, `checked` [Hz], the force left unanswered, as displacement in the energy
@@ -39,7 +39,7 @@ class Response:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Vibration:
+class ForcedVibration:
     """The equations (K + i eta P + i C - w^2 M) u = f, or with i w C where kind is viscous.
 
     stiffness K [N/m], mass M [kg], loss C [N/m or N s/m], sparse; rigid: how many of the lowest modes are rigid
@@ -61,7 +61,7 @@ class Vibration:
 
 
 def frequency_response(
-    vibration: Vibration,
+    vibration: ForcedVibration,
     modes: Modes,
     damped: DampedModes,
     *,
@@ -69,7 +69,7 @@ def frequency_response(
     outputs: Array,
     frequencies: Array,
     checks: int = 5,
-) -> Response:
+) -> FrequencyResponse:
     """Solve the equations of a vibration in a basis.
 
     forces (unknowns, i): unit forces; outputs (unknowns, o): what is read of u; frequencies [Hz] (f,). Basis: rigid
@@ -100,7 +100,7 @@ def frequency_response(
         inner[i] = np.linalg.solve(vibration.dynamic_stiffness(omega, *small), push.astype(complex))
     where = np.unique(np.linspace(0, len(frequencies) - 1, min(checks, len(frequencies))).astype(int))
     error = [_error(vibration, modes, forces, basis @ inner[i], 2 * np.pi * frequencies[i]) for i in where]
-    return Response(
+    return FrequencyResponse(
         frequencies=frequencies,
         receptance=np.asarray(read.T @ inner, dtype=complex),
         checked=frequencies[where],
@@ -108,7 +108,7 @@ def frequency_response(
     )
 
 
-def _projected(vibration: Vibration, basis: Array) -> tuple[tuple[Array, ...], Array]:
+def _projected(vibration: ForcedVibration, basis: Array) -> tuple[tuple[Array, ...], Array]:
     """K, P, C, M in a basis that is orthonormal with the projected mass, and that basis."""
     from scipy.linalg import cholesky, solve_triangular
 
@@ -121,7 +121,7 @@ def _projected(vibration: Vibration, basis: Array) -> tuple[tuple[Array, ...], A
     return (*(turn.T @ small @ turn for small in (K, P, C)), np.eye(len(root))), basis @ turn
 
 
-def _error(vibration: Vibration, modes: Modes, forces: Array, u: Complex, omega: float) -> float:
+def _error(vibration: ForcedVibration, modes: Modes, forces: Array, u: Complex, omega: float) -> float:
     """The force left unanswered at an angular frequency, as displacement in the energy norm, over the answer's."""
     parts = vibration.stiffness if vibration.parts is None else vibration.parts
     products = [matrix @ u for matrix in (vibration.stiffness, parts, vibration.loss, vibration.mass)]

@@ -80,7 +80,7 @@ class PartFacts:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Contact:
+class TouchingFaces:
     """Two faces of different parts that look at each other.
 
     Args:
@@ -112,7 +112,7 @@ class GeometryFacts:
     file: str
     parts: tuple[PartFacts, ...]
     faces: tuple[FaceFacts, ...]
-    contacts: tuple[Contact, ...]
+    contacts: tuple[TouchingFaces, ...]
     distances: dict[str, list[float]]
     overlaps: tuple[str, ...]
     notes: tuple[Note, ...]
@@ -182,7 +182,7 @@ def read_facts(
         file=path.name,
         parts=tuple(PartFacts(**_tuples(one)) for one in facts["parts"]),
         faces=tuple(FaceFacts(**_tuples(one)) for one in facts["faces"]),
-        contacts=tuple(Contact(**_tuples(one)) for one in facts["contacts"]),
+        contacts=tuple(TouchingFaces(**_tuples(one)) for one in facts["contacts"]),
         distances=facts["distances"],
         overlaps=tuple(facts["overlaps"]),
         notes=tuple(Note(**one) for one in facts["notes"]),
@@ -330,7 +330,7 @@ def shape_of(corners: Array, normals: Array, area: float) -> dict[str, Any]:
     }
 
 
-def contacts(faces: Sequence[FaceFacts], corners: Array, face_of: Index) -> list[Contact]:
+def contacts(faces: Sequence[FaceFacts], corners: Array, face_of: Index) -> list[TouchingFaces]:
     """Faces of different parts that look at each other, the widest first.
 
     Planes that are nearly parallel, and cylinders in cylinders of nearly their radius on one axis, no farther apart
@@ -355,7 +355,9 @@ def contacts(faces: Sequence[FaceFacts], corners: Array, face_of: Index) -> list
                 continue
             area = _facing_area(corners[rows[i]], corners[rows[j]], reach)
             if area > 1e-6 * min(one.area, two.area):
-                out.append(Contact(first=(one.part, one.number), second=(two.part, two.number), area=area, gap=gap))
+                out.append(
+                    TouchingFaces(first=(one.part, one.number), second=(two.part, two.number), area=area, gap=gap)
+                )
     return sorted(out, key=lambda contact: -contact.area)
 
 

@@ -1,7 +1,7 @@
 """Where the arrays of a half-space solution live: one code for NumPy, CuPy and any library of the array API standard.
 
 The standard (data-apis.org/array-api, 2024.12) has no work in place on parts that fit into the cache and no number of
-threads. Both matter for NumPy and for nothing else, so `Place` alone knows of them.
+threads. Both matter for NumPy and for nothing else, so `ArrayLibrary` alone knows of them.
 """
 
 from dataclasses import dataclass
@@ -72,7 +72,7 @@ def deviation(a: AnyArray) -> float:
 
 @final
 @dataclass(frozen=True, eq=False)
-class Place:
+class ArrayLibrary:
     """A library of arrays, and the precision in which a solution is kept there.
 
     xp: its module. precision: of pressures and gaps; search directions are in single precision in any case. workers:
@@ -172,17 +172,17 @@ class Place:
         return self.xp.fft.irfftn(self.xp.fft.rfftn(field) * symbol, s=field.shape, axes=(0, 1))
 
 
-def place_for(heights: Any, device: Device | None, precision: Precision, workers: int | None) -> Place:
+def place_for(heights: Any, device: Device | None, precision: Precision, workers: int | None) -> ArrayLibrary:
     """Place of a solution: the device asked for, else where the heights are. Raises InputError where it is missing."""
     if not isinstance(precision, str) or precision not in ("double", "single"):
         raise InputError(f'precision = {shown(precision)}; it must be "double" or "single"')
     if not isinstance(device, str | None) or device not in (None, "cpu", "gpu"):
         raise InputError(f'device = {shown(device)}; it must be "cpu", "gpu" or None (where the heights are)')
     if device == "gpu":
-        return Place(_cupy(), precision, workers)
+        return ArrayLibrary(_cupy(), precision, workers)
     if device == "cpu" or not hasattr(heights, "__array_namespace__"):
-        return Place(np, precision, workers)
-    return Place(namespace(heights), precision, workers)
+        return ArrayLibrary(np, precision, workers)
+    return ArrayLibrary(namespace(heights), precision, workers)
 
 
 def _cupy() -> Any:

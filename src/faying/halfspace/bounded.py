@@ -29,7 +29,7 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.halfspace.arrays import at_places, dot, namespace, parts, total
 from faying.halfspace.cells import Cells
-from faying.halfspace.conjugate import System, constrained_gradients
+from faying.halfspace.conjugate import CellSystem, constrained_gradients
 from faying.halfspace.kernels import Kernel
 from faying.typing import AnyArray
 
@@ -425,7 +425,7 @@ class _Search:
             return None
         right = self.xp.astype(G / -largest, self.xp.float32)[None, :]
         del G
-        system = System(self.kernel, cells)
+        system = CellSystem(self.kernel, cells)
         way = constrained_gradients(system, right, np.zeros(1), reduction=reduction, limit=limit)[0, :]
         self.applications += system.used
         way *= largest

@@ -102,7 +102,7 @@ def _circulant(symbol: Array, shape: tuple[int, int]) -> Array:
 
 
 @final
-class System:
+class CellSystem:
     """The operator on some cells, and its preconditioner, which gives tractions of total 0 in every component.
 
     used: how many products it has taken.
@@ -152,7 +152,7 @@ class System:
 
 
 def constrained_gradients(
-    system: System, residual: AnyArray, totals: Array, *, reduction: float, limit: int
+    system: CellSystem, residual: AnyArray, totals: Array, *, reduction: float, limit: int
 ) -> AnyArray:
     """Solve A s = residual on the cells of a system, up to one constant per component, where s has given totals.
 

@@ -17,10 +17,10 @@ from typing import final
 
 import numpy as np
 
-from faying.halfspace.arrays import Place
+from faying.halfspace.arrays import ArrayLibrary
 from faying.typing import AnyArray, Array
 
-HOST = Place()
+HOST = ArrayLibrary()
 Read = Callable[[int, int], AnyArray | None]
 Write = Callable[[int, int, AnyArray], None]
 
@@ -44,7 +44,7 @@ class Kernel:
     symbol_single: AnyArray
     inverse: AnyArray
     strength: float
-    place: Place
+    place: ArrayLibrary
     spectra: "Spectra"
 
     @property
@@ -132,7 +132,7 @@ def _multiply(spectra: list[AnyArray], table: AnyArray, sign: float) -> None:
 class Spectra:
     """The work arrays of a kernel's transforms; those in single precision are kept from one product to the next."""
 
-    def __init__(self, padded: tuple[int, int], components: int, place: Place) -> None:
+    def __init__(self, padded: tuple[int, int], components: int, place: ArrayLibrary) -> None:
         self._length, self._components, self._place = padded[1] // 2 + 1, components, place
         strips, width = place.strips(self._length)
         self._shape = strips, padded[0], width
@@ -181,7 +181,7 @@ def wave_numbers(padded: tuple[int, int], aspect: float) -> tuple[Array, Array, 
     return qx, qy, q
 
 
-def normal_kernel(shape: tuple[int, int], aspect: float, *, periodic: bool, place: Place = HOST) -> Kernel:
+def normal_kernel(shape: tuple[int, int], aspect: float, *, periodic: bool, place: ArrayLibrary = HOST) -> Kernel:
     """Normal displacement under pressure, units of E* and of the column spacing.
 
     Periodic: u = 2 p/(E* |q|), the mean displacement left out (Johnson 1985, 13.2; Stanley and Kato 1997,
@@ -202,7 +202,7 @@ def shear_kernel(
     *,
     periodic: bool,
     vector: bool = True,
-    place: Place = HOST,
+    place: ArrayLibrary = HOST,
 ) -> Kernel:
     """Tangential displacement (u_x, u_y) under traction (t_x, t_y), units of E* and of the column spacing.
 
@@ -237,7 +237,7 @@ def _assembled(
     aspect: float,
     tables: tuple[Array, Array],
     strength: float,
-    place: Place,
+    place: ArrayLibrary,
 ) -> Kernel:
     symbol, inverse = (_in_strips(table, place.strips(padded[1] // 2 + 1)) for table in tables)
     single = place.xp.float32

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 from numpy.typing import NDArray
 
-from faying.halfspace.arrays import Device, Place, place_for
+from faying.halfspace.arrays import ArrayLibrary, Device, place_for
 from faying.style import Summary
 from faying.typing import Array, Mask
 from faying.units import show
@@ -95,7 +95,7 @@ class HalfSpaceContact(Summary):
         return [states, pressure]
 
     @property
-    def place(self) -> Place:
+    def place(self) -> ArrayLibrary:
         """Where tangent and slip are computed."""
         return place_for(None, self.device, "double", self.workers)
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from faying.checks import flag, instance, number, real, whole
 from faying.errors import InputError, NotConverged, shown
-from faying.halfspace.arrays import Device, Place, Precision, deviation, parts, place_for, total
+from faying.halfspace.arrays import ArrayLibrary, Device, Precision, deviation, parts, place_for, total
 from faying.halfspace.bounded import Minimum, Problem, Progress, Start, best_level, duality_gap, minimise
 from faying.halfspace.kernels import normal_kernel, transform_shape
 from faying.halfspace.solution import HalfSpaceContact
@@ -121,7 +121,7 @@ class _Options:
     nu: float
     periodic: bool
     tol: float
-    place: Place
+    place: ArrayLibrary
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -266,13 +266,13 @@ def error_bound(
     Tractions outside 0 to hardness are cut to these bounds first. Raises InputError as `solve_half_space` does and for
     a map of another shape or without any pressure.
     """
-    h, (dx, dy) = _checked_map(heights, spacing, Place())
+    h, (dx, dy) = _checked_map(heights, spacing, ArrayLibrary())
     limit = _checked_hardness(hardness, h.shape)
     E_star = number(E_star, "E_star", "Pa", least=0)
     given = np.asarray(traction)
     if given.shape != h.shape or not (given > 0).any():
         raise InputError(f"traction of shape {given.shape}; give pressures above 0 on a map of shape {h.shape}")
-    options = _Options(E_star=E_star, hardness=limit, nu=0.3, periodic=periodic, tol=0.5, place=Place())
+    options = _Options(E_star=E_star, hardness=limit, nu=0.3, periodic=periodic, tol=0.5, place=ArrayLibrary())
     return _residual(h, (dx, dy), given, np.inf if limit is None else limit / E_star, options)
 
 
@@ -280,7 +280,7 @@ def _residual(
     h: Array, spacing: tuple[float, float], traction: Array, limit: float | Array, options: _Options
 ) -> float:
     """Duality gap over load times rms height of pressures cut to their bounds, in double precision."""
-    place = Place(options.place.xp, "double", options.place.workers)
+    place = ArrayLibrary(options.place.xp, "double", options.place.workers)
     xp, (ny, nx) = place.xp, h.shape
     most = limit if isinstance(limit, float) else place.send(limit.ravel(), xp.float64)
     x = xp.clip(place.send(traction.ravel(), xp.float64) / options.E_star, 0.0, most)
@@ -347,7 +347,7 @@ def _at_displacement(problem: _Pressing, displacement: float, start: Array | Non
 
 
 def _checked_map(
-    heights: ArrayLike, spacing: float | tuple[float, float], place: Place
+    heights: ArrayLike, spacing: float | tuple[float, float], place: ArrayLibrary
 ) -> tuple[Array, tuple[float, float]]:
     """A copy of the heights that nobody changes, and (dx, dy)."""
     given = heights if isinstance(heights, (np.ndarray, list, tuple)) else _fetched(heights, place)
@@ -369,7 +369,7 @@ def _checked_map(
     return _frozen(h), (number(pair[0], "spacing", "m", least=0), number(pair[1], "spacing", "m", least=0))
 
 
-def _fetched(heights: Any, place: Place) -> Any:
+def _fetched(heights: Any, place: ArrayLibrary) -> Any:
     """Heights of another library as an array of NumPy."""
     if not hasattr(heights, "__array__") and not hasattr(heights, "__array_namespace__"):
         raise InputError(f"heights: {shown(heights)}; give an array of heights in metres, rows and columns")
@@ -430,7 +430,7 @@ def memory_needed(shape: tuple[int, int], *, periodic: bool, precision: Precisio
     return (76.0 if precision == "double" else 67.0) * points + 9.0 * transformed + BLOCKS
 
 
-def _check_memory(shape: tuple[int, ...], periodic: bool, place: Place) -> None:
+def _check_memory(shape: tuple[int, ...], periodic: bool, place: ArrayLibrary) -> None:
     if place.host:
         need = memory_needed((shape[0], shape[1]), periodic=periodic, precision=place.precision)
     else:

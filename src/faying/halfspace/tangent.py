@@ -8,7 +8,7 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.halfspace.arrays import namespace
 from faying.halfspace.cells import Cells
-from faying.halfspace.conjugate import System, constrained_gradients
+from faying.halfspace.conjugate import CellSystem, constrained_gradients
 from faying.halfspace.kernels import Kernel, normal_kernel, shear_kernel
 from faying.halfspace.solution import HalfSpaceContact
 from faying.typing import AnyArray, Array, Mask
@@ -54,7 +54,7 @@ def stiffness_on(kernel: Kernel, touching: Mask) -> Array:
         return np.zeros((c, c))
     if cells.size == n and not kernel.moves_mean:
         return np.diag(np.full(c, np.inf))
-    system = System(kernel, cells)
+    system = CellSystem(kernel, cells)
     s = [xp.zeros((c, cells.size), dtype=xp.float64) for _ in range(c)]  # one a load direction
     moved = list(s)
     worst = np.inf

@@ -16,7 +16,7 @@ from faying.study.keys.surface import Surface
 from faying.study.keys.uncertain import Input, UncertainChoice
 from faying.study.keys.varied import MODEL, formed
 from faying.study.study import Study
-from faying.surface.estimators.base import Scatter
+from faying.surface.estimators.base import EstimateScatter
 from faying.sweeps.variation import Point, check_key
 from faying.typing import Array
 
@@ -38,7 +38,7 @@ class Inputs:
 
     columns: tuple[Input, ...]
     models: tuple[tuple[str, float], ...] = ()
-    scatter: tuple[Scatter, float, float] | None = None
+    scatter: tuple[EstimateScatter, float, float] | None = None
 
     @classmethod
     def of(cls, study: Study, surfaces: Sequence[Surface]) -> Self:
@@ -134,7 +134,7 @@ def _uniform() -> Distribution:
     return Distribution(kind="uniform", centre=0.5, spread=0.5)
 
 
-def _with_surface(point: Point, scatter: tuple[Scatter, float, float], named: dict[str, float]) -> Point:
+def _with_surface(point: Point, scatter: tuple[EstimateScatter, float, float], named: dict[str, float]) -> Point:
     """Put in D and the G that goes with it and with the level."""
     rule, D0, G0 = scatter
     D = named.pop("surface.D")
@@ -145,7 +145,7 @@ def _with_surface(point: Point, scatter: tuple[Scatter, float, float], named: di
 
 def _of_fit(
     study: Study, surfaces: Sequence[Surface], choice: UncertainChoice
-) -> tuple[tuple[Scatter, float, float], list[Input]]:
+) -> tuple[tuple[EstimateScatter, float, float], list[Input]]:
     """D and the level of the spectrum from the fit of the scan, and from other scans of the same surface."""
     laws = [study.law_of(joint) for joint in study.joints]
     takes = any("D" in law.kind.law.parameters for law in laws if law.kind is not None) or bool(choice.models)

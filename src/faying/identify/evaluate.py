@@ -12,7 +12,7 @@ from faying.errors import FayingError
 from faying.identify.ensemble import Ensemble
 from faying.identify.identity import by_name, named
 from faying.identify.points import at_shares, sobol
-from faying.identify.store import Store
+from faying.identify.store import SampleStore
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Structure
 from faying.measured.mac import mac
@@ -188,7 +188,7 @@ class Reduced:
         jobs: int = 1,
         dask: str | None = None,
         report: Report | None = None,
-        store: Store | None = None,
+        store: SampleStore | None = None,
     ) -> None:
         self.jobs, self.dask = jobs, dask
         self.report: Report = report or silent
@@ -196,7 +196,7 @@ class Reduced:
         inputs = ensemble.inputs
         spread = ensemble.with_values(at_shares(inputs.priors, sobol(len(inputs.columns), LEARNT, 0)))
         self.trainer = Trainer.of(ensemble.study, spread, TRAINED, self.report)
-        self.store = store or Store(None, what="samples")
+        self.store = store or SampleStore(None, what="samples")
         self.seen: tuple[Array, Array] | None = None
         self._work: dict[int, Evaluator] = {}  # in the bases as they are, with the median under each law
         kept = self.store.model()

@@ -17,7 +17,7 @@ from faying.identify.identify import identify_model
 from faying.identify.identity import paired, settled
 from faying.identify.noise import DISCREPANCY_SD, LOSS_DISCREPANCY_SD, LOSS_TEST_SD, TEST_SD, Losses
 from faying.identify.predict import check, cut_notes, of_bases
-from faying.identify.store import Store
+from faying.identify.store import SampleStore
 from faying.joint.loads import preload_index
 from faying.misuse import checked_call
 from faying.progress import Report, silent
@@ -138,7 +138,7 @@ def identify(
     left = left_out(study, leave_out)
     file = None if out is None else Path(out)
     mark = fingerprint(study, left, seed, count, LIMIT)
-    with Store(file, mark, what="identification") as store:
+    with SampleStore(file, mark, what="identification") as store:
         found = _identified(study, left, seed=seed, count=count, jobs=jobs, dask=dask, store=store, report=report)
         if file is not None:
             found.save(file)
@@ -170,7 +170,7 @@ def _identified(
     count: int,
     jobs: int,
     dask: str | None,
-    store: Store,
+    store: SampleStore,
     report: Report | None,
 ) -> Identification:
     choice, test = scattering(study), study.test

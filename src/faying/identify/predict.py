@@ -16,7 +16,7 @@ from faying.identify.evaluate import LIMIT, Reduced
 from faying.identify.follow import Follower, choice_of, sliding
 from faying.identify.identity import paired, settled
 from faying.identify.prediction import Prediction
-from faying.identify.store import Store
+from faying.identify.store import SampleStore
 from faying.misuse import checked_call
 from faying.notes import Note
 from faying.progress import Report
@@ -78,7 +78,7 @@ def predict(
     if choice is not None:
         sliding(ensemble, choice, 0)  # raises, before the mesh
     file = None if out is None else Path(out)
-    with Store(file, fingerprint(study, samples, seed, LIMIT), what="prediction") as store:
+    with SampleStore(file, fingerprint(study, samples, seed, LIMIT), what="prediction") as store:
         reduced = Reduced(ensemble, jobs=jobs, dask=dask, report=report, store=store)
         follower = None if choice is None else Follower.of(ensemble, choice, reduced)
         found = predicted(study, ensemble, reduced, reduced.rows(ensemble), seed)

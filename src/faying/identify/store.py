@@ -11,7 +11,7 @@ from faying.typing import Array
 Bases = tuple[ReducedModel, tuple[Array, Array] | None]
 
 
-class Store(Kept):
+class SampleStore(Kept):
     """The folder OUT.part beside the output; without an output nothing is kept."""
 
     def model(self) -> Bases | None:

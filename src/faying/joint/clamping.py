@@ -142,7 +142,7 @@ def _work(structure: Structure, springs: Sequence[Springs[Interface]], fitted: F
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stack:
+class ClampedStack:
     """What lies between the seats of a bolt that is a beam, along its axis.
 
     Args:
@@ -165,7 +165,7 @@ class Stack:
         return cone_compliance(self.sections, seat=self.seat[1], hole=self.seat[0], outer=self.outer)
 
 
-def stack_of(structure: Structure, index: int) -> Stack | None:
+def stack_of(structure: Structure, index: int) -> ClampedStack | None:
     """Return the stack of a bolt; None for a meshed bolt, and where the joints along its axis make no chain of parts.
 
     The area of a joint belongs to the bolt whose axis is nearest.
@@ -206,7 +206,7 @@ def stack_of(structure: Structure, index: int) -> Stack | None:
     outer = [float(np.sqrt(4 * area / np.pi + hole**2)) for *_, area in found]
     if not outer or min(length for length, _ in sections) <= 0:
         return None
-    return Stack(
+    return ClampedStack(
         sections=tuple(sections),
         joints=tuple(number for _, number, _ in found),
         outer=float(np.mean(outer)),

@@ -24,7 +24,7 @@ BOLT_ENDS = 0.3  # how far a bolt stands out of its seats as it is drawn, of its
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FaceMap:
+class DrawnFace:
     """Pressure, or what else there is, on a joint as it is drawn.
 
     Args:
@@ -126,7 +126,7 @@ def pressure_axes(state: State, joint: int, ax: "Axes | None" = None) -> "Axes":
         {"pressure": pressure[None], "contact": (pressure[None] > 0).astype(float)},
     )
     share = float(weights @ (pressure <= 0) / weights.sum())
-    drawn = FaceMap(
+    drawn = DrawnFace(
         places=points[values.parents].mean(axis=1),
         triangles=values.triangles,
         values=values.fields["pressure"][0],

@@ -9,7 +9,7 @@ from faying.joint.frame import added
 from faying.joint.modal import SPARE_MODES, ModalProblem
 from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
-from faying.numerics.changed import Changed, whole
+from faying.numerics.changed import UpdatedStiffness, whole
 from faying.numerics.constraint import constrain
 from faying.numerics.memory import check_modes
 from faying.numerics.modes import Modes, lowest_modes
@@ -87,7 +87,7 @@ class SharedModes:
         tolerance: float = EXACT,
         shapes: bool = True,
     ) -> tuple[Modes, Any]:
-        """Real modes, and the stiffness [N/m] that they belong to, which may be a `Changed` one.
+        """Real modes, and the stiffness [N/m] that they belong to, which may be a `UpdatedStiffness` one.
 
         tolerance: of the squared frequencies, relative; shapes: False where only these are wanted.
         """
@@ -95,7 +95,7 @@ class SharedModes:
         sprung = structure.sprung(springs)
         if self.near is not None:
             # the sum with the parts would take longer than the modes where the basis has them
-            stiffness = Changed(before=self.near.span.stiffness, change=sprung - self._sprung)
+            stiffness = UpdatedStiffness(before=self.near.span.stiffness, change=sprung - self._sprung)
             try:
                 return self._from_near(problem, stiffness, tolerance, shapes), stiffness
             except NotConverged:

@@ -23,7 +23,7 @@ from faying.loads.acting import Acting
 from faying.loads.contact import ContactState, LoadedContact
 from faying.memory import require
 from faying.numerics.product import combined, product
-from faying.numerics.span import Columns, extension
+from faying.numerics.span import GrowingColumns, extension
 from faying.typing import Array, Index
 
 STRAIGHT = 1e-9  # of the load: what a linear answer may leave over
@@ -106,7 +106,7 @@ class LoadStatics:
         self._held_back = held_back
         self._rigid = np.linalg.qr(rigid)[0] if rigid.size else rigid
         none = np.zeros((stiffness.shape[0], 0))
-        self._vectors, self._images = Columns(none), Columns(none)
+        self._vectors, self._images = GrowingColumns(none), GrowingColumns(none)
         self._relative = [np.zeros((3 * len(contact.weights), 0)) for _, contact in self.joints]
         self._at_rest = [contact.advance(contact.start, contact.rest)[1] for _, contact in self.joints]
         self.solutions = 0  # by the factorisation
@@ -369,7 +369,7 @@ class LoadStatics:
             return 0
         found, image = extension(new, self._vectors.values, self._images.values, self.stiffness, least=1e-20)
         if not self.size:  # room is made ahead of the first columns
-            self._vectors, self._images = Columns(found), Columns(image)
+            self._vectors, self._images = GrowingColumns(found), GrowingColumns(image)
         else:
             self._vectors.add(found)
             self._images.add(image)

@@ -52,7 +52,7 @@ class Pair:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Layout:
+class FrfColumns:
     """Columns of a table of FRFs: place and factor to Hz of the frequency, the pairs, and sentences for the reader."""
 
     frequency: int
@@ -62,13 +62,13 @@ class Layout:
     named: bool = True
 
 
-def plain_layout(width: int) -> Layout:
+def plain_layout(width: int) -> FrfColumns:
     """Frequency [Hz], then real and imaginary part of each FRF in SI, as a table without a heading is read."""
     pairs = tuple(Pair(first=k, second=k + 1, polar=False) for k in range(1, width, 2))
-    return Layout(frequency=0, hertz=1.0, pairs=pairs, named=False)
+    return FrfColumns(frequency=0, hertz=1.0, pairs=pairs, named=False)
 
 
-def read_layout(line: str, quantity: str, where: str) -> Layout:
+def read_layout(line: str, quantity: str, where: str) -> FrfColumns:
     """Read a heading.
 
     Args:
@@ -98,7 +98,7 @@ def read_layout(line: str, quantity: str, where: str) -> Layout:
     if not pairs:
         raise ReadError(f'{where}: no FRF in the heading "{line.strip()[:120]}"; {FORM}')
     hertz = _hertz(cells[lines[0]], roles[lines[0]], where)
-    return Layout(frequency=lines[0], hertz=hertz, pairs=tuple(pairs), notes=tuple(dict.fromkeys(notes)))
+    return FrfColumns(frequency=lines[0], hertz=hertz, pairs=tuple(pairs), notes=tuple(dict.fromkeys(notes)))
 
 
 def _role(cell: Cell, where: str) -> str:

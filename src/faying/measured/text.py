@@ -12,7 +12,7 @@ from faying.errors import InputError, ReadError
 from faying.files import end_of, refuse_decimal_comma
 from faying.heading import split_heading, states_unit
 from faying.measured.frf import FRF, Dof
-from faying.measured.frf_table import FORM, Layout, plain_layout, read_layout
+from faying.measured.frf_table import FORM, FrfColumns, plain_layout, read_layout
 from faying.measured.uff_units import DIMENSIONS
 from faying.typing import Array, Complex
 
@@ -92,7 +92,7 @@ def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex
     return layout.hertz * data[:, layout.frequency], functions, layout.notes
 
 
-def _layout(above: list[tuple[int, str]], width: int, quantity: str, path: Path) -> Layout:
+def _layout(above: list[tuple[int, str]], width: int, quantity: str, path: Path) -> FrfColumns:
     """The layout that the heading states: the last line above the numbers, or a comment that reads as one."""
     plain = [(number, line) for number, line in above if not line.startswith("#")]
     if plain:

@@ -16,7 +16,7 @@ import numpy as np
 
 from faying.errors import InputError, ReadError
 from faying.measured.frf import Dof, Position
-from faying.measured.uff_systems import NodalShape, System, export_note, shapes_2414, systems
+from faying.measured.uff_systems import NodalShape, UffSystem, export_note, shapes_2414, systems
 from faying.measured.uff_units import FileUnits
 from faying.measured.universal import Function, UniversalFile
 from faying.misuse import checked_call
@@ -241,7 +241,7 @@ def _span(found: re.Match[str] | None) -> tuple[float, float]:
 
 
 def _points(
-    file: Path, sets: list[dict[str, Any]], known: Mapping[int, System], metre: float
+    file: Path, sets: list[dict[str, Any]], known: Mapping[int, UffSystem], metre: float
 ) -> tuple[dict[int, Position], dict[int, Array], list[str]]:
     """Positions [m] by point, for points whose directions are turned the rows of their axes, and notes.
 

@@ -20,7 +20,7 @@ DISPLACEMENT = 8  # result type
 
 
 @dataclass(frozen=True, kw_only=True)
-class System:
+class UffSystem:
     """A coordinate system of a test: kind (0 Cartesian, 1 cylindrical, 2 spherical), rows of its axes (3, 3) and its
     origin (3,) in the axes and units of the file."""
 
@@ -50,14 +50,14 @@ def blocks(file: Path, kind: int) -> list[list[str]]:
     return out
 
 
-def systems(file: Path, sets: Iterable[Mapping[str, Any]]) -> dict[int, System]:
+def systems(file: Path, sets: Iterable[Mapping[str, Any]]) -> dict[int, UffSystem]:
     """All coordinate systems of a file by their numbers. ReadError where one is damaged or given twice, differently."""
-    out: dict[int, System] = {}
+    out: dict[int, UffSystem] = {}
     for s in sets:
         if s["type"] == 2420:
             for label, kind, matrix in zip(s["CS_sys_labels"], s["CS_types"], s["CS_matrices"], strict=True):
                 m = np.asarray(matrix, float)
-                _add(out, file, int(label), System(kind=int(kind), axes=m[:3], origin=m[3]))
+                _add(out, file, int(label), UffSystem(kind=int(kind), axes=m[:3], origin=m[3]))
     own: dict[int, tuple[int, int, Array]] = {}
     for lines in blocks(file, 18):
         for label, record in _records(file, lines).items():
@@ -69,7 +69,7 @@ def systems(file: Path, sets: Iterable[Mapping[str, Any]]) -> dict[int, System]:
     return out
 
 
-def _add(out: dict[int, System], file: Path, label: int, system: System) -> None:
+def _add(out: dict[int, UffSystem], file: Path, label: int, system: UffSystem) -> None:
     before = out.get(label)
     same = before is None or (
         before.kind == system.kind
@@ -102,7 +102,7 @@ def _records(file: Path, lines: list[str]) -> dict[int, tuple[int, int, Array]]:
     return out
 
 
-def _resolved(file: Path, label: int, own: Mapping[int, tuple[int, int, Array]], above: tuple[int, ...]) -> System:
+def _resolved(file: Path, label: int, own: Mapping[int, tuple[int, int, Array]], above: tuple[int, ...]) -> UffSystem:
     """One system of data set 18 in the axes of the file, through the systems that it refers to."""
     if label in above:
         raise ReadError(f"{file}: coordinate systems {above} of data set 18 refer to each other; export the test again")
@@ -128,7 +128,7 @@ def _resolved(file: Path, label: int, own: Mapping[int, tuple[int, int, Array]],
             f"{file}: the three points of coordinate system {label} (data set 18) lie on one line; export it again"
         )
     x, y = x / size[0], y / size[1]
-    return System(kind=kind, axes=np.stack([x, y, np.cross(x, y)]), origin=origin)
+    return UffSystem(kind=kind, axes=np.stack([x, y, np.cross(x, y)]), origin=origin)
 
 
 def export_note(file: Path, labels: Iterable[int]) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.numerics.span import ROUNDING, Columns, extension
+from faying.numerics.span import ROUNDING, GrowingColumns, extension
 from faying.typing import Array
 
 
@@ -30,7 +30,7 @@ class Basis:
 
     def __post_init__(self) -> None:
         nothing = np.zeros((self.reference.shape[0], 0))
-        self._vectors, self._image = Columns(nothing), Columns(nothing)
+        self._vectors, self._image = GrowingColumns(nothing), GrowingColumns(nothing)
         self.small = [np.zeros((0, 0)) for _ in self.operators]
         self.relative = [np.zeros((3 * len(trace.weights), 0)) for trace in self.traces]
         self.seen = [np.zeros((len(rows), 0)) for rows in self.rows]

@@ -11,7 +11,7 @@ from faying.typing import Array, Index
 
 
 @dataclass(frozen=True, kw_only=True)
-class Changed:
+class UpdatedStiffness:
     """The sum of a matrix (n, n), CSR, and of a change (n, n), CSR and symmetric, that has few rows with entries."""
 
     before: Any
@@ -45,4 +45,4 @@ class Changed:
 
 def whole(matrix: Any) -> Any:
     """A matrix, or the sum of one that has changed, as one CSR matrix."""
-    return (matrix.before + matrix.change).tocsr() if isinstance(matrix, Changed) else matrix
+    return (matrix.before + matrix.change).tocsr() if isinstance(matrix, UpdatedStiffness) else matrix

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.numerics.changed import Changed, whole
+from faying.numerics.changed import UpdatedStiffness, whole
 from faying.numerics.modes import Modes, lowest_modes
 from faying.numerics.product import combined, product
 from faying.numerics.shifted import Shifted
@@ -179,7 +179,7 @@ class NearbyModes:
     def _change(self, stiffness: Any) -> tuple[Any, Index]:
         """What a stiffness has beyond that of the basis: (k, k) on the unknowns that differ, and these (k,)."""
         before = self.span.stiffness
-        if isinstance(stiffness, Changed) and stiffness.before is before:
+        if isinstance(stiffness, UpdatedStiffness) and stiffness.before is before:
             return stiffness.small, stiffness.touched
         if self._changed is None or self._changed[0] is not stiffness:
             if stiffness is before:  # the difference would take the room of both

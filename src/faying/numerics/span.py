@@ -79,7 +79,7 @@ class Span:
 
     def __init__(self, mass: Any, stiffness: Any, first: Array) -> None:
         self.mass, self.stiffness = mass, stiffness
-        self._columns = Columns(first)
+        self._columns = GrowingColumns(first)
         parts = [self.vectors.T @ product(stiffness, self.vectors[:, some]) for some in few(*self.vectors.shape)]
         self.small: Array = np.concatenate([np.zeros((self.vectors.shape[1], 0)), *parts], axis=1)
 
@@ -123,7 +123,7 @@ class Span:
         self.small = rotation.T @ self.small @ rotation
 
 
-class Columns:
+class GrowingColumns:
     """Columns (n, m) of a matrix that grows, without a copy of all of it for each that comes."""
 
     def __init__(self, first: Array) -> None:

@@ -13,7 +13,7 @@ from faying.output import answer, page, report_measured
 from faying.output.figures import narrowing
 from faying.output.report_curves import backbone_curves, response_curves
 from faying.output.scene import of_result, pages, to_text
-from faying.output.sections import Section, sections
+from faying.output.sections import ReportSection, sections
 from faying.result import Result, interval_figure, level_figure
 from faying.result import backbone_figure as backbone
 from faying.result import figure as structure
@@ -128,13 +128,13 @@ def _notes(result: Result) -> list[str]:
     return out
 
 
-def _table(section: Section) -> list[str]:
+def _table(section: ReportSection) -> list[str]:
     below = [f"<p>{page.typeset(escape(section.below))}</p>"] if section.below else []
     title = page.typeset(escape(section.title))
     return [f"<h3>{title}</h3>", page.table(section.rows, section.name, section.keys), *below]
 
 
-def _tables(every: Sequence[Section], result: Result, pictures: dict[str, str]) -> list[str]:
+def _tables(every: Sequence[ReportSection], result: Result, pictures: dict[str, str]) -> list[str]:
     out = []
     for section in every:
         if section.name == "hammer" and result.hammer is not None:

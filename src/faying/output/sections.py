@@ -9,7 +9,7 @@ from faying.result import Result
 
 
 @dataclass(frozen=True, kw_only=True)
-class Section:
+class ReportSection:
     """One table of a result.
 
     Args:
@@ -34,7 +34,7 @@ class Section:
         return self.line or self.title[:1].lower() + self.title[1:]
 
 
-def sections(result: Result) -> list[Section]:
+def sections(result: Result) -> list[ReportSection]:
     """Return the tables that a result has."""
     every = (*_answer(result), *_modes(result), *_joints(result), *_backbones(result), *_tests(result))
     return [section for section in every if section.rows]
@@ -44,23 +44,23 @@ def _last(result: Result) -> str:
     return f"at {result.loads[-1] / 1e3:g} kN"
 
 
-def _answer(result: Result) -> tuple[Section, ...]:
+def _answer(result: Result) -> tuple[ReportSection, ...]:
     """Each mode with its interval, and what makes it."""
     return (
-        Section(
+        ReportSection(
             name="answer",
             rows=answer.answer(result),
             title=f"Modes {_last(result)}",
             below=f"{answer.limit(result)} 5 to 95 % hold all that is not known and listed below. Damping: low, "
             "median, high, at the stated acceleration of the point that moves most.",
         ),
-        Section(
+        ReportSection(
             name="shares",
             rows=answer.shares(result),
             title=f"What makes the intervals {_last(result)}, in %",
             below="Width from 5 to 95 % over the frequency, and share of each thing that is not known in its square.",
         ),
-        Section(
+        ReportSection(
             name="narrowing",
             rows=answer.narrowing(result),
             title="What would narrow the intervals",
@@ -69,24 +69,24 @@ def _answer(result: Result) -> tuple[Section, ...]:
     )
 
 
-def _modes(result: Result) -> tuple[Section, ...]:
+def _modes(result: Result) -> tuple[ReportSection, ...]:
     """The modes under the study's laws, and under what could stand in place of them."""
     rigid = f" Rigid-body values: up to {result.rigid.max():.1e} Hz." if len(result.rigid) else ""
     laws = f"Laws compared {_last(result)}"
     return (
-        Section(
+        ReportSection(
             name="modes",
             rows=table.modes(result),
             title="Modes at every preload",
             below=f"Loss factors come from complex modes with {result.damping} loss in the joints. Free: faces apart. "
             f"Bonded: no gap and no slip in any joint.{rigid}",
         ),
-        Section(
+        ReportSection(
             name="ranges",
             rows=table.ranges(result),
             title="Range of the frequencies, from that of the stiffness",
         ),
-        Section(
+        ReportSection(
             name="damping",
             rows=table.damping(result),
             title=f"Damping ratio at levels of acceleration, {_last(result)}",
@@ -94,19 +94,19 @@ def _modes(result: Result) -> tuple[Section, ...]:
             below="Low, median and high, at the acceleration of the point that moves most: slip of the joints in one "
             "cycle of the mode, and the damping at rest. The change of the frequency is that at the highest level.",
         ),
-        Section(
+        ReportSection(
             name="waves",
             rows=table.waves(result),
             title="Frequencies over the waves that machined faces have",
             line=f"frequencies with {table.waves_head(result)}: least .. median .. greatest",
             below=f"Least, median and greatest with {table.waves_head(result)}.",
         ),
-        Section(
+        ReportSection(
             name="beyond",
             rows=table.beyond(result),
             title="Beyond the end of a law: stiffness held, and bonded",
         ),
-        Section(
+        ReportSection(
             name="laws",
             rows=table.laws(result),
             title=laws,
@@ -118,11 +118,11 @@ def _modes(result: Result) -> tuple[Section, ...]:
     )
 
 
-def _joints(result: Result) -> tuple[Section, ...]:
+def _joints(result: Result) -> tuple[ReportSection, ...]:
     """Parts, joints and bolts."""
     order = ", ".join(result.tightening)
     return (
-        Section(
+        ReportSection(
             name="surfaces",
             rows=table.fractals(result),
             title="D and G that the laws rest on",
@@ -130,9 +130,9 @@ def _joints(result: Result) -> tuple[Section, ...]:
             below="The G of a law is that of both faces together. D and G hold within the band; the notes say how far "
             "the scan bears them out.",
         ),
-        Section(name="parts", rows=table.parts(result), title="Masses"),
-        Section(name="joints", rows=table.joints(result), keys=2, title="Joints"),
-        Section(
+        ReportSection(name="parts", rows=table.parts(result), title="Masses"),
+        ReportSection(name="joints", rows=table.joints(result), keys=2, title="Joints"),
+        ReportSection(
             name="bolts",
             rows=table.bolts(result),
             keys=2,
@@ -140,7 +140,7 @@ def _joints(result: Result) -> tuple[Section, ...]:
             line=f"bolts, tightened in the order {order}" if order else "bolts, all pulled at once",
             below=f"Tightened in the order {order}." if order else "All pulled at once.",
         ),
-        Section(
+        ReportSection(
             name="bolting",
             rows=table.bolting(result),
             keys=2,
@@ -148,12 +148,12 @@ def _joints(result: Result) -> tuple[Section, ...]:
             line=table.bolting_head(result),
             below=table.EMBEDDING,
         ),
-        Section(
+        ReportSection(
             name="modal forces",
             rows=table.modal_forces(result),
             title=f"Force in the bolts per motion where a mode moves most, {_last(result)}",
         ),
-        Section(
+        ReportSection(
             name="conductance",
             rows=table.conductance(result),
             title="Conductance of the joints",
@@ -163,12 +163,12 @@ def _joints(result: Result) -> tuple[Section, ...]:
     )
 
 
-def _backbones(result: Result) -> Iterator[Section]:
+def _backbones(result: Result) -> Iterator[ReportSection]:
     """Curves of a mode over its amplitude, and what coarser computations would change."""
     for curve in result.backbones:
         what = f"mode {curve.mode} over amplitude, {curve.settings}"
         at = ", ".join(f"{1e3 * x:.4g}" for x in curve.at)
-        yield Section(
+        yield ReportSection(
             name="backbone",
             rows=table.backbone(curve),
             title=f"{what[0].upper()}{what[1:]}",
@@ -176,14 +176,14 @@ def _backbones(result: Result) -> Iterator[Section]:
             below=f"At ({at}) mm; at rest {curve.linear_frequency:.3f} Hz. Ends: {curve.reason}.",
         )
         if curve.measured is not None:
-            yield Section(
+            yield ReportSection(
                 name="backbone measured",
                 rows=table.backbone_measured(curve),
                 title=f"Measured points against {what}",
                 line=f"measured points of {curve.measured_source} against {what}",
                 below=f"From {curve.measured_source}; a dozen at most, and what the curve has at their amplitude.",
             )
-        yield Section(
+        yield ReportSection(
             name="backbone bounds",
             rows=table.backbone_bounds(curve),
             title=f"Error bounds of {what}",
@@ -191,23 +191,23 @@ def _backbones(result: Result) -> Iterator[Section]:
         )
 
 
-def _tests(result: Result) -> tuple[Section, ...]:
+def _tests(result: Result) -> tuple[ReportSection, ...]:
     """What was measured, or published, to compare with the study."""
     c, hammer = result.comparison, result.hammer
     return (
-        Section(
+        ReportSection(
             name="score",
             rows=answer.score(result),
             title="Error against the test, and of guesses that need no joint model",
             below=answer.score_line(result),
         ),
-        Section(
+        ReportSection(
             name="comparison",
             rows=table.comparison(result),
             title=f"Comparison with the {c.reference if c else 'test'}",
             below=c.source if c else "",
         ),
-        Section(
+        ReportSection(
             name="hammer",
             rows=table.hammer(result),
             title=f"Hammer test at {hammer.model.load / 1e3:g} kN" if hammer else "Hammer test",

@@ -2,6 +2,6 @@
 
 from faying.result.bolts import BoltNumbers
 from faying.result.provenance import Provenance
-from faying.result.result import Comparison, Receptance, Result, read_model_modes
+from faying.result.result import MeasuredComparison, Receptance, Result, read_model_modes
 
-__all__ = ["BoltNumbers", "Comparison", "Provenance", "Receptance", "Result", "read_model_modes"]
+__all__ = ["BoltNumbers", "MeasuredComparison", "Provenance", "Receptance", "Result", "read_model_modes"]

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from faying.fe.figure import draw_shape_flat, frame_of, moved_by
-from faying.joint.figure import FaceMap, in_plane
+from faying.joint.figure import DrawnFace, in_plane
 from faying.result.maps import joint_map_of
 from faying.result.result import Result
 from faying.result.shape_names import shape_name
@@ -50,7 +50,7 @@ def face_map(ax: Any, result: Result, field: str, load: int = -1, joint: int = 0
     every = getattr(result, field)
     share = float(result.weights[here] @ (result.pressure[load][here] <= 0) / result.weights[here].sum())
     label, unit = FACE_FIELDS[field]
-    return FaceMap(
+    return DrawnFace(
         places=result.points[here] if found is None else result.outline[found.parents].mean(axis=1),
         triangles=None if found is None else found.triangles,
         values=every[load][here] if found is None else found.fields[field][load],

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from faying.joint.figure import OPEN, FaceMap, in_plane
+from faying.joint.figure import OPEN, DrawnFace, in_plane
 from faying.result.load_cases import LoadCases
 from faying.style import WIDE, axes_of, drawing, headline, new_panels, percent
 
@@ -16,13 +16,13 @@ COLUMNS = 3
 SMALL = 0.2  # size of the points of small panels, against those of one
 
 
-def _map(found: LoadCases, case: int | None, joint: int, size: float = 1.0) -> FaceMap:
+def _map(found: LoadCases, case: int | None, joint: int, size: float = 1.0) -> DrawnFace:
     """The map of a joint under a case, or under the preload alone; size: of its points."""
     here = found.joint_of_point == joint
     pressures = np.vstack([found.rest_pressure[here], found.pressure[:, here]])
     title = "preload" if case is None else headline(found.cases[case], 14)
     opens = "" if case is None else f": {percent(float(found.opened[case, joint]))} opens"
-    return FaceMap(
+    return DrawnFace(
         places=found.positions[here],
         triangles=None,
         values=pressures[0 if case is None else case + 1],
@@ -32,7 +32,7 @@ def _map(found: LoadCases, case: int | None, joint: int, size: float = 1.0) -> F
     )
 
 
-def _painted(drawn: FaceMap, ax: Any) -> Any:
+def _painted(drawn: DrawnFace, ax: Any) -> Any:
     """Draw a map, with what is open in a pale colour below it; return what a colour bar needs."""
     flat = 1e3 * in_plane(drawn.places)[0]
     ax.scatter(*flat.T, s=2.0, color=OPEN, linewidths=0, zorder=0)

@@ -41,7 +41,7 @@ def preload_slope(values: Array, loads: Array) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Comparison:
+class MeasuredComparison:
     """Listed frequencies of a hammer test beside the study's, and the mode (from 0) that each was paired with."""
 
     source: str
@@ -546,7 +546,7 @@ class Result(Recorded):
     sources: tuple[str, ...] = ()
     notes: tuple[Note, ...] = ()
     response: Receptance | None = None
-    comparison: Comparison | None = None
+    comparison: MeasuredComparison | None = None
     hammer: ModalComparison | None = None
     bolt_numbers: BoltNumbers | None = None
     backbones: tuple[Backbone, ...] = ()

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from faying.geometry.face_facts import Contact, FaceFacts, GeometryFacts
+from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.typing import Array
 
 SLENDER = 1.5  # shank diameters from its axis, beyond which a part with a shank is no bolt (a spigot of a flange, say)
@@ -69,7 +69,7 @@ def listed(names: Iterable[str], most: int = 4) -> str:
     return ", ".join(every[:most]) + (f" and {len(every) - most} more" if len(every) > most else "")
 
 
-def find_fasteners(facts: GeometryFacts, joints: Sequence[Contact]) -> Fasteners:
+def find_fasteners(facts: GeometryFacts, joints: Sequence[TouchingFaces]) -> Fasteners:
     """Tell which parts are fasteners.
 
     Args:
@@ -112,7 +112,7 @@ def find_fasteners(facts: GeometryFacts, joints: Sequence[Contact]) -> Fasteners
 
 
 def _pressed(
-    facts: GeometryFacts, joints: Sequence[Contact], shank: FaceFacts
+    facts: GeometryFacts, joints: Sequence[TouchingFaces], shank: FaceFacts
 ) -> tuple[list[FaceFacts], list[FaceFacts]]:
     """Flat faces of a bolt that press on other parts: those that look along its axis, and those that look back.
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from faying.bolt.threads import CLEARANCE_HOLES, HEADS, PINS, WASHERS, is_tapped, size_for_hole
 from faying.geometry.bores import Bore, Stack, bores, room_around, rows, seat
-from faying.geometry.face_facts import Contact, FaceFacts, GeometryFacts
+from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.seats import Countersink, countersink, lips
 from faying.setup.fasteners import Fasteners, listed
 from faying.typing import Array
@@ -69,7 +69,9 @@ class LeftOut:
             yield f"{many} about {where}{more} mm ({widths}) {why}"
 
 
-def found_bolts(facts: GeometryFacts, fasteners: Fasteners, joints: Sequence[Contact], out: LeftOut) -> list[FoundBolt]:
+def found_bolts(
+    facts: GeometryFacts, fasteners: Fasteners, joints: Sequence[TouchingFaces], out: LeftOut
+) -> list[FoundBolt]:
     """The bolts of a geometry: parts that are bolts, and rows of holes that take one.
 
     Args:
@@ -95,7 +97,7 @@ def found_bolts(facts: GeometryFacts, fasteners: Fasteners, joints: Sequence[Con
 
 
 def _meshed(
-    facts: GeometryFacts, part: str, shank: FaceFacts, head: FaceFacts, nut: FaceFacts, joints: Sequence[Contact]
+    facts: GeometryFacts, part: str, shank: FaceFacts, head: FaceFacts, nut: FaceFacts, joints: Sequence[TouchingFaces]
 ) -> FoundBolt:
     assert shank.radius is not None
     wide = 2e3 * shank.radius
@@ -301,7 +303,7 @@ def clamped_along(found: Sequence[FoundBolt], one: str, two: str) -> list[Array]
     return [bolt.axis for bolt in found if one in bolt.parts and two in bolt.parts]
 
 
-def shoulders(facts: GeometryFacts, joints: Sequence[Contact], found: Sequence[FoundBolt]) -> list[Contact]:
+def shoulders(facts: GeometryFacts, joints: Sequence[TouchingFaces], found: Sequence[FoundBolt]) -> list[TouchingFaces]:
     """Faces that touch along the bolts of their two parts, as the shoulder of a stepped lap: no bolt presses them."""
     out = []
     for contact in joints:
@@ -312,7 +314,7 @@ def shoulders(facts: GeometryFacts, joints: Sequence[Contact], found: Sequence[F
     return out
 
 
-def shoulder_remark(contacts: Sequence[Contact]) -> str:
+def shoulder_remark(contacts: Sequence[TouchingFaces]) -> str:
     """What there is to say of shoulders."""
     pairs = dict.fromkeys((contact.first[0], contact.second[0]) for contact in contacts)
     between = "; ".join(listed(pair) for pair in pairs)

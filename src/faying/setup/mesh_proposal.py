@@ -11,7 +11,7 @@ from faying.decks.meshfile import read_mesh, read_pretensions
 from faying.decks.raw import Pretension
 from faying.errors import InputError
 from faying.fe.mesh import Mesh
-from faying.geometry.face_facts import Contact, FaceFacts, GeometryFacts
+from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.mesh_facts import mesh_facts
 from faying.geometry.selectors import TOUCHING
 from faying.setup.proposal import BoltProposal, JointProposal, Proposal, rounded, touching
@@ -85,7 +85,7 @@ def _halves(path: Path, mesh: Mesh) -> dict[str, str]:
     return {part: part for part in mesh.parts if part not in halves} | joined if joined else {}
 
 
-def _joint(facts: GeometryFacts, contact: Contact, number: int, count: int) -> JointProposal:
+def _joint(facts: GeometryFacts, contact: TouchingFaces, number: int, count: int) -> JointProposal:
     one, two = facts.face(*contact.first), facts.face(*contact.second)
     return JointProposal(
         name="joint" if count == 1 else f"joint {number}",
@@ -98,7 +98,7 @@ def _joint(facts: GeometryFacts, contact: Contact, number: int, count: int) -> J
 def _bolt(
     mesh: Mesh,
     facts: GeometryFacts,
-    contacts: Sequence[Contact],
+    contacts: Sequence[TouchingFaces],
     section: Pretension,
     parts: Sequence[str],
     name: str,

@@ -9,7 +9,7 @@ import numpy as np
 
 from faying.bolt.threads import Fastener, Thread
 from faying.errors import InputError
-from faying.geometry.face_facts import Contact, GeometryFacts, PartFacts, part_distance
+from faying.geometry.face_facts import GeometryFacts, PartFacts, TouchingFaces, part_distance
 from faying.geometry.selectors import TOUCHING, Selector
 from faying.memory import available
 from faying.numerics.memory import guessed
@@ -156,7 +156,9 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
     )
 
 
-def _named_joints(facts: GeometryFacts, contacts: Sequence[Contact], names: FaceNames) -> tuple[JointProposal, ...]:
+def _named_joints(
+    facts: GeometryFacts, contacts: Sequence[TouchingFaces], names: FaceNames
+) -> tuple[JointProposal, ...]:
     joints = []
     for k, contact in enumerate(contacts, 1):
         word = "joint" if len(contacts) == 1 else f"joint {k}"
@@ -184,7 +186,7 @@ def rounded(value: float, digits: int, *, up: bool = False) -> float:
     return round((np.ceil(value / step) if up else round(value / step)) * step, 15)
 
 
-def touching(facts: GeometryFacts) -> list[Contact]:
+def touching(facts: GeometryFacts) -> list[TouchingFaces]:
     """Planes that touch; where two parts touch nowhere, those that nearly do."""
     close = TOUCHING * facts.size
     plane = [
@@ -204,7 +206,7 @@ def touching(facts: GeometryFacts) -> list[Contact]:
     return [*touching, *near]
 
 
-def _apart(facts: GeometryFacts, contacts: Sequence[Contact], bolts: Sequence[FoundBolt]) -> list[Contact]:
+def _apart(facts: GeometryFacts, contacts: Sequence[TouchingFaces], bolts: Sequence[FoundBolt]) -> list[TouchingFaces]:
     """Faces that only nearly touch, of parts that no bolt clamps together and that other parts touch."""
     close = TOUCHING * facts.size
     touched = {side[0] for one in contacts if abs(one.gap) <= close for side in (one.first, one.second)}

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from faying.bolt.bolt import BoltPlace
-from faying.geometry.face_facts import Contact, FaceFacts, GeometryFacts
+from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.face_triangles import FaceTriangles
 from faying.joint.strength import SolidPlace
 from faying.materials import Material
@@ -35,7 +35,7 @@ class Sketch:
         """Mass of the parts [kg]."""
         return sum((self.materials[part.name].density or 0.0) * part.volume for part in self.facts.parts)
 
-    def contacts(self, faces: tuple[str, str]) -> list[Contact]:
+    def contacts(self, faces: tuple[str, str]) -> list[TouchingFaces]:
         """Where the faces of a joint look at each other."""
         first, second = ({(f.part, f.number) for f in self.named[name]} for name in faces)
         return [c for c in self.facts.contacts if {c.first, c.second} & first and {c.first, c.second} & second]

@@ -10,7 +10,7 @@ from faying.checks import choice, flag, instance, number, shown
 from faying.errors import FayingError, InputError
 from faying.style import Summary
 from faying.surface.convention import NAMES, check_dimension, cut_factor, implied_Rq, prefactor
-from faying.surface.estimators.base import Estimate, Scatter
+from faying.surface.estimators.base import Estimate, EstimateScatter
 from faying.surface.estimators.table import ESTIMATORS, METHODS
 from faying.surface.form import Prepared, prepared
 from faying.surface.roughness import roughness
@@ -65,7 +65,7 @@ class FractalFit(Summary):
     spikes: int
     bias: float | None = None
     warnings: tuple[str, ...] = ()
-    scatter: Scatter | None = None
+    scatter: EstimateScatter | None = None
     c: float = 1.0
     areal: bool = True
     drawn: Scan | Profile | Spectrum | None = field(default=None, compare=False)

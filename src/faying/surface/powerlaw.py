@@ -26,7 +26,7 @@ BREADTH = 0.35  # standard deviation of the smoothing over ln(frequency); wide a
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
-class PowerLaw:
+class FittedPowerLaw:
     """density = exp(log_level) (f/pivot)^-slope + noise term; `covariance` is of (log_level, slope, noise/level).
 
     `density` is that of Spectrum; `slope` is its slope (5 - 2Ds), one less than that of the areal density.
@@ -151,7 +151,7 @@ def _scored(bins: _Bins, free: Mask) -> Array:
     return theta
 
 
-def fit(spectrum: Spectrum, low: float, high: float, *, white: bool = True) -> PowerLaw:
+def fit(spectrum: Spectrum, low: float, high: float, *, white: bool = True) -> FittedPowerLaw:
     """Fit the bins with low <= frequency <= high [1/m]. NotConverged where the band holds too few bins or no law."""
     bins = _Bins.of(spectrum, low, high)
     free = np.array([True, True, white])
@@ -162,7 +162,7 @@ def fit(spectrum: Spectrum, low: float, high: float, *, white: bool = True) -> P
     response = covariance[:, free] @ (scaled * bins.weight[:, None]).T
     response[2] = np.exp(theta[0]) * (response[2] + theta[2] * response[0])
     misfit = float(np.sum(bins.weight * (bins.y / mu - 1) ** 2)) / max(len(bins.f) - int(free.sum()), 1)
-    return PowerLaw(
+    return FittedPowerLaw(
         log_level=float(theta[0]) + (np.log(2 * pi * bins.pivot) if bins.extra else np.log(2.0)),
         slope=float(theta[1]),
         noise=float(theta[2] * np.exp(theta[0])),
@@ -175,14 +175,14 @@ def fit(spectrum: Spectrum, low: float, high: float, *, white: bool = True) -> P
     )
 
 
-def _gaps(law: PowerLaw, spectrum: Spectrum) -> float:
+def _gaps(law: FittedPowerLaw, spectrum: Spectrum) -> float:
     """Rms of ln(density) about a parabola in ln(frequency): large for separate lines, small for any smooth spectrum."""
     use = (spectrum.frequency >= law.used[0]) & (spectrum.frequency <= law.used[-1]) & (spectrum.density > 0)
     x, y = np.log(spectrum.frequency[use]), np.log(spectrum.density[use])
     return float(np.std(y - np.polyval(np.polyfit(x, y, 2), x)))
 
 
-def fit_lines(spectrum: Spectrum, low: float, high: float) -> PowerLaw:
+def fit_lines(spectrum: Spectrum, low: float, high: float) -> FittedPowerLaw:
     """Fit a spectrum of separate lines, each line's power spread over a Gaussian in ln(frequency), without white term.
 
     The smoothing of a power law over the same bins serves as its model, so the ends need no correction. The covariance
@@ -219,7 +219,7 @@ def fit_lines(spectrum: Spectrum, low: float, high: float) -> PowerLaw:
     covariance = np.zeros((3, 3))
     covariance[:2, :2] = np.linalg.inv(design.T @ design) * scatter * len(nodes) / independent
     expected = np.exp(level - slope * x) * smearing(spectrum, f, slope)[0]
-    return PowerLaw(
+    return FittedPowerLaw(
         log_level=level,
         slope=slope,
         noise=0.0,
@@ -250,7 +250,9 @@ def supported_band(spectrum: Spectrum, *, resolution: float | None = None) -> tu
     return low, high
 
 
-def fit_band(spectrum: Spectrum, low: float, high: float, *, fixed: bool = False) -> tuple[PowerLaw, tuple[str, ...]]:
+def fit_band(
+    spectrum: Spectrum, low: float, high: float, *, fixed: bool = False
+) -> tuple[FittedPowerLaw, tuple[str, ...]]:
     """Fit the widest part of the band that a power law with noise describes; say in words what was cut.
 
     A band passes where its misfit is at most 1.6, its white term not significantly negative (blur), and its lowest
@@ -267,7 +269,7 @@ def fit_band(spectrum: Spectrum, low: float, high: float, *, fixed: bool = False
         )
     if fixed:
         return law, ()
-    tried: list[tuple[PowerLaw, float, float]] = []
+    tried: list[tuple[FittedPowerLaw, float, float]] = []
     for bottom, top in _bands(low, high):
         try:
             law = fit(spectrum, bottom, top)
@@ -299,8 +301,8 @@ def _bands(low: float, high: float) -> Iterator[tuple[float, float]]:
 
 
 def _beyond(
-    spectrum: Spectrum, plateau: tuple[PowerLaw, float, float], low: float, high: float
-) -> tuple[PowerLaw, tuple[str, ...]]:
+    spectrum: Spectrum, plateau: tuple[FittedPowerLaw, float, float], low: float, high: float
+) -> tuple[FittedPowerLaw, tuple[str, ...]]:
     """The law of the widest band beyond a plateau, or the plateau itself where no band there passes."""
     flat, start, end = plateau
     while start < end / 2:
@@ -320,12 +322,12 @@ def _beyond(
     )
 
 
-def _is_plateau(law: PowerLaw) -> bool:
+def _is_plateau(law: FittedPowerLaw) -> bool:
     """Whether the density does not fall (D above 3), or its slope cannot be told from the white term."""
     return law.slope < 1 or float(law.covariance[1, 1]) ** 0.5 > 2 * VAGUE
 
 
-def _roll_off_in_words(spectrum: Spectrum, plateau: PowerLaw, law: PowerLaw) -> tuple[str, ...]:
+def _roll_off_in_words(spectrum: Spectrum, plateau: FittedPowerLaw, law: FittedPowerLaw) -> tuple[str, ...]:
     """Where the law meets the mean level of the plateau, both as two-sided densities (areal for a scan)."""
     turn = 1 if spectrum.axes == 2 else 0
     level = float(np.mean(np.log(plateau.expected / plateau.used**turn)))
@@ -351,7 +353,7 @@ def _cut_in_words(low: float, high: float, bottom: float, top: float) -> tuple[s
     return tuple(words)
 
 
-def _passes(spectrum: Spectrum, law: PowerLaw, bottom: float, top: float) -> bool:
+def _passes(spectrum: Spectrum, law: FittedPowerLaw, bottom: float, top: float) -> bool:
     level = np.exp(law.log_level) / (2 * pi * law.pivot if spectrum.axes == 2 else 2.0)
     if law.misfit > 1.6 or law.noise / level < -3 * law.covariance[2, 2] ** 0.5:
         return False
@@ -369,7 +371,7 @@ def _passes(spectrum: Spectrum, law: PowerLaw, bottom: float, top: float) -> boo
     return abs(excess) <= 3 * float((1 / weight.sum() + np.average(sigma**2, weights=weight)) ** 0.5)
 
 
-def _predict(spectrum: Spectrum, law: PowerLaw, f: Array) -> tuple[Array, Array]:
+def _predict(spectrum: Spectrum, law: FittedPowerLaw, f: Array) -> tuple[Array, Array]:
     """Expected density at f and the relative standard error of that extrapolation."""
     smear, dsmear = smearing(spectrum, f, law.slope)
     x = np.log(f / law.pivot)
@@ -382,7 +384,7 @@ def _predict(spectrum: Spectrum, law: PowerLaw, f: Array) -> tuple[Array, Array]
     return mean, np.sqrt(np.einsum("ij,jk,ik->i", jac, law.covariance, jac))
 
 
-def estimate_from(law: PowerLaw) -> tuple[float, float, Array]:
+def estimate_from(law: FittedPowerLaw) -> tuple[float, float, Array]:
     """Return D, ln S(pivot) and the covariance of (ln S(pivot), D), with D = (7 - slope)/2."""
     turn = np.array([[1.0, 0.0], [0.0, -0.5]])
     return (7 - law.slope) / 2, law.log_level, turn @ law.covariance[:2, :2] @ turn.T

@@ -11,7 +11,7 @@ from faying.checks import path as checked_path
 from faying.errors import FayingError, InputError, ReadError
 from faying.files import end_of
 from faying.surface.scan import Profile, Scan
-from faying.surface.text import Layout
+from faying.surface.text import TextLayout
 from faying.units import scale
 
 ASK = 'for example read_scan("{name}", xy_unit="mm", z_unit="um"), or on the command line --xy-unit mm --z-unit um'
@@ -150,7 +150,7 @@ def _text_or_other(file: Path, xy_unit: str | None, z_unit: str | None, lateral:
 
 
 def _scales(
-    file: Path, layout: Layout, xy_unit: str | None, z_unit: str | None, lateral: Lateral
+    file: Path, layout: TextLayout, xy_unit: str | None, z_unit: str | None, lateral: Lateral
 ) -> tuple[float, float, float]:
     """Metres per unit of x, y and z of a text file."""
     from faying.units import scale

@@ -153,7 +153,7 @@ def binned(
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Structure:
+class StructureFunction:
     """Structure function <(z(x + lag) - z(x))^2> [m2] over `lag` [m], averaged over directions; `pairs` counted."""
 
     lag: Array
@@ -177,7 +177,7 @@ def _products(z: Array, known: Array, shape: tuple[int, ...]) -> tuple[Array, Ar
 
 def structure_function(
     scan: Scan | Profile, *, known: Mask | None = None, longest: float = 0.125, ratio: float = 1.12
-) -> Structure:
+) -> StructureFunction:
     """Return the structure function for lags from one point to `longest` times the shortest side.
 
     Computed by FFT over all pairs; points that are not `known` (or NaN) take no part. Directions are averaged in
@@ -218,6 +218,6 @@ def structure_function(
     lag = np.bincount(bins, np.where(use, r.ravel(), 0.0), n)[1:]
     number = np.asarray(np.bincount(bins, np.where(use, pairs.ravel(), 0.0), n)[1:], float)
     good = count > 0
-    return Structure(
+    return StructureFunction(
         lag=lag[good] / count[good], value=value[good] / count[good], pairs=number[good], axes=len(spacing)
     )

@@ -39,7 +39,7 @@ def _row(line: str, columns: int = 2) -> list[float] | None:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Layout:
+class TextLayout:
     """How a text file is laid out: numbers in a row (2: x,z; 3: x,y,z; more: a matrix of heights), lines of heading,
     metres per unit of x, y, z where the heading states them, places of x, y, z (or x, z) in a row; size (x, y) [m] of
     a matrix that states it."""
@@ -56,7 +56,7 @@ class Layout:
         return self.columns > 3 or self.size is not None
 
 
-def layout(path: Path) -> Layout | None:
+def layout(path: Path) -> TextLayout | None:
     """Return the layout of a text of numbers, None for any other file.
 
     A heading is one line such as "x [mm],y [mm],z [um]"; a matrix has none and four numbers in a row or more, or the
@@ -79,16 +79,16 @@ def layout(path: Path) -> Layout | None:
     columns = _columns(rows[:-1] or rows, len(found[0]))
     if stated is not None:
         size, unit = stated
-        return Layout(columns=len(found[0]), heading=0, units=(1.0, 1.0, unit), size=size)
+        return TextLayout(columns=len(found[0]), heading=0, units=(1.0, 1.0, unit), size=size)
     if heading is not None:
         units, order = heading
-        return Layout(columns=max(columns, len(order)), heading=1, units=units, order=order)
+        return TextLayout(columns=max(columns, len(order)), heading=1, units=units, order=order)
     if any(row is not None and len(row) in (2, 3) for row in found):
-        return Layout(columns=columns, heading=0) if columns in (2, 3) else None
+        return TextLayout(columns=columns, heading=0) if columns in (2, 3) else None
     alike = sum(row is not None and len(row) == len(found[0]) for row in found)
     if len(rows) > 2 and columns > 3 and alike > len(found) / 2:
         _refuse_more(path, [row for row in found if row is not None and len(row) == columns], columns)
-        return Layout(columns=columns, heading=0)
+        return TextLayout(columns=columns, heading=0)
     return None
 
 
@@ -159,7 +159,7 @@ def _heading(line: str, path: Path) -> Heading | None:
     return (factors[0], factors[-2], factors[-1]), order
 
 
-def read(path: Path, how: Layout, scales: tuple[float, float, float], steps: Steps) -> Scan | Profile:
+def read(path: Path, how: TextLayout, scales: tuple[float, float, float], steps: Steps) -> Scan | Profile:
     """Read the points; `scales` are metres per unit of x, y, z, `steps` gives a matrix's spacing from its points.
 
     Raises ReadError for anything but a regular grid.
@@ -177,7 +177,7 @@ def read(path: Path, how: Layout, scales: tuple[float, float, float], steps: Ste
     return _line(path, data, x, z) if how.columns == 2 else _grid(path, data, x, y, z)
 
 
-def _table(path: Path, how: Layout) -> Array:
+def _table(path: Path, how: TextLayout) -> Array:
     """Every row of numbers (n, columns). Raises ReadError that names the first line that is none."""
     points = line_count(path) * (how.columns if how.matrix else 1)
     check_points(str(path), points + 4 * path.stat().st_size / BYTES)
@@ -185,7 +185,7 @@ def _table(path: Path, how: Layout) -> Array:
     return _line_by_line(path, how) if table is None else table
 
 
-def _quickly(path: Path, how: Layout) -> Array | None:
+def _quickly(path: Path, how: TextLayout) -> Array | None:
     """All rows in one go; None where something is to be said of one, or some words are no numbers."""
     skip, heading, first = 0, how.heading, ""
     with path.open(encoding="utf-8-sig", errors="replace") as handle:
@@ -201,7 +201,7 @@ def _quickly(path: Path, how: Layout) -> Array | None:
     return None if table is None or len(table) < 4 else np.asarray(table)
 
 
-def _line_by_line(path: Path, how: Layout) -> Array:
+def _line_by_line(path: Path, how: TextLayout) -> Array:
     rows: list[list[float]] = []
     skip = how.heading
     expected = f"a row of {how.columns} heights" if how.matrix else "x,y,z (or x,z)"

@@ -66,7 +66,7 @@ class Sweep:
         }
 
 
-class Store(Kept):
+class SweepStore(Kept):
     """The folder OUT.part beside the output: the reduced model and every chunk that is done."""
 
     COLUMNS: ClassVar[tuple[str, ...]] = (
@@ -163,7 +163,7 @@ def _netcdf(sweep: Sweep) -> Path:
     for name, axis in zip(names, sweep.axes, strict=True):
         values = np.array(axis.values, dtype=float if axis.numeric else object)
         variables[name] = Variable(dims=(name,), values=values, unit=axis.unit or "1", long_name=axis.key)
-    for column in Store.COLUMNS:
+    for column in SweepStore.COLUMNS:
         dims = (*names, "mode") if column in ("frequencies", "loss_factors") else names
         variables[column] = Variable(dims=dims, values=getattr(sweep, column), unit=UNITS.get(column, "1"))
     attributes: dict[str, str | int | float] = {

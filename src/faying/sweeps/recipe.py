@@ -70,7 +70,7 @@ class Design(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Place:
+class JointPlacement:
     """Where a joint lies: its points (q, 3) [m] and their areas (q,) [m2], the gap of its geometry there (q,) [m], the
     face's own axes, and what its scan says of waves."""
 
@@ -81,7 +81,7 @@ class Place:
     scan: ScanWaves | None
 
     @classmethod
-    def all(cls, structure: Structure, design: Design) -> "tuple[Place, ...]":
+    def all(cls, structure: Structure, design: Design) -> "tuple[JointPlacement, ...]":
         """The place of each joint; none where no form varies."""
         if not design.varies_form:
             return ()
@@ -112,7 +112,7 @@ class Recipe:
 
     design: Design
     pairs: tuple[tuple[Material, Material], ...]
-    places: tuple["Place", ...] = ()  # of each joint, where its form varies; empty where none does
+    places: tuple["JointPlacement", ...] = ()  # of each joint, where its form varies; empty where none does
     # laws made lately, with their tables: along an axis of preload they stay the same
     _lately: dict[tuple[Any, ...], JointLaw] = field(default_factory=dict, repr=False, compare=False)
     # the last point asked for, with the design that it is of

@@ -15,7 +15,7 @@ from faying.reduction.reduced import ReducedModel
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
 from faying.sweeps.axes import Axis, Grid
-from faying.sweeps.files import Store, Sweep
+from faying.sweeps.files import Sweep, SweepStore
 from faying.sweeps.parallel import each
 from faying.sweeps.recipe import Recipe, contact_shares
 from faying.sweeps.trainer import FAR, Trainer
@@ -27,7 +27,7 @@ MOST_LAWS = 100  # looked at before there is a mesh
 
 def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dict[str, Array]:
     """Evaluate some points; rows of what the sweep stores, NaN where a point has no answer, and `reasons`."""
-    rows: dict[str, list[Any]] = {name: [] for name in (*Store.COLUMNS, "reasons")}
+    rows: dict[str, list[Any]] = {name: [] for name in (*SweepStore.COLUMNS, "reasons")}
     weights = np.concatenate(model.weights)
     start: Array | None = None
     for index in indices:
@@ -101,7 +101,7 @@ def sweep(
     grid = Grid(study=study, surfaces=surfaces_of(study), axes=tuple(axes))
     _check_laws(grid)
     mark = fingerprint(study, tuple(axes), tolerance)
-    with Store(Path(out), mark, grid.size, study.modes.count) as store:
+    with SweepStore(Path(out), mark, grid.size, study.modes.count) as store:
         report("mesh", 0, 0)
         trainer, model = _begun(study, grid, store, tolerance, report)
         report("evaluations", store.found, grid.size)
@@ -117,7 +117,9 @@ def sweep(
         return store.written(grid, title=study.title, tolerance=tolerance, unknowns=unknowns, model=model)
 
 
-def _begun(study: Study, grid: Grid, store: Store, tolerance: float, report: Report) -> tuple[Trainer, ReducedModel]:
+def _begun(
+    study: Study, grid: Grid, store: SweepStore, tolerance: float, report: Report
+) -> tuple[Trainer, ReducedModel]:
     """What makes the bases, and the model in them: made now, or left by an interrupted sweep."""
     trainer = Trainer.of(study, grid, tolerance, report)
     model = store.model()
@@ -156,7 +158,7 @@ def _check(study: Study, tolerance: float) -> None:
         raise InputError('a sweep takes springs per area; leave out springs = "per-node", or run studies one by one')
 
 
-def _enriched(model: ReducedModel, trainer: Trainer, store: Store, recipe: Recipe) -> ReducedModel:
+def _enriched(model: ReducedModel, trainer: Trainer, store: SweepStore, recipe: Recipe) -> ReducedModel:
     """Train on the points whose estimate is far beyond the tolerance, until none is left or nothing is gained."""
     for _ in range(20):
         far = np.flatnonzero(store.rows["estimate"] > FAR * trainer.tolerance)

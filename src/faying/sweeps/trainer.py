@@ -14,7 +14,7 @@ from faying.reduction.part_shares import PartShares
 from faying.reduction.reduce import STATIC_SHARE, Reduction
 from faying.reduction.reduced import ReducedModel
 from faying.study.study import Study
-from faying.sweeps.recipe import Design, Place, Recipe
+from faying.sweeps.recipe import Design, JointPlacement, Recipe
 from faying.typing import Array
 
 CORNERS, RANDOM, CHECKS = 16, 8, 5  # variants trained on, and those that are looked at afterwards
@@ -39,7 +39,7 @@ class Trainer:
         mesh = checked_mesh(study)
         pairs = tuple(materials_at(study, mesh, joint) for joint in study.joints)
         structure = structure_of(study, mesh, design.surfaces)
-        recipe = Recipe(design=design, pairs=pairs, places=Place.all(structure, design))
+        recipe = Recipe(design=design, pairs=pairs, places=JointPlacement.all(structure, design))
         return cls(study, structure, recipe, tolerance, report)
 
     def model(self, more: Sequence[int] = (), learn: Sequence[int] = ()) -> ReducedModel:

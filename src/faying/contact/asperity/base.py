@@ -35,7 +35,7 @@ class AsperityResponse:
     energy: Array
 
 
-class Curve(NamedTuple):
+class AsperityCurve(NamedTuple):
     """A model without units at x: force P, area A, derivative dP/dx, energy integral of P dx."""
 
     P: Array
@@ -75,7 +75,7 @@ class AsperityModel(ABC):
         """The x at which the formulas change; force may jump there where the source's fits do not meet."""
 
     @abstractmethod
-    def curve(self, x: Array) -> Curve:
+    def curve(self, x: Array) -> AsperityCurve:
         """Return the model without units at x >= 0."""
 
     def at(self, delta: ArrayLike) -> AsperityResponse:
@@ -133,7 +133,7 @@ class PowerModel(AsperityModel):
         """The x at which the formulas change."""
         return tuple(piece.upper for piece in self.pieces[:-1])
 
-    def curve(self, x: Array) -> Curve:
+    def curve(self, x: Array) -> AsperityCurve:
         """Return the model without units at x >= 0."""
         out = [np.zeros_like(x) for _ in range(4)]
         lower, carried = 0.0, 0.0
@@ -151,7 +151,7 @@ class PowerModel(AsperityModel):
                 ends = powers(integrated(piece.P), np.array([piece.upper, lower] if lower > 0 else [piece.upper]))
                 carried += float(ends[0]) - (float(ends[1]) if lower > 0 else 0.0)
             lower = piece.upper
-        return Curve(*out)
+        return AsperityCurve(*out)
 
 
 @cache

@@ -6,7 +6,7 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from faying.contact.asperity.base import Curve
+from faying.contact.asperity.base import AsperityCurve
 from faying.contact.asperity.jackson_green import ELASTIC_END, JacksonGreenBase
 from faying.errors import InputError
 from faying.typing import Array
@@ -34,14 +34,14 @@ class Ghaednia(JacksonGreenBase):
                 f"Ghaednia: tangent_ratio = {self.tangent_ratio}; it must be 0 up to below 1, such as 0.02"
             )
 
-    def curve(self, x: Array) -> Curve:
+    def curve(self, x: Array) -> AsperityCurve:
         """Return the model without units at x >= 0."""
         low, high = np.minimum(x, ELASTIC_END), np.maximum(x, ELASTIC_END)
         P, A, dP = self._plastic(high, "cosine")
         s = 1 - exp(-3.3 * self.tangent_ratio)
         elastic = x <= ELASTIC_END
         hertz_work = 0.4 * (high**2.5 - ELASTIC_END**2.5)
-        return Curve(
+        return AsperityCurve(
             P=np.where(elastic, low**1.5, P + s * (high**1.5 - P)),
             A=np.where(elastic, low, high + (A - high) * self._area_share(high)),
             dP=np.where(elastic, 1.5 * low**0.5, dP + s * (1.5 * high**0.5 - dP)),

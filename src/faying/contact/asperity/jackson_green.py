@@ -6,7 +6,7 @@ from typing import ClassVar, Literal, final
 
 import numpy as np
 
-from faying.contact.asperity.base import AsperityModel, Curve
+from faying.contact.asperity.base import AsperityCurve, AsperityModel
 from faying.errors import InputError
 from faying.typing import Array
 
@@ -95,12 +95,12 @@ class JacksonGreen(JacksonGreenBase):
         if self.hardness not in ("exponential", "cosine"):
             raise InputError(f'JG: hardness = {self.hardness!r}; use "exponential" or "cosine"')
 
-    def curve(self, x: Array) -> Curve:
+    def curve(self, x: Array) -> AsperityCurve:
         """Return the model without units at x >= 0."""
         low, high = np.minimum(x, ELASTIC_END), np.maximum(x, ELASTIC_END)
         P, A, dP = self._plastic(high, self.hardness)
         elastic = x <= ELASTIC_END
-        return Curve(
+        return AsperityCurve(
             P=np.where(elastic, low**1.5, P),
             A=np.where(elastic, low, A),
             dP=np.where(elastic, 1.5 * low**0.5, dP),

@@ -6,7 +6,7 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from faying.contact.asperity.base import AsperityModel, Curve
+from faying.contact.asperity.base import AsperityCurve, AsperityModel
 from faying.typing import Array
 
 YIELD_SHARE = 0.4  # mean pressure at first yield over hardness
@@ -35,7 +35,7 @@ class ZhaoMaiettaChang(AsperityModel):
         """First yield and full plasticity."""
         return 1.0, 54.0
 
-    def curve(self, x: Array) -> Curve:
+    def curve(self, x: Array) -> AsperityCurve:
         """Return the model without units at x >= 0. P = A p/(k H), since that is 1 at x = 1."""
         k, L = YIELD_SHARE, 54.0 - 1.0
         mid = np.clip(x, 1.0, 54.0)
@@ -54,7 +54,7 @@ class ZhaoMaiettaChang(AsperityModel):
         middle = ((power - 1) / n + rate * log_part) @ terms
         low, high = np.minimum(x, 1.0), np.maximum(x, 54.0)
         elastic, plastic = x <= 1, x >= 54
-        return Curve(
+        return AsperityCurve(
             P=np.where(elastic, low**1.5, np.where(plastic, 2 * x / k, p * area)),
             A=np.where(elastic, x, np.where(plastic, 2 * x, area)),
             dP=np.where(elastic, 1.5 * low**0.5, np.where(plastic, 2 / k, rate * shape + p * (shape + mid * slope))),

@@ -6,7 +6,7 @@ from typing import ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.asperity.base import AsperityModel, AsperityResponse, Curve
+from faying.contact.asperity.base import AsperityCurve, AsperityModel, AsperityResponse
 from faying.contact.asperity.lin_lin import LinLin
 from faying.contact.law import checked
 from faying.errors import InputError
@@ -53,7 +53,7 @@ class ZX(AsperityModel):
         """Borders of Lin and Lin's law."""
         return self._law.borders
 
-    def curve(self, x: Array) -> Curve:
+    def curve(self, x: Array) -> AsperityCurve:
         """Lin and Lin's curve; x counts the critical interference at the present radius."""
         return self._law.curve(x)
 

@@ -7,9 +7,8 @@ import numpy as np
 
 from faying.fe.mesh import Mesh
 from faying.fe.outline import edges_of, normals, outline, regions
-from faying.joint.attachments import PointMass, nearest_node
-from faying.joint.attachments import Support as HeldFace
-from faying.output.scene.model import Bolt, Face, Joint, Mass, Modes, Scene, Support
+from faying.joint.attachments import PointMass, Support, nearest_node
+from faying.output.scene.model import Face, Mass, Scene, SceneBolt, SceneJoint, SceneModes, SceneSupport
 from faying.result import Result
 from faying.result.maps import joint_map_of
 from faying.typing import Array, Index
@@ -32,7 +31,7 @@ def of_result(result: Result) -> Scene:
     faces, of_triangle = faces_of(result.outline, result.triangles, part, named, result.faces)
     by_name = {face.name: k for k, face in enumerate(faces) if face.name}
     joints = [
-        Joint(
+        SceneJoint(
             name=name,
             faces=tuple(by_name[face] for face in pair if face in by_name),
             map=joint_map_of(result, k),
@@ -52,7 +51,7 @@ def of_result(result: Result) -> Scene:
         supports=_supports(result.supports, by_name),
         masses=_masses(result.masses, faces, by_name),
         loads=result.loads,
-        modes=Modes(
+        modes=SceneModes(
             frequencies=result.frequencies,
             loss_factors=result.loss_factors,
             real=result.shapes,
@@ -77,7 +76,7 @@ def of_mesh(mesh: Mesh, study: "Study | None" = None, *, title: str = "") -> Sce
     if study is not None:
         more = {
             "joints": tuple(
-                Joint(name=joint.name, faces=tuple(by_name[face] for face in joint.faces if face in by_name))
+                SceneJoint(name=joint.name, faces=tuple(by_name[face] for face in joint.faces if face in by_name))
                 for joint in study.joints
             ),
             "bolts": _planned_bolts(study, mesh),
@@ -146,7 +145,7 @@ def feature_edges(points: Array, triangles: Index, of_triangle: Index) -> Index:
     return np.asarray(edges[sharp | (of_triangle[first] != of_triangle[last]) | (first == last)])
 
 
-def _bolts(result: Result) -> tuple[Bolt, ...]:
+def _bolts(result: Result) -> tuple[SceneBolt, ...]:
     if result.bolt_seats is None or result.bolt_diameters is None or result.bolt_extents is None:
         return ()
     size = float(np.linalg.norm(np.ptp(result.outline, axis=0)))
@@ -154,7 +153,7 @@ def _bolts(result: Result) -> tuple[Bolt, ...]:
     rows = zip(result.bolts, result.bolt_seats, result.bolt_diameters, result.bolt_extents, strict=True)
     for name, seats, given, extent in rows:
         diameter, head = drawn(given, extent, size)
-        out.append(Bolt(name=name, seats=seats, diameter=diameter, head=head, meshed=bool(np.isnan(extent[0]))))
+        out.append(SceneBolt(name=name, seats=seats, diameter=diameter, head=head, meshed=bool(np.isnan(extent[0]))))
     return tuple(out)
 
 
@@ -170,26 +169,26 @@ def drawn(diameter: float, extent: Sequence[float], size: float) -> tuple[float,
     return float(shank), float(max(min(outer, 2.2 * shank), 1.1 * shank))
 
 
-def _planned_bolts(study: "Study", mesh: Mesh) -> tuple[Bolt, ...]:
+def _planned_bolts(study: "Study", mesh: Mesh) -> tuple[SceneBolt, ...]:
     """The bolts of a study on its mesh."""
-    from faying.bolt.bolt import Bolt as Beam
+    from faying.bolt.bolt import Bolt
     from faying.fe.faces import face_centre
 
     out = []
     for bolt in study.bolts:
-        if isinstance(bolt, Beam):
+        if isinstance(bolt, Bolt):
             fitted = bolt.fitted(mesh)
             diameter, head = drawn(bolt.diameter or np.nan, fitted.extent, mesh.size)
-            out.append(Bolt(name=bolt.name, seats=fitted.seats, diameter=diameter, head=head))
+            out.append(SceneBolt(name=bolt.name, seats=fitted.seats, diameter=diameter, head=head))
         else:
             seats = np.stack([face_centre(mesh.points, mesh.face(face))[0] for face in bolt.faces])
-            out.append(Bolt(name=bolt.name, seats=seats, diameter=0.0, head=0.0, meshed=True))
+            out.append(SceneBolt(name=bolt.name, seats=seats, diameter=0.0, head=0.0, meshed=True))
     return tuple(out)
 
 
-def _supports(supports: Sequence[HeldFace], by_name: dict[str, int]) -> tuple[Support, ...]:
+def _supports(supports: Sequence[Support], by_name: dict[str, int]) -> tuple[SceneSupport, ...]:
     return tuple(
-        Support(face=by_name[one.face], directions=one.directions, elastic=one.stiffness is not None)
+        SceneSupport(face=by_name[one.face], directions=one.directions, elastic=one.stiffness is not None)
         for one in supports
         if one.face in by_name
     )

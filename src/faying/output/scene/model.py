@@ -33,7 +33,7 @@ class Face:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Joint:
+class SceneJoint:
     """A joint: its name, its two faces by their position in `Scene.faces`, and the maps on the first of them."""
 
     name: str
@@ -42,7 +42,7 @@ class Joint:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Bolt:
+class SceneBolt:
     """A bolt as it is drawn: where its axis meets its seats (2, 3) [m], diameters of shank and head [m].
 
     meshed: whether it is one of the parts, and so not drawn once more.
@@ -56,7 +56,7 @@ class Bolt:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Support:
+class SceneSupport:
     """A face, by its position in `Scene.faces`, the directions in which it is held, and whether by springs."""
 
     face: int
@@ -73,7 +73,7 @@ class Mass:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Modes:
+class SceneModes:
     """Complex modes at each load: displacement = cos(phase) real - sin(phase) imaginary.
 
     Args:
@@ -112,12 +112,12 @@ class Scene:
     faces: tuple[Face, ...]
     face_of_triangle: Index
     edges: Index
-    joints: tuple[Joint, ...] = ()
-    bolts: tuple[Bolt, ...] = ()
-    supports: tuple[Support, ...] = ()
+    joints: tuple[SceneJoint, ...] = ()
+    bolts: tuple[SceneBolt, ...] = ()
+    supports: tuple[SceneSupport, ...] = ()
     masses: tuple[Mass, ...] = ()
     loads: Array = field(default_factory=lambda: np.zeros(0))
-    modes: Modes | None = None
+    modes: SceneModes | None = None
 
     @property
     def unit(self) -> tuple[str, float]:

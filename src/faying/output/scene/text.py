@@ -34,7 +34,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.output.scene.model import Joint, Modes, Scene
+from faying.output.scene.model import Scene, SceneJoint, SceneModes
 from faying.typing import Array
 
 VERSION = 1
@@ -43,7 +43,7 @@ MOST = 24e6  # characters of shapes: more is left out
 
 
 @dataclass(frozen=True, kw_only=True)
-class Field:
+class SceneField:
     """A field on the faces of joints: its label, the unit in which it is read, and how many of that are 1 in SI."""
 
     label: str
@@ -52,11 +52,11 @@ class Field:
 
 
 FIELDS = {
-    "pressure": Field(label="pressure", unit="MPa", factor=1e-6),
-    "slip": Field(label="slip under the preload", unit="µm", factor=1e6),
-    "k_n": Field(label="normal stiffness k_n", unit="MPa/µm", factor=1e-12),
-    "k_t": Field(label="tangential stiffness k_t", unit="MPa/µm", factor=1e-12),
-    "gap": Field(label="gap before any load", unit="µm", factor=1e6),
+    "pressure": SceneField(label="pressure", unit="MPa", factor=1e-6),
+    "slip": SceneField(label="slip under the preload", unit="µm", factor=1e6),
+    "k_n": SceneField(label="normal stiffness k_n", unit="MPa/µm", factor=1e-12),
+    "k_t": SceneField(label="tangential stiffness k_t", unit="MPa/µm", factor=1e-12),
+    "gap": SceneField(label="gap before any load", unit="µm", factor=1e6),
 }
 
 
@@ -107,7 +107,7 @@ def to_dict(scene: Scene) -> dict[str, Any]:
     }
 
 
-def _joint(joint: Joint, key: str, arrays: dict[str, Any]) -> dict[str, Any]:
+def _joint(joint: SceneJoint, key: str, arrays: dict[str, Any]) -> dict[str, Any]:
     if joint.map is not None:
         arrays[f"{key}.parents"] = packed(joint.map.parents, "u4")
         arrays[f"{key}.triangles"] = packed(joint.map.triangles, "u4")
@@ -132,7 +132,7 @@ def _fields(scene: Scene) -> dict[str, Any]:
     return out
 
 
-def _modes(modes: Modes | None, arrays: dict[str, Any]) -> dict[str, Any] | None:
+def _modes(modes: SceneModes | None, arrays: dict[str, Any]) -> dict[str, Any] | None:
     if modes is None:
         return None
     loads, count = modes.frequencies.shape

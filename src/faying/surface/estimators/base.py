@@ -18,7 +18,7 @@ Limits = tuple[float, float] | None
 
 @final
 @dataclass(frozen=True, kw_only=True)
-class Scatter:
+class EstimateScatter:
     """How far D and the level of the spectrum may be off together.
 
     D and G are strongly correlated: what the heights fix is the level of the spectrum S in the middle of the band.
@@ -55,7 +55,7 @@ class Estimate:
     noise: float = 0.0
     misfit: float = 1.0
     notes: tuple[str, ...] = ()
-    scatter: Scatter | None = None
+    scatter: EstimateScatter | None = None
 
 
 @final
@@ -88,7 +88,7 @@ def with_intervals(
     ds, levels = D + draws[1], log_level + draws[0]
 
     (ll, ld), (_, dd) = covariance.tolist()
-    scatter = Scatter(pivot=pivot, covariance=((ll, ld), (ld, dd)), c=c)
+    scatter = EstimateScatter(pivot=pivot, covariance=((ll, ld), (ld, dd)), c=c)
     many = np.array([scatter.G(d, v) if d > 2 else 0.0 for d, v in zip(ds, levels, strict=True)])
     low, high = np.quantile(many, [0.025, 0.975], method="nearest")
     return Estimate(

@@ -11,13 +11,13 @@ from faying.errors import FayingError, NotConverged
 from faying.surface.estimators.base import Estimate, Limits, white_rms, with_intervals
 from faying.surface.form import Prepared
 from faying.surface.lines import find_lines
-from faying.surface.powerlaw import PowerLaw, fit_band, smearing, supported_band
+from faying.surface.powerlaw import FittedPowerLaw, fit_band, smearing, supported_band
 from faying.surface.scan import Profile, Scan
 from faying.surface.spectrum import Spectrum, binned, periodogram
 from faying.typing import Array
 
 
-def spectral_fit(ready: Prepared, limits: Limits) -> tuple[Spectrum, PowerLaw, tuple[str, ...]]:
+def spectral_fit(ready: Prepared, limits: Limits) -> tuple[Spectrum, FittedPowerLaw, tuple[str, ...]]:
     """Fit a power law to the cleaned spectrum, over `limits` [m] or the band that the data support."""
     s, notes = clean_spectrum(ready.scan)
     if limits is not None:
@@ -42,10 +42,10 @@ def clean_spectrum(scan: Scan | Profile) -> tuple[Spectrum, tuple[str, ...]]:
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Band:
+class FittedBand:
     """The bins of a fitted band: frequency, width [1/m], density [m3], the white term's shape, smearing, spread [-]."""
 
-    law: PowerLaw
+    law: FittedPowerLaw
     frequency: Array
     width: Array
     density: Array
@@ -65,12 +65,12 @@ class Band:
         return fake, self.law.noise + float(self.law.response[2] @ (fake / expected - 1))
 
 
-def clean_band(ready: Prepared, limits: Limits) -> Band:
+def clean_band(ready: Prepared, limits: Limits) -> FittedBand:
     """Fit the band and keep its bins, to be drawn again from their gamma law."""
     s, law, notes = spectral_fit(ready, limits)
     use = (s.frequency >= law.used[0] * 0.999999) & (s.frequency <= law.used[-1] * 1.000001) & (s.density > 0)
     f = s.frequency[use]
-    return Band(
+    return FittedBand(
         law=law,
         frequency=f,
         width=s.width[use] * s.lowest,
@@ -83,7 +83,7 @@ def clean_band(ready: Prepared, limits: Limits) -> Band:
 
 
 def through_draws(
-    ready: Prepared, band: Band, c: float, solve: Callable[[Array], tuple[float, float]], extra: float = 0.0
+    ready: Prepared, band: FittedBand, c: float, solve: Callable[[Array], tuple[float, float]], extra: float = 0.0
 ) -> Estimate:
     """Solve for (slope, ln S(pivot)) on the measured bins; bias and covariance from 200 draws of the bins.
 
