@@ -69,11 +69,15 @@ def test_the_command_writes_and_refuses(tmp_path):
     toml = tmp_path / "study.toml"
     toml.write_text(text.replace("\n[[bolt]]", "\n[joint.form]\nflat = true\n\n[[bolt]]", 1), encoding="utf-8")
     words = ["backbone", str(toml), "--quick", "--friction", "0.2", "--amplitude", "1 m/s^2:10 m/s^2"]
-    done = CliRunner().invoke(cli, [*words, "--json", "--out", str(tmp_path / "c.csv")])
+    done = CliRunner().invoke(
+        cli, [*words, "--json", "--out", str(tmp_path / "c.csv"), "--plot", str(tmp_path / "c.svg")]
+    )
     assert done.exit_code == 0, done.output
     found = json.loads(done.output)
     assert np.array(found["damping"]["values"]).shape == (7, 5)
     assert Path(found["files"][0]).read_text().startswith("mode,acceleration")
+    assert found["files"][1] == str(tmp_path / "c.svg")
+    assert "<svg" in (tmp_path / "c.svg").read_text()
     for more in (["--coulomb"], ["--friction", "0.1,0.2"], ["--out", "curves.nc"]):
         refused = CliRunner().invoke(cli, [*words, *more], standalone_mode=False)
         assert isinstance(refused.exception, InputError)

@@ -330,6 +330,21 @@ def laws():
     return law_curves(mates.comparison(None, None).responses)
 
 
+def level_curves():
+    """Ten modes that soften with their level, as `faying backbone --quick` has them."""
+    levels, mode = np.geomspace(0.1, 100, 19)[:, None], np.arange(1, 13)
+    slip = 1e-5 * mode * levels**0.9
+    return faying.LevelCurves(
+        title="two boxes, flange_1",
+        load=8e3,
+        friction=(0.2,),
+        levels=levels[:, 0],
+        frequencies=300.0 * mode * (1 - slip),
+        damping=1e-3 + slip,
+        error=0 * slip,
+    )
+
+
 def two_curves():
     return backbone_figure.figure([curve(), replace(curve(), friction=(0.4,))], [measured_points()])
 
@@ -342,6 +357,7 @@ FIGURES = {
     "result/backbone_figure.py:figure": two_curves,
     "result/backbone_figure.py:backbone_axes": lambda: whole(curve().plot()),
     "result/backbone_figure.py:measured": lambda: backbone_figure.measured(measured_points()),
+    "answer/level_curves.py:plot": lambda: whole(level_curves().plot()),
     "result/load_cases_figure.py:figure": lambda: load_cases_figure.figure(made_cases()),
     "result/load_cases_figure.py:case_axes": lambda: whole(made_cases().plot("left_1", "flange_1")),
     "joint/figure.py:pressure_axes": lambda: whole(state().plot_pressure()),

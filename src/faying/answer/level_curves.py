@@ -4,7 +4,7 @@ import csv
 import io
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,10 +17,26 @@ from faying.progress import Report
 from faying.result import Result
 from faying.result.backbone import Backbone
 from faying.study.study import Study
-from faying.style import Summary
+from faying.style import (
+    COLOURS,
+    COLUMN,
+    Summary,
+    axes_of,
+    colour,
+    drawing,
+    headline,
+    legend_above,
+    load_label,
+    plain_numbers,
+    shared_legend,
+)
 from faying.typing import Array
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 EACH_DECADE = 6  # levels
+MOST_DRAWN = 10  # curves in one panel
 
 
 @checked_call
@@ -54,6 +70,41 @@ class LevelCurves(Summary):
             f, z = self.frequencies[[0, -1], mode], 100 * self.damping[[0, -1], mode]
             rows[f"mode {mode + 1}"] = f"{f[0]:.2f} to {f[1]:.2f} Hz, {z[0]:.3g} to {z[1]:.3g} %"
         return head, rows
+
+    @drawing
+    def plot(self, ax: Any = None) -> "list[Axes]":
+        """Draw the change of every frequency, and every damping ratio, over the level; at most ten modes.
+
+        Args:
+            ax: Two matplotlib axes to draw into; new ones where left out.
+
+        Returns:
+            The axes.
+        """
+        axes = axes_of(ax, 2, width=COLUMN, height=2.9)
+        count = min(self.frequencies.shape[1], MOST_DRAWN)
+        for mode in range(count):
+            look: dict[str, Any] = {
+                "color": colour(mode),
+                "ls": "-" if mode < len(COLOURS) else "--",
+                "label": f"mode {mode + 1}",
+            }
+            axes[0].plot(self.levels, 100 * (self.frequencies[:, mode] / self.frequencies[0, mode] - 1), **look)
+            axes[1].plot(self.levels, 100 * self.damping[:, mode], **look)
+        axes[0].set_ylabel("change of frequency [%]")
+        axes[1].set(ylabel="damping ratio [%]", yscale="log")
+        for one in axes:
+            one.set(xscale="log", xlabel="peak acceleration [m/s²]")
+            one.grid(alpha=0.3)
+            plain_numbers(one.xaxis)
+        plain_numbers(axes[1].yaxis)
+        heading = f"{headline(self.title)}, {load_label(self.load)}"
+        if ax is None:
+            shared_legend(axes[0].figure, axes, title=heading)
+        else:
+            axes[1].set_title(heading)
+            legend_above(axes[0])
+        return axes
 
     def to_dict(self) -> dict[str, Any]:
         """Return the curves, ready for JSON, in SI units."""

@@ -94,8 +94,9 @@ def _quick(plan: Any, choice: Any, loads: list[int], options: dict[str, Any]) ->
     from faying.errors import InputError
     from faying.files import new_folder
     from faying.output import table
+    from faying.style import save
 
-    unused = [name for name in ("at", "law", "measured", "plot") if options[name]]
+    unused = [name for name in ("at", "law", "measured") if options[name]]
     unused += ["coulomb"] * options["coulomb"]
     if unused or len(loads) > 1 or len(choice.friction) > 1:
         which = ", ".join(f"--{name}" for name in unused) or "several preloads or frictions"
@@ -108,15 +109,17 @@ def _quick(plan: Any, choice: Any, loads: list[int], options: dict[str, Any]) ->
         curves = level_curves(study, load=plan.loads[loads[0]], report=report)
         if options["mode"] is not None:
             (curve,) = backbones(study, choice, loads=loads, report=report)
-        curves.to_csv(out)
+        files = [str(curves.to_csv(out))]
+    if options["plot"]:
+        files.append(str(save(curves.plot()[0].figure, options["plot"])))
     if options["as_json"]:
-        beside = {} if curve is None else {"curves": [curve.to_dict()]}
-        click.echo(json_text(curves.to_dict() | beside | {"files": [str(out)]}))
+        balanced = {} if curve is None else {"curves": [curve.to_dict()]}
+        click.echo(json_text(curves.to_dict() | balanced | {"files": files}))
         return
     click.echo(f"{curves.summary()[0]}: frequency [Hz], damping [%]\n\n{table.text(rows(curves))}")
     if curve is not None:
         click.echo(f"\nmode {curve.mode}, harmonics 0 to {curve.harmonics}\n{table.text(balanced_rows(curves, curve))}")
-    click.echo(f"\nwritten to {out}")
+    click.echo(f"\nwritten to {', '.join(files)}")
 
 
 def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
