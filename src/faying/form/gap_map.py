@@ -12,6 +12,7 @@ from faying.form.face_axes import FaceAxes
 from faying.form.flatness import minimum_zone
 from faying.form.lonely import refuse_lonely
 from faying.misuse import checked_call, numbers
+from faying.style import Summary
 from faying.typing import Array
 
 LISTS = (".csv", ".txt", ".dat", ".xyz", ".asc")  # endings of lists of points; all else is a scan
@@ -19,8 +20,8 @@ MOST = 150  # places kept along each side of a scan: roughness is the law's, and
 
 
 @checked_call
-@dataclass(frozen=True, kw_only=True)
-class GapMap:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class GapMap(Summary):
     """Measured gaps between two faces, before any load.
 
     Args:
@@ -38,6 +39,16 @@ class GapMap:
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     x_axis: tuple[float, float, float] = (1.0, 0.0, 0.0)
     y_axis: tuple[float, float, float] = (0.0, 1.0, 0.0)
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and size and range of the map."""
+        span = np.ptp(self.places, axis=0)
+        low, high = np.nanmin(self.gaps), np.nanmax(self.gaps)
+        rows = {
+            "size": f"{1e3 * span[0]:.4g} x {1e3 * span[1]:.4g} mm",
+            "gaps": f"{1e6 * low:.4g} to {1e6 * high:.4g} um",
+        }
+        return f"GapMap of {len(self.places)} points", rows
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "places", numbers(self.places, "places", "points", 2))
@@ -75,8 +86,8 @@ def _box(low: Array, high: Array) -> str:
 
 
 @checked_call
-@dataclass(frozen=True, kw_only=True)
-class FaceMap:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class FaceMap(Summary):
     """Measured heights of one face, its form: the higher, the nearer to the other face.
 
     Args:
@@ -97,6 +108,16 @@ class FaceMap:
     origin: tuple[float, float, float] | None = None
     x_axis: tuple[float, float, float] | None = None
     y_axis: tuple[float, float, float] | None = None
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and size and range of the map."""
+        span = np.ptp(self.places, axis=0)
+        low, high = np.nanmin(self.heights), np.nanmax(self.heights)
+        rows = {
+            "size": f"{1e3 * span[0]:.4g} x {1e3 * span[1]:.4g} mm",
+            "heights": f"{1e6 * low:.4g} to {1e6 * high:.4g} um",
+        }
+        return f"FaceMap of {len(self.places)} points", rows
 
     def __post_init__(self) -> None:
         checked = GapMap(places=self.places, gaps=self.heights)

@@ -14,13 +14,14 @@ from faying.measured.model import ModelModes
 from faying.measured.modes import ModeSet
 from faying.measured.pairing import pair_modes
 from faying.misuse import checked_call
+from faying.style import Summary
 from faying.typing import Array, Complex, Index, Mask
 
 ALIKE = 0.9
 
 
-@dataclass(frozen=True, kw_only=True)
-class ModalComparison:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class ModalComparison(Summary):
     """A test against a model.
 
     Args:
@@ -52,6 +53,17 @@ class ModalComparison:
     frac: Array | None = None
     full: Mask | None = None
     notes: tuple[str, ...] = ()
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and frequency, difference and MAC of the first pairs."""
+        rows = {}
+        for (test, model), difference in list(zip(self.pairs, self.frequency_difference, strict=True))[:9]:
+            rows[f"test {test + 1}, model {model + 1}"] = (
+                f"{self.test.frequencies[test]:.1f} Hz, model {difference:+.2%}, MAC {self.mac[test, model]:.2f}"
+            )
+        counts = f"{len(self.pairs)} pairs of {len(self.test.frequencies)} test and {len(self.model.frequencies)} model"
+        rows["notes"] = f"{len(self.notes)}, in .notes" if self.notes else "none"
+        return f"Test against model: {counts} modes", rows
 
     @property
     def places(self) -> dict[int, int]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.misuse import checked_call, shortened
+from faying.style import Summary
 from faying.typing import Array, Complex
 
 Position = tuple[float, float, float]
@@ -59,9 +60,14 @@ def dofs(pairs: object) -> tuple[Dof, ...]:
     return tuple(out)
 
 
+def _shown(places: tuple[Dof, ...], most: int = 8) -> str:
+    """Degrees of freedom, the first few of them."""
+    return ", ".join(map(str, places[:most])) + (f" and {len(places) - most} more" if len(places) > most else "")
+
+
 @checked_call
-@dataclass(frozen=True, kw_only=True)
-class FRF:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class FRF(Summary):
     """Frequency response functions from inputs to outputs.
 
     Args:
@@ -91,6 +97,19 @@ class FRF:
     window_decay: float = 0.0
     source: str = ""
     warnings: tuple[str, ...] = ()
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and size, band and places."""
+        measured = int(np.isfinite(self.values).all(axis=2).sum())
+        rows = {
+            "pairs": f"{measured} of {len(self.outputs)} outputs x {len(self.inputs)} inputs",
+            "outputs": _shown(self.outputs),
+            "inputs": _shown(self.inputs),
+            "lines": f"{self.frequency.size}, {self.frequency[0]:.6g} to {self.frequency[-1]:.6g} Hz",
+            "coherence": "none" if self.coherence is None else "given",
+            "source": self.source or "given in Python",
+        }
+        return f"FRF: {self.quantity}", rows
 
     def __post_init__(self) -> None:
         if self.quantity not in QUANTITIES:

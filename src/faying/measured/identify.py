@@ -10,11 +10,12 @@ from faying.measured.lsfd import refine, residues
 from faying.measured.modes import ModeSet
 from faying.measured.poles import Poles, Rule, poles_by_order, tracks
 from faying.misuse import checked_call
+from faying.style import Summary
 from faying.typing import Array, Complex
 
 
-@dataclass(frozen=True, kw_only=True)
-class Identified:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Identified(Summary):
     """Modes of a test and what they rest on.
 
     modes; poles: all of the stabilisation diagram; frf: the FRFs used; fit (n, f): what modes and residuals make of the
@@ -28,6 +29,12 @@ class Identified:
     residues: Complex
     misfit: float
     rule: Rule
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, the first modes, and what the fit leaves."""
+        heading, rows = self.modes.summary()
+        first = dict(list(rows.items())[:9])
+        return f"{heading}, by {self.frf.quantity}", first | {"fit leaves": f"{self.misfit:.2%} of the FRFs' rms"}
 
 
 @checked_call

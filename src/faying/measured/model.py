@@ -8,6 +8,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.measured.frf import QUANTITIES
 from faying.misuse import checked_call, numbers
+from faying.style import Summary
 from faying.typing import Array, Complex, Index
 
 SAME_DIRECTION = 0.9998  # cosine of a degree
@@ -35,8 +36,8 @@ class FullResponse:
 
 
 @checked_call
-@dataclass(frozen=True, kw_only=True)
-class ModelModes:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class ModelModes(Summary):
     """Elastic modes of a model at the points of its outline.
 
     Args:
@@ -65,6 +66,13 @@ class ModelModes:
     source: str = ""
     full: FullResponse | None = None
     near: Index | None = None
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and the first frequencies."""
+        shown = ", ".join(f"{f:.2f}" for f in self.frequencies[:8])
+        more = f" and {len(self.frequencies) - 8} more" if len(self.frequencies) > 8 else ""
+        rows = {"frequencies": f"{shown}{more} Hz", "points": str(len(self.points)), "source": self.source or "a run"}
+        return f"{len(self.frequencies)} modes of {self.title or 'a model'!r} at {self.load / 1e3:g} kN", rows
 
     def __post_init__(self) -> None:
         m = len(numbers(self.frequencies, "frequencies", "modes"))

@@ -8,11 +8,12 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.measured.frf import Dof, Position, dofs
+from faying.style import Summary
 from faying.typing import Array, Complex, Index
 
 
-@dataclass(frozen=True, kw_only=True)
-class ModeSet:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class ModeSet(Summary):
     """Modes at the degrees of freedom of a test.
 
     Args:
@@ -43,6 +44,18 @@ class ModeSet:
     notes: tuple[tuple[str, ...], ...] = ()
     lines: tuple[tuple[int, int], ...] = ()
     source: str = ""
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and frequency and loss factor of the first modes."""
+        count = len(self.frequencies)
+        rows = {}
+        for mode in range(min(9, count)):
+            note = "; ".join(self.notes[mode]) if self.notes else ""
+            loss = f"{self.frequencies[mode]:.2f} Hz, loss factor {self.loss_factors[mode]:.3g}"
+            rows[f"mode {mode + 1}"] = loss + (f" ({note})" if note else "")
+        if count > 9:
+            rows["more"] = f"{count - 9}, in .frequencies"
+        return f"{count} modes of a test at {len(self.dofs)} degrees of freedom", rows
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "dofs", dofs(self.dofs))

@@ -11,6 +11,7 @@ from faying.errors import InputError, ReadError
 from faying.files import write_text
 from faying.measured.frf import FRF, QUANTITIES
 from faying.misuse import checked_call
+from faying.style import Summary
 from faying.typing import Array, Complex
 
 EDGE = 0.25  # of the band, on both sides, over which the filter rises
@@ -30,8 +31,8 @@ FORM = (
 
 
 @checked_call
-@dataclass(frozen=True, kw_only=True)
-class MeasuredBackbone:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class MeasuredBackbone(Summary):
     """Frequency and damping of one mode against its amplitude, as measured; all arrays (n,), NaN where not known.
 
     acceleration [m/s2]: amplitude of the fundamental; frequency [Hz]; damping [-] of critical; frequency_error,
@@ -45,6 +46,16 @@ class MeasuredBackbone:
     damping_error: Array
     time: Array
     source: str = ""
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and the ranges of what was measured."""
+        a, f, z = self.acceleration, self.frequency, 100 * self.damping
+        rows = {
+            "acceleration": f"{np.nanmin(a):.3g} to {np.nanmax(a):.3g} m/s2",
+            "frequency": f"{np.nanmin(f):.2f} to {np.nanmax(f):.2f} Hz" if np.isfinite(f).any() else "not known",
+            "damping": f"{np.nanmin(z):.3g} to {np.nanmax(z):.3g} %" if np.isfinite(z).any() else "not known",
+        }
+        return f"Measured backbone of {len(a)} points, {Path(self.source).name or 'given in Python'}", rows
 
     @classmethod
     def read(cls, path: str | Path) -> Self:

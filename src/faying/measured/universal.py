@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from faying.errors import ReadError
 from faying.measured.frf import FRF, Dof, Position
 from faying.measured.modes import ModeSet
 from faying.measured.uff_units import FileUnits, frf_scale, hertz
+from faying.style import Summary
 from faying.typing import Array
 
 
@@ -28,8 +30,8 @@ class Function:
     where: str
 
 
-@dataclass(frozen=True, kw_only=True)
-class UniversalFile:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class UniversalFile(Summary):
     """What a universal file holds. positions [m]; lines: pairs of points to draw; kinds: numbers
     of the data sets; warnings: sentences for the reader."""
 
@@ -43,6 +45,20 @@ class UniversalFile:
     lines: tuple[tuple[int, int], ...] = ()
     kinds: tuple[int, ...] = ()
     warnings: tuple[str, ...] = ()
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and what the file holds."""
+        kinds: dict[str, int] = {}
+        for one in self.functions:
+            kinds[one.kind] = kinds.get(one.kind, 0) + 1
+        rows = {
+            "functions": ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "none",
+            "shapes": str(len(self.shapes)),
+            "points": str(len(self.positions)),
+            "data sets": ", ".join(map(str, sorted(set(self.kinds)))) or "none",
+            "warnings": f"{len(self.warnings)}, in .warnings" if self.warnings else "none",
+        }
+        return f"Universal file {Path(self.source).name}" + (f": {self.title}" if self.title else ""), rows
 
     def frf(self, *, quantity: str | None = None) -> FRF:
         """All FRFs as one object in SI, with the coherence of the same pairs.

@@ -32,11 +32,12 @@ from faying.study.keys.tables import STUDY
 from faying.study.keys.test import HammerChoice, TestChoice, read_test
 from faying.study.keys.uncertain import Known, UncertainChoice, lifted, read_uncertain
 from faying.study.results_folder import PLAIN, results_folder
+from faying.style import Summary
 
 
 @checked_call
-@dataclass(frozen=True, kw_only=True)
-class Study:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Study(Summary):
     """One whole study. Read it with Study.read(path); every fault of the file is reported in one InputError.
 
     Args:
@@ -81,6 +82,37 @@ class Study:
     text: str = field(default="", repr=False)
     data: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
     files: tuple[Path, ...] = ()
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and what the study holds."""
+        law = "; ".join(dict.fromkeys(self.law_of(joint).model for joint in self.joints))
+        preloads = ", ".join(f"{load / 1e3:g}" for load in self.loads)
+        rows = {
+            "geometry": self.geometry.file.name,
+            "parts": ", ".join(f"{part} ({material})" for part, material in self.parts.items()),
+            "joints": f"{', '.join(joint.name for joint in self.joints)} ({law})",
+            "bolts": f"{', '.join(bolt.name for bolt in self.bolts)}, {preloads} kN",
+            "supports": str(len(self.supports)) if self.supports else "none: free",
+            "modes": str(self.modes.count),
+            "asks for": ", ".join(self._asked) or "modes",
+        }
+        return f"Study {self.title!r}", {
+            name: text if len(text) <= 90 else f"{text[:87]}..." for name, text in rows.items()
+        }
+
+    @property
+    def _asked(self) -> list[str]:
+        """What the study has beyond modes."""
+        every = {
+            "test": self.test or self.hammer,
+            "response": self.response,
+            "backbone": self.backbone,
+            "alternatives": self.alternatives,
+            "load cases": self.load_cases,
+            "bolt sheets": self.bolt_sheets,
+            "scatter": self.uncertain,
+        }
+        return [name for name, there in every.items() if there]
 
     @property
     def results(self) -> Path:
