@@ -12,7 +12,7 @@ from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
 from faying.numerics.constraint import constrain
 from faying.numerics.modes import lowest_modes
-from faying.numerics.nearby import NearbyModes, refined_modes
+from faying.numerics.nearby import EVERYWHERE, NearbyModes, refined_modes
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import Single
 from faying.numerics.solve import available, conjugate_gradients, factorise
@@ -163,7 +163,8 @@ def test_what_asks_for_too_many_rounds_is_given_up_early(bars):
     near.modes.factorisation.solve = lambda right: solves.append(right.shape) or solve(right)
     with pytest.raises(NotConverged, match="changed springs"):
         near.under(sprung(bars, 1e17, 1e17)[0], 10, tolerance=1e-12, rounds=6)
-    assert len(solves) < 6
+    rounds = [shape for shape in solves if shape[1] != EVERYWHERE]  # without the look for modes of all kinds
+    assert 0 < len(rounds) < 6
 
 
 def test_conjugate_gradients_reach_their_accuracy_for_every_right_hand_side(bars):

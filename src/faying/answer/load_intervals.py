@@ -30,7 +30,7 @@ LEAST = 1e-30  # use of friction, of which there is a logarithm
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scatter:
+class LoadScatter:
     """One input that scatters: what it is, bolt or joint by its index, and its 5 % end over its median [-]."""
 
     words: str
@@ -39,7 +39,7 @@ class Scatter:
     end: float
 
 
-def scatters_of(study: Study) -> list[Scatter]:
+def scatters_of(study: Study) -> list[LoadScatter]:
     """The preload of each bolt, and the friction of each joint of which [uncertain] says something."""
     inputs = {} if study.uncertain is None else {one.key: one.distribution for one in study.uncertain.inputs}
     out = []
@@ -47,13 +47,13 @@ def scatters_of(study: Study) -> list[Scatter]:
         spread, origin = preload_scatter(study, bolt.name, choice_of(study.bolt_sheets, bolt.name))
         words = f"preload of {bolt.name} +-{spread:.0%} ({origin})"
         # the published range is two standard deviations each way
-        out.append(Scatter(words=words, bolt=k, joint=None, end=1 - SIGMAS * spread / 2))
+        out.append(LoadScatter(words=words, bolt=k, joint=None, end=1 - SIGMAS * spread / 2))
     for k, joint in enumerate(study.joints):
         found: Distribution | None = inputs.get(f"joint.{joint.name}.friction") or inputs.get("joint.friction")
         if found is not None and joint.friction:
             low, high = found.quantile(np.array([END, 1 - END]))
             words = f"friction of {joint.name} {low:.3g} to {high:.3g}"
-            out.append(Scatter(words=words, bolt=None, joint=k, end=float(low) / joint.friction))
+            out.append(LoadScatter(words=words, bolt=None, joint=k, end=float(low) / joint.friction))
     return out
 
 
@@ -112,7 +112,7 @@ def _answers(found: LoadCases) -> list[Array]:
 
 
 def _moved(
-    study: Study, number: int, base: Preloaded, loads: tuple[Load, ...], inputs: Sequence[Scatter], share: float
+    study: Study, number: int, base: Preloaded, loads: tuple[Load, ...], inputs: Sequence[LoadScatter], share: float
 ) -> list[Array]:
     """The same answers with inputs moved by a share of the way to their ends."""
     forces, joints = np.array(study.forces(number)), list(base.structure.joints)
