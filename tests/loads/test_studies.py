@@ -217,3 +217,12 @@ face = { part = "upper", normal = "+x" }
 force = ["200 N", "0 N", "0 N"]
 point = ["40 mm", "0 mm", "0 mm"]
 """
+
+
+def test_a_run_says_that_it_leaves_loads_out(study):
+    from faying.answer.run import _closing_notes
+
+    plan = Study.read(study)
+    [note] = [one for one in _closing_notes(plan, np.zeros(0), 1.0) if one.code == "load-cases"]
+    assert "'10 g', 'pull', 'push'" in note.text
+    assert "faying loads" in note.text

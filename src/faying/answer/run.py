@@ -347,6 +347,10 @@ def _closing_notes(study: Study, rigid: Array, first: float) -> list[Note]:
             f"gives{taken}; faying predict gives intervals"
         )
         out.append(Note(code="uncertain", text=text))
+    if study.load_cases:
+        names = ", ".join(repr(load.name) for load in study.load_cases)
+        text = f"load cases are left out of a run ({names}); faying loads finds forces, opening and slip under them"
+        out.append(Note(code="load-cases", text=text))
     if len(rigid) and rigid.max() > NOT_ZERO * first:
         text = (
             f"a rigid-body motion comes out at {rigid.max():.2g} Hz instead of 0: rounding has cost the frequencies "

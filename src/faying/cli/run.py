@@ -81,9 +81,6 @@ def command(
         click.echo(json_text(result.to_dict() | {"files": [str(f) for f in files]}))
         return
     click.echo(text(result))
-    if plan.load_cases:
-        many = len(plan.load_cases)
-        click.echo(f"\n{many} load case{'s' * (many > 1)} of [[load]]: faying loads {study}")
     if files:
         click.echo(f"\nwritten to {folder}: {', '.join(f.name for f in files)}")
 
