@@ -1,4 +1,4 @@
-"""Words of docs and messages: one word for one thing, no history of the making, decimals with their zero.
+"""Words of docs and messages: one word for one thing, short sentences, no history of the making, decimals with a zero.
 
 Code, inline code and links are not prose and are taken out first. Each pattern is followed by what to write instead.
 """
@@ -12,7 +12,8 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 SITE = ROOT / "docs" / "_build"
-PAGES = [ROOT / "README.md", *sorted(p for p in (ROOT / "docs").rglob("*.md") if SITE not in p.parents)]
+DOCS = sorted(p for p in (ROOT / "docs").rglob("*.md") if SITE not in p.parents)
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *DOCS]
 SOURCES = sorted((ROOT / "src" / "faying").rglob("*.py"))
 NOT_TEXT = {"output/page.py", "output/scene/pages.py"}  # style sheets
 LINTED = [pytest.param(page, id=str(page.relative_to(ROOT))) for page in PAGES]
@@ -38,9 +39,14 @@ HISTORY = {
     r"yesterday|another day|on its day|this hour": "leave the day out",
     r"before (?:this|these changes|that change)": "say what is so now",
     r"earlier (?:run|state)s?": "say what is so now",
+    r"(?:as|than|what it was) before": "say what is so now",
+    r"today|nowadays|until now|by now": "say what is so now",
+    r"formerly|previously|newly": "say what is so now",
+    r"tried and (?:left|dropped|taken back)": "leave it out",
     r"not measured since": "measure it, or leave it out",
     r"(?:quieter|slower|faster) machine": "leave the machine out",
 }
+MOST_WORDS = 30  # of a sentence
 # what belongs to one machine or one day; /usr/bin is on every one
 PLACES = {
     r"(?<![\w.])/(?:work|home|root|tmp|Users)/[\w.]": "a path of one machine",
@@ -67,9 +73,39 @@ def prose(page: str) -> str:
             out.append("")
             continue
         line = re.sub(r"`[^`]*`", "``", line)
-        line = re.sub(r"\]\([^)]*\)|\{[a-z]+\}``|https?://\S+|doi:\S+", "]", line)
+        line = re.sub(r"\]\([^)]*\)|\{[a-z]+\}``|https?://\S+|doi:(?:[^\s()]|\([^\s()]*\))+", "]", line)
         out.append(line)
     return "\n".join(out)
+
+
+def paragraphs(page: str) -> Iterator[tuple[int, str]]:
+    """First line and text of each paragraph and item of a list; tables, headings and equations apart are none."""
+    start, text, equation = 0, "", False
+    for number, line in enumerate([*prose(page).splitlines(), ""], 1):
+        apart = line.strip() == "$$"
+        item = re.match(r"\s*(?:[-*]|\d+\.) ", line)
+        if text and (apart or equation or item or re.match(r"\s*(?:$|\||#|<!--|!\[|\]$)", line)):
+            yield start, text
+            text = ""
+        equation = equation != apart
+        if equation or apart or re.match(r"\s*(?:$|\||#|<!--|!\[)", line):
+            continue
+        start, text = (start, f"{text} {line.strip()}") if text else (number, line.strip())
+
+
+def long_sentences(page: str) -> Iterator[tuple[int, int, str]]:
+    """Line of the paragraph, number of words and text of each sentence that is too long.
+
+    A colon or semicolon before a capital letter ends one, too. Links and sources in brackets, inline equations and
+    numbers are no words.
+    """
+    for line, text in paragraphs(page):
+        plain = re.sub(r"\$[^$]*\$", "$", text)
+        plain = re.sub(r"\([^()]*\][^()]*\)", "", plain)
+        for sentence in re.split(r"(?<=[.!?:;])[\"*_)]*\s+(?=[A-Z\[*(`\"_$])", plain):
+            words = sum(bool(re.search(r"[A-Za-z]", word)) for word in sentence.split())
+            if words > MOST_WORDS:
+                yield line, words, sentence
 
 
 def found(patterns: dict[str, str], text: str) -> Iterator[tuple[int, str]]:
@@ -102,6 +138,27 @@ def test_a_page_has_the_words_of_the_field_and_no_history(page):
     text = prose(page.read_text(encoding="utf-8"))
     faults = [f"{page.name}:{line}: {said}" for line, said in found(PRIVATE | HISTORY | PLACES, text)]
     assert not faults, "\n".join(faults)
+
+
+@pytest.mark.parametrize("page", LINTED)
+def test_sentences_of_a_page_are_short(page):
+    """Most readers have another first language: one thought a sentence."""
+    long = long_sentences(page.read_text(encoding="utf-8"))
+    faults = [f"{page.name}:{line}: {words} words: {sentence}" for line, words, sentence in long]
+    assert not faults, f"write sentences of {MOST_WORDS} words at most\n" + "\n".join(faults)
+
+
+def test_a_decision_is_half_a_page():
+    long = {p.name: n for p in PAGES if p.parent.name == "decisions" and (n := len(p.read_text().splitlines())) > 30}
+    assert not long
+
+
+def test_the_readme_and_the_changes_are_short():
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) < 80
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    latest = changes.split("\n## ")[1]
+    assert re.findall(r"^### (.*)", latest, re.M)[0] == "Numbers that changed"
+    assert len(latest.split()) <= 1500
 
 
 @pytest.mark.parametrize("page", LINTED)
@@ -140,12 +197,35 @@ def test_messages_have_no_private_words_and_no_path_of_a_machine():
         ("faces grown together", "'grown together'"),
         ("it took 51 s on another day", "'another day'"),
         ("as it used to be", "'used to'"),
+        ("the same numbers as before", "'as before'"),
+        ("Today it is one room", "'Today'"),
         ("written to /home/x/results", "'/home/x'"),
         ("measured on 2025-01-31", "'2025-01-31'"),
     ],
 )
 def test_the_lint_finds_what_it_is_for(text, said):
     assert [message.split(":")[0] for _, message in found(PRIVATE | HISTORY | PLACES, text)] == [said]
+
+
+SENTENCE = " ".join(["word"] * 16)
+
+
+@pytest.mark.parametrize(
+    ("text", "lengths"),
+    [
+        (f"A {SENTENCE} {SENTENCE}.", [33]),
+        (f"A {SENTENCE}\n{SENTENCE}.\nOne more.", [33]),  # over lines
+        (f"- A {SENTENCE}, {SENTENCE}\n- B {SENTENCE}", [33]),
+        (f"A {SENTENCE}. B {SENTENCE}: C {SENTENCE}; D {SENTENCE}! `x` {SENTENCE}", []),
+        (f"- A {SENTENCE}\n- B {SENTENCE}", []),
+        (f"| A {SENTENCE} {SENTENCE} |", []),
+        (f"A {SENTENCE}\n\n$$\nx {SENTENCE}\n$$\n\nwith {SENTENCE}", []),
+        (f"A {SENTENCE} ({SENTENCE}, doi:10.1/x) {SENTENCE[:39]}", []),
+        (f"A {SENTENCE} {'1.5 ' * 20}", []),
+    ],
+)
+def test_the_lint_counts_the_words_of_a_sentence(text, lengths):
+    assert [words for _, words, _ in long_sentences(text)] == lengths
 
 
 def test_the_lint_leaves_code_and_plain_words_alone():
