@@ -13,11 +13,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from scipy.stats import norm
+from scipy.stats import binom, norm
 
 import faying
 from faying.case.scatter import SCORE
 from faying.study import Study
+from faying.style import COLOURS, COLUMN, drawing, legend_above, new_figure, save
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 NOMINAL = np.array([0.5, 0.8, 0.9, 0.95])
@@ -106,21 +107,23 @@ def main() -> None:
         draw(every[-1], Path(sys.argv[1]))
 
 
+@drawing
 def draw(measured: Measured, path: Path) -> None:
-    """The reliability diagram: share inside against nominal share; on the line intervals hold what they say."""
-    import matplotlib.pyplot as plt
+    """The reliability diagram: share inside against nominal share; on the line intervals hold what they say.
 
-    nominal = np.linspace(0.05, 0.99, 48)
-    figure, ax = plt.subplots(figsize=(4, 4), layout="constrained")
-    ax.plot([0, 1], [0, 1], color="0.6", linewidth=1, label="as stated")
-    ax.step(
-        nominal, [measured.inside(share) for share in nominal], where="mid", label=f"{len(measured.scores)} measured"
-    )
-    ax.set(
-        xlabel="nominal share of the interval", ylabel="share of measured frequencies inside", xlim=(0, 1), ylim=(0, 1)
-    )
-    ax.legend(frameon=False)
-    figure.savefig(path)
+    The band holds 90 % of the shares that as many independent frequencies have where the intervals are right.
+    """
+    nominal, count = np.linspace(0.02, 0.98, 97), len(measured.scores)
+    figure = new_figure(COLUMN, COLUMN)
+    ax = figure.subplots()
+    low, high = (binom.ppf(end, count, nominal) / count for end in (0.05, 0.95))
+    ax.fill_between(nominal, low, high, color="0.85", step="mid", label="90 % by chance")
+    ax.plot([0, 1], [0, 1], color="0.4", lw=1, label="as stated")
+    shares = [measured.inside(share) for share in nominal]
+    ax.step(nominal, shares, where="mid", color=COLOURS[0], label=f"{count} measured frequencies")
+    ax.set(xlabel="nominal share of the interval", ylabel="share of them inside", xlim=(0, 1), ylim=(0, 1))
+    legend_above(ax, 1)
+    save(figure, path)
 
 
 if __name__ == "__main__":

@@ -19,6 +19,14 @@ LISTS = (".csv", ".txt", ".dat", ".xyz", ".asc")  # endings of lists of points; 
 MOST = 150  # places kept along each side of a scan: roughness is the law's, and is averaged out of the form
 
 
+def _summary(name: str, places: Array, what: str, values: Array) -> tuple[str, dict[str, str]]:
+    """A heading, and size and range of a map of values [m] at places (n, 2) [m]."""
+    width, length = 1e3 * np.ptp(places, axis=0)
+    low, high = 1e6 * np.nanmin(values), 1e6 * np.nanmax(values)
+    size = f"{width:.4g} x {length:.4g} mm"
+    return f"{name} of {len(places)} points", {"size": size, what: f"{low:.4g} to {high:.4g} um"}
+
+
 @checked_call
 @dataclass(frozen=True, kw_only=True, repr=False)
 class GapMap(Summary):
@@ -42,13 +50,7 @@ class GapMap(Summary):
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return a heading, and size and range of the map."""
-        span = np.ptp(self.places, axis=0)
-        low, high = np.nanmin(self.gaps), np.nanmax(self.gaps)
-        rows = {
-            "size": f"{1e3 * span[0]:.4g} x {1e3 * span[1]:.4g} mm",
-            "gaps": f"{1e6 * low:.4g} to {1e6 * high:.4g} um",
-        }
-        return f"GapMap of {len(self.places)} points", rows
+        return _summary("GapMap", self.places, "gaps", self.gaps)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "places", numbers(self.places, "places", "points", 2))
@@ -111,13 +113,7 @@ class FaceMap(Summary):
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return a heading, and size and range of the map."""
-        span = np.ptp(self.places, axis=0)
-        low, high = np.nanmin(self.heights), np.nanmax(self.heights)
-        rows = {
-            "size": f"{1e3 * span[0]:.4g} x {1e3 * span[1]:.4g} mm",
-            "heights": f"{1e6 * low:.4g} to {1e6 * high:.4g} um",
-        }
-        return f"FaceMap of {len(self.places)} points", rows
+        return _summary("FaceMap", self.places, "heights", self.heights)
 
     def __post_init__(self) -> None:
         checked = GapMap(places=self.places, gaps=self.heights)
