@@ -1,7 +1,11 @@
-"""On which line of a study's text a key stands."""
+"""Where the keys of a study stand in its text."""
 
 import re
-from collections.abc import Mapping
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+Path = tuple[str | int, ...]
 
 _KEY = re.compile(r'\s*(?:"((?:[^"\\\n]|\\.)*)"|\'([^\'\n]*)\'|([A-Za-z0-9_-]+))\s*')
 
@@ -14,6 +18,60 @@ def line_of_fault(fault: Exception, text: str) -> int | None:
     return text.count("\n") + 1 if "end of document" in str(fault) else None
 
 
+@dataclass(frozen=True, kw_only=True)
+class Statement:
+    """One statement of a TOML text: a key with its value, or the head of a table.
+
+    Args:
+        path: names of the tables and the key; the place of an element in a list of tables, from 0, behind its name.
+        is_head: whether it is the head of a table.
+        line: on which it begins, from 1.
+        start, end: where its first line begins, and where the line behind its last one begins.
+        value, value_end: where the value begins and ends; the end of the head of a table.
+    """
+
+    path: Path
+    is_head: bool
+    line: int
+    start: int
+    value: int
+    value_end: int
+    end: int
+
+
+def statements(text: str) -> Iterator[Statement]:
+    """The statements of a TOML text in their order; of text that is not TOML, those that were understood."""
+    counts: dict[Path, int] = {}
+    table: Path = ()
+    at = 0
+    while at < len(text):
+        if text[at] in " \t\r\n":
+            at += 1
+            continue
+        if text[at] == "#":
+            at = _end_of_line(text, at)
+            continue
+        line, start = text.count("\n", 0, at) + 1, text.rfind("\n", 0, at) + 1
+        double = text.startswith("[[", at)
+        is_head = text[at] == "["
+        keys, end = _path(text, at + is_head + double)
+        if not keys or not (is_head or text.startswith("=", end)):
+            return
+        if is_head:
+            table = _resolved(keys, counts, new=double)
+            value = value_end = end + 1 + double
+            at = _end_of_line(text, end)
+        else:
+            value, value_end, at = _value(text, end + 1)
+        path = table if is_head else (*table, *keys)
+        yield Statement(path=path, is_head=is_head, line=line, start=start, value=value, value_end=value_end, end=at)
+
+
+def name_of(path: Path) -> str:
+    """A path as messages write it: `bolt[2].preload`."""
+    return "".join(f"[{one + 1}]" if isinstance(one, int) else f".{one}" for one in path).removeprefix(".")
+
+
 def lines_of(text: str) -> dict[str, int]:
     """The line, from 1, of every table and key of a TOML text, by its path.
 
@@ -22,31 +80,8 @@ def lines_of(text: str) -> dict[str, int]:
     TOML gives what was understood up to there.
     """
     found: dict[str, int] = {}
-    counts: dict[str, int] = {}
-    table, at = "", 0
-    while at < len(text):
-        if text[at] in " \t\r\n":
-            at += 1
-            continue
-        if text[at] == "#":
-            at = _end_of_line(text, at)
-            continue
-        line = text.count("\n", 0, at) + 1
-        double = text.startswith("[[", at)
-        if text[at] == "[":
-            keys, end = _path(text, at + 1 + double)
-            if not keys:
-                break
-            table = _resolved(keys, counts, new=double)
-            found.setdefault(table, line)
-            at = _end_of_line(text, end)
-            continue
-        keys, end = _path(text, at)
-        if not keys or not text.startswith("=", end):
-            break
-        key = ".".join(keys)
-        found.setdefault(f"{table}.{key}" if table else key, line)
-        at = _end_of_value(text, end + 1)
+    for one in statements(text):
+        found.setdefault(name_of(one.path), one.line)
     return found
 
 
@@ -85,7 +120,8 @@ def _path(text: str, at: int) -> tuple[list[str], int]:
     """A dotted key from a place on, and where it ends."""
     keys: list[str] = []
     while found := _KEY.match(text, at):
-        keys.append(next(part for part in found.groups() if part is not None))
+        quoted, literal, bare = found.groups()
+        keys.append(_unescaped(quoted) if quoted is not None else literal if literal is not None else bare)
         at = found.end()
         if not text.startswith(".", at):
             break
@@ -93,15 +129,23 @@ def _path(text: str, at: int) -> tuple[list[str], int]:
     return keys, at
 
 
-def _resolved(keys: list[str], counts: dict[str, int], *, new: bool) -> str:
+def _unescaped(text: str) -> str:
+    """A text in double quotes without its escapes; as it is where these are none."""
+    try:
+        return str(tomllib.loads(f'a = "{text}"')["a"])
+    except tomllib.TOMLDecodeError:
+        return text
+
+
+def _resolved(keys: list[str], counts: dict[Path, int], *, new: bool) -> Path:
     """The path of a table, with the places of those lists of tables that it lies in."""
-    path = ""
+    path: Path = ()
     for k, key in enumerate(keys):
-        path = f"{path}.{key}" if path else key
+        path = (*path, key)
         if new and k == len(keys) - 1:
             counts[path] = counts.get(path, 0) + 1
         if path in counts:
-            path = f"{path}[{counts[path]}]"
+            path = (*path, counts[path] - 1)
     return path
 
 
@@ -110,24 +154,29 @@ def _end_of_line(text: str, at: int) -> int:
     return len(text) if end < 0 else end + 1
 
 
-def _end_of_value(text: str, at: int) -> int:
-    """Where the line ends on which a value ends that may hold brackets, texts and comments over several lines."""
+def _value(text: str, at: int) -> tuple[int, int, int]:
+    """Where a value begins and ends, which may hold texts and comments over several lines, and where its line ends."""
+    while at < len(text) and text[at] in " \t":
+        at += 1
+    begin = end = at
     depth = 0
     while at < len(text):
         letter = text[at]
         if letter in "\"'":
-            at = _end_of_text(text, at)
+            end = at = _end_of_text(text, at)
             continue
         if letter == "#":
-            at = _end_of_line(text, at) - 1
-            if at < 0 or at >= len(text) or text[at] != "\n":
-                return len(text)
+            at = _end_of_line(text, at)
+            if depth <= 0:
+                return begin, end, at
             continue
         depth += (letter in "[{") - (letter in "]}")
         at += 1
         if letter == "\n" and depth <= 0:
-            return at
-    return at
+            return begin, end, at
+        if letter not in " \t\r\n":
+            end = at
+    return begin, end, at
 
 
 def _end_of_text(text: str, at: int) -> int:
