@@ -59,6 +59,7 @@ def test_it_accepts_what_init_and_new_write(tmp_path):
         {"material": {"m": {"E": "200 GPa +- 4 GPa", "nu": 0.3, "density": "7800 kg/m^3"}}},
         {"surface": {"D": 2.4, "G": "1e-10 m", "scan_area": "1 mm^2"}},
         {"law": {"model": "jk", "cutoff": 0.01, "loss": "held"}},
+        {"law": {"model": "persson", "corrected": True}},
         {"backbone": {"friction": [0.1, 0.2], "rest_damping": "law", "amplitude": ["0.1 m/s^2", "60 m/s^2"]}},
         {"geometry": {"mesh": "m.inp", "unit": "mm", "sets": {"upper": "E1"}, "snap": "10 um"}},
     ],
@@ -115,3 +116,33 @@ def test_the_command_prints_or_writes_it(tmp_path, capsys):
     with pytest.raises(SystemExit) as stop:
         main(["schema", "--out", str(tmp_path / "x"), "--json"])
     assert stop.value.code == 1
+
+
+def described(part, path=""):
+    """Every key of the schema that has a default or examples, through tables and lists."""
+    if isinstance(part, dict):
+        if "description" in part and {"default", "examples"} & set(part):
+            yield path, part
+        for key, inner in part.items():
+            yield from described(inner, f"{path}.{key}")
+    elif isinstance(part, list):
+        for k, inner in enumerate(part):
+            yield from described(inner, f"{path}[{k}]")
+
+
+def test_defaults_and_examples_are_what_a_study_may_say():
+    found = dict(described(SCHEMA))
+    assert len([path for path, part in found.items() if "default" in part]) > 40
+    for path, part in found.items():
+        one = jsonschema.Draft202012Validator(part | {"$defs": SCHEMA["$defs"]})
+        for value in [*([part["default"]] if "default" in part else []), *part.get("examples", [])]:
+            assert one.is_valid(value), (path, value)
+
+
+def test_the_keys_of_laws_say_whose_they_are():
+    keys = SCHEMA["properties"]["law"]["properties"]
+    assert {"auto", "jk", "gw-ke"} <= set(keys["model"]["examples"])
+    owners = {name: one["x-laws"] for name, one in keys.items() if "x-laws" in one}
+    assert owners["closure"] == ["jk"]
+    assert set(keys) - set(owners) == {"model", "counterbody"}
+    assert {law for laws in owners.values() for law in laws} <= set(keys["model"]["examples"])

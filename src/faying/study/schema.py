@@ -1,6 +1,7 @@
 """The JSON schema of a study, from its declarations: what `faying schema` gives to editors and to the page."""
 
 import json
+import tomllib
 from collections.abc import Mapping
 from functools import cache
 from typing import Any
@@ -61,15 +62,23 @@ def _described(schema: Mapping[str, Any], key: Key) -> dict[str, Any]:
     default = key.default_text
     says = f"{key.says} Default: {default}." if default else key.says
     found = {"allOf": [schema]} if "$ref" in schema else dict(schema)
-    return found | {"description": says} | ({"x-unit": key.unit} if key.unit else {})
+    more: dict[str, Any] = {"x-unit": key.unit, "examples": list(key.examples())}
+    if default:
+        more["default"] = tomllib.loads(f"default = {default}")["default"]
+    return found | {"description": says} | {name: value for name, value in more.items() if value not in ("", [])}
 
 
 def _of_models(models: Mapping[str, Declared]) -> dict[str, Any]:
     """Parameters of laws; one that several laws have takes what any of them takes."""
     by_name: dict[str, list[dict[str, Any]]] = {}
-    for keys in models.values():
+    owners: dict[str, list[str]] = {}
+    for label, keys in models.items():
         for name, what in keys.items():
             kinds, one = by_name.setdefault(name, []), _one(what)
+            owners.setdefault(name, []).append(label.lower())
             if one not in kinds:
                 kinds.append(one)
-    return {name: kinds[0] if len(kinds) == 1 else {"title": "laws", "anyOf": kinds} for name, kinds in by_name.items()}
+    return {
+        name: (kinds[0] if len(kinds) == 1 else {"title": "laws", "anyOf": kinds}) | {"x-laws": owners[name]}
+        for name, kinds in by_name.items()
+    }

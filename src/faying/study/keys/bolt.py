@@ -7,9 +7,9 @@ from typing import Any
 
 from faying.bolt.bolt import Bolt, Washer, torque_to_preload
 from faying.bolt.solid_bolt import SolidBolt
-from faying.bolt.threads import Fastener, Thread
+from faying.bolt.threads import PROOF, Fastener, Thread
 from faying.errors import InputError
-from faying.materials import Material
+from faying.materials import CATALOGUE, Material
 from faying.study.keys.declared import (
     QUANTITY,
     REQUIRED,
@@ -235,9 +235,12 @@ BOLT: Declared = {
         unit="N*m",
     ),
     "nut_factor": number("K of F = T/(K d)."),
-    "grade": text('Property class of ISO 898-1, for example "8.8"; compares the preload with the proof load.'),
+    "grade": text(
+        'Property class of ISO 898-1, for example "8.8"; compares the preload with the proof load.',
+        examples=lambda: PROOF,
+    ),
     "thread": text('Thread, for example "M8x1", where it is not the coarse one of the diameter.'),
-    "material": text("Material of the shank."),
+    "material": text("Material of the shank.", examples=lambda: CATALOGUE),
     "washer": Inner(
         says="Washers under head and nut together.",
         many=True,
@@ -245,7 +248,7 @@ BOLT: Declared = {
             "outer": quantity("m", "Outer diameter.", REQUIRED),
             "inner": quantity("m", "Inner diameter.", REQUIRED),
             "thickness": quantity("m", "Thickness.", REQUIRED),
-            "material": text("Material.", REQUIRED),
+            "material": text("Material.", REQUIRED, examples=lambda: CATALOGUE),
         },
     ),
     "seat": own(

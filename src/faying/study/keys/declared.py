@@ -3,7 +3,7 @@
 Readers, messages, the JSON schema, the page's form and the reference follow from these declarations.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -37,6 +37,7 @@ class Key:
         unit: SI unit of a quantity.
         allowed: range or choices, in words.
         is_file: whether it names a file.
+        examples: returns values among those that are often taken, or all that a list outside of the study holds.
     """
 
     says: str
@@ -47,6 +48,7 @@ class Key:
     unit: str = ""
     allowed: str = ""
     is_file: bool = False
+    examples: Callable[[], Iterable[str]] = tuple
 
     @property
     def default_text(self) -> str:
@@ -115,7 +117,9 @@ def quantity(unit: str, says: str, default: Any = None, *, positive: bool = True
     )
 
 
-def text(says: str, default: Any = None, choices: tuple[str, ...] = ()) -> Key:
+def text(
+    says: str, default: Any = None, choices: tuple[str, ...] = (), *, examples: Callable[[], Iterable[str]] = tuple
+) -> Key:
     """Text, one of some choices where they are given."""
     return Key(
         says=says,
@@ -124,6 +128,7 @@ def text(says: str, default: Any = None, choices: tuple[str, ...] = ()) -> Key:
         read=lambda value, name: values.text(value, name, choices),
         default=default,
         allowed=" or ".join(f'"{word}"' for word in choices),
+        examples=examples,
     )
 
 
@@ -178,9 +183,18 @@ def direction(says: str, default: Any = None) -> Key:
     return Key(says=says, kind=kind, schema=listed({"type": "number"}, 3, 3), read=values.direction, default=default)
 
 
-def own(kind: str, schema: Schema, says: str, default: Any = None, *, read: Read | None = None, unit: str = "") -> Key:
+def own(
+    kind: str,
+    schema: Schema,
+    says: str,
+    default: Any = None,
+    *,
+    read: Read | None = None,
+    unit: str = "",
+    examples: Callable[[], Iterable[str]] = tuple,
+) -> Key:
     """A key with a form of its own; read: None where the reader of its table converts it."""
-    return Key(says=says, kind=kind, schema=schema, read=read, default=default, unit=unit)
+    return Key(says=says, kind=kind, schema=schema, read=read, default=default, unit=unit, examples=examples)
 
 
 def of_parameter(parameter: Parameter, default: Any = None) -> Key:
@@ -191,6 +205,8 @@ def of_parameter(parameter: Parameter, default: Any = None) -> Key:
     choices = list(parameter.choices)
     if parameter.unit == TEXT:
         schema: Schema = {"enum": choices} if len(choices) > 1 else WORDS
+    elif parameter.is_switch:
+        schema = {"anyOf": [{"type": "boolean"}, NUMBER]}
     else:
         schema = QUANTITY if unit else NUMBER
     return Key(

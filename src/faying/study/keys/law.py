@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from typing import Literal
 
 from faying.contact.auto import Choice, pick
-from faying.contact.build import AUTO, LawKind, build, check_entries, find, laws
+from faying.contact.build import AUTO, LawKind, build, check_entries, find, kinds, laws
 from faying.contact.inputs import RoughSurface
 from faying.contact.mates import Mates
 from faying.contact.parameter import TABLE
@@ -143,6 +143,7 @@ LAW = Inner(
             WORDS,
             ('Label of the law; "auto" where left out, which solves the contact on the scan or takes the nearest law.'),
             read=lambda value, name: find(read_text(value, name)),
+            examples=lambda: sorted(label.lower() for label in kinds()),
         ),
         "counterbody": text("The other body is the part that is there, or rigid.", "part", ("part", "rigid")),
     },

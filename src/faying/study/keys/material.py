@@ -84,7 +84,9 @@ PARTS = Inner(
     keys={
         NAME: Inner(
             says="The part with that name in the geometry.",
-            keys={"material": text("A material of the catalogue or of the study.", REQUIRED)},
+            keys={
+                "material": text("A material of the catalogue or of the study.", REQUIRED, examples=lambda: CATALOGUE)
+            },
         )
     },
 )

@@ -12,6 +12,7 @@ from faying.errors import InputError
 from faying.form.waviness import ScanWaves
 from faying.study.keys.declared import QUANTITY, Declared, file, number, own, quantity, text
 from faying.study.keys.reader import Table
+from faying.surface.estimators.table import METHODS
 from faying.surface.fractal import FractalFit
 from faying.surface.read import read_scan
 from faying.surface.scan import Profile, Scan
@@ -200,7 +201,7 @@ SURFACE: Declared = {
         read=_lengths,
         unit="m",
     ),
-    "method": text("Estimator of D and G.", "psd"),
+    "method": text("Estimator of D and G.", "psd", examples=lambda: METHODS),
     "D": number("Fractal dimension of both faces together, between 2 and 3."),
     "G": quantity("m", "Fractal roughness of both faces together, in the convention of Yan and Komvopoulos."),
     "scan_area": quantity("m^2", "Area of the scan that D and G come from."),
@@ -210,5 +211,6 @@ SURFACE: Declared = {
             "or the file of its scan."
         ),
         "same",
+        examples=lambda: COUNTERS,
     ),
 }

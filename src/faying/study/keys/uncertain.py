@@ -18,7 +18,7 @@ from faying.materials import Material
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.reader import Faults
 from faying.study.keys.values import quantity
-from faying.study.keys.varied import swept
+from faying.study.keys.varied import MODEL, swept
 
 # short keys, and what they stand for
 SHORT = {
@@ -32,7 +32,8 @@ OF_MATERIAL = {
     "density": Parameter("kg/m^3", "density of the parts of a material", 0),
 }
 OF_TEST = ("test", "discrepancy", "test_loss", "discrepancy_loss")
-OWN = ("preload", *OF_TEST, "surface.fit", "surface.scans", "law.model")  # that are no plain distribution
+DISTRIBUTIONS = {"distribution", "tightening", "scatter"}  # keys of a table that is one value
+OWN = ("preload", *OF_TEST, "surface.fit", "surface.scans", MODEL)  # that are no plain distribution
 # standard deviations of the shapes of a joint over the flatness tolerance of its faces: the second-degree part of the
 # random form of `faying.form.form`, whose mean flatness over one face is two thirds of the tolerance
 DRAWS = 1_000_000  # of waves, of which each sample has one
@@ -189,8 +190,7 @@ def _flat(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any
     """Keys with dots, and their values: text, a list, a number, or a table that says what it is."""
     for name, value in table.items():
         key = f"{before}{name}"
-        whole = {"distribution", "tightening", "scatter"}
-        if isinstance(value, Mapping) and value and not whole & set(value) and key != "law.model":
+        if isinstance(value, Mapping) and value and not DISTRIBUTIONS & set(value) and key != MODEL:
             yield from _flat(value, f"{key}.")
         else:
             yield key, value
