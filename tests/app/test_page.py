@@ -238,7 +238,7 @@ def test_keyboard_alone_reaches_every_view(browser, server, example, tmp_path):
     with page_at(browser, server) as page:
         until(page, "document.querySelector('#text').value.length > 0")
         page.focus("#tab-surface")
-        for name in ("structure", "run", "result", "steps", "surface"):
+        for name in ("structure", "form", "run", "result", "steps", "surface"):
             page.keyboard.press("ArrowRight")
             assert page.evaluate("document.activeElement.id") == f"tab-{name}"
             assert page.is_visible(f"#{name}")
@@ -255,7 +255,8 @@ def test_nothing_is_cut_off(browser, server, example, tmp_path, width, height):
     for name in ("study.toml", "surface.x3p", "two-blocks.step"):
         shutil.copy(example / name, tmp_path)
     with page_at(browser, server, width=width, height=height) as page:
-        for name in ("structure", "run", "result", "surface", "steps"):
+        until(page, "document.querySelectorAll('#groups fieldset').length > 5")
+        for name in ("structure", "form", "run", "result", "surface", "steps"):
             page.click(f"#tab-{name}")
             assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), name
         for button in page.locator("button:visible").all():

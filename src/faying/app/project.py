@@ -77,11 +77,7 @@ class Project:
 
     def listed(self) -> dict[str, Any]:
         """What lies in the folder, for the page."""
-        files = [
-            {"name": path.name, "size": path.stat().st_size, "kinds": _kinds(path.name)}
-            for path in sorted(self.folder.iterdir())
-            if path.is_file() and not path.name.startswith(".") and _kinds(path.name)
-        ]
+        files = [{"name": path.name, "size": path.stat().st_size, "kinds": _kinds(path.name)} for path in self._files()]
         results = []
         if self.results.is_dir():
             results = [path.name for path in sorted(self.results.iterdir()) if path.is_file() and path.name[0] != "."]
@@ -92,6 +88,15 @@ class Project:
             "results": results,
             "text": self.text(),
         }
+
+    def by_kind(self) -> dict[str, list[str]]:
+        """The names of the files in the folder, by what they may be."""
+        names = [path.name for path in self._files()]
+        return {kind: [name for name in names if kind in _kinds(name)] for kind in KINDS}
+
+    def _files(self) -> list[Path]:
+        files = sorted(self.folder.iterdir())
+        return [path for path in files if path.is_file() and not path.name.startswith(".") and _kinds(path.name)]
 
     def text(self) -> str | None:
         """The study's text; None where there is no study yet."""

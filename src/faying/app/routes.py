@@ -85,11 +85,30 @@ class Session:
         return {"saved": True}
 
     def read(self, request: Request) -> dict[str, Any]:
-        """Faults of a text that is being typed."""
+        """Faults of a text that is being typed, and its form."""
         text = request.data().get("text")
         if not isinstance(text, str):
             raise InputError("the request lacks text")
-        return {"findings": faults_of(text, self.project.folder)}
+        return {"findings": faults_of(text, self.project.folder), "form": self._form(text)}
+
+    def edit(self, request: Request) -> dict[str, Any]:
+        """Change one key of a text as the form says, add a table, or take one out; nothing is saved."""
+        from faying.app.form import added, changed, removed
+
+        data = request.data()
+        text, path, value, action = (data.get(key) for key in ("text", "path", "value", "action"))
+        if not isinstance(text, str) or not isinstance(path, list) or not path:
+            raise InputError("the request lacks text, or the path of a key")
+        if not all(isinstance(one, str | int) and not isinstance(one, bool) for one in path):
+            raise InputError("the path of a key holds names and places of lists alone")
+        place = tuple(path)
+        if action == "add":
+            return {"text": added(text, place)}
+        if action == "remove":
+            return {"text": removed(text, place)}
+        if not isinstance(value, str):
+            raise InputError("the request lacks what was written in the field")
+        return {"text": changed(text, place, value)}
 
     def schema(self, request: Request) -> str:
         """The JSON schema of a study, as `faying schema` gives it."""
@@ -168,6 +187,15 @@ class Session:
             raise InputError(f"no file {name!r} in the folder")
         return name
 
+    def _form(self, text: str) -> list[dict[str, Any]] | None:
+        """The form of a text; None where it is not TOML, which is a fault of its own."""
+        from faying.app.form import form_of
+
+        try:
+            return form_of(text, self.project.by_kind())
+        except InputError:
+            return None
+
     def _answer(self, *arguments: str) -> dict[str, Any]:
         return answer(arguments, self.project.folder)
 
@@ -184,6 +212,7 @@ ROUTES: dict[tuple[str, str], Callable[[Session, Request], dict[str, Any] | str]
     ("POST", "file"): Session.upload,
     ("PUT", "study"): Session.save,
     ("POST", "read"): Session.read,
+    ("POST", "edit"): Session.edit,
     ("GET", "schema"): Session.schema,
     ("GET", "check"): Session.check,
     ("POST", "example"): Session.example,

@@ -1,6 +1,8 @@
 /* The page of `faying app`: files, scan, structure, study, run, result. It asks the server behind its own address alone,
  * and puts what it is told into the page as text, never as HTML. */
 import { mount } from "./viewer.js";
+import { $, ask, busy, length, made, plain, said, table } from "./base.js";
+import { mountForm } from "./form.js";
 
 const SAVE_AFTER = 700; // ms without a key
 const READ_AFTER = 200; // the same, for faults of the text alone
@@ -8,63 +10,12 @@ const POLL = 600; // ms between two looks at a job
 const PICTURES = ["prediction.svg", "tornado.svg", "identification.svg", "backbone.svg"];
 const MM = 1e3;
 
-const $ = (id) => document.getElementById(id);
 const state = { project: null, view: null, picks: [], saved: "", timer: 0, shown: "", scan: "", job: null, checks: 0,
   tab: "", looked: Promise.resolve() };
 
-/* the server */
-
-async function ask(method, path, query = {}, body = undefined) {
-  const address = `api/${path}?${new URLSearchParams(query)}`;
-  let answer;
-  try {
-    answer = await fetch(address, { method, body });
-  } catch (fault) {
-    $("lost").hidden = false;
-    throw new Error("the server does not answer", { cause: fault });
-  }
-  $("lost").hidden = true;
-  const kind = answer.headers.get("Content-Type") || "";
-  const found = kind.startsWith("application/json") ? await answer.json() : { fault: await answer.text() };
-  if (found.fault || !answer.ok) throw new Error(found.fault || `${answer.status}`);
-  return found;
-}
-
-function made(name, text = "", properties = {}) {
-  const element = Object.assign(document.createElement(name), properties);
-  element.textContent = text;
-  return element;
-}
-
-function table(rows) {
-  const out = made("table");
-  rows.forEach((row, k) => {
-    const line = out.appendChild(made("tr"));
-    for (const cell of row) line.append(made(k ? "td" : "th", cell));
-  });
-  return out;
-}
-
-function said(id, fault) {
-  $(id).textContent = fault ? fault.message || String(fault) : "";
-  $(id).hidden = !fault;
-}
-
-async function busy(button, words, work) {
-  const label = button.textContent;
-  button.textContent = words;
-  button.disabled = true;
-  try {
-    return await work();
-  } finally {
-    button.textContent = label;
-    button.disabled = false;
-  }
-}
-
 /* tabs */
 
-const TABS = ["steps", "surface", "structure", "run", "result"];
+const TABS = ["steps", "surface", "structure", "form", "run", "result"];
 
 function open(name) {
   for (const one of TABS) {
@@ -119,6 +70,7 @@ async function read() {
     $("text").value = state.saved = project.text;
     draw();
     check();
+    glance();
   }
   if (project.job) job(project.job);
   return project;
@@ -171,14 +123,6 @@ addEventListener("drop", (event) => {
 });
 
 /* surface */
-
-const length = (metres) => {
-  if (metres === null || metres === undefined) return "-";
-  const size = Math.abs(metres);
-  const [factor, unit] = size >= 1e-3 ? [1e3, "mm"] : size >= 1e-6 ? [1e6, "µm"] : size >= 1e-9 ? [1e9, "nm"] : [1, "m"];
-  return `${Number((metres * factor).toPrecision(4))} ${unit}`;
-};
-const plain = (value, digits = 4) => (value === null || value === undefined ? "-" : String(Number(value.toPrecision(digits))));
 
 async function showScan(again = false) {
   const name = $("scans").value;
@@ -532,20 +476,42 @@ function typed() {
   state.reading = setTimeout(glance, READ_AFTER);
 }
 
-/** Faults of the text as it is typed, long before the geometry is looked at. */
+/** Faults of the text as it is typed, long before the geometry is looked at, and the form that it makes. */
 async function glance() {
+  clearTimeout(state.reading);
   const text = $("text").value;
   let found;
   try {
-    found = (await ask("POST", "read", {}, JSON.stringify({ text }))).findings;
+    found = await ask("POST", "read", {}, JSON.stringify({ text }));
   } catch { return; }
-  if (text === $("text").value && text !== state.saved) faults(found);
+  if (text !== $("text").value) return; // a later one is under way
+  form.draw(found.form);
+  if (text !== state.saved) {
+    state.unsure = true;
+    faults(found.findings);
+  } else if (state.unsure) { // typed and taken back within the time after which it is saved
+    faults(found.findings);
+    check();
+  }
 }
+
+const form = mountForm({
+  text: () => $("text").value,
+  put: async (text) => {
+    const area = $("text"), top = area.scrollTop;
+    area.value = text;
+    area.scrollTop = top;
+    typed();
+    await glance();
+  },
+  look: bring,
+});
 
 function faults(found) {
   state.faults = found.length;
   faulty = new Set(found.map((one) => one.line).filter(Boolean));
   $("faults").replaceChildren(...found.map(finding));
+  form.mark(found);
   draw();
   steps();
 }
@@ -570,6 +536,7 @@ async function save() {
 
 async function check() {
   const number = (state.checks += 1);
+  state.unsure = false;
   if (!state.saved) return;
   $("check-hint").textContent = "checking …";
   let found;
@@ -602,7 +569,13 @@ function reach(line) {
   const end = area.value.indexOf("\n", start);
   area.focus();
   area.setSelectionRange(start, end < 0 ? area.value.length : end);
-  area.scrollTop = (area.scrollHeight / area.value.split("\n").length) * (line - 1) - area.clientHeight / 2;
+  bring(line);
+}
+
+/** Bring a line of the text into sight, where it is not. */
+function bring(line) {
+  const area = $("text"), height = area.scrollHeight / area.value.split("\n").length, at = height * ((line || 1) - 1);
+  if (line && (at < area.scrollTop || at + 2 * height > area.scrollTop + area.clientHeight)) area.scrollTop = at - area.clientHeight / 2;
 }
 
 $("text").addEventListener("input", typed);
@@ -697,6 +670,7 @@ async function showResult() {
 
 look().then((project) => {
   $("text").readOnly = false; // what is typed before the study is there would stand against it
+  if (project.text === null) glance(); // the form of an empty study
   const running = project.job?.running;
   const first = running ? "run" : project.results.length ? "result" : $("shapes").value ? "structure" : $("scans").value ? "surface" : "steps";
   open(state.tab || first); // a view that the user has chosen meanwhile stays
