@@ -141,7 +141,7 @@ def test_a_square_face_asks_which_way():
         Form(crown_along=1e-6).on(interface, mesh, FACES)
     laid = Form(crown_along=1e-6, along=(0, 1, 0)).on(interface, mesh, FACES)
     assert laid.gap == pytest.approx(1e-6 * ((interface.positions[:, 1] - 0.02) / 0.02) ** 2, abs=1e-16)
-    with pytest.raises(faying.InputError, match="stands on the faces"):
+    with pytest.raises(faying.InputError, match="is at right angles to the faces"):
         Form(crown_along=1e-6, along=(0, 0, 1)).on(interface, mesh, FACES)
 
 

@@ -78,7 +78,7 @@ def test_arrays_cannot_be_changed():
         ({"values": np.where(F < 3, np.nan, 1.0)[None, None]}, "some of its frequencies only"),
         ({"values": np.full((1, 1, 101), np.nan)}, "leave such spectral lines out"),
         ({"outputs": [(1, "up")]}, "use one of 'x'"),
-        ({"outputs": [(1, "z"), (1, "z")]}, "stands twice"),
+        ({"outputs": [(1, "z"), (1, "z")]}, "appears twice"),
         ({"coherence": np.ones(101)}, "coherence has the shape"),
     ],
 )

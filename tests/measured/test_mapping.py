@@ -102,7 +102,7 @@ def test_a_table_of_points(tmp_path):
         ("point,x [mm],y [mm],z [mm]\n", "no points under its heading"),
         ("point,x [mm],y [mm],z [mm]\n1,2,3\n", 'line 2: no value in the column "z"'),
         ("point,x [mm],y [mm],z [mm]\n1,2,3,four\n", 'line 2: "four" in the column "z" is not a number'),
-        ("point,x [mm],y [mm],z [mm]\n1,2,3,4\n1,2,3,4\n", "stands twice"),
+        ("point,x [mm],y [mm],z [mm]\n1,2,3,4\n1,2,3,4\n", "appears twice"),
     ],
 )
 def test_tables_that_are_none(tmp_path, text, match):

@@ -315,7 +315,7 @@ def test_functions_that_do_not_stand_together(tmp_path):
 def test_the_same_pair_twice_and_points_without_numbers(tmp_path):
     frf = read_uff(raw(tmp_path / "a.uff", function(), function(data=np.zeros(20)))).frf()
     assert frf.values[0, 0, 1] == 1 + 2j
-    assert any("stands twice; the first is taken" in word for word in frf.warnings)
+    assert any("appears twice; the first is taken" in word for word in frf.warnings)
     nameless = function(rsp_node=0, rsp_dir=0)
     frf = read_uff(raw(tmp_path / "b.uff", nameless, nameless)).frf()
     assert [d.point for d in frf.outputs] == [1, 2]
@@ -464,7 +464,7 @@ def infinite_point(text):
     ("change", "match"),
     [
         (without_a_line, "damaged|cannot be read|whole numbers"),
-        (point_twice, "stands twice, at two places"),
+        (point_twice, "appears twice, at two places"),
         (infinite_point, "not finite|NaN or infinite|cannot be read"),
     ],
 )

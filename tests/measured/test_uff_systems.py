@@ -96,7 +96,7 @@ def test_a_system_given_twice(tmp_path, number):
     path.write_text(one + one + nodes)
     assert read_uff(path).positions == {1: (0, 0, 0)}
     path.write_text(one + other + nodes)
-    with pytest.raises(ReadError, match="system 1 stands twice, differently"):
+    with pytest.raises(ReadError, match="system 1 appears twice, differently"):
         read_uff(path)
 
 

@@ -111,7 +111,7 @@ def test_the_curve_ends_where_the_joint_opens():
     model = replace(model, joints=(replace(joint, relative=joint.relative[[1, 0, 2]]),))
     curve = Epmc(model=model).follow(0.1, 100.0)
     assert curve.code == "open"
-    assert "opens wholly" in curve.reason
+    assert "opens fully" in curve.reason
     assert all(abs(point.damping) < 1e-9 for point in curve.points)
     assert curve.points[0].frequency == pytest.approx(np.sqrt(3 + 1), rel=1e-9)
     assert np.sqrt(3) < Epmc(model=model).solve(4.0).frequency < np.sqrt(3.9)

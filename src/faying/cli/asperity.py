@@ -95,7 +95,7 @@ def command(
     click.echo(json_text(document) if as_json else table(document))
     failed = sum("error" in entry for entry in document)
     if failed:
-        raise FayingError(f"{failed} of {len(cases)} cases failed; their messages stand above")
+        raise FayingError(f"{failed} of {len(cases)} cases failed; see their messages above")
 
 
 def rows_of(file: str) -> list[dict[str, str]]:

@@ -142,7 +142,7 @@ def _loaded(loads: list[tuple[list[str], str]], where_of: dict[int, tuple[str, l
                 break
         else:
             raise ReadError(
-                f"{where}: PLOAD4 names the nodes {first} and {other}, which tell no face of element {element}"
+                f"{where}: PLOAD4 names the nodes {first} and {other}, which are on no common face of element {element}"
             )
     return {name: np.array(rows) for name, rows in out.items()}
 

@@ -57,7 +57,7 @@ class FaceAxes:
         else:
             given = np.array(along) - normal * (normal @ np.array(along))
             if np.linalg.norm(given) < 0.1 * np.linalg.norm(along):
-                raise InputError(f"along = {list(along)} stands on the faces {faces[0]!r} and {faces[1]!r}")
+                raise InputError(f"along = {list(along)} is at right angles to the faces {faces[0]!r} and {faces[1]!r}")
             x = given / np.linalg.norm(given)
         x, y, middle, sides = _box(mesh, faces, normal, x)
         certain = along is not None or abs(sides[0] / sides[1] - 1) > SQUARE

@@ -191,7 +191,7 @@ def cut_notes(columns: Sequence[Any]) -> list[Note]:
     return [
         Note(
             code="uncertain-cut",
-            text=f"{column.key}: {column.cut:.2g} of its probability lies where the number cannot be, and is left out",
+            text=f"{column.key}: {column.cut:.2g} of its probability is outside the possible values and is left out",
         )
         for column in columns
         if column.cut > 1e-6

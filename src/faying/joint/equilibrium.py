@@ -322,7 +322,7 @@ class Equilibrium(ABC):
         if start >= 0:
             apart = min(float(trace.gap.min()) for trace, _ in self.joints)
             raise NotConverged(
-                "preload: the search direction does not lower the energy; a joint may be wholly open (before any load "
+                "preload: the search direction does not lower the energy; a joint may be fully open (before any load "
                 f"the nearest faces lie {apart * 1e6:.4g} um apart): put the faces on each other, or pull harder"
             )
         end = slope(1.0)

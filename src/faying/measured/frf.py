@@ -41,7 +41,7 @@ class Dof(NamedTuple):
 
 
 def dofs(pairs: object) -> tuple[Dof, ...]:
-    """Check (point, direction) pairs. InputError where a direction is none of DIRECTIONS or a pair stands twice."""
+    """Check (point, direction) pairs. InputError where a direction is none of DIRECTIONS or a pair appears twice."""
     out = []
     if not isinstance(pairs, Iterable) or isinstance(pairs, str | bytes | Mapping):
         raise InputError(f'{shortened(pairs)}; give pairs of a point and a direction, for example [(1, "z")]')
@@ -56,7 +56,7 @@ def dofs(pairs: object) -> tuple[Dof, ...]:
         out.append(Dof(int(point), direction))
     if len(set(out)) < len(out):
         twice = next(d for d in out if out.count(d) > 1)
-        raise InputError(f"the degree of freedom {twice} stands twice; give each point and direction once")
+        raise InputError(f"the degree of freedom {twice} appears twice; give each point and direction once")
     return tuple(out)
 
 

@@ -199,7 +199,7 @@ POINTS = "give a CSV table point,x [mm],y [mm],z [mm]"
 def read_points(path: str | Path) -> dict[int, Position]:
     """Read a table of points with a heading that states the units: point,x [mm],y [mm],z [mm]. Positions in [m].
 
-    Raises ReadError where the file is no such table or a point stands twice.
+    Raises ReadError where the file is no such table or a point appears twice.
     """
     file = Path(path)
     table = read_columns(
@@ -212,7 +212,7 @@ def read_points(path: str | Path) -> dict[int, Position]:
         if label != int(label) or abs(label) > 2**53:
             raise ReadError(f"{file}, line {table.lines[k]}: {label:g} is no number of a point, a whole one; {POINTS}")
         if int(label) in out:
-            raise ReadError(f"{file}: point {int(label)} stands twice; give each point once")
+            raise ReadError(f"{file}: point {int(label)} appears twice; give each point once")
         x, y, z = (float(v) for v in place)
         out[int(label)] = (x, y, z)
     return out

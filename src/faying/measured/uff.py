@@ -268,7 +268,7 @@ def _points(
             xyz = place if moved is None else moved.place(place)
             position: Any = tuple(float(v) * metre for v in xyz)
             if positions.get(label, position) != position:
-                raise ReadError(f"{where}: point {label} stands twice, at two places; export the points once")
+                raise ReadError(f"{where}: point {label} appears twice, at two places; export the points once")
             positions[label] = position
             if motion in known and known[motion].turned:
                 rotations[label] = known[motion].axes

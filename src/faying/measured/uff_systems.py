@@ -63,7 +63,7 @@ def systems(file: Path, sets: Iterable[Mapping[str, Any]]) -> dict[int, UffSyste
         for label, record in _records(file, lines).items():
             before = own.setdefault(label, record)
             if before[:2] != record[:2] or not np.allclose(before[2], record[2], rtol=1e-5, atol=1e-9):
-                raise ReadError(f"{file}: coordinate system {label} stands twice, differently; export the test again")
+                raise ReadError(f"{file}: coordinate system {label} appears twice, differently; export the test again")
     for label in own:
         _add(out, file, label, _resolved(file, label, own, ()))
     return out
@@ -77,7 +77,7 @@ def _add(out: dict[int, UffSystem], file: Path, label: int, system: UffSystem) -
         and np.allclose(before.origin, system.origin, atol=1e-5 * max(1.0, float(np.abs(system.origin).max())))
     )
     if not same:
-        raise ReadError(f"{file}: coordinate system {label} stands twice, differently; export the test again")
+        raise ReadError(f"{file}: coordinate system {label} appears twice, differently; export the test again")
     if system.kind not in KINDS or not (np.all(np.isfinite(system.axes)) and np.all(np.isfinite(system.origin))):
         raise ReadError(f"{file}: coordinate system {label} is damaged or of kind {system.kind}; export the test again")
     out.setdefault(label, system)

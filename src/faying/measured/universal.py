@@ -91,13 +91,13 @@ class UniversalFile(Summary):
                     "set of lines"
                 )
             if pair in pairs:
-                notes.append(f"{f.where}: {pair[0]} / {pair[1]} stands twice; the first is taken")
+                notes.append(f"{f.where}: {pair[0]} / {pair[1]} appears twice; the first is taken")
             else:
                 pairs[pair] = (kind, np.asarray(f.values, complex) * factor)
         quantities = {kind for kind, _ in pairs.values()}
         if len(quantities) > 1:
             raise ReadError(
-                f"{self.source}: {' and '.join(sorted(quantities))} stand together; split the file, or convert them"
+                f"{self.source}: {' and '.join(sorted(quantities))} are in one file; split the file, or convert them"
             )
         outputs = tuple(dict.fromkeys(o for o, _ in pairs))
         inputs = tuple(dict.fromkeys(i for _, i in pairs))

@@ -228,7 +228,7 @@ class Epmc:
             text = f"other modes make {last.other_modes:.0%} of the motion, which is no longer this mode's"
             return "other-modes", text
         if last.open >= 1:
-            return "open", "the joint opens wholly in every cycle"
+            return "open", "the joint opens fully in every cycle"
         if last.slipping > self.most_sliding:
             return "all-slipping", f"{last.slipping:.0%} of the joint slides in every cycle; it holds no more"
         return None

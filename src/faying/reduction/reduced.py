@@ -146,7 +146,7 @@ class ReducedEquilibrium(Equilibrium):
         try:
             self._tangent = cho_factor(matrix)
         except LinAlgError:
-            raise NotConverged("preload: the joint opens wholly on the way; load it in smaller steps") from None
+            raise NotConverged("preload: the joint opens fully on the way; load it in smaller steps") from None
         step = yield force
         return step, 0
 

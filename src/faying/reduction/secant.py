@@ -215,7 +215,7 @@ def evenly_pressed(stiffness: Array, joints: Sequence[tuple[Any, JointLaw]], loa
             push = push + motion.quick.T @ local.ravel().astype(motion.quick.dtype)
         answer = _answer(stiffness, tangents)
         if answer is None:
-            raise NotConverged("preload: the joint opens wholly on the way; load it in smaller steps")
+            raise NotConverged("preload: the joint opens fully on the way; load it in smaller steps")
         u = answer(push)
         for i, ((motion, _), (k_n, offset)) in enumerate(zip(joints, laid, strict=True)):
             carried = np.maximum(offset - k_n * (motion.quick @ u.astype(motion.quick.dtype))[::3], 0.0)
