@@ -32,8 +32,9 @@ from faying.measured.modes import ModeSet
 from faying.measured.ring_down import MeasuredBackbone
 from faying.output import report, report_measured
 from faying.output.figures import asperity, sweep
-from faying.result import Receptance, backbone_figure, load_cases_figure
+from faying.result import Receptance, backbone_figure, difference_figure, load_cases_figure
 from faying.result.backbone import Witness
+from faying.result.difference import compare_runs
 from faying.result.result import MeasuredComparison
 from faying.study.keys.uncertain import Input
 from faying.surface import figure as surface
@@ -358,6 +359,9 @@ FIGURES = {
     "result/backbone_figure.py:backbone_axes": lambda: whole(curve().plot()),
     "result/backbone_figure.py:measured": lambda: backbone_figure.measured(measured_points()),
     "answer/level_curves.py:plot": lambda: whole(level_curves().plot()),
+    "result/difference_figure.py:differences": lambda: difference_figure.differences(
+        compare_runs(result(), two_boxes(names=("flange_1",)))
+    ),
     "result/load_cases_figure.py:figure": lambda: load_cases_figure.figure(made_cases()),
     "result/load_cases_figure.py:case_axes": lambda: whole(made_cases().plot("left_1", "flange_1")),
     "joint/figure.py:pressure_axes": lambda: whole(state().plot_pressure()),

@@ -134,6 +134,7 @@ class Job:
             "command": self.command,
             "running": self.running,
             "end": end,
+            "started": self.started,
             "seconds": seconds,
             "words": self.words,
             **self.progress,

@@ -12,7 +12,7 @@ from typing import Any, Literal
 from faying.contact.build import AUTO, find
 from faying.errors import InputError
 from faying.setup.edit import edited, parsed, written
-from faying.setup.lines import Path, line_of, lines_of, name_of
+from faying.setup.lines import KeyPath, line_of, lines_of, name_of
 from faying.study.keys.declared import NAME, NUMERAL, REQUIRED, Declared, Inner, Key
 from faying.study.keys.tables import STUDY
 from faying.study.keys.uncertain import DISTRIBUTIONS, OF_MATERIAL, OWN, SHORT
@@ -52,7 +52,7 @@ class FormField:
         line: of the text, from 1, on which it stands or would; None where it has no place yet.
     """
 
-    path: Path
+    path: KeyPath
     name: str
     label: str
     says: str
@@ -79,7 +79,7 @@ class FormAddition:
         suggestions: some names.
     """
 
-    path: Path
+    path: KeyPath
     label: str
     says: str
     named: bool = False
@@ -91,7 +91,7 @@ class FormAddition:
 class FormGroup:
     """One table, its keys, and what may be added to it; there: whether the text has it."""
 
-    path: Path
+    path: KeyPath
     name: str
     says: str
     there: bool = True
@@ -114,7 +114,7 @@ def form_of(text: str, files: Mapping[str, Sequence[str]]) -> list[dict[str, Any
     return [asdict(group) for group in maker.groups((), "", Inner(says="The study.", keys=STUDY), data)]
 
 
-def changed(text: str, path: Path, value: str) -> str:
+def changed(text: str, path: KeyPath, value: str) -> str:
     """Return the text with one key set to what was written in its field; empty takes the key out.
 
     Raises:
@@ -130,7 +130,7 @@ def changed(text: str, path: Path, value: str) -> str:
     return edited(text, path, _read(value.strip(), shape, key) if value.strip() else None)
 
 
-def added(text: str, path: Path) -> str:
+def added(text: str, path: KeyPath) -> str:
     """Return the text with a new table. Raises InputError where it is there already, or no such table exists."""
     data = parsed(text)
     _inner_of(path, data)
@@ -139,7 +139,7 @@ def added(text: str, path: Path) -> str:
     return edited(text, path, {})
 
 
-def removed(text: str, path: Path) -> str:
+def removed(text: str, path: KeyPath) -> str:
     """Return the text without a table or a key. Raises InputError where there is none."""
     return edited(text, path, None)
 
@@ -151,7 +151,7 @@ class _Maker:
         self.data, self.files, self.lines = data, files, lines
         self.faces = sorted(set(_faces(data)))
 
-    def groups(self, path: Path, name: str, inner: Inner, data: Any) -> Iterator[FormGroup]:
+    def groups(self, path: KeyPath, name: str, inner: Inner, data: Any) -> Iterator[FormGroup]:
         """The group of a table, then those of the tables within it."""
         group = FormGroup(path=path, name=name, says=inner.says, there=data is not None)
         held = data if isinstance(data, Mapping) else {}
@@ -176,7 +176,7 @@ class _Maker:
         yield group
         yield from inside
 
-    def _many(self, group: FormGroup, path: Path, name: str, inner: Inner, held: Any) -> Iterator[FormGroup]:
+    def _many(self, group: FormGroup, path: KeyPath, name: str, inner: Inner, held: Any) -> Iterator[FormGroup]:
         single = isinstance(held, Mapping)
         entries = held if isinstance(held, list) else []
         if single:
@@ -186,7 +186,7 @@ class _Maker:
         if not single:
             group.additions.append(FormAddition(path=(*path, len(entries)), label=str(path[-1]), says=inner.says))
 
-    def _outer(self, group: FormGroup, path: Path, name: str, inner: Inner, held: Any) -> Iterator[FormGroup]:
+    def _outer(self, group: FormGroup, path: KeyPath, name: str, inner: Inner, held: Any) -> Iterator[FormGroup]:
         """A table that holds names of the user's own alone: its keys, or its tables, stand for themselves."""
         what = inner.keys[NAME]
         if isinstance(what, Key):
@@ -198,7 +198,7 @@ class _Maker:
         yield from self._named(group, path, name, what, held if isinstance(held, Mapping) else {})
 
     def _named(
-        self, group: FormGroup, path: Path, name: str, what: Key | Inner, held: Mapping[str, Any]
+        self, group: FormGroup, path: KeyPath, name: str, what: Key | Inner, held: Mapping[str, Any]
     ) -> Iterator[FormGroup]:
         for own, value in held.items():
             if isinstance(what, Key):
@@ -207,13 +207,13 @@ class _Maker:
                 yield from self.groups((*path, own), f"{name}.{own}", what, value)
         group.additions.append(self._new_name(path, what))
 
-    def _new_name(self, path: Path, what: Key | Inner) -> FormAddition:
+    def _new_name(self, path: KeyPath, what: Key | Inner) -> FormAddition:
         suggestions = self.faces if path[-1] in ("face_size", "face") else ()
         is_key = isinstance(what, Key)
         label = f"{path[-1]}.NAME"
         return FormAddition(path=path, label=label, says=what.says, named=True, is_key=is_key, suggestions=suggestions)
 
-    def _scatter(self, path: Path) -> FormAddition:
+    def _scatter(self, path: KeyPath) -> FormAddition:
         parts, joints, bolts = self.data.get("part"), self.data.get("joint"), self.data.get("bolt")
         own = [f"part.{name}.stiffness" for name in (parts if isinstance(parts, Mapping) else ())]
         for room, key, held in (("joint", "friction", joints), ("bolt", "factor", bolts)):
@@ -223,7 +223,7 @@ class _Maker:
             path=path, label="uncertain.NAME", says=FREE.says, named=True, is_key=True, suggestions=names
         )
 
-    def _field(self, path: Path, name: str, key: Key, *, first: bool = False) -> FormField:
+    def _field(self, path: KeyPath, name: str, key: Key, *, first: bool = False) -> FormField:
         label, table = str(path[-1]), next((one for one in reversed(path[:-1]) if isinstance(one, str)), "")
         room = str(path[0]) if table not in FIRST else table
         value, shape = _value_at(self.data, path), _shape(key)
@@ -267,7 +267,7 @@ def _keys(inner: Inner, held: Mapping[str, Any]) -> Declared:
     return dict(inner.keys) | {name: key for name, key in own.items() if name not in kind.fixed}
 
 
-def _key_of(path: Path, data: Mapping[str, Any]) -> Key:
+def _key_of(path: KeyPath, data: Mapping[str, Any]) -> Key:
     """The declaration of a key. Raises InputError where there is none."""
     inner = _inner_of(path[:-1], data)
     if inner.free:
@@ -280,7 +280,7 @@ def _key_of(path: Path, data: Mapping[str, Any]) -> Key:
     return found
 
 
-def _inner_of(path: Path, data: Mapping[str, Any]) -> Inner:
+def _inner_of(path: KeyPath, data: Mapping[str, Any]) -> Inner:
     """The declaration of a table. Raises InputError where there is none."""
     inner = Inner(says="", keys=STUDY)
     for one in path:
@@ -295,7 +295,7 @@ def _inner_of(path: Path, data: Mapping[str, Any]) -> Inner:
     return inner
 
 
-def _value_at(data: Any, path: Path) -> Any:
+def _value_at(data: Any, path: KeyPath) -> Any:
     """What stands at a path; None where nothing does."""
     for one in path:
         inside = (

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from io import BufferedIOBase
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from faying import __version__
 from faying.app.commands import Job, answer
@@ -16,6 +16,9 @@ from faying.app.project import Project, checked_name
 from faying.app.typed import faults_of
 from faying.errors import FayingError, InputError
 from faying.files import make_folder
+
+if TYPE_CHECKING:
+    from faying.app.runs import Runs
 
 # what may run, with the pictures that it draws for the page
 JOBS: dict[str, dict[str, str]] = {
@@ -57,7 +60,17 @@ class Session:
     def __init__(self, project: Project) -> None:
         self.project = project
         self.job: Job | None = None
+        self._runs: Runs | None = None
         self._lock = threading.Lock()
+
+    @property
+    def runs(self) -> "Runs":
+        """The last results."""
+        from faying.app.runs import Runs
+
+        if self._runs is None or self._runs.project != self.project:
+            self._runs = Runs(self.project)
+        return self._runs
 
     def close(self) -> None:
         """Stop the job that runs."""
@@ -67,6 +80,8 @@ class Session:
     def look(self, request: Request) -> dict[str, Any]:
         """All that the page needs to draw itself."""
         job = None if self.job is None else self.job.state()
+        if (self.project.results / "result.nc").is_file():
+            self.runs.keep()
         return self.project.listed() | {"job": job, "version": __version__}
 
     def upload(self, request: Request) -> dict[str, Any]:
@@ -172,6 +187,14 @@ class Session:
             self.job.cancel()
         return self.progress(request)
 
+    def results(self, request: Request) -> dict[str, Any]:
+        """The last results, the newest first."""
+        return {"runs": self.runs.listed()}
+
+    def compare(self, request: Request) -> dict[str, Any]:
+        """Two of the last results compared."""
+        return self.runs.compared(request.given("first"), request.given("second"))
+
     def scene(self, request: Request) -> str:
         """The scene of a file of the folder, or of the study, as `faying view` shows it."""
         from faying.output.scene import of_file, to_text
@@ -221,6 +244,8 @@ ROUTES: dict[tuple[str, str], Callable[[Session, Request], dict[str, Any] | str]
     ("GET", "laws"): Session.laws,
     ("GET", "faces"): Session.faces,
     ("GET", "scene"): Session.scene,
+    ("GET", "runs"): Session.results,
+    ("GET", "compare"): Session.compare,
     ("POST", "job"): Session.begin,
     ("GET", "job"): Session.progress,
     ("DELETE", "job"): Session.cancel,

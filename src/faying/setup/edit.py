@@ -8,13 +8,13 @@ from copy import deepcopy
 from typing import Any
 
 from faying.errors import InputError
-from faying.setup.lines import Path, Statement, name_of, statements
+from faying.setup.lines import KeyPath, Statement, name_of, statements
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _BLANK = re.compile(r"[ \t]*\r?\n")
 
 
-def edited(text: str, path: Path, value: Any) -> str:
+def edited(text: str, path: KeyPath, value: Any) -> str:
     """Return a TOML text with one value set, added or taken out; comments and all other lines stay as they are.
 
     Args:
@@ -68,7 +68,7 @@ def _key(name: str) -> str:
     return name if _BARE.fullmatch(name) else written(name)
 
 
-def _dotted(path: Path) -> str:
+def _dotted(path: KeyPath) -> str:
     return ".".join(_key(one) for one in path if isinstance(one, str))
 
 
@@ -88,7 +88,7 @@ def _same(a: Any, b: Any) -> bool:
     return type(a) is type(b) and (a == b or a != a)  # NaN is itself
 
 
-def _changed(data: dict[str, Any], path: Path, value: Any) -> dict[str, Any]:
+def _changed(data: dict[str, Any], path: KeyPath, value: Any) -> dict[str, Any]:
     """The data with the change."""
     out = deepcopy(data)
     at: Any = out
@@ -114,7 +114,7 @@ def _changed(data: dict[str, Any], path: Path, value: Any) -> dict[str, Any]:
     return out
 
 
-def _without_empty(data: dict[str, Any], path: Path) -> Iterator[dict[str, Any]]:
+def _without_empty(data: dict[str, Any], path: KeyPath) -> Iterator[dict[str, Any]]:
     """The data, then without tables that a removal has left empty, from the inner one outwards: dotted keys and the
     heads of tables within them made these."""
     out = deepcopy(data)
@@ -126,7 +126,7 @@ def _without_empty(data: dict[str, Any], path: Path) -> Iterator[dict[str, Any]]
         yield deepcopy(out)
 
 
-def _edit(text: str, data: dict[str, Any], wanted: dict[str, Any], path: Path, value: Any) -> str:
+def _edit(text: str, data: dict[str, Any], wanted: dict[str, Any], path: KeyPath, value: Any) -> str:
     every = list(statements(text))
     holder = next((one for one in every if not one.is_head and one.path == path[: len(one.path)]), None)
     if holder is not None and holder.path != path:  # an inline table, or a list of them
@@ -141,7 +141,7 @@ def _edit(text: str, data: dict[str, Any], wanted: dict[str, Any], path: Path, v
     return _with_key(text, every, path, value)
 
 
-def _at(data: Any, path: Path) -> Any:
+def _at(data: Any, path: KeyPath) -> Any:
     for one in path:
         data = data[one]
     return data
@@ -157,7 +157,7 @@ def _without(text: str, gone: list[Statement]) -> str:
     return text
 
 
-def _with_key(text: str, every: list[Statement], path: Path, value: Any) -> str:
+def _with_key(text: str, every: list[Statement], path: KeyPath, value: Any) -> str:
     """A key that is new in its table, below the other keys there."""
     parent = path[:-1]
     heads = [k for k, one in enumerate(every) if one.is_head]
@@ -169,8 +169,8 @@ def _with_key(text: str, every: list[Statement], path: Path, value: Any) -> str:
         if parent:
             return _inserted(text, every[first].end, f"{_key(str(path[-1]))} = {written(value)}\n")
         return _inserted(text, _behind_comments(text, 0), f"{_key(str(path[-1]))} = {written(value)}\n")
-    outer: Path = ()
-    dotted: tuple[Statement, Path] | None = None  # the table is written as a.b = ..., below the head of an outer one
+    outer: KeyPath = ()
+    dotted: tuple[Statement, KeyPath] | None = None  # the table is written as a.b = ..., below the head of an outer one
     for one in every:
         if one.is_head:
             outer = one.path
@@ -192,7 +192,7 @@ def _inserted(text: str, at: int, lines: str) -> str:
     return text[:at] + lead + lines + text[at:]
 
 
-def _with_table(text: str, every: list[Statement], path: Path, value: dict[Any, Any]) -> str:
+def _with_table(text: str, every: list[Statement], path: KeyPath, value: dict[Any, Any]) -> str:
     """A table that is new, behind what is nearest to it: its element of a list, its kin, or the end."""
     head = f"[[{_dotted(path)}]]" if isinstance(path[-1], int) else f"[{_dotted(path)}]"
     lines = "".join(f"{_key(name)} = {written(one)}\n" for name, one in value.items())

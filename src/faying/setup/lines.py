@@ -5,7 +5,7 @@ import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-Path = tuple[str | int, ...]
+KeyPath = tuple[str | int, ...]
 
 _KEY = re.compile(r'\s*(?:"((?:[^"\\\n]|\\.)*)"|\'([^\'\n]*)\'|([A-Za-z0-9_-]+))\s*')
 
@@ -30,7 +30,7 @@ class Statement:
         value, value_end: where the value begins and ends; the end of the head of a table.
     """
 
-    path: Path
+    path: KeyPath
     is_head: bool
     line: int
     start: int
@@ -41,8 +41,8 @@ class Statement:
 
 def statements(text: str) -> Iterator[Statement]:
     """The statements of a TOML text in their order; of text that is not TOML, those that were understood."""
-    counts: dict[Path, int] = {}
-    table: Path = ()
+    counts: dict[KeyPath, int] = {}
+    table: KeyPath = ()
     at = 0
     while at < len(text):
         if text[at] in " \t\r\n":
@@ -67,7 +67,7 @@ def statements(text: str) -> Iterator[Statement]:
         yield Statement(path=path, is_head=is_head, line=line, start=start, value=value, value_end=value_end, end=at)
 
 
-def name_of(path: Path) -> str:
+def name_of(path: KeyPath) -> str:
     """A path as messages write it: `bolt[2].preload`."""
     return "".join(f"[{one + 1}]" if isinstance(one, int) else f".{one}" for one in path).removeprefix(".")
 
@@ -137,9 +137,9 @@ def _unescaped(text: str) -> str:
         return text
 
 
-def _resolved(keys: list[str], counts: dict[Path, int], *, new: bool) -> Path:
+def _resolved(keys: list[str], counts: dict[KeyPath, int], *, new: bool) -> KeyPath:
     """The path of a table, with the places of those lists of tables that it lies in."""
-    path: Path = ()
+    path: KeyPath = ()
     for k, key in enumerate(keys):
         path = (*path, key)
         if new and k == len(keys) - 1:

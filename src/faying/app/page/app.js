@@ -3,6 +3,7 @@
 import { mount } from "./viewer.js";
 import { $, ask, busy, length, made, plain, said, table } from "./base.js";
 import { mountForm } from "./form.js";
+import { showRuns } from "./runs.js";
 
 const SAVE_AFTER = 700; // ms without a key
 const READ_AFTER = 200; // the same, for faults of the text alone
@@ -654,7 +655,7 @@ async function showResult() {
   $("result-hint").hidden = names.length > 0;
   $("links").replaceChildren(...names.map((name) => made("a", name, { href: `results/${encodeURIComponent(name)}`,
     target: "_blank", rel: "noopener" })));
-  const mark = `${names.join()} ${state.job?.seconds}`;
+  const mark = `${names.join()} ${state.job?.started} ${state.job?.end}`;
   if (mark === state.shownResult) return;
   state.shownResult = mark;
   $("pictures").replaceChildren(...PICTURES.filter((name) => names.includes(name)).map((name) => {
@@ -662,6 +663,7 @@ async function showResult() {
     figure.append(made("img", "", { alt: name, src: `results/${name}` }));
     return figure;
   }));
+  showRuns();
   $("report").hidden = !names.includes("report.html");
   if (!$("report").hidden) $("report").src = "results/report.html";
 }

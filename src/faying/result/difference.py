@@ -1,0 +1,217 @@
+"""Two results of one structure compared: which mode is which, and how frequencies, losses and pressures differ."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from faying.errors import InputError
+from faying.joint.loads import preload_index
+from faying.measured.mac import mac
+from faying.result.result import Result
+from faying.typing import Array, Index
+
+ALIKE = 0.5  # MAC that a pair of modes must have
+APART = 0.05  # of the size of the structure, how far nodes of two meshes may lie apart to stand for each other
+NEIGHBOURS = 4  # nodes of the other mesh that give its motion at a point
+SAME_LOAD = 1e-6  # relative difference of preloads that count as one
+Rows = list[list[str]]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RunDifference:
+    """How the second of two results differs from the first.
+
+    Args:
+        first, second: the results.
+        loads: index of the preload of each that is compared.
+        modes: (pair, 2) index of each mode in the first and in the second result.
+        mac: (pair,) likeness of the two shapes [-], NaN where modes are paired by their number.
+        notes: what does not compare.
+    """
+
+    first: Result
+    second: Result
+    loads: tuple[int, int]
+    modes: Index
+    mac: Array
+    notes: tuple[str, ...] = ()
+
+    @property
+    def frequency_change(self) -> Array:
+        """(pair,) frequency of the second over that of the first, less 1 [-]."""
+        first, second = self.frequencies
+        return np.asarray(second / first - 1.0)
+
+    @property
+    def frequencies(self) -> tuple[Array, Array]:
+        """(pair,) frequencies of both [Hz]."""
+        return self._of_modes("frequencies")
+
+    @property
+    def loss_factors(self) -> tuple[Array, Array]:
+        """(pair,) loss factors of both [-]."""
+        return self._of_modes("loss_factors")
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of the joints that both have."""
+        return tuple(name for name in self.first.joints if name in self.second.joints)
+
+    def _of_modes(self, name: str) -> tuple[Array, Array]:
+        first, second = (
+            np.asarray(getattr(one, name)[load][self.modes[:, side]])
+            for side, (one, load) in enumerate(zip((self.first, self.second), self.loads, strict=True))
+        )
+        return first, second
+
+    def mode_rows(self) -> Rows:
+        """One row for each pair of modes, with a head."""
+        rows = [
+            ["mode", "first f [Hz]", "second f [Hz]", "change [%]", "first loss", "second loss", "change [%]", "MAC"]
+        ]
+        f, loss = self.frequencies, self.loss_factors
+        for k, (i, j) in enumerate(self.modes):
+            rows.append(
+                [
+                    f"{i + 1}" if i == j else f"{i + 1}, {j + 1}",
+                    *(f"{one[k]:.2f}" for one in f),
+                    f"{100 * self.frequency_change[k]:+.2f}",
+                    *(_or_dash(one[k], ".3g") for one in loss),
+                    _or_dash(100 * (loss[1][k] / loss[0][k] - 1) if loss[0][k] > 0 else np.nan, "+.1f"),
+                    _or_dash(self.mac[k], ".3f"),
+                ]
+            )
+        return rows
+
+    def joint_rows(self) -> Rows:
+        """Rows for each joint that both have, with a head: mean and greatest pressure, open share, stiffness."""
+        rows = [["joint", "what", "first", "second", "change"]]
+        for name in self.joints:
+            first, second = (
+                of_joint(one, load, one.joints.index(name))
+                for one, load in zip((self.first, self.second), self.loads, strict=True)
+            )
+            for what, unit, scale, form in (
+                ("mean", "mean pressure [MPa]", 1e-6, ".3g"),
+                ("greatest", "greatest pressure [MPa]", 1e-6, ".3g"),
+                ("open_share", "open share of the area [%]", 100.0, ".1f"),
+                ("stiffness", "total k_n [N/m]", 1.0, ".4g"),
+            ):
+                a, b = scale * getattr(first, what), scale * getattr(second, what)
+                relative = f"{100 * (b / a - 1):+.1f} %" if a > 0 else "-"
+                change = f"{b - a:+.1f} points" if what == "open_share" else relative
+                rows.append([name, unit, f"{a:{form}}", f"{b:{form}}", change])
+        return rows
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointNumbers:
+    """One joint at one preload: pressures [Pa], mean over the nominal area; open share of the area [-]; k_n [N/m]."""
+
+    mean: float
+    greatest: float
+    open_share: float
+    stiffness: float
+
+
+def of_joint(result: Result, load: int, joint: int) -> JointNumbers:
+    """Return the numbers of one joint at one preload."""
+    here = result.joint_of_point == joint
+    weights, pressure = result.weights[here], result.pressure[load][here]
+    area = float(weights.sum())
+    return JointNumbers(
+        mean=float(weights @ pressure) / area,
+        greatest=float(pressure.max()),
+        open_share=float(weights @ (pressure <= 0)) / area,
+        stiffness=float(result.total_k_n[load, joint]),
+    )
+
+
+def compare_runs(first: Result, second: Result, preload: float | None = None) -> RunDifference:
+    """Compare two results of one structure, which may differ in law, surface, bolts, materials and mesh.
+
+    Modes are paired by the likeness of their shapes over the area of the outer surface. At the nodes of the first mesh
+    another mesh moves as its four nearest nodes do, weighted by 1 over the square of their distance. All pairs together
+    have the greatest sum of MAC, and each has at least 0.5. Where the surfaces lie apart modes are paired by their
+    number.
+
+    Args:
+        first: the result that differences are counted from.
+        second: the other.
+        preload: of both [N]; the greatest that both have where None, else the greatest of each.
+
+    Raises:
+        InputError: a result has no such preload.
+    """
+    notes = []
+    if preload is not None:
+        loads = _at(first, preload, "first"), _at(second, preload, "second")
+    else:
+        loads = _shared(first.loads, second.loads) or (len(first.loads) - 1, len(second.loads) - 1)
+    at = first.loads[loads[0]], second.loads[loads[1]]
+    if abs(at[1] / at[0] - 1) > SAME_LOAD:
+        notes.append(f"the preloads differ: {at[0] / 1e3:.4g} kN in the first run, {at[1] / 1e3:.4g} kN in the second")
+    modes, alike, why = _paired(first, second, loads)
+    if why:
+        notes.append(why)
+    for one, other, which, side in ((first, second, "first", 0), (second, first, "second", 1)):
+        alone = [name for name in one.joints if name not in other.joints]
+        if alone:
+            notes.append(f"only the {which} run has the joints {', '.join(alone)}")
+        left = sorted(set(range(one.frequencies.shape[1])) - set(modes[:, side].tolist()))
+        if left:
+            listed = ", ".join(f"{k + 1} ({one.frequencies[loads[side], k]:.0f} Hz)" for k in left)
+            notes.append(f"modes of the {which} run without a partner: {listed}")
+    return RunDifference(first=first, second=second, loads=loads, modes=modes, mac=alike, notes=tuple(notes))
+
+
+def _at(result: Result, preload: float, which: str) -> int:
+    index = preload_index(result.loads, preload)
+    if index is None:
+        there = ", ".join(f"{load / 1e3:.4g} kN" for load in result.loads)
+        raise InputError(f"the {which} run has no preload of {preload / 1e3:.4g} kN; it has {there}")
+    return index
+
+
+def _or_dash(value: float, form: str) -> str:
+    return f"{value:{form}}" if np.isfinite(value) else "-"
+
+
+def _shared(first: Array, second: Array) -> tuple[int, int] | None:
+    """Where the greatest preload stands that both have."""
+    same = np.argwhere(np.isclose(first[:, None], second[None], rtol=SAME_LOAD, atol=0))
+    return (int(same[-1][0]), int(same[-1][1])) if len(same) else None
+
+
+def _areas(result: Result) -> Array:
+    """(node,) area of the outer surface [m2] that belongs to each of its nodes."""
+    corners = result.outline[result.triangles]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+    return np.asarray(np.bincount(result.triangles.ravel(), np.repeat(area / 3, 3), len(result.outline)), dtype=float)
+
+
+def _paired(first: Result, second: Result, loads: tuple[int, int]) -> tuple[Index, Array, str]:
+    """Pairs of modes, their MAC, and why they are paired by number where they are."""
+    from scipy.optimize import linear_sum_assignment
+    from scipy.spatial import KDTree
+
+    distance, near = KDTree(second.outline).query(first.outline, k=NEIGHBOURS)
+    size = float(np.linalg.norm(np.ptp(first.outline, axis=0)))
+    apart = float(distance[:, 0].max())
+    if apart > APART * size:
+        count = min(first.frequencies.shape[1], second.frequencies.shape[1])
+        why = f"the surfaces of the two runs lie up to {1e3 * apart:.3g} mm apart, so modes are paired by their number"
+        return np.repeat(np.arange(count)[:, None], 2, axis=1), np.full(count, np.nan), why
+    shapes: list[Any] = [np.asarray(first.shapes[loads[0]], float), np.asarray(second.shapes[loads[1]], float)]
+    weights = 1 / (distance + 1e-9 * size) ** 2
+    weights /= weights.sum(axis=1, keepdims=True)
+    same = first.outline.shape == second.outline.shape and np.allclose(first.outline, second.outline, atol=1e-9 * size)
+    there = shapes[1] if same else np.einsum("nk,mnkd->mnd", weights, shapes[1][:, near])
+    roots = np.sqrt(_areas(first))[:, None]  # a fine mesh counts no more than a coarse one
+    flat = [(one * roots).reshape(len(one), -1) for one in (shapes[0], there)]
+    table = mac(*flat)
+    rows, columns = linear_sum_assignment(table, maximize=True)
+    alike = table[rows, columns]
+    fits = alike >= ALIKE
+    return np.stack([rows, columns], axis=1)[fits], alike[fits], ""
