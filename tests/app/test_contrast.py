@@ -23,7 +23,8 @@ GROUNDS = {
     },
     "report": {"ink": ("back", "head", "flag"), "soft": ("back",), "accent": ("back",)},
 }
-EDGES = {"page": {"edge": ("back", "panel")}, "report": {}}
+CURVES = {f"c{k}": ("back",) for k in range(8)}
+EDGES = {"page": {"edge": ("back", "panel"), **CURVES}, "report": {}}
 NO_TEXT = {"line"}  # grounds that nothing is written on
 
 
@@ -68,7 +69,7 @@ def test_every_text_can_be_read_on_every_ground(name):
 def test_no_colour_is_left_out(name):
     style = STYLES[name]
     texts = set(re.findall(r"(?<![-\w])color:var\(--([\w-]+)\)", style))
-    assert texts <= set(GROUNDS[name])
+    assert texts <= {*GROUNDS[name], *EDGES[name]}
     grounds = set(re.findall(r"background(?:-color)?:var\(--([\w-]+)\)", style))
     tested = {ground for every in GROUNDS[name].values() for ground in every}
     assert grounds <= tested | NO_TEXT

@@ -19,6 +19,7 @@ from faying.files import make_folder
 
 if TYPE_CHECKING:
     from faying.app.runs import Runs
+    from faying.app.scans import OpenScan
 
 # what may run, with the pictures that it draws for the page
 JOBS: dict[str, dict[str, str]] = {
@@ -61,6 +62,7 @@ class Session:
         self.project = project
         self.job: Job | None = None
         self._runs: Runs | None = None
+        self._open: tuple[object, OpenScan] | None = None
         self._lock = threading.Lock()
 
     @property
@@ -155,7 +157,25 @@ class Session:
         """The laws on a scan beside each other, as `faying law --all-models` gives them."""
         material = request.query.get("material", "45 steel")
         name = self._name(request, "name")
-        return self._pictured("law", f"--scan={name}", "--all-models", f"--material={material}", "--against=same")
+        return {
+            "facts": self._answer("law", f"--scan={name}", "--all-models", f"--material={material}", "--against=same")
+        }
+
+    def map(self, request: Request) -> dict[str, Any]:
+        """A window of a scan as a map."""
+        from faying.app.scans import window_of
+
+        return self._scan(request).map(window_of(request.given("window")))
+
+    def line(self, request: Request) -> dict[str, Any]:
+        """Heights along a line of a scan."""
+        from faying.app.scans import window_of
+
+        try:
+            at = float(request.given("at"))
+        except ValueError:
+            raise InputError("the request lacks where the line lies, a share from 0 to 1") from None
+        return self._scan(request).line(request.given("along"), at, window_of(request.given("window")))
 
     def faces(self, request: Request) -> dict[str, Any]:
         """The faces of a STEP file or mesh, as `faying faces` lists them."""
@@ -210,6 +230,18 @@ class Session:
             raise InputError(f"no file {name!r} in the folder")
         return name
 
+    def _scan(self, request: Request) -> "OpenScan":
+        """The scan that a request names, read once."""
+        from faying.app.scans import OpenScan
+
+        path = self.project.file(self._name(request, "name"))
+        units = tuple(request.query.get(key) for key in ("xy-unit", "z-unit", "size"))
+        mark = (path.name, path.stat().st_mtime_ns, units)
+        with self._lock:
+            if self._open is None or self._open[0] != mark:
+                self._open = (mark, OpenScan.read(path, *units))
+            return self._open[1]
+
     def _form(self, text: str) -> list[dict[str, Any]] | None:
         """The form of a text; None where it is not TOML, which is a fault of its own."""
         from faying.app.form import form_of
@@ -242,6 +274,8 @@ ROUTES: dict[tuple[str, str], Callable[[Session, Request], dict[str, Any] | str]
     ("POST", "new"): Session.propose,
     ("GET", "scan"): Session.scan,
     ("GET", "laws"): Session.laws,
+    ("GET", "map"): Session.map,
+    ("GET", "line"): Session.line,
     ("GET", "faces"): Session.faces,
     ("GET", "scene"): Session.scene,
     ("GET", "runs"): Session.results,

@@ -33,7 +33,7 @@ TYPES = {
 }
 DIGITS = 18  # of the length of a request, beyond which it is no size
 PAGE = Path(__file__).parent / "page"
-OWN = ("app.css", "app.js", "base.js", "form.js", "runs.js")
+OWN = ("app.css", "app.js", "base.js", "explore.js", "form.js", "runs.js")
 # the page's files by their name in the address, "" for the page itself
 ASSETS = {"": PAGE / "index.html", **{name: PAGE / name for name in OWN}, **VIEWER}
 

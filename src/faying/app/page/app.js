@@ -2,6 +2,7 @@
  * and puts what it is told into the page as text, never as HTML. */
 import { mount } from "./viewer.js";
 import { $, ask, busy, length, made, plain, said, table } from "./base.js";
+import { showLaws, showMap } from "./explore.js";
 import { mountForm } from "./form.js";
 import { showRuns } from "./runs.js";
 
@@ -131,8 +132,8 @@ async function showScan(again = false) {
   $("scan-hint").hidden = Boolean(name);
   if (!name || (name === state.scan && !again)) return;
   state.scan = name;
-  for (const id of ["scan-picture", "laws-picture"]) $(id).hidden = true;
-  $("laws-table").replaceChildren();
+  for (const id of ["scan-picture", "map", "map-fault"]) $(id).hidden = true;
+  for (const id of ["laws-table", "laws-curves"]) $(id).replaceChildren();
   $("scan-facts").replaceChildren(made("p", "reading the scan …", { className: "hint" }));
   const units = {};
   for (const id of ["xy-unit", "z-unit"]) if ($(id).value.trim()) units[id] = $(id).value.trim();
@@ -143,6 +144,7 @@ async function showScan(again = false) {
     $("scan-facts").replaceChildren(...scanTable(facts), fitTable(facts), ...warnings(facts));
     $("scan-picture").firstElementChild.src = `data:image/png;base64,${picture}`;
     $("scan-picture").hidden = false;
+    if (facts.points.length === 2) showMap({ name, ...units });
   } catch (fault) {
     $("scan-facts").replaceChildren();
     said("scan-fault", fault);
@@ -180,11 +182,10 @@ $("scans").addEventListener("change", () => showScan());
 $("scan-again").addEventListener("click", () => showScan(true));
 $("show-laws").addEventListener("click", (event) => busy(event.target, "solving the contact …", async () => {
   try {
-    const { facts, picture } = await ask("GET", "laws", { name: $("scans").value });
+    const { facts } = await ask("GET", "laws", { name: $("scans").value });
     const marks = "* outside the validity range of the law; - outside what it covers, or without a stiffness of its own";
     $("laws-table").replaceChildren(lawTable(facts), made("p", marks, { className: "hint" }));
-    $("laws-picture").firstElementChild.src = `data:image/png;base64,${picture}`;
-    $("laws-picture").hidden = false;
+    showLaws($("laws-curves"), facts);
     said("scan-fault", null);
   } catch (fault) {
     said("scan-fault", fault);
