@@ -1,16 +1,21 @@
 """The form of a study: what its fields show, and that a change in one is a change of one key in the text."""
 
 import json
+import time
 import tomllib
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from faying.app.form import added, changed, form_of, removed
 from faying.errors import InputError
+from faying.setup.edit import written
 from faying.setup.template import TEXT
 from faying.study import Study
 from faying.study.keys.reader import StudyFaults
+from faying.study.keys.tables import STUDY as STUDY_KEYS
 from tests.app.test_server import ask
 from tests.setup.test_edit import leaves
 
@@ -155,3 +160,37 @@ def test_the_server_gives_the_form_and_changes_a_text(server, tmp_path):
     assert list(tmp_path.iterdir()) == []  # nothing is saved
     for wrong in ({"path": []}, {"path": [1.5]}, {"value": 3}, {"text": None}):
         assert "fault" in json.loads(ask(server, "api/edit", "POST", json.dumps(body | wrong).encode())[1])
+
+
+ODD = st.recursive(
+    st.one_of(st.integers(0, 9), st.booleans(), st.sampled_from(["jk", "a", "", "1 kN", "a.b"])),
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=2),
+        st.dictionaries(
+            st.sampled_from(["name", "model", "faces", "law", "face", "washer", "x", "part"]), inner, max_size=3
+        ),
+    ),
+    max_leaves=5,
+)
+
+
+@given(st.dictionaries(st.sampled_from(sorted(STUDY_KEYS)), ODD, max_size=4), st.data())
+@settings(max_examples=150, deadline=None)
+def test_whatever_a_text_says_has_a_form(data, more):
+    """Tables where keys should be, and keys where tables should be: half of what is typed is on its way."""
+    text = "".join(f"{name} = {written(value)}\n" for name, value in data.items())
+    found = [one for group in form_of(text, {}) for one in group["fields"]]
+    one = more.draw(st.sampled_from(found))
+    try:
+        changed(text, tuple(one["path"]), "0.5")
+    except InputError:
+        return
+
+
+def test_a_form_is_quick():
+    """It is made after every pause in typing."""
+    form_of(STUDY, {})
+    start = time.perf_counter()
+    for _ in range(5):
+        form_of(STUDY, {})
+    assert (time.perf_counter() - start) / 5 < 0.5

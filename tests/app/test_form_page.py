@@ -93,11 +93,16 @@ def test_text_and_form_follow_each_other(browser, server, example, tmp_path):  #
         assert "whole number" in page.inner_text("#faults")
         page.click("#form-undo")
         until(page, f"{box}.value === '4' && {box}.ariaInvalid === null")
+        assert page.is_disabled("#form-undo")
+        page.fill(count, "5")
+        page.press(count, "Enter")
+        until(page, "!document.querySelector('#form-undo').disabled")
         page.fill("#text", "[modes\n")
         until(page, "!document.querySelector('#form-off').hidden")
         assert page.evaluate("document.querySelector('#groups').inert")
         set_text(page, good)
         until(page, f"{box}.value === '6' && !document.querySelector('#groups').inert")
+        assert page.is_disabled("#form-undo")  # what was typed since would be lost
         page.unroute_all(behavior="ignoreErrors")
 
 

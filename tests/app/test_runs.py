@@ -42,6 +42,19 @@ def test_runs_are_kept_once_and_the_oldest_go(tmp_path):
     assert sorted(path.name for path in (tmp_path / "results").iterdir()) == ["result.nc"]
 
 
+def test_large_runs_go_earlier_and_the_newest_stays(tmp_path, monkeypatch):
+    runs = Runs(Project.at(tmp_path))
+    run_of(tmp_path, "jk")
+    size = (tmp_path / "results" / "result.nc").stat().st_size
+    for limit, left in ((int(2.5 * size), 2), (size // 2, 1)):
+        monkeypatch.setattr("faying.app.runs.MOST_BYTES", limit)
+        for second in range(4):
+            run_of(tmp_path, "jk", second=second, title=f"{limit} {second}")
+            runs.keep()
+        assert len(runs.names()) == left
+        assert runs.listed()[0]["title"] == f"{limit} 3"
+
+
 def test_runs_of_two_studies_of_a_folder_stay_apart(tmp_path):
     run_of(tmp_path, "jk")
     Runs(Project.at(tmp_path)).keep()

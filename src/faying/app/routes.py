@@ -63,7 +63,7 @@ class Session:
         self.job: Job | None = None
         self._runs: Runs | None = None
         self._open: tuple[object, OpenScan] | None = None
-        self._lock = threading.Lock()
+        self._lock, self._reading = threading.Lock(), threading.Lock()
 
     @property
     def runs(self) -> "Runs":
@@ -237,7 +237,7 @@ class Session:
         path = self.project.file(self._name(request, "name"))
         units = tuple(request.query.get(key) for key in ("xy-unit", "z-unit", "size"))
         mark = (path.name, path.stat().st_mtime_ns, units)
-        with self._lock:
+        with self._reading:
             if self._open is None or self._open[0] != mark:
                 self._open = (mark, OpenScan.read(path, *units))
             return self._open[1]

@@ -19,6 +19,7 @@ from faying.setup.edit import written
 from faying.setup.lines import KeyPath, name_of
 
 MOST = 8  # results that are kept
+MOST_BYTES = 2 << 30  # that they may have together
 NAME = re.compile(r"[0-9]{8}-[0-9]{6}-[0-9a-f]{8}")
 
 
@@ -49,10 +50,17 @@ class Runs:
                 make_folder(self.folder, "free its name in the folder")
                 write_atomically(self.folder / f"{date:%Y%m%d-%H%M%S}-{digest}.nc", lambda path: path.write_bytes(data))
             self._seen = (state.st_mtime_ns, state.st_size)
-            for name in self.names()[MOST:]:
-                self._file(name).unlink()
+            self._forget()
         except (OSError, FayingError):
             return
+
+    def _forget(self) -> None:
+        """Delete the oldest where they are more, or larger, than what is kept; the newest stays."""
+        size = 0
+        for k, name in enumerate(self.names()):
+            size += self._file(name).stat().st_size
+            if k and (k >= MOST or size > MOST_BYTES):
+                self._file(name).unlink()
 
     def names(self) -> list[str]:
         """Names of the runs, the newest first."""

@@ -21,7 +21,7 @@ export function mountForm(host) {
           const found = (await ask("POST", "edit", {}, JSON.stringify({ text, ...body }))).text;
           done = host.text() === text;
           if (done && found !== text) {
-            before.push(text);
+            before.push({ text, after: found });
             before.splice(0, before.length - UNDONE);
             await host.put(found);
           }
@@ -30,17 +30,17 @@ export function mountForm(host) {
       } catch (fault) {
         said("form-fault", fault);
       }
-      $("form-undo").disabled = !before.length;
       after();
     });
     return queue;
   }
 
   $("form-undo").addEventListener("click", async () => {
-    const text = before.pop();
-    $("form-undo").disabled = !before.length;
-    if (text !== undefined) await host.put(text);
+    if (undoable()) await host.put(before.pop().text);
   });
+
+  /** Whether the text is as the form left it: what was typed since is not taken back. */
+  const undoable = () => before.at(-1)?.after === host.text();
 
   function control(field) {
     const limits = field.shape === "choice" ? field.choices : field.shape === "truth" ? ["true", "false"] : null;
@@ -151,6 +151,7 @@ export function mountForm(host) {
 
   /** Draw the form anew where other fields stand in it; else change what they show. */
   function draw(form) {
+    $("form-undo").disabled = !undoable();
     $("form-off").hidden = Boolean(form);
     $("groups").inert = !form;
     if (!form) return;
