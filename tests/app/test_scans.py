@@ -6,9 +6,11 @@ from base64 import b64decode
 import numpy as np
 import pytest
 
-from faying.app.scans import MISSING, MOST, MOST_OF_LINE, OpenScan, window_of
+from faying.app.scans import MISSING, MOST, MOST_OF_LINE, OpenScan, band_of, window_of
 from faying.errors import InputError
+from faying.surface.fractal import fit_fractal
 from faying.surface.scan import Profile, Scan
+from faying.surface.synthesize import spectral
 from faying.surface.write import write_scan
 from tests.app.test_page import page_at
 from tests.app.test_server import ask
@@ -100,6 +102,30 @@ def test_lines_along_both_sides_within_a_window():
     assert along["heights"] == pytest.approx(ripple[10:20, 30], abs=1e-12)
 
 
+@pytest.fixture(scope="module")
+def rough():
+    return OpenScan(spectral((256, 256), spacing=2e-6, D=2.3, Rq=0.5e-6, longest=2e-4, seed=11))
+
+
+def test_the_spectrum_has_the_power_of_the_heights(rough):
+    """Parseval: the power over all radial frequencies is the mean square of the levelled heights."""
+    found = rough.spectrum()
+    f, power = 1 / np.array(found["wavelength"]), np.array(found["density"])
+    assert np.trapezoid(power, f) == pytest.approx(np.mean(rough.scan.heights**2), rel=0.15)  # Hann window, corners
+
+
+def test_a_band_is_fitted_as_the_command_fits_it(rough):
+    found = rough.spectrum()["fit"]
+    assert found["D_interval"][0] < 2.3 < found["D_interval"][1]
+    band = (8e-6, 80e-6)
+    narrow = rough.spectrum(band)["fit"]
+    assert band[0] * 0.99 < narrow["band"][0] < narrow["band"][1] < band[1] * 1.01
+    assert narrow["D"] == fit_fractal(rough.measured, band=band).D
+    ends, law = np.array(narrow["band"]), np.array(narrow["law"])
+    slope = np.diff(np.log(law)) / np.diff(np.log(ends))
+    assert slope[0] == pytest.approx(7 - 2 * narrow["D"])  # S(f) = B f^-(7-2D)
+
+
 @pytest.mark.parametrize(
     ("work", "said"),
     [
@@ -108,12 +134,14 @@ def test_lines_along_both_sides_within_a_window():
         (lambda scan: scan.line("z", 0.5, WHOLE), 'along = "z"'),
         (lambda scan: scan.line("x", 1.5, WHOLE), "at = 1.5"),
         (lambda scan: window_of("0,1,2"), "four numbers"),
+        (lambda scan: band_of("1"), "two wavelengths"),
+        (lambda scan: scan.spectrum((1e-3, 1e-2)), "band"),
         (lambda scan: OpenScan(Profile(heights=np.zeros(9), spacing=1e-6)), "a line scan has no map"),
     ],
 )
 def test_what_cannot_be_shown_is_said(work, said):
     with pytest.raises(InputError, match=said):
-        work(OpenScan(wave((8, 9), (1e-6, 1e-6))[1]))
+        work(OpenScan(wave((20, 24), (1e-6, 1e-6))[1]))
 
 
 @pytest.fixture
@@ -192,3 +220,21 @@ def test_a_map_zooms_and_laws_are_switched(browser, server, scanned):
         page.get_by_role("button", name="None", exact=True).click()
         assert page.locator("#laws-curves svg").count() == 0
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_a_band_is_set_by_keys_and_taken_back(browser, server, rough, tmp_path):
+    write_scan(rough.measured, tmp_path / "rough.x3p")
+    says = "document.querySelector('#band-says').textContent"
+    with page_at(browser, server) as page:
+        page.wait_for_selector("#band:not([hidden])")
+        until(page, f"{says}.includes('D = ')")
+        first = page.evaluate(says)
+        shown = rough.spectrum()["fit"]
+        assert f"D = {shown['D']:.4g}"[:8] in first
+        page.focus("#band-to")
+        for _ in range(20):
+            page.keyboard.press("ArrowLeft")
+        until(page, f"{says}.includes('D = ') && {says} !== {json.dumps(first)}")
+        assert page.get_attribute("#band-to", "aria-valuetext").endswith("µm")
+        page.click("#band-auto")
+        until(page, f"{says} === {json.dumps(first)}")

@@ -230,6 +230,12 @@ class Session:
             raise InputError(f"no file {name!r} in the folder")
         return name
 
+    def spectrum(self, request: Request) -> dict[str, Any]:
+        """The spectrum of a scan with the fit over a band."""
+        from faying.app.scans import band_of
+
+        return self._scan(request).spectrum(band_of(request.query.get("band")))
+
     def _scan(self, request: Request) -> "OpenScan":
         """The scan that a request names, read once."""
         from faying.app.scans import OpenScan
@@ -276,6 +282,7 @@ ROUTES: dict[tuple[str, str], Callable[[Session, Request], dict[str, Any] | str]
     ("GET", "laws"): Session.laws,
     ("GET", "map"): Session.map,
     ("GET", "line"): Session.line,
+    ("GET", "spectrum"): Session.spectrum,
     ("GET", "faces"): Session.faces,
     ("GET", "scene"): Session.scene,
     ("GET", "runs"): Session.results,

@@ -8,9 +8,12 @@ from typing import Any, final
 import numpy as np
 
 from faying.errors import InputError
-from faying.surface.form import levelled
+from faying.surface.convention import density
+from faying.surface.form import levelled, prepared
+from faying.surface.fractal import fit_fractal
 from faying.surface.read import read_scan
 from faying.surface.scan import Scan
+from faying.surface.spectrum import Spectrum, spectrum
 from faying.typing import Array, Index
 from faying.units import lengths
 
@@ -31,7 +34,9 @@ class OpenScan:
     def __init__(self, scan: Any) -> None:
         if not isinstance(scan, Scan):
             raise InputError("a line scan has no map; its picture shows the line")
-        self.scan = levelled(scan, 1)
+        self.measured, self.scan = scan, levelled(scan, 1)
+
+        self._spectrum: Spectrum | None = None
 
     @classmethod
     def read(cls, file: Path, xy_unit: str | None, z_unit: str | None, size: str | None) -> "OpenScan":
@@ -100,6 +105,41 @@ class OpenScan:
             "at": float((index + 0.5) * other),
         }
 
+    def spectrum(self, band: tuple[float, float] | None = None) -> dict[str, Any]:
+        """Return the power spectrum with the power law that is fitted over a band, as `faying surface` fits it.
+
+        Args:
+            band: shortest and longest wavelength [m]; the one that the heights support where None.
+
+        Returns:
+            wavelength [m] and density [m3] of the bins; limits: of a band [m]; fit: D, G [m], their 95 % intervals,
+            band [m], warnings, and density of the law at the ends of the band.
+
+        Raises:
+            InputError, NotConverged: the band is none, or holds no power law.
+        """
+        if self._spectrum is None:
+            self._spectrum = spectrum(prepared(self.measured).scan)
+        found = self._spectrum
+        fit = fit_fractal(self.measured, band=band)
+        ends = np.array(fit.band)
+        law = density(fit.D, fit.G, fit.c) * ends ** (7 - 2 * fit.D) if fit.G > 0 else np.full(2, np.nan)
+        good = found.density > 0
+        return {
+            "wavelength": (1 / found.frequency[good]).tolist(),
+            "density": found.density[good].tolist(),
+            "limits": [1 / found.nyquist, 1 / found.lowest],
+            "fit": {
+                "D": fit.D,
+                "G": fit.G,
+                "D_interval": list(fit.D_interval),
+                "G_interval": list(fit.G_interval),
+                "band": list(fit.band),
+                "law": [float(one) if np.isfinite(one) else None for one in law],
+                "warnings": list(fit.warnings),
+            },
+        }
+
     def _edges(self, window: Window) -> tuple[tuple[Index, Index], list[float]]:
         """Edges of the groups of points along x and y, and the window that they fill [m]."""
         x0, y0, x1, y1 = window
@@ -116,6 +156,17 @@ class OpenScan:
             found.append(np.linspace(first, last, min(MOST, last - first) + 1).astype(int))
         ends = [found[0][0] * dx, found[1][0] * dy, found[0][-1] * dx, found[1][-1] * dy]
         return (found[0], found[1]), [float(one) for one in ends]
+
+
+def band_of(text: str | None) -> tuple[float, float] | None:
+    """Read a band from a request: shortest and longest wavelength [m]. Raises InputError for anything else."""
+    if not text:
+        return None
+    try:
+        shortest, longest = (float(one) for one in text.split(","))
+    except ValueError:
+        raise InputError("a band has two wavelengths in metres, the shortest and the longest") from None
+    return shortest, longest
 
 
 def window_of(text: str) -> Window:

@@ -132,7 +132,7 @@ async function showScan(again = false) {
   $("scan-hint").hidden = Boolean(name);
   if (!name || (name === state.scan && !again)) return;
   state.scan = name;
-  for (const id of ["scan-picture", "map", "map-fault"]) $(id).hidden = true;
+  for (const id of ["scan-picture", "map", "map-fault", "band"]) $(id).hidden = true;
   for (const id of ["laws-table", "laws-curves"]) $(id).replaceChildren();
   $("scan-facts").replaceChildren(made("p", "reading the scan …", { className: "hint" }));
   const units = {};

@@ -31,7 +31,7 @@ function ticks([low, high], log) {
 }
 
 /** An SVG of series {label, kind, runs: [{points, faint}]} over two axes {label, range, log}. */
-export function chart({ x, y, series, label, width = 720, height = 300 }) {
+export function chart({ x, y, series, label, width = 720, height = 300, band = null, dots = [] }) {
   const box = { left: 62, right: width - 12, top: 10, bottom: height - 42 };
   const scale = (axis, from, to) => {
     const change = axis.log ? Math.log10 : (v) => v, [a, b] = axis.range.map(change);
@@ -40,7 +40,7 @@ export function chart({ x, y, series, label, width = 720, height = 300 }) {
   const px = scale(x, box.left, box.right), py = scale(y, box.bottom, box.top);
   const out = drawn("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", class: "chart" });
   out.append(drawn("title", {}, label));
-  const text = (one) => String(Number(one.toPrecision(4)));
+  const text = (one) => { const out = String(Number(one.toPrecision(4))); return out.length > 7 ? one.toExponential(0) : out; };
   for (const one of ticks(x.range, x.log)) {
     out.append(drawn("line", { x1: px(one), x2: px(one), y1: box.top, y2: box.bottom, class: "grid" }),
       drawn("text", { x: px(one), y: box.bottom + 16, "text-anchor": "middle" }, text(one)));
@@ -51,6 +51,10 @@ export function chart({ x, y, series, label, width = 720, height = 300 }) {
   }
   out.append(drawn("text", { x: (box.left + box.right) / 2, y: height - 6, "text-anchor": "middle" }, x.label),
     drawn("text", { x: -(box.top + box.bottom) / 2, y: 14, transform: "rotate(-90)", "text-anchor": "middle" }, y.label));
+  if (band) out.append(drawn("rect", { x: px(band[0]), width: px(band[1]) - px(band[0]), y: box.top, height: box.bottom - box.top, class: "band" }));
+  const cloud = drawn("g", { class: "dots" });
+  cloud.append(...dots.map(([a, b]) => drawn("circle", { cx: px(a).toFixed(1), cy: py(b).toFixed(1), r: 2 })));
+  out.append(cloud);
   for (const one of series) {
     const group = drawn("g", { class: `curve c${one.kind % COLOURS}${one.kind >= COLOURS ? " dashed" : ""}` });
     group.append(drawn("title", {}, one.label));
@@ -130,7 +134,49 @@ const view = { query: null, window: [0, 0, 1, 1], map: null, along: "x", at: 0.5
 export async function showMap(query) {
   Object.assign(view, { query, window: [0, 0, 1, 1], at: 0.5 });
   await load();
+  await fit();
 }
+
+/* the spectrum, and the band over which a power law is fitted */
+
+const spectrum = { limits: [1, 1], number: 0 };
+const toShare = (wave) => Math.log(wave / spectrum.limits[0]) / Math.log(spectrum.limits[1] / spectrum.limits[0]);
+const toWave = (share) => spectrum.limits[0] * (spectrum.limits[1] / spectrum.limits[0]) ** share;
+
+async function fit(band = null) {
+  const number = (spectrum.number += 1);
+  let found;
+  try {
+    found = await ask("GET", "spectrum", band ? { ...view.query, band: band.join() } : view.query);
+    if (number === spectrum.number) said("band-fault", null);
+  } catch (fault) {
+    if (number === spectrum.number && !$("map").hidden) said("band-fault", fault);
+    return;
+  }
+  if (number !== spectrum.number) return; // a later one is under way
+  const { wavelength, density, fit: law, limits } = found, UM = 1e6;
+  spectrum.limits = limits;
+  $("band").hidden = false;
+  for (const [id, wave] of [["band-from", law.band[0]], ["band-to", law.band[1]]]) {
+    $(id).value = toShare(wave);
+    $(id).setAttribute("aria-valuetext", length(wave));
+  }
+  const dots = wavelength.map((one, k) => [one * UM, density[k]]), ends = law.law.every((one) => one > 0);
+  const line = ends ? [{ label: "fit", kind: 0, runs: [{ points: law.band.map((one, k) => [one * UM, law.law[k]]), faint: false }] }] : [];
+  const label = `Power of the heights against wavelength, with the law over ${length(law.band[0])} to ${length(law.band[1])}`;
+  $("band-chart").replaceChildren(chart({ x: { label: "wavelength [µm]", range: extent(dots.map(([a]) => a), true), log: true },
+    y: { label: "power per frequency [m³]", range: extent([...density, ...(ends ? law.law : [])], true), log: true }, series: line, dots, band: law.band.map((one) => one * UM), label }));
+  const range = (ends, show) => ends.map(show).join(" to ");
+  $("band-says").textContent = `${length(law.band[0])} to ${length(law.band[1])}: D = ${plain(law.D)} (${range(law.D_interval, (one) => plain(one))}), `
+    + `G = ${length(law.G)} (${range(law.G_interval, length)}), 95 % intervals.`;
+  $("band-warns").replaceChildren(...law.warnings.map((one) => made("p", one, { className: "hint" })));
+}
+
+for (const id of ["band-from", "band-to"]) {
+  $(id).addEventListener("input", () => $(id).setAttribute("aria-valuetext", length(toWave(Number($(id).value)))));
+  $(id).addEventListener("change", () => fit([toWave(Number($("band-from").value)), toWave(Number($("band-to").value))]));
+}
+$("band-auto").addEventListener("click", () => fit());
 
 async function load() {
   const number = (view.number += 1), query = { ...view.query, window: view.window.join() };
