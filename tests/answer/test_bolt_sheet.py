@@ -41,19 +41,21 @@ HAND = {
     "F_Zd": lambda v: v["f_Zd"] / (v["delta_S"] + v["delta_P"]),
     "dF_th": lambda v: v["F_th"],
     "F_Mmin": lambda v: v["F_V"] - v["s"] * v["F_V"],
-    "F_Mreq": lambda v: v["F_Kreq"] + v["F_Ao"] - v["Phi"] * v["F_Ao"] + v["F_Zd"] + v["F_thd"],
+    "F_SAu": lambda v: v["Phi"] * v["F_Au"] + v["dF_u"],
+    "F_SAo": lambda v: v["dF_o"] + v["Phi"] * v["F_Ao"],
+    "F_Mreq": lambda v: v["F_Kreq"] + v["F_Ao"] - v["Phi"] * v["F_Ao"] + v["dF_P"] + v["F_Zd"] + v["F_thd"],
     "F_Mmax": lambda v: v["alpha_A"] * v["F_Mmin"],
     "M_G": lambda v: v["F_Mmax"] * (0.16 * v["P"] + 0.58 * v["d_2"] * v["mu_G"]),
     "sigma_redM": lambda v: mises(v["F_Mmax"] / (pi * v["d_0"] ** 2 / 4), 12 * v["M_G"] / (pi * v["d_0"] ** 3)),
-    "F_Smax": lambda v: v["F_Mmax"] + v["Phi"] * v["F_Ao"] + v["F_thg"],
+    "F_Smax": lambda v: v["F_Mmax"] + v["F_SAo"] + v["F_thg"],
     "sigma_redB": lambda v: mises(v["F_Smax"] / (pi * v["d_0"] ** 2 / 4), 8 * v["M_G"] / (pi * v["d_0"] ** 3)),
     "sigma_ASV": lambda v: (127.5 / (v["d"] * 1e3) + 38.25) * 1e6,
-    "sigma_a": lambda v: v["Phi"] * (v["F_Ao"] - v["F_Au"]) / 2 / v["A_S"],
+    "sigma_a": lambda v: (v["F_SAo"] - v["F_SAu"]) / 2 / v["A_S"],
     "p_M": lambda v: v["F_Mmax"] / v["A_p"],
     "p_B": lambda v: v["F_Smax"] / v["A_p"],
     "F_nut": lambda v: v["F_Mmax"],
     "F_Vmin": lambda v: v["F_Mmin"] - v["F_Zd"] - v["F_thd"],
-    "F_PA": lambda v: v["F_Ao"] - v["Phi"] * v["F_Ao"],
+    "F_PA": lambda v: v["F_Ao"] - v["Phi"] * v["F_Ao"] + v["dF_P"],
     "F_KRmin": lambda v: v["F_Vmin"] - v["F_PA"],
     "F_KQs": lambda v: v["F_KQ"],
     "tau_Q": lambda v: v["F_Q"] / v["A_S"],
@@ -280,7 +282,8 @@ def test_loads_of_the_sheet_are_those_of_a_case(made):
     change = dict(zip(found.cases, found.bolt_force[:, 0] - found.bolt_preload[0], strict=True))
     values = {one.symbol: one.value for row in sheet.rows for one in row.inputs}
     assert (values["F_Au"], values["F_Ao"]) == pytest.approx((-400, 900), rel=1e-6)
-    assert values["F_Q"] == pytest.approx(found.transverse_load[found.index("cold"), 0], rel=1e-4)
+    cold = found.index("cold")
+    assert values["F_Q"] == pytest.approx(found.transverse_load[cold, 0] + found.bolt_shear[cold, 0], rel=1e-4)
     assert values["F_thg"] == pytest.approx(change["icy"], rel=1e-6)  # of a bolt that shrinks
     assert values["F_thg"] > 100
     assert values["F_th"] == pytest.approx(-change["warm"], rel=1e-6)
@@ -293,6 +296,25 @@ def test_loads_of_the_sheet_are_those_of_a_case(made):
         if None not in given.values():
             assert row.result.value == pytest.approx(HAND[row.result.symbol](given), rel=1e-9)
     assert "of load 'pull' and 'press' and 'icy'" in sheet.row("F_Smax").inputs[2].name
+    least, most = (sheet.row(symbol).result.value for symbol in ("F_SAu", "F_SAo"))
+    assert most == pytest.approx(change["cold"], rel=0.05)
+    assert least < -1  # of the case that presses
+
+
+def test_another_case_never_takes_stress_from_a_bolt(made):
+    """A moment bends the joint open and pulls the bolt, at no working load along it; the sheet counts its force."""
+    bend = {"name": "bend", "force": [{"face": "upper.seat", "moment": ["0 N*m", "12 N*m", "0 N*m"]}]}
+    bare = {key: value for key, value in PULL.items() if key != "temperature"}
+    loads = {"support": [HELD], "load": [bare, bend]}
+    both, one, other = (
+        bolt_sheet(made(bolt_sheet={"load": names}, **loads)).sheets[0]
+        for names in (["pull", "bend"], ["pull"], ["bend"])
+    )
+    found = faying.load_cases(made(**loads), modes=False)
+    change = found.bolt_force[:, 0] - found.bolt_preload[0]
+    for sheet, rows in ((both, [0, 1]), (one, [0]), (other, [1])):
+        assert sheet.row("F_SAo").result.value == pytest.approx(max(*change[rows], 0.0), rel=1e-4)
+        assert both.row("F_Smax").result.value >= sheet.row("F_Smax").result.value * (1 - 1e-9)
 
 
 @pytest.mark.parametrize(

@@ -40,6 +40,7 @@ def made(cases=("10 g", "left_1", "both of them, one after the other")):
         normal_preload=np.array([weights @ rest]),
         friction=np.array([0.2]),
         shear_force=300 * by_joint,
+        torque=2 * by_joint,
         mean_pressure=normal / weights.sum(),
         greatest_pressure=np.array([[one.max()] for one in moved]),
         opened=np.array([[np.mean(one <= 0)] for one in moved]),

@@ -1,5 +1,7 @@
 """Load cases on two bars under a bolt, where all is one-dimensional."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -86,6 +88,58 @@ def test_heat_of_bolt_and_bars(free):
     assert change == pytest.approx(per_kelvin * np.array([60, -40, 0, 15]), rel=1e-6, abs=1e-6 * PRELOAD)
     assert found.normal_force[:, 0] - PRELOAD == pytest.approx(change, rel=1e-6, abs=1e-6 * PRELOAD)
     assert found.working_load[:, 0] == pytest.approx(0, abs=1e-6 * PRELOAD)
+
+
+def test_even_heat_leaves_a_bolt_with_washers_alone():
+    """What all expands alike changes no force: washers grow as the bolt does."""
+    made = bars(held=False)
+    old = made.structure
+    washer = faying.Washer(outer=0.016, inner=0.009, thickness=0.004, material=SIMPLE)
+    bolt = replace(old.bolts[0], washers=(washer,))
+    state = faying.Structure(old.mesh, old.materials, old.joints, (bolt,)).solve(PRELOAD, modes=2)
+    found = faying.load_cases(state, [faying.Load("all", temperature={"p0": 50, "p1": 50, "b": 50})], modes=False)
+    assert found.bolt_force[0, 0] == pytest.approx(PRELOAD, abs=1e-6 * PRELOAD)
+
+
+def test_a_torque_needs_friction(held):
+    """Of one bolt, without any force across: the torque over the friction that the pressure has about its centre."""
+    made = bars(held=True, friction=0.3)
+    state = made.structure.solve(PRELOAD, modes=2)
+    torque = 5.0
+    turn = faying.Load("turn", forces=[faying.Force("p1.right", moment=(torque, 0, 0))])
+    found = faying.load_cases(state, [turn], modes=False)
+    joint = state.structure.joints[0].interface
+    press = joint.weights * found.pressure[0]
+    arm = joint.positions - press @ joint.positions / press.sum()
+    reach = press @ np.hypot(arm[:, 1], arm[:, 2]) / press.sum()
+    shank = torque - found.torque[0, 0]  # what the bolt bears by its own torsion
+    assert 0 <= shank < 0.1 * torque
+    assert found.shear_force[0, 0] == pytest.approx(0, abs=1e-3 * torque / reach)
+    assert found.friction_needed[0, 0] == pytest.approx(found.torque[0, 0] / reach / press.sum(), rel=1e-6)
+    assert 1 < found.slip_margin[0, 0] < 3
+
+
+def test_what_does_nothing_changes_nothing(held):
+    state = held[1]
+    loads = [
+        faying.Load("none", pressures=[faying.Pressure("p1.right", 0.0)]),
+        faying.Load("at rest", temperature={"p0": 0.0}),
+        faying.Load("at the support", forces=[faying.Force("p0.left", force=(100.0, 0, 0))]),
+    ]
+    for load in loads:
+        found = faying.load_cases(state, [load], modes=False)
+        assert found.bolt_force[0, 0] == pytest.approx(PRELOAD, rel=1e-9)
+        assert found.error[0] == 0
+    with pytest.raises(faying.InputError, match="two loads are called 'none'"):
+        faying.load_cases(state, [loads[0], loads[0]], modes=False)
+
+
+def test_a_load_across_that_changes_no_bolt_force_superposes(held):
+    """By symmetry the bolt keeps its force; what rounding makes of that is no departure."""
+    across = faying.Load("across", forces=[faying.Force("p1.right", force=(0, 1.0, 0))])
+    found = faying.load_cases(held[1], [across], modes=False)
+    assert found.superposition[0] < 0.05
+    assert found.superposes[0]
 
 
 def test_acceleration_pulls_by_the_mass_beyond_the_joint(held):

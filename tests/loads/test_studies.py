@@ -201,8 +201,8 @@ def test_intervals_follow_preload_and_friction(study, tmp_path):
     wide = np.hypot(np.log(1 - half), np.log(1 - 1.6449 * 0.02 / 0.25))
     use = found.friction_needed_worst[row, 0] / 0.25
     assert np.log(some.slip_use[:, row, 0] / use) == pytest.approx([-wide, wide], rel=0.03)
-    assert np.all(some.slip_margin[0] <= found.slip_margin_worst)
-    assert np.all(some.slip_margin[1] >= found.slip_margin_worst)
+    assert np.all(some.slip_margin[0] <= found.slip_margin_worst * (1 + 1e-9))
+    assert np.all(some.slip_margin[1] >= found.slip_margin_worst * (1 - 1e-9))
     assert some.check[row] < 0.03
     assert len(some.inputs) == 2
     assert faying.LoadCases.load(found.save(tmp_path / "kept.nc")) == found

@@ -13,6 +13,7 @@ from faying.bolt.bolt import FittedBolt
 from faying.case.case import build
 from faying.cli.main import cli
 from faying.geometry.selectors import Selector
+from faying.loads.acting import acting
 from faying.study import Study
 from tests.helpers.assemblies import bracket, flanges
 from tests.helpers.proposed import proposed
@@ -44,6 +45,17 @@ def test_the_screw_lies_on_the_axis_of_its_hole(fitted):
         nominal, minor = pi / 4 * 10e-3**2, pi / 4 * (10e-3 - 1.22687 * 1.5e-3) ** 2
         pieces = (0.5 + 0.33) * 10e-3 / nominal + (12e-3 + 5e-3) / minor  # head, tapped hole; free and engaged thread
         assert bolt.axial_stiffness == pytest.approx(faying.CATALOGUE["S355"].E / pieces)
+
+
+def test_even_heat_leaves_a_screw_alone(fitted):
+    """Its ends are the seat and the middle of the thread, which part as all expands: 12 mm and half of 15 mm."""
+    structure, bolts = fitted
+    change = dict.fromkeys((*structure.mesh.parts, *(bolt.bolt.name for bolt in bolts)), 50.0)
+    heat = acting(structure, [faying.Load("even", temperature=change)])["even"]
+    expansion = faying.CATALOGUE["S355"].expansion * 50
+    for bolt, longer in zip(bolts, heat.longer, strict=True):
+        assert longer == pytest.approx(-bolt.load @ (expansion * structure.mesh.points.ravel()), rel=1e-12)
+        assert longer == pytest.approx(expansion * (12e-3 + 7.5e-3), rel=0.08)
 
 
 def test_the_thread_pulls_evenly_over_the_length_that_it_engages(fitted):

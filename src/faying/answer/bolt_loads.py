@@ -24,7 +24,9 @@ class BoltLoad:
 
     Args:
         axial: Least and greatest working load [N].
-        transverse: Greatest load across the bolt [N].
+        transverse: Greatest load across the bolt [N], on the joint round it and across its shank.
+        additional: Least and greatest change of the bolt's force [N], without that by temperature.
+        taken: Greatest force [N] that the joint loses.
         introduction: n, that makes the load factor the one that was found under the greatest working load [-].
         thermal_loss: Greatest loss of preload by temperature [N]; None where no case changes a temperature.
         thermal_gain: Greatest gain of preload by temperature [N].
@@ -32,6 +34,8 @@ class BoltLoad:
 
     axial: tuple[float, float]
     transverse: float
+    additional: tuple[float, float]
+    taken: float
     introduction: float
     thermal_loss: float | None
     thermal_gain: float
@@ -79,15 +83,25 @@ def _bolt_load(found: LoadCases, k: int, names: Sequence[str], share: float) -> 
     most = int(np.argmax(working if working.max() > 0 else np.abs(working)))
     known = np.isfinite(found.load_factor[rows[most], k]) and share > 0
     factor = (change[rows[most]] - heat[most]) / working[most] / share if known else 1.0
-    ends = working if len(rows) > 1 else np.append(working, 0.0)
+    own = change[rows] - heat
+    if len(rows) == 1:  # from nothing to it
+        working, own = np.append(working, 0.0), np.append(own, 0.0)
     heated = any(HEAT + name in found.cases for name in names)
     return BoltLoad(
-        axial=(float(ends.min()), max(float(ends.max()), 0.0)),
-        transverse=max(float(found.transverse_load[found.index(name), k]) for name in across),
+        axial=(float(working.min()), max(float(working.max()), 0.0)),
+        transverse=max(_across(found, found.index(name), k) for name in across),
+        additional=(float(own.min()), float(own.max())),
+        taken=max(float((working - own).max()), 0.0),
         introduction=float(factor),
         thermal_loss=max(float((-heat).max()), 0.0) + 0.0 if heated else None,
         thermal_gain=max(float(heat.max()), 0.0),
     )
+
+
+def _across(found: LoadCases, row: int, k: int) -> float:
+    """Load across a bolt [N]: what the joint round it bears by friction, and its shank beyond that."""
+    shank = float(found.bolt_shear[row, k])
+    return float(found.transverse_load[row, k]) + (shank if np.isfinite(shank) else 0.0)
 
 
 def _with_needs(loads: Sequence[Load], names: Sequence[str]) -> tuple[Load, ...]:

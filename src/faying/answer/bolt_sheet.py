@@ -160,6 +160,7 @@ def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: Bo
             *_tightening(case.study, bolt, choice, force),
             *_loads(case, index, choice, 0.0 if found is None else found.thermal_gain),
             *_compliances(numbers, index, choice),
+            *_beyond(numbers, index, choice, found),
             *_seats(case, index, numbers, force, choice),
         )
     }
@@ -168,6 +169,21 @@ def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: Bo
     tapped = isinstance(fitted, FittedBolt) and fitted.thread is not None
     rows = evaluate(steps(tapped=tapped, rolled_after=choice.rolled == "after"), known)
     return BoltSheet(bolt=bolt.name, size=size, rows=rows)
+
+
+def _beyond(numbers: BoltNumbers, index: int, choice: BoltSheetChoice, found: BoltLoad | None) -> list[Quantity]:
+    """What load cases change of the forces of bolt and joint beyond the load factor times the working load."""
+    more = (0.0, 0.0, 0.0)
+    if found is not None:
+        share = choice.introduction * float(numbers.load_factor[0, index])
+        (low, high), (least, most) = found.axial, found.additional
+        more = (least - share * low, most - share * high, found.taken - (1 - share) * high)
+    names = ("least bolt force", "greatest bolt force", "force that the joint loses")
+    under = ", as found beyond the load factor" if found is not None else " beyond the load factor (no load case: none)"
+    return [
+        _quantity(symbol, name + under, "N", value, "bolt.diameter and bolt.material")
+        for symbol, name, value in zip(("dF_u", "dF_o", "dF_P"), names, more, strict=True)
+    ]
 
 
 def _quantity(symbol: str, name: str, unit: str, value: float | None, missing: str) -> Quantity:

@@ -18,7 +18,7 @@ from faying.joint.state import State
 from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions
 from faying.loads.acting import Acting, acting, nothing
-from faying.loads.answers import Regions, bolt_answers, joint_answers
+from faying.loads.answers import NOTHING, BoltAnswers, Regions, bolt_answers, joint_answers
 from faying.loads.contact import LoadedContact
 from faying.loads.load import Load, in_order
 from faying.loads.remarks import load_notes
@@ -219,7 +219,7 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
         after=tuple(load.after or "" for load in loads),
         bolts=tuple(bolt.name for bolt in structure.bolts),
         joints=tuple(joint.name for joint in structure.joints),
-        superposition=_departure(motions, straight, bolts.bolt_force - forces, bolts.bolt_force_linear - forces),
+        superposition=_departure(motions, straight, bolts, forces),
         displacement=np.array([_greatest(one) for one in motions]),
         error=np.array([state.error for state in states]),
         bolt_preload=forces,
@@ -239,11 +239,14 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
     )
 
 
-def _departure(motions: Sequence[Array], straight: Sequence[Array], change: Array, linear: Array) -> Array:
-    """How far the answers are from the linear ones, over these: of displacement or bolt forces, the greater (case,)."""
-    out = []
-    for moved, line, here, there in zip(motions, straight, change, linear, strict=True):
-        size, force = _greatest(line), float(np.abs(there).max(initial=0.0))
+def _departure(motions: Sequence[Array], straight: Sequence[Array], bolts: BoltAnswers, preload: Array) -> Array:
+    """How far the answers are from the linear ones, over these: of displacement or bolt forces, the greater (case,).
+
+    A change of force counts as NOTHING times the preload at least: where a load changes none, rounding is all there is.
+    """
+    out, floor = [], NOTHING * float(preload.max(initial=0.0))
+    for moved, line, here, there in zip(motions, straight, bolts.bolt_force, bolts.bolt_force_linear, strict=True):
+        size, force = _greatest(line), max(float(np.abs(there - preload).max(initial=0.0)), floor)
         apart = _greatest(moved - line) / size if size > 0 else float(_greatest(moved) > 0)
         by_force = float(np.abs(here - there).max(initial=0.0)) / force if force > 0 else 0.0
         out.append(max(apart, by_force))

@@ -26,7 +26,7 @@ from faying.typing import Array
 END = 0.05  # probability below the lower end of an input
 SIGMAS = 1.6449  # standard deviations of a normal distribution to that end
 ROUGH = 0.1  # departure of the check from first order, over the answer, from which there is a note
-LEAST = 1e-30  # use of friction, of which there is a logarithm
+LEAST = 1e-3  # use of friction: of less, which is counted as this, the margin has no width
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,8 +88,8 @@ def intervals_of(
     intervals = LoadIntervals(
         inputs=tuple(one.words for one in inputs),
         bolt_force=force,
-        slip_use=np.exp(slip),
-        head_use=np.exp(head),
+        slip_use=np.exp(slip) * _told(found.friction_needed_worst / found.friction),
+        head_use=np.exp(head) * _told(found.head_friction_needed / found.head_friction),
         opened=np.clip(opened, 0.0, 1.0),
         check=off,
     )
@@ -109,6 +109,11 @@ def _answers(found: LoadCases) -> list[Array]:
     slip = found.friction_needed_worst / found.friction
     head = found.head_friction_needed / found.head_friction
     return [found.bolt_force, np.log(np.maximum(slip, LEAST)), np.log(np.maximum(head, LEAST)), found.opened]
+
+
+def _told(use: Array) -> Array:
+    """1, or a use of friction over the least one of which the logarithm is taken [-]."""
+    return np.asarray(np.minimum(use / LEAST, 1.0))
 
 
 def _moved(

@@ -129,6 +129,24 @@ def _losses() -> tuple[Step, ...]:
             function=lambda n, S, P: n * P / (S + P),
         ),
         _step(
+            "R3",
+            "least additional bolt force",
+            "load factor times the least working load + what was found beyond that",
+            "Phi F_Au dF_u",
+            symbol="F_SAu",
+            unit="N",
+            function=lambda Phi, F, more: Phi * F + more,
+        ),
+        _step(
+            "R3",
+            "greatest additional bolt force",
+            "load factor times the greatest working load + what was found beyond that",
+            "Phi F_Ao dF_o",
+            symbol="F_SAo",
+            unit="N",
+            function=lambda Phi, F, more: Phi * F + more,
+        ),
+        _step(
             "R4",
             "loss by embedding, guide value",
             lost,
@@ -181,11 +199,12 @@ def _preloads() -> tuple[Step, ...]:
         _step(
             "R5",
             "assembly preload that is needed",
-            "clamp load + (1 - load factor) times the working load + loss by embedding + loss by temperature",
-            "F_Kreq Phi F_Ao F_Zd F_thd",
+            "clamp load + (1 - load factor) times the working load + what was found beyond that + loss by embedding + "
+            "loss by temperature",
+            "F_Kreq Phi F_Ao dF_P F_Zd F_thd",
             symbol="F_Mreq",
             unit="N",
-            function=lambda K, Phi, A, Z, th: K + (1 - Phi) * A + Z + th,
+            function=lambda K, Phi, A, more, Z, th: K + (1 - Phi) * A + more + Z + th,
             limit="F_Mmin",
         ),
         _step(
@@ -225,11 +244,11 @@ def _stresses() -> tuple[Step, ...]:
         _step(
             "R8",
             "greatest bolt force",
-            "greatest assembly preload + load factor times the greatest working load + gain by temperature",
-            "F_Mmax Phi F_Ao F_thg",
+            "greatest assembly preload + greatest additional bolt force + gain by temperature",
+            "F_Mmax F_SAo F_thg",
             symbol="F_Smax",
             unit="N",
-            function=lambda F, Phi, A, gain: F + Phi * A + gain,
+            function=lambda F, more, gain: F + more + gain,
         ),
         _step(
             "R8",
@@ -258,11 +277,11 @@ def _fatigue(rolled_after: bool) -> tuple[Step, ...]:
         _step(
             "R9",
             "mean bolt force",
-            "greatest assembly preload + load factor times the mean working load",
-            "F_Mmax Phi F_Au F_Ao",
+            "greatest assembly preload + mean of the least and the greatest additional bolt force",
+            "F_Mmax F_SAu F_SAo",
             symbol="F_Sm",
             unit="N",
-            function=lambda F, Phi, low, high: F + Phi * (low + high) / 2,
+            function=lambda F, low, high: F + (low + high) / 2,
         ),
         _step(
             "R9",
@@ -277,11 +296,11 @@ def _fatigue(rolled_after: bool) -> tuple[Step, ...]:
     amplitude = _step(
         "R9",
         "alternating stress",
-        "load factor times half of the range of the working load, over the stress area",
-        "Phi F_Au F_Ao A_S",
+        "half of the range of the additional bolt force, over the stress area",
+        "F_SAu F_SAo A_S",
         symbol="sigma_a",
         unit="Pa",
-        function=lambda Phi, low, high, A: Phi * (high - low) / (2 * A),
+        function=lambda low, high, A: (high - low) / (2 * A),
         limit="sigma_ASG" if rolled_after else "sigma_ASV",
     )
     return (before, *(after if rolled_after else ()), amplitude)
@@ -348,11 +367,12 @@ def _slip() -> tuple[Step, ...]:
         _step(
             "R12",
             "what the working load takes from the joint",
-            "(1 - load factor) times the greatest working load; the joint opens where it exceeds the preload",
-            "Phi F_Ao",
+            "(1 - load factor) times the greatest working load + what was found beyond that; the joint opens where it "
+            "exceeds the preload",
+            "Phi F_Ao dF_P",
             symbol="F_PA",
             unit="N",
-            function=lambda Phi, A: (1 - Phi) * A,
+            function=lambda Phi, A, more: (1 - Phi) * A + more,
             limit="F_Vmin",
         ),
         _step(

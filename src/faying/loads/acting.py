@@ -15,6 +15,7 @@ from faying.joint.joint import known_face
 from faying.joint.structure import Structure
 from faying.loads.load import Displacement, Force, Load
 from faying.typing import Array
+from faying.units import show
 
 BALANCED = 1e-6  # of the forces: what a load may leave over where nothing holds the structure
 
@@ -134,11 +135,14 @@ def _heat(structure: Structure, changes: Mapping[str, float], what: str) -> tupl
                     f"{what}: bolt {name!r} is a force without a shank, which no temperature changes; give it diameter "
                     "and material, or leave out its temperature"
                 )
-            washers = sum(washer.thickness for washer in fitted.bolt.washers)
             strain = _expansion(fitted.bolt.material, f"{what}: bolt {name!r}") * change
-            longer[names.index(name)] = strain * (fitted.length + washers)
+            # between its ends in the parts, where an even expansion of all leaves its force; washers grow with it
+            longer[names.index(name)] = -strain * float(fitted.load @ mesh.points.ravel())
             force -= fitted.axial_stiffness * longer[names.index(name)] * fitted.load
         else:
+            if name in names:
+                part = getattr(bolts[names.index(name)].bolt, "part", "")
+                raise InputError(f"{what}: bolt {name!r} is meshed; give the temperature of its part, {part!r}")
             known = ", ".join(map(repr, (*mesh.parts, *names)))
             raise InputError(f"{what}: temperature of {name!r}, which is no part and no bolt; there are {known}")
     return force, longer, strains
@@ -168,6 +172,12 @@ def _move(structure: Structure, one: Displacement, moved: Array, what: str) -> N
             raise InputError(
                 f"{what}: the face {one.face!r} is moved along {'xyz'[axis]}, in which no rigid support holds all of "
                 "it; give it a [[support]] without stiffness in that direction, or a force in place of the displacement"
+            )
+        taken = (moved[nodes, axis] != 0) & (moved[nodes, axis] != size)
+        if np.any(taken):
+            raise InputError(
+                f"{what}: the face {one.face!r} is moved along {'xyz'[axis]} by {show(size, 'm')}, and some of its "
+                f"nodes by {show(float(moved[nodes, axis][taken][0]), 'm')} in another displacement; give one of them"
             )
         moved[nodes, axis] = size
 

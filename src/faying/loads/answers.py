@@ -15,7 +15,7 @@ from faying.joint.structure import Structure
 from faying.loads.contact import LoadedContact
 from faying.loads.statics import LoadedState
 from faying.numerics.product import product
-from faying.typing import Array, Index
+from faying.typing import Array, Index, Mask
 
 NAN = float("nan")
 NOTHING = 1e-3  # of a bolt's preload: of a smaller working load no share is told, for bending changes the force, too
@@ -72,6 +72,7 @@ class JointAnswers:
 
     normal_force: Array
     shear_force: Array
+    torque: Array
     mean_pressure: Array
     greatest_pressure: Array
     opened: Array
@@ -92,45 +93,79 @@ def joint_answers(
     """Return what the joints do under each state; dissipated (joint,) [J]: on the way to each."""
     found = [
         [
-            _joint(contact, joint.interface.frames, regions.bolt[k], state.motions[k], state.tractions[k])
+            _joint(contact, joint.interface, regions.bolt[k], state.motions[k], state.tractions[k])
             for k, (joint, contact) in enumerate(zip(structure.joints, contacts, strict=True))
         ]
         for state in states
     ]
-    names = ["normal_force", "shear_force", "mean_pressure", "greatest_pressure", "opened", "sliding"]
+    names = ["normal_force", "shear_force", "torque", "mean_pressure", "greatest_pressure", "opened", "sliding"]
     names += ["friction_needed", "friction_needed_worst", "worst_bolt"]
     arrays: dict[str, Any] = {name: np.array([[one[name] for one in row] for row in found]) for name in names}
     return JointAnswers(dissipated=np.array(dissipated), **arrays)
 
 
-def _joint(contact: LoadedContact, frames: Array, bolt: Index, motion: Array, traction: Array) -> dict[str, float]:
+def _joint(contact: LoadedContact, trace: Any, bolt: Index, motion: Array, traction: Array) -> dict[str, float]:
     pressure, weights = -traction[:, 0], contact.weights
     touched = float(weights @ (contact.pressure > 0)) or NAN
-    normal, shear = _resultants(frames, traction, weights)
+    whole = _Carried.of(trace, traction, weights, np.ones(len(weights), dtype=bool))
     parts: dict[int, float] = {}
     for index in np.unique(bolt):
-        some = bolt == index
-        own, across = _resultants(frames[some], traction[some], weights[some])
-        if own > 0:
-            parts[int(index)] = float(np.linalg.norm(across)) / own
+        own = _Carried.of(trace, traction, weights, bolt == index)
+        if own.normal > 0:
+            parts[int(index)] = own.equivalent / own.normal
     worst = max(parts, key=lambda k: parts[k], default=-1)
     return {
-        "normal_force": normal,
-        "shear_force": float(np.linalg.norm(shear)),
-        "mean_pressure": normal / float(weights.sum()),
+        "normal_force": whole.normal,
+        "shear_force": whole.shear,
+        "torque": whole.torque,
+        "mean_pressure": whole.normal / float(weights.sum()),
         "greatest_pressure": float(pressure.max()),
         "opened": float(weights @ contact.opened(motion)) / touched,
         "sliding": float(weights @ contact.sliding(motion, traction)) / (float(weights @ (pressure > 0)) or NAN),
-        "friction_needed": float(np.linalg.norm(shear)) / normal if normal > 0 else NAN,
+        "friction_needed": whole.equivalent / whole.normal if whole.normal > 0 else NAN,
         "friction_needed_worst": parts.get(worst, NAN),
         "worst_bolt": worst,
     }
 
 
-def _resultants(frames: Array, traction: Array, weights: Array) -> tuple[float, Array]:
-    """Normal force [N] and the resultant of the shear (3,) [N], in the axes of the model."""
-    shear = np.einsum("q,qi,qij->j", weights, traction[:, 1:], frames[:, 1:])
-    return float(-weights @ traction[:, 0]), shear
+@dataclass(frozen=True, kw_only=True)
+class _Carried:
+    """What some points of a joint carry: normal force and shear force [N], torque about the normal [N m].
+
+    equivalent: shear force [N] that needs as much friction as shear force and torque together. Friction alone bears a
+    torque of mu times the integral of p r about the centre of the pressure; shear and torque lie on an ellipse.
+
+    Source:
+        S. Goyal, A. Ruina, J. Papadopoulos, Planar sliding with dry friction, Wear 143 (1991), 307 to 330: the limit
+        surface; R. D. Howe, M. R. Cutkosky, Int. J. Robotics Research 15 (1996), 531 to 556: as an ellipsoid.
+    """
+
+    normal: float
+    shear: float
+    torque: float
+    equivalent: float
+
+    @classmethod
+    def of(cls, trace: Any, traction: Array, weights: Array, some: Mask) -> "_Carried":
+        """Return it of some points (q,) of an interface under tractions (q, 3) [Pa]."""
+        frames, places, weights = trace.frames[some], trace.positions[some], weights[some]
+        press = weights * np.maximum(-traction[some, 0], 0.0)
+        tau = np.einsum("q,qi,qij->qj", weights, traction[some, 1:], frames[:, 1:])
+        normal, resultant = float(press.sum()), tau.sum(axis=0)
+        if not normal > 0:
+            return cls(normal=normal, shear=float(np.linalg.norm(resultant)), torque=0.0, equivalent=0.0)
+        axis = np.einsum("q,qj->j", press, frames[:, 0])
+        axis = axis / np.linalg.norm(axis)
+        arm = places - press @ places / normal
+        torque = float(np.cross(arm, tau).sum(axis=0) @ axis)
+        reach = float(press @ np.linalg.norm(arm - np.outer(arm @ axis, axis), axis=1)) / normal
+        shear = float(np.linalg.norm(resultant))
+        return cls(
+            normal=normal,
+            shear=shear,
+            torque=abs(torque),
+            equivalent=float(np.hypot(shear, torque / reach)) if reach > 0 else shear,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -243,14 +278,14 @@ def _own_heat(structure: Structure, fitted: FittedSolidBolt, state: LoadedState)
 def _carried(
     structure: Structure, contacts: Sequence[LoadedContact], state: LoadedState, regions: Regions, index: int
 ) -> tuple[Array, Array]:
-    """Change of the normal force, and shear [N], round a bolt at each joint that it clamps."""
+    """Change of the normal force, and shear with torque [N], round a bolt at each joint that it clamps."""
     change, across = [], []
     for k in regions.joints[index]:
         some = regions.bolt[k] == index
-        contact, frames = contacts[k], structure.joints[k].interface.frames[some]
-        normal, shear = _resultants(frames, state.tractions[k][some], contact.weights[some])
-        change.append(normal - float(contact.weights[some] @ contact.pressure[some]))
-        across.append(float(np.linalg.norm(shear)))
+        contact = contacts[k]
+        own = _Carried.of(structure.joints[k].interface, state.tractions[k], contact.weights, some)
+        change.append(own.normal - float(contact.weights[some] @ contact.pressure[some]))
+        across.append(own.equivalent)
     return np.array(change), np.array(across)
 
 

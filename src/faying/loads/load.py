@@ -196,8 +196,9 @@ def in_order(loads: Sequence[Load]) -> list[Load]:
     """
     by_name: dict[str, Load] = {}
     for load in loads:
-        if by_name.setdefault(load.name, load) is not load:
+        if load.name in by_name:
             raise InputError(f"two loads are called {load.name!r}; give each a name of its own")
+        by_name[load.name] = load
     for load in loads:
         for other in load.needs:
             if other not in by_name:

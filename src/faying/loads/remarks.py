@@ -11,6 +11,7 @@ from faying.notes import Note, percent
 from faying.typing import Array
 from faying.units import show
 
+WHOLLY = 0.999  # share of the area that touches, from which all of it slides
 LITTLE = 0.01  # of a joint's normal force beyond which it is said that the load presses harder than the preload did
 
 
@@ -27,6 +28,13 @@ def load_notes(
     for k, case in enumerate(cases):
         for j, (joint, contact) in enumerate(zip(structure.joints, contacts, strict=True)):
             out += _joint(case, joint.name, contact, pressures[k][j], float(joints.opened[k, j]))
+            if joints.sliding[k, j] > WHOLLY:
+                borne = f"{show(float(joints.shear_force[k, j]), 'N')} and {show(float(joints.torque[k, j]), 'N*m')}"
+                text = (
+                    f"load {case!r}: {joint.name} slides wholly; its friction bears {borne}, and the bolts the rest, "
+                    "across their shanks (V)"
+                )
+                out.append(Note(code="load-slides", joint=joint.name, text=text))
         for b, fitted in enumerate(structure.fitted_bolts):
             out += _bolt(case, fitted.bolt, float(bolts.bolt_force[k, b]))
     sticking = [joint.name for joint in structure.joints if joint.friction is None]

@@ -225,10 +225,12 @@ class LoadStatics:
                 self._project(tasks[k])
                 self._balance(tasks[k], tolerances[k])
             rest = self._left_over([tasks[k] for k in left])
+            if not np.all(np.isfinite(rest)):
+                raise self._lost(tasks[left[int(np.argmin(np.isfinite(rest).all(axis=0)))]])
             z = self._solved(rest)
             sizes = np.sqrt(np.maximum(np.einsum("ij,ij->j", rest, z), 0.0))
             for size, k in zip(sizes, left, strict=True):
-                tasks[k].error = float(size) / self._scale(tasks[k]) if self.size else np.inf
+                tasks[k].error = float(size) / self._scale(tasks[k]) if self.size or size == 0 else np.inf
             more = [column for column, k in enumerate(left) if tasks[k].error > tolerances[k]]
             worst = max(tasks, key=lambda task: task.error)
             if not more or (worst.error <= ROUNDED and _stands(past)):

@@ -16,9 +16,9 @@ MOST_MODES = 10  # that the table of frequencies has
 SCOPE = (
     "Forces in N where no unit stands, moments in N m, pressures in MPa. F_A: load that pulls the parts apart at a "
     "bolt; Phi: change of the bolt's force over it, as found; M, V: bending moment of the bolt and force across it; "
-    "seat: mean pressure on it. N, Q: normal and shear force of a joint; mu >: friction that the part round the worst "
-    "bolt needs. A margin is friction over the shear to carry, of a head, a joint, or round its worst bolt: at 1 it "
-    "slips. Shear that tightening left is not counted."
+    "seat: mean pressure on it. N, Q, T: normal force, shear force and torque of a joint; mu >: friction that the "
+    "part round the worst bolt needs. A margin is friction over the shear and torque to carry, of a head, a joint, or "
+    "round its worst bolt: at 1 it slips. Shear that tightening left is not counted."
 )
 
 
@@ -71,13 +71,14 @@ def bolt_rows(found: LoadCases, k: int) -> Rows:
 
 def joint_rows(found: LoadCases, k: int) -> Rows:
     """Return one row for each joint under a case."""
-    rows: Rows = [["joint", "N [kN]", "Q", "mean", "peak", "opens", "slides", "mu >", "margin", "worst"]]
+    rows: Rows = [["joint", "N [kN]", "Q", "T", "mean", "peak", "opens", "slides", "mu >", "margin", "worst"]]
     for j, name in enumerate(found.joints):
         rows.append(
             [
                 _cut(name, 8),
                 f"{found.normal_force[k, j] / 1e3:.4g}",
                 _short(found.shear_force[k, j]),
+                _short(found.torque[k, j]),
                 _short(found.mean_pressure[k, j] / 1e6),
                 _short(found.greatest_pressure[k, j] / 1e6),
                 f"{found.opened[k, j]:.1%}",

@@ -115,6 +115,9 @@ class LoadCases(Recorded):
     shear_force: Array = variable(
         "case", "joint", unit="N", long_name="resultant of the shear on the joint by the load", group="joints"
     )
+    torque: Array = variable(
+        "case", "joint", unit="N m", long_name="torque of the shear about the normal of the joint", group="joints"
+    )
     mean_pressure: Array = variable("case", "joint", unit="Pa", long_name="mean pressure on the joint", group="joints")
     greatest_pressure: Array = variable("case", "joint", unit="Pa", long_name="greatest pressure", group="joints")
     opened: Array = variable(
