@@ -87,14 +87,14 @@ def test_frequencies_of_a_model_are_not_headed_test():
     from dataclasses import replace as changed
 
     from faying.output import table
-    from faying.result import Comparison
+    from faying.result import MeasuredComparison
     from faying.result import figure as structure
     from faying.style import new_figure
     from tests.helpers.results import small_result
 
     found = small_result()
     listed = np.array([[100.0, 200.0]] * len(found.loads))
-    given = Comparison(source="s", frequencies=listed, predicted=1.01 * listed, modes=np.zeros((2, 2), int))
+    given = MeasuredComparison(source="s", frequencies=listed, predicted=1.01 * listed, modes=np.zeros((2, 2), int))
     for kind, heading in (("test", "test"), ("model", "reference model")):
         one = changed(found, comparison=changed(given, kind=kind))
         column = [row[1] for row in table.comparison(one)]

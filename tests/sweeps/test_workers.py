@@ -13,7 +13,7 @@ from tests.fuzz.kills import of_session
 
 ROOT = Path(__file__).parents[2]
 SCRIPT = """
-import sys, time, functools
+import signal, sys, time, functools
 import numpy as np
 from faying.sweeps.parallel import each
 
@@ -23,6 +23,7 @@ def slow(folder, indices):
     return {"x": np.zeros(len(indices))}
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # nohup hands on that it is ignored
     list(each(functools.partial(slow, sys.argv[1]), [[0], [1]], 2, None))
 """
 

@@ -61,7 +61,7 @@ def steps(*, tapped: bool, rolled_after: bool) -> tuple[Step, ...]:
     Source:
         VDI 2230 Part 1:2015, section 4, for concentric clamping and loading.
     """
-    return (*_assembly(), *_losses(), *_preloads(), *_stresses(), *_fatigue(rolled_after), *_ends(tapped))
+    return (*_assembly(), *_shares(), *_losses(), *_preloads(), *_stresses(), *_fatigue(rolled_after), *_ends(tapped))
 
 
 def _assembly() -> tuple[Step, ...]:
@@ -107,8 +107,7 @@ def _assembly() -> tuple[Step, ...]:
     )
 
 
-def _losses() -> tuple[Step, ...]:
-    lost = "embedding over the compliances of bolt and parts"
+def _shares() -> tuple[Step, ...]:
     return (
         _step(
             "R3",
@@ -146,6 +145,12 @@ def _losses() -> tuple[Step, ...]:
             unit="N",
             function=lambda Phi, F, more: Phi * F + more,
         ),
+    )
+
+
+def _losses() -> tuple[Step, ...]:
+    lost = "embedding over the compliances of bolt and parts"
+    return (
         _step(
             "R4",
             "loss by embedding, guide value",
