@@ -16,6 +16,7 @@ from faying.errors import InputError, shown
 from faying.typing import Array
 
 FACTOR_SCORE = 1.6448536269514722  # standard normal score of 95 %: a factor spans 5 to 95 %
+MOST_SD_LN, MOST_FACTOR = 10.0, 1e6  # of a lognormal: beyond, it spans what no number has
 UNSEEN = 6.0  # standard deviations from which a cut is not worth a word
 SIGN = r"\+-|\+/-|±"
 _RANGE = re.compile(r"\s*([+-]?[0-9.].*?)\s+to\s+([+-]?[0-9.].*?)\s*", re.DOTALL)
@@ -392,12 +393,15 @@ def _of_table(table: Mapping[str, Any], unit: str, name: str) -> dict[str, Any]:
         raise InputError(f"{name} needs one of sd_ln and factor; {_example(kind, unit)}")
     if "factor" in table:
         factor = _number(table["factor"], "", f"{name}.factor")
-        if factor <= 1:
-            raise InputError(f"{name}.factor = {factor:g}; it must be greater than 1: 5 to 95 % lie within it")
+        if not 1 < factor <= MOST_FACTOR:
+            raise InputError(
+                f"{name}.factor = {factor:g}; it must be greater than 1, and {MOST_FACTOR:g} at most: 5 to 95 % lie "
+                "within it"
+            )
         return {"kind": kind, "centre": value["median"], "spread": log(factor) / FACTOR_SCORE, **cut}
     spread = _number(table["sd_ln"], "", f"{name}.sd_ln")
-    if spread <= 0:
-        raise InputError(f"{name}.sd_ln = {spread:g}; it must be positive, for example 0.2")
+    if not 0 < spread <= MOST_SD_LN:
+        raise InputError(f"{name}.sd_ln = {spread:g}; it must be positive, {MOST_SD_LN:g} at most, for example 0.2")
     return {"kind": kind, "centre": value["median"], "spread": spread, **cut}
 
 

@@ -1,9 +1,11 @@
 """Short texts of objects, for a console and for a notebook, and trees as JSON."""
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from typing import Any
+
+from faying.errors import ReadError
 
 MOST_NAMES = 6
 
@@ -30,3 +32,26 @@ def _finite(tree: Any) -> Any:
     if isinstance(tree, list | tuple):
         return [_finite(value) for value in tree]
     return None if isinstance(tree, float) and not isfinite(tree) else tree
+
+
+def check_data_sets(lines: Sequence[str], where: str) -> None:
+    """Raise ReadError unless all lines of a universal file stand in data sets: -1, a number, data, -1.
+
+    A mark that is missing, or is there twice, would hide the data sets on both sides of it.
+    """
+    inside, begun = False, False
+    for number, line in enumerate(lines, 1):
+        text = line.strip(" \t\r\n\x00\x1a")
+        if text == "-1" and not begun:
+            inside, begun = not inside, not inside
+        elif begun:
+            begun = False
+            if not text.split(None, 1)[:1] or not text.split()[0].rstrip("b").isdigit():
+                raise ReadError(
+                    f"{where}, line {number}: {text[:40]!r} is not the number of a data set, which follows on -1; is "
+                    "the file damaged, or a line -1 too much or too few?"
+                )
+        elif text and not inside:
+            raise ReadError(
+                f"{where}, line {number}: {text[:40]!r} stands between two data sets; is a line -1 missing before it?"
+            )

@@ -218,6 +218,8 @@ class Bulk:
         kind = SOLIDS[len(given)].name
         self.solids.setdefault(kind, []).append((int(fields[0]), ordered))
         self.solid[int(fields[0])] = (kind, ordered)
+        if fields[1] and not fields[1].isdigit():
+            raise ReadError(f"element {fields[0]}: its property {fields[1]!r} is no whole number")
         self.bodies.setdefault(f"part{fields[1] or fields[0]}", []).append(int(fields[0]))
 
     def place(self, grid: int, seen: tuple[str, ...] = ()) -> Array:

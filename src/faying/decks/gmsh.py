@@ -100,6 +100,8 @@ def _sections(path: Path) -> tuple[str, dict[str, _Words | _Bytes]]:
         if words[2] != b"8" or rest[:4] not in (b"\1\0\0\0", b"\0\0\0\1"):
             raise ReadError(f"{path} is a binary file whose order of bytes is not known; is the file complete?")
         order = "<" if rest[:1] == b"\1" else ">"
+    if words[1] == b"0":
+        _check_sections(data, path)
     out: dict[str, _Words | _Bytes] = {}
     for name in ("PhysicalNames", "Entities", "Nodes", "Elements"):
         begin, end = b"$" + name.encode() + b"\n", b"$End" + name.encode()
@@ -115,6 +117,25 @@ def _sections(path: Path) -> tuple[str, dict[str, _Words | _Bytes]]:
         binary = words[1] == b"1" and name != "PhysicalNames"
         out[name] = _Bytes(piece, name, order) if binary else _Words(piece, name)
     return words[0].decode(), out
+
+
+def _check_sections(data: bytes, path: Path) -> None:
+    """Raise ReadError unless all lines of a text file stand in sections $NAME to $EndNAME."""
+    inside = b""
+    for number, line in enumerate(data.splitlines(), 1):
+        word = line.strip()
+        begins = word.startswith(b"$") and not word.startswith(b"$End")
+        right = not word or bool(inside) or begins
+        if word.startswith(b"$End"):
+            right, inside = word[4:] == inside and bool(inside), b""
+        elif begins:
+            right, inside = not inside, word[1:]
+        if not right:
+            shown = word[:40].decode("utf-8", errors="replace")
+            raise ReadError(
+                f"{path}, line {number}: {shown!r} is in no section from $NAME to $EndNAME; is a line missing before "
+                "it?"
+            )
 
 
 def _is_text(path: Path) -> bool:

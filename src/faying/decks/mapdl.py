@@ -62,7 +62,7 @@ def read(path: Path) -> RawMesh:
                 k, values = _block(lines, k + 2, count, width)
                 sets[words[2].upper()[:4]][words[1]] = _unrolled(values)
                 continue
-            k += 1
+            k = _led(lines, k, path)
     except ReadError:
         raise
     except (ValueError, IndexError, KeyError) as fault:
@@ -88,6 +88,18 @@ def read(path: Path) -> RawMesh:
         pretensions=bolts.sections(),
         counted=_says_counts(lines),
     )
+
+
+def _led(lines: list[str], k: int, path: Path) -> int:
+    """The next line; ReadError where line k tells the form of a block, and none of its commands stands before it."""
+    before = lines[k - 1].lstrip().upper()
+    led = before.startswith("(") or "BLOCK" in before.partition(",")[0]  # RLBLOCK has two lines of forms
+    if lines[k].lstrip().startswith("(") and not led:
+        raise ReadError(
+            f"{path.name}, line {k + 1}: {lines[k].strip()!r} tells the form of a block, and the line before is no "
+            "command of one (NBLOCK, EBLOCK, CMBLOCK, ...); is it missing?"
+        )
+    return k + 1
 
 
 def _says_counts(lines: list[str]) -> bool:

@@ -10,6 +10,7 @@ import numpy as np
 
 from faying.decks.raw import RawMesh, face_blocks, gathered, index, read_text
 from faying.errors import ReadError
+from faying.text import check_data_sets
 
 _NODES, _ELEMENTS, _GROUPS = ("2411", "781"), ("2412", "780"), ("2467", "2477", "2452", "2435")
 # code of a finite element: kind, and the places of its nodes, which run round: corner, middle, corner, ...
@@ -36,6 +37,7 @@ def _datasets(path: Path) -> list[tuple[str, list[str]]]:
         raise ReadError(f"{path} is no universal file (no line -1)")
     if len(marks) % 2:
         raise ReadError(f"{path}: the last data set has no end (-1); the file is cut short")
+    check_data_sets(lines, path.name)
     return [(lines[a + 1].strip(), lines[a + 2 : b]) for a, b in zip(marks[::2], marks[1::2], strict=True)]
 
 

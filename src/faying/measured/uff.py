@@ -20,6 +20,7 @@ from faying.measured.uff_systems import NodalShape, UffSystem, export_note, shap
 from faying.measured.uff_units import FileUnits
 from faying.measured.universal import Function, UniversalFile
 from faying.misuse import checked_call
+from faying.text import check_data_sets
 from faying.typing import Array, Index
 from faying.units import scale
 
@@ -138,6 +139,8 @@ def _sets(file: Path) -> list[dict[str, Any]]:
         raise ReadError(
             f"{file}: it ends in the middle of data set {len(kinds) + 1}; it was cut short, export or copy it again"
         )
+    if not any(b"58b" in line[:9] for line in file.read_bytes().splitlines()):  # binary data may hold anything
+        check_data_sets(file.read_text(encoding="latin-1").splitlines(), str(file))
     out = []
     for number, kind in enumerate(kinds):
         if kind in OWN:
