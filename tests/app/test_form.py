@@ -175,7 +175,7 @@ ODD = st.recursive(
 
 
 @given(st.dictionaries(st.sampled_from(sorted(STUDY_KEYS)), ODD, max_size=4), st.data())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=50, deadline=None)
 def test_whatever_a_text_says_has_a_form(data, more):
     """Tables where keys should be, and keys where tables should be: half of what is typed is on its way."""
     text = "".join(f"{name} = {written(value)}\n" for name, value in data.items())

@@ -6,7 +6,7 @@ import os
 import pytest
 
 from faying.app.project import Project
-from faying.app.runs import MOST, Runs, changes
+from faying.app.runs import Runs, changes
 from faying.errors import InputError
 from faying.result import Provenance
 from tests.app.test_page import page_at
@@ -28,17 +28,18 @@ def run_of(folder, law, *, second=0, preload='"8 kN"', **changed):
     os.utime(out, (1.7e9 + second, 1.7e9 + second))
 
 
-def test_runs_are_kept_once_and_the_oldest_go(tmp_path):
+def test_runs_are_kept_once_and_the_oldest_go(tmp_path, monkeypatch):
+    monkeypatch.setattr("faying.app.runs.MOST", 3)
     runs = Runs(Project.at(tmp_path))
     runs.keep()
     assert runs.names() == []
-    for second in range(MOST + 2):
+    for second in range(5):
         run_of(tmp_path, "jk", second=second, title=f"run {second}")
         runs.keep()
         runs.keep()
     Runs(Project.at(tmp_path)).keep()  # as another start of the page does
     titles = [one["title"] for one in runs.listed()]
-    assert titles == [f"run {second}" for second in reversed(range(2, MOST + 2))]
+    assert titles == [f"run {second}" for second in reversed(range(2, 5))]
     assert sorted(path.name for path in (tmp_path / "results").iterdir()) == ["result.nc"]
 
 

@@ -155,7 +155,7 @@ values = st.one_of(
 
 
 @given(st.data())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=50, deadline=None)
 def test_any_value_of_any_example_changes_alone(data):
     """parse(edit(text)) == edited(parse(text)), and only lines of that one statement change."""
     text = data.draw(st.sampled_from(TEXTS))
@@ -170,7 +170,7 @@ def test_any_value_of_any_example_changes_alone(data):
 
 
 @given(st.data())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=50, deadline=None)
 def test_a_key_put_in_and_taken_out_leaves_the_text(data):
     text = data.draw(st.sampled_from(TEXTS))
     before = tomllib.loads(text)
@@ -224,7 +224,7 @@ def texts(draw):
 
 
 @given(texts(), st.data())
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=150, deadline=None)
 def test_small_texts_of_every_form(text, data):
     """What is returned is right by the check within; nothing that has its place in the text is refused."""
     before = parsed(text)

@@ -128,10 +128,12 @@ export function showLaws(place, facts) {
 
 /* the map of a scan */
 
-const view = { query: null, window: [0, 0, 1, 1], map: null, along: "x", at: 0.5, drag: null, number: 0 };
+const view = { query: null, window: [0, 0, 1, 1], map: null, along: "x", at: 0.5, drag: null, number: 0, lines: 0 };
 
 /** Show the map of a scan; the query names the file and its units. */
 export async function showMap(query) {
+  view.lines += 1; // answers on the scan before come too late
+  spectrum.number += 1;
   Object.assign(view, { query, window: [0, 0, 1, 1], at: 0.5 });
   await load();
   await fit();
@@ -233,16 +235,18 @@ function paint() {
 }
 
 async function trace() {
-  const query = { ...view.query, window: view.window.join(), along: view.along, at: view.at };
-  const found = await ask("GET", "line", query), heights = found.heights.map((one) => (one === null ? NaN : one * 1e6));
+  const number = (view.lines += 1), along = view.along;
+  const found = await ask("GET", "line", { ...view.query, window: view.window.join(), along, at: view.at });
+  if (number !== view.lines) return; // a later one is under way
+  const heights = found.heights.map((one) => (one === null ? NaN : one * 1e6));
   const places = found.along.map((one) => one * MM), runs = [];
   for (const [k, height] of heights.entries()) {
     if (!Number.isFinite(height)) continue;
     if (k && Number.isFinite(heights[k - 1]) && runs.length) runs.at(-1).points.push([places[k], height]);
     else runs.push({ points: [[places[k], height]], faint: false });
   }
-  const other = view.along === "x" ? "y" : "x", label = `Heights along ${view.along} at ${other} = ${plain(found.at * MM, 4)} mm`;
-  $("map-line").replaceChildren(runs.length ? chart({ height: 220, x: { label: `${view.along} [mm]`, range: [places[0], places.at(-1)] },
+  const other = along === "x" ? "y" : "x", label = `Heights along ${along} at ${other} = ${plain(found.at * MM, 4)} mm`;
+  $("map-line").replaceChildren(runs.length ? chart({ height: 220, x: { label: `${along} [mm]`, range: [places[0], places.at(-1)] },
     y: { label: "height [µm]", range: extent(heights) }, series: [{ label, kind: 0, runs }], label }) : made("p", "All points of this line are missing.", { className: "hint" }));
   $("map-at").value = view.at;
   $("map-at").setAttribute("aria-valuetext", label);
