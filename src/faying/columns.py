@@ -275,6 +275,9 @@ def read_list(path: Path, wanted: Sequence[Wanted], form: str) -> Any:
     """
     heading, where = _heading(path, wanted, form)
     table = read_numbers(path, len(wanted), form)
+    endless = np.flatnonzero(np.isinf(table).any(axis=1))
+    if endless.size:
+        raise ReadError(f"{path.name}: row {endless[0] + 1} of the numbers holds an infinite one; {form}")
     columns = []
     for k, column in enumerate(wanted):
         place = k if heading is None else next(i for i, one in enumerate(heading) if one.name in column.names)

@@ -40,6 +40,7 @@ def seeds(tmp_path_factory):
         ("four.msh", "$PhysicalNames", "is in no section"),
         ("four.msh", "$EndMeshFormat", "is in no section"),
         ("two.msh", "$EndPhysicalNames", "is in no section"),
+        ("two.msh", "6", "announces .* names and holds"),
         ("a.cdb", "CMBLOCK,P0_LEFT", "tells the form of a block, and the line before is no command of one"),
     ],
 )
@@ -63,3 +64,20 @@ def test_a_property_of_nastran_is_a_whole_number(seeds):
     other.write_text(text)
     with pytest.raises(faying.ReadError, match="is no whole number"):
         faying.read_mesh(other, unit="mm")
+
+
+def test_data_sets_that_are_not_read_are_said(seeds):
+    path: Path = seeds["real.uff"]
+    assert not [one for one in faying.read_uff(path).warnings if "are not read" in one]
+    other = path.with_name("other.uff")
+    other.write_text(path.read_text().rstrip("\n") + "\n    -1\n  2477\n         1\n    -1\n")
+    assert [one for one in faying.read_uff(other).warnings if "data sets 2477 are not read" in one]
+
+
+def test_a_list_holds_no_infinite_number(tmp_path):
+    from faying.form.gap_map import read_heights
+
+    file = tmp_path / "form.csv"
+    file.write_text("x [mm],y [mm],z [um]\n0,0,1\n1,0,2\n0,1,-inf\n1,1,nan\n")
+    with pytest.raises(faying.ReadError, match="row 3 of the numbers holds an infinite one"):
+        read_heights(file)

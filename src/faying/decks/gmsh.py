@@ -145,8 +145,14 @@ def _is_text(path: Path) -> bool:
 
 def _names(words: _Words | _Bytes | None) -> dict[tuple[int, int], str]:
     """Names of physical groups: (dimension, tag) -> name."""
-    out = {}
-    for line in [] if words is None else words.data.splitlines()[1:]:
+    out: dict[tuple[int, int], str] = {}
+    if words is None:
+        return out
+    count, *lines = words.data.splitlines() or [b""]
+    if count.strip() != str(len(lines)).encode():
+        shown = count.decode(errors="replace")[:60]
+        raise ReadError(f"$PhysicalNames announces {shown!r} names and holds {len(lines)}; is the file complete?")
+    for line in lines:
         found = re.fullmatch(rb'\s*([0-3])\s+(\d+)\s+"?([^"]*)"?\s*', line)
         if found is None:
             raise ReadError(f"$PhysicalNames: {line.decode(errors='replace')[:60]!r} is no dimension, number and name")

@@ -7,7 +7,7 @@ The formats: University of Cincinnati, Structural Dynamics Research Lab, https:/
 
 import re
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -42,6 +42,7 @@ KINDS = {
 }
 LINE = 6  # numbers in a line of data set 58
 OWN = (18, 2414)  # data sets that Faying reads itself
+TAKEN = {*OWN, 15, 55, 58, 82, 151, 164, 2411, 2412, 2420}  # and all that it takes from a file
 DIRECTION_CODES = {0: "", 1: "x", 2: "y", 3: "z", 4: "rx", 5: "ry", 6: "rz"}
 
 
@@ -93,10 +94,17 @@ def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFi
         warnings=(
             *about_places,
             *about_results,
+            *_about_others(file, sets),
             *_about_rigid_modes(file, sum(s["frequency"] == 0 for s in shapes)),
             *_about_lengths(file, positions, stated=units is not None or length_unit is not None),
         ),
     )
+
+
+def _about_others(file: Path, sets: Sequence[dict[str, Any]]) -> tuple[str, ...]:
+    """A note on the data sets that are none of a test."""
+    others = sorted({int(s["type"]) for s in sets} - TAKEN)
+    return (f"{file}: data sets {', '.join(map(str, others))} are not read",) if others else ()
 
 
 def _about_rigid_modes(file: Path, count: int) -> tuple[str, ...]:
