@@ -273,7 +273,8 @@ def test_a_terminal_that_is_closed_stops_a_command_tidily(tmp_path):
         time.sleep(0.01)
     process.send_signal(signal.SIGHUP)
     _, err = process.communicate(timeout=60)
-    # where the run is over already, the signal meets Python on its way out
-    assert process.returncode in (0, 1) or (process.returncode == -signal.SIGINT and (tmp_path / "results").is_dir())
+    # CPython ends itself by SIGINT where the interrupt met a text that is executed, as when a dataclass is imported
+    assert process.returncode in (0, 1, -signal.SIGINT)
+    assert process.returncode == 0 or b"faying: interrupted" in err
     assert b"Traceback" not in err
     assert not [one.name for one in tmp_path.iterdir() if one.name.endswith(".part")]
