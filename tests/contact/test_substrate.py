@@ -66,8 +66,8 @@ def test_weighted_islands_equal_brute_quadrature(
 ) -> None:
     islands = WeightedIslands(D, None, ratio)
     exponent = power + (1 - D) / 2
-    if whole and exponent <= 0.05:
-        return  # diverges from zero, or is too near to it for the brute way
+    if whole and exponent <= 0.06:
+        return  # diverges from zero, or floats end before what is left is small
     start = 0.0 if whole else lower
 
     def integrand(t: float) -> float:
@@ -139,7 +139,7 @@ def test_mixed_islands_equal_brute_quadrature(
     D: float, power: float, ratio: float, slope: float, lower: float, softness: int, whole: bool
 ) -> None:
     exponent = power + (1 - D) / 2
-    if whole and exponent <= 0.05:
+    if whole and exponent <= 0.06:
         return
     islands = MixedIslands(D, None, ratio)
 
