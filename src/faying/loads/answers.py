@@ -1,7 +1,7 @@
 """From the states of load cases to what a designer asks for: bolts, opening, slip."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -98,8 +98,7 @@ def joint_answers(
         ]
         for state in states
     ]
-    names = ["normal_force", "shear_force", "torque", "mean_pressure", "greatest_pressure", "opened", "sliding"]
-    names += ["friction_needed", "friction_needed_worst", "worst_bolt"]
+    names = [one.name for one in fields(JointAnswers) if one.name != "dissipated"]
     arrays: dict[str, Any] = {name: np.array([[one[name] for one in row] for row in found]) for name in names}
     return JointAnswers(dissipated=np.array(dissipated), **arrays)
 

@@ -143,12 +143,13 @@ def _sets(file: Path) -> list[dict[str, Any]]:
         raise ReadError(
             f"{file}: no universal file: it holds no data set between lines of -1. Export the test as UFF or UNV"
         )
-    if not file.read_bytes().rstrip(b"\x00\x1a \t\r\n").endswith(b"    -1"):
+    content = file.read_bytes()
+    if not content.rstrip(b"\x00\x1a \t\r\n").endswith(b"    -1"):
         raise ReadError(
             f"{file}: it ends in the middle of data set {len(kinds) + 1}; it was cut short, export or copy it again"
         )
-    if not any(b"58b" in line[:9] for line in file.read_bytes().splitlines()):  # binary data may hold anything
-        check_data_sets(file.read_text(encoding="latin-1").splitlines(), str(file))
+    if not any(b"58b" in line[:9] for line in content.splitlines()):  # binary data may hold anything
+        check_data_sets(content.decode("latin-1").splitlines(), str(file))
     out = []
     for number, kind in enumerate(kinds):
         if kind in OWN:

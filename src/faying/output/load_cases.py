@@ -11,7 +11,7 @@ from faying.typing import Array
 from faying.units import show
 
 WIDTH = 80
-BESIDE = 3  # cases in one table of frequencies
+CASES_IN_TABLE = 3  # cases in one table of frequencies
 MOST_MODES = 10  # that the table of frequencies has
 SCOPE = (
     "Forces in N where no unit stands, moments in N m, pressures in MPa. F_A: load that pulls the parts apart at a "
@@ -28,8 +28,8 @@ def terminal(found: LoadCases) -> str:
     for k in range(len(found.cases)):
         lines += [*_wrapped(heading(found, k)), text(bolt_rows(found, k), left=(0,)), ""]
         lines += [text(joint_rows(found, k), left=(0,)), ""]
-    for first in range(0, len(found.cases), BESIDE):
-        modes = mode_rows(found, slice(first, first + BESIDE))
+    for first in range(0, len(found.cases), CASES_IN_TABLE):
+        modes = mode_rows(found, slice(first, first + CASES_IN_TABLE))
         lines += ["frequency under each load [Hz], and its change", text(modes), ""] if modes else []
     lines += interval_lines(found)
     lines += _wrapped(SCOPE)

@@ -9,9 +9,9 @@ from typing import Any
 
 from faying.contact.parameter import FILE, TEXT, Parameter
 from faying.study.keys import values
+from faying.study.keys.values import MOST
 
 REQUIRED: Any = object()
-MOST = 1_000_000  # of what is counted, where a key says no less
 NAME = "NAME"  # stands for the names that a user gives
 NUMERAL = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 QUANTITY = {"$ref": "#/$defs/quantity"}

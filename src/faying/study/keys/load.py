@@ -19,7 +19,7 @@ from faying.study.keys.declared import (
     text,
 )
 from faying.study.keys.face import face_name, one_face
-from faying.study.keys.reader import Table
+from faying.study.keys.reader import Made, Table
 from faying.study.keys.values import number
 from faying.study.keys.values import quantity as read_quantity
 
@@ -42,8 +42,14 @@ def read_loads(tables: Sequence[Table]) -> tuple[Load, ...]:
 def _read(table: Table) -> Load | None:
     name = table.get("name")
     forces = [_force(one, f"{table.where} force {k}") for k, one in enumerate(table.tables("force"), 1)]
-    pressures = [_pressure(one, f"{table.where} pressure {k}") for k, one in enumerate(table.tables("pressure"), 1)]
-    moves = [_move(one, f"{table.where} displacement {k}") for k, one in enumerate(table.tables("displacement"), 1)]
+    pressures = [
+        _on_face(one, f"{table.where} pressure {k}", "pressure", Pressure)
+        for k, one in enumerate(table.tables("pressure"), 1)
+    ]
+    moves = [
+        _on_face(one, f"{table.where} displacement {k}", "displacement", Displacement)
+        for k, one in enumerate(table.tables("displacement"), 1)
+    ]
     acceleration = table.get("acceleration") or NOTHING
     heat = table.get("temperature")
     combine = table.get("combine")
@@ -76,22 +82,11 @@ def _force(table: Table, label: str) -> Force | None:
     return table.made(lambda: Force(face, force=force, moment=moment, point=place))
 
 
-def _pressure(table: Table, label: str) -> Pressure | None:
-    face = face_name(table, "face", label)
-    pressure = table.get("pressure")
+def _on_face(table: Table, label: str, key: str, make: Callable[[str, Any], Made]) -> Made | None:
+    """What `make` makes of a face and the value of a key; None where a fault leaves one of them out."""
+    face, value = face_name(table, "face", label), table.get(key)
     table.close()
-    if face is None or pressure is None:
-        return None
-    return Pressure(face, pressure)
-
-
-def _move(table: Table, label: str) -> Displacement | None:
-    face = face_name(table, "face", label)
-    displacement = table.get("displacement")
-    table.close()
-    if face is None or displacement is None:
-        return None
-    return Displacement(face, displacement)
+    return None if face is None or value is None else make(face, value)
 
 
 def _vector(unit: str) -> Callable[[Any, str], Vector]:
