@@ -9,7 +9,7 @@ between.
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from heapq import heappop, heappush
-from math import inf, log, sqrt
+from math import inf, isfinite, log, nan, sqrt
 from pathlib import Path
 from typing import Protocol, final
 
@@ -152,6 +152,7 @@ class _Levels:
     progress: Callable[[int, int], object] | None
     rows: list[dict[float, dict[str, float]]] = field(default_factory=lambda: [{}, {}, {}])
     done: int = 0
+    kept: dict[float, HalfSpaceContact] = field(default_factory=dict)  # of the coarsest map, at the few pressures
 
     def __post_init__(self) -> None:
         self.maps: list[Map] = [(self.heights, self.spacing)]
@@ -204,6 +205,8 @@ class _Levels:
             if self.alone and p not in self.first:
                 continue
             contact = self._solved(self.maps[last], p, contact)
+            if p in self.few:
+                self.kept[p] = contact
             if p in self.first:
                 self._column(p, contact)
                 continue
@@ -335,16 +338,18 @@ class _Levels:
             solved=np.array(self._where(0, "spots")),
         )
 
-    def _chain(self, on: Map, harder: float = 1.0) -> Array:
-        """ln k_n of one map at the few pressures; NaN where all touches, or a softer metal does not carry them."""
+    def _log_k_n(self, contact: HalfSpaceContact) -> float:
+        """ln k_n of a contact; NaN where all touches."""
+        k_n = self.numbers(contact, False)["k_n"]
+        return log(k_n) if isfinite(k_n) else nan
+
+    def _chain(self, on: Map) -> Array:
+        """ln k_n of one map at the few pressures; NaN where all touches."""
         contact, out = None, []
         for p in self.few:
-            if p > harder * self.few[-1]:
-                out.append(np.nan)
-                continue
-            contact = self._solved(on, p, contact, harder)
-            out.append(self.numbers(contact, False)["k_n"])
-        return np.where(np.isfinite(out), np.log(out), np.nan)
+            contact = self._solved(on, p, contact)
+            out.append(self._log_k_n(contact))
+        return np.array(out)
 
     def _over_all(self, values: Array) -> Array:
         """A number of the few pressures at all of them, linear in ln p; 0 where none is known."""
@@ -363,8 +368,13 @@ class _Levels:
 
     def _hardness_doubt(self) -> Array:
         """Change of ln k_n of the coarsest map with a harder and a softer metal, the larger, at all pressures."""
-        base, harder, softer = (self._chain(self.maps[-1], f) for f in (1.0, HARDNESS_DOUBT, 1 / HARDNESS_DOUBT))
-        return self._over_all(np.fmax(np.abs(harder - base), np.abs(softer - base)))
+        coarsest, changes = self.maps[-1], []
+        for p in self.few:
+            base = self.kept.get(p) or self._solved(coarsest, p, None)
+            carried = [f for f in (HARDNESS_DOUBT, 1 / HARDNESS_DOUBT) if p <= f * self.few[-1]]
+            logs = [self._log_k_n(self._solved(coarsest, p, base, f)) for f in carried]
+            changes.append(np.fmax.reduce(np.abs(np.array(logs) - self._log_k_n(base))))
+        return self._over_all(np.array(changes))
 
 
 def _between(x: Array, y: Array, at: Array) -> Array:
