@@ -39,6 +39,17 @@ def test_a_folded_element_gets_the_volume_of_its_corners():
     assert np.array_equal(found[:5], points[:5])
 
 
+def test_an_element_that_folds_at_the_points_of_its_mass_alone_is_made_straight():
+    """Its mass would be negative there, and so would what a finer mesh adds to its stiffness."""
+    points, cells = two_tetrahedra(0.38)
+    assert np.all(least_jacobian(points, cells) > 0)
+    assert least_jacobian(points, cells, of_mass=True)[0] < 0
+    found, count, flat = straightened(points, cells)
+    assert count == 1
+    assert not np.any(flat)
+    assert np.all(least_jacobian(found, cells, of_mass=True) > 0)
+
+
 def test_an_element_without_volume_is_named():
     points, cells = two_tetrahedra(0.0)
     points[3] = [0.3, 0.3, 0.0]  # its corners lie in one plane

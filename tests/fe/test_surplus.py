@@ -6,7 +6,7 @@ from scipy.linalg import eigh
 
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.elements import KINDS
-from faying.fe.mesh import Mesh
+from faying.fe.mesh import Mesh, least_jacobian
 from faying.fe.surplus import Surplus, _higher
 from faying.materials import CATALOGUE
 from faying.numerics.modes import lowest_modes
@@ -74,6 +74,20 @@ def test_the_energy_is_that_of_the_functions_alone():
     assert eigh(K, eigvals_only=True, subset_by_index=[0, 0])[0] > 0
     exact = np.einsum("im,im->m", residual[inside], np.linalg.solve(K, residual[inside])) / squares
     assert surplus.error(shapes, squares) == pytest.approx(exact, rel=0.1)
+
+
+def test_an_element_that_nearly_folds_leaves_the_stiffness_positive():
+    """The middle of one edge on the surface is moved inwards by a seventh of the edge."""
+    mesh, materials, squares, shapes = plate("tet10", (4, 1, 1))
+    points = mesh.points.copy()
+    cells = mesh.blocks[0]
+    cell = cells[np.argmax((points[cells[:, 4], 2] < 1e-9) & (points[cells[:, 2], 2] > 1e-9))]
+    points[cell[4], 2] += 0.14 * np.linalg.norm(points[cell[1]] - points[cell[0]])
+    bent = Mesh(points=points, parts=mesh.parts, faces={}, face_part={})  # refused where its stiffness folds
+    assert least_jacobian(points, cells, of_mass=True).min() < 0
+    surplus = Surplus.of(bent, materials, np.zeros(len(points), dtype=bool))
+    assert eigh(surplus.stiffness.toarray(), eigvals_only=True, subset_by_index=[0, 0])[0] > 0
+    assert np.all(np.isfinite(surplus.error(shapes, squares)))
 
 
 def test_other_elements_have_no_estimate():

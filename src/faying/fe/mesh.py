@@ -219,9 +219,15 @@ def _blocks(given: Index | Blocks, what: str, kinds: Mapping[int, object]) -> Bl
     return tuple(np.asarray(block, dtype=np.int64) for block in blocks if len(block))
 
 
-def least_jacobian(points: Array, cells: Index) -> Array:
-    """Least determinant of the map from the reference element [m3 per unit] at the points of integration (e,)."""
-    _, _, _, gradients = SOLIDS[cells.shape[1]].stiffness_rule
+def least_jacobian(points: Array, cells: Index, *, of_mass: bool = False) -> Array:
+    """Least determinant of the map from the reference element [m3 per unit] at the points of integration (e,).
+
+    of_mass: at the points of the mass as well as at those of the stiffness.
+    """
+    element = SOLIDS[cells.shape[1]]
+    gradients = element.stiffness_rule[3]
+    if of_mass:
+        gradients = np.concatenate([gradients, element.mass_rule[3]])
     out = np.empty(len(cells))
     for here, jacobian in _jacobians(points, cells, gradients):
         x, y, z = (jacobian[..., i, :] for i in range(3))

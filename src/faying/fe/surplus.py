@@ -30,7 +30,8 @@ class Surplus:
     Args:
         mesh, materials: of the parts; E [Pa], nu and density [kg/m3] count.
         functions, signs: of each element (e, s): numbers, and 1 or -1 by the direction of its edge.
-        stiffness: of the functions in three directions [N/m] (3 f, 3 f).
+        stiffness: of the functions in three directions [N/m] (3 f, 3 f), on elements with straight edges, so that it is
+            positive definite where an element is nearly folded, too.
         left_out: unknowns that are 0 (3 f,).
 
     Source:
@@ -85,7 +86,7 @@ class Surplus:
         m = fields.shape[2]
         out = np.zeros((len(self.left_out) // 3, 3 * m))
         for name, cells, here in _chunks(self.mesh):
-            solid, at = self.materials[name], _AtPoints.of(self.mesh.points, cells, self.signs[here])
+            solid, at = self.materials[name], _AtPoints.of(self.mesh.points[cells], self.signs[here])
             u = fields[cells]
             slope = np.einsum("eqaj,eaim->eqjim", at.own_slopes, u, optimize=True)
             force = -np.einsum(
@@ -112,11 +113,12 @@ class _AtPoints:
     weights: Array
 
     @classmethod
-    def of(cls, points: Array, cells: Index, signs: Array) -> "_AtPoints":
-        element = SOLIDS[cells.shape[1]]
+    def of(cls, nodes: Array, signs: Array) -> "_AtPoints":
+        """At the points of elements whose nodes (e, a, 3) [m] are given."""
+        element = SOLIDS[nodes.shape[1]]
         local, weights, own, gradients = element.rule(DEGREE)
         values, slopes = _higher(element, local.T)
-        jacobian = np.einsum("eai,qaj->eqij", points[cells], gradients, optimize=True)
+        jacobian = np.einsum("eai,qaj->eqij", nodes, gradients, optimize=True)
         inverse = np.linalg.inv(jacobian)
         return cls(
             own_values=own,
@@ -211,6 +213,15 @@ def _stress(slope: Array, solid: Solid) -> Array:
     return np.asarray(out)
 
 
+def _straight(points: Array, cells: Index) -> Array:
+    """Nodes (e, a, 3) [m] of tetrahedra, with those on edges in the middle between their corners."""
+    nodes = points[cells]
+    element = SOLIDS[cells.shape[1]]
+    if element.order == 2:
+        nodes[:, element.corners :] = nodes[:, np.array(element.edges)].mean(axis=2)
+    return np.asarray(nodes)
+
+
 def _assembled(mesh: Mesh, materials: Mapping[str, Solid], functions: Index, signs: Array, count: int) -> Any:
     """Stiffness of the functions (3 f, 3 f) [N/m]."""
     from scipy.sparse import bsr_array
@@ -219,7 +230,7 @@ def _assembled(mesh: Mesh, materials: Mapping[str, Solid], functions: Index, sig
     a, b = pairs_of(functions)
     total = np.zeros((len(pairs), 9))
     for name, cells, here in _chunks(mesh):
-        at, solid = _AtPoints.of(mesh.points, cells, signs[here]), materials[name]
+        at, solid = _AtPoints.of(_straight(mesh.points, cells), signs[here]), materials[name]
         # the rule has a point of negative weight, whose root stiffness_of cannot take
         block = stiffness_of(at.slopes, np.maximum(at.weights, 0.0), solid.E, solid.nu)
         block -= stiffness_of(at.slopes, np.maximum(-at.weights, 0.0), solid.E, solid.nu)
