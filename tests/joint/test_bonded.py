@@ -87,10 +87,25 @@ def test_shares_of_bonded_parts_add_up_to_the_whole():
         assert abs(sum(parts) - total).max() <= 1e-12 * abs(total).max()
 
 
-def test_what_does_not_match_is_refused():
-    rough = boxes((30, 50), (2, 3), sections=((2, 2), (3, 3)))
-    with pytest.raises(faying.InputError, match=r"meet over 400 mm2 and their nodes match over 0 mm2; mesh both"):
-        bonded_mesh(rough, SEAM)
+@pytest.mark.parametrize("solver", [None, BY_PARTS])
+def test_a_joint_on_tied_parts_is_that_on_bonded_ones(solver):
+    """Parts meshed apart with 2 and 3 elements across, beside both with 3: preload, pressure and modes."""
+    mates = faying.Mates.of_fractal(D=2.39, G="1.53e-10 m", scan_area="16 mm^2", materials="S355")
+    joint = faying.Joint(("p1.right", "p2.left"), mates.law("jk"))
+    bolt = faying.Bolt("bolt", ("p0.left", "p2.right"))
+    states = []
+    for first in (2, 3):
+        mesh = bonded_mesh(boxes((30, 30, 40), (2, 2, 2), sections=((first, first), (3, 3), (3, 3))), SEAM)
+        assert (len(mesh.ties), mesh.bodies) == (int(first == 2), (("p0", "p1"), ("p2",)))
+        assert mesh.notes[0].code == "bonded"
+        assert ("do not match" in mesh.notes[0].text) == (first == 2)
+        states.append(faying.Structure(mesh, "S355", [joint], [bolt]).solve("4 kN", modes=4, solver=solver))
+    tied, one = states
+    assert tied.modes.frequencies == pytest.approx(one.modes.frequencies, rel=3e-3)
+    assert np.sort(tied.pressures["joint 1"]) == pytest.approx(np.sort(one.pressures["joint 1"]), rel=2e-2)
+
+
+def test_what_cannot_be_bonded_is_refused():
     mesh = boxes((30, 50), (2, 3), sections=((2, 2),) * 2)
     with pytest.raises(faying.InputError, match="both faces are on part 'p0'"):
         bonded_mesh(mesh, [("seam", ("p0.left", "p0.right"))])

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.case.beyond import stiff_as_bonded
+from faying.case.beyond import STIFF, stiff_as_bonded
 from faying.case.case import Case
 from faying.joint.shared_modes import modes_with
 from faying.joint.structure import bond, merged
@@ -15,7 +15,7 @@ from faying.numerics.by_parts import PartByPart
 from faying.numerics.constraint import constrain
 from faying.typing import Array
 
-STIFFER = 40.0  # springs that are extrapolated to bonded faces, over those that stand for bonded ones
+STIFFER = 40.0  # springs in place of bonded faces, over those beyond the end of a law
 
 
 def bounds(case: Case) -> tuple[Array, Array, list[Note]]:
@@ -38,12 +38,16 @@ def _bonded(case: Case) -> tuple[Array, list[Note]]:
     structure = case.structure
     merge = structure.bonded()
     if merge is None:
-        apart = [joint.name for joint in structure.joints if bond(structure.mesh, [joint.faces]) is None]
+        apart = [
+            joint.name
+            for joint in structure.joints
+            if bond(structure.mesh, [joint.faces], [joint.interface.area]) is None
+        ]
         text = (
-            f"the faces of {', '.join(apart)} do not match node for node: the bonded modes use springs a thousand "
-            "times as stiff as the parts in place of bonded faces"
+            f"the faces of {', '.join(apart)} do not match node for node: the bonded modes use springs "
+            f"{STIFFER * STIFF:,.0f} times as stiff as the parts in place of bonded faces"
         )
-        return _by_springs(case, 1.0), [Note(code="bonded-by-springs", text=text)]
+        return _by_springs(case, STIFFER), [Note(code="bonded-by-springs", text=text)]
     if len(structure.fixed) or isinstance(structure.solver(case.study.modes.solver), PartByPart):
         return _extrapolated(case), []
     return _merged(case, merge), []

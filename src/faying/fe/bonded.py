@@ -1,4 +1,4 @@
-"""Faces that are welded or glued: the nodes of both become one, so that their parts are one body."""
+"""Faces that are welded or glued: the nodes of both become one where they match, else the faces are tied."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -18,7 +18,7 @@ SHARE = 1e-3  # of the area over which faces meet: how much of it may lack nodes
 
 
 def bonded_mesh(mesh: Mesh, pairs: Sequence[tuple[str, tuple[str, str]]], *, snap: float = 0.0) -> Mesh:
-    """Merge the nodes of faces that are bonded.
+    """Merge the nodes of faces that are bonded, and tie those whose nodes do not match.
 
     Args:
         mesh: the parts and their faces.
@@ -26,7 +26,7 @@ def bonded_mesh(mesh: Mesh, pairs: Sequence[tuple[str, tuple[str, str]]], *, sna
         snap: nodes that lie no farther apart than this are one, too [m].
 
     Raises:
-        InputError: a face does not exist, both are on one part, they do not meet, or their nodes do not match.
+        InputError: a face does not exist, both are on one part, or they do not meet.
     """
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import connected_components
@@ -34,11 +34,21 @@ def bonded_mesh(mesh: Mesh, pairs: Sequence[tuple[str, tuple[str, str]]], *, sna
     if not pairs:
         return mesh
     n = len(mesh.points)
-    ends, notes = [], []
+    ends, ties, notes = [np.zeros((2, 0), dtype=np.int64)], [], []
     for name, faces in pairs:
-        met, area = _matched(mesh, name, faces, max(snap, CLOSE * mesh.size))
-        ends.append(met)
+        for face in faces:
+            mesh.face(face)  # raises where there is none
+        if mesh.face_part[faces[0]] == mesh.face_part[faces[1]]:
+            part = mesh.face_part[faces[0]]
+            raise InputError(f"joint {name!r}: both faces are on part {part!r}; a bond needs two parts")
+        area = join(mesh, *faces).area  # raises where they do not meet
+        met = matched(mesh, faces, area, max(snap, CLOSE * mesh.size))
         text = f"{name}: {faces[0]} and {faces[1]} are bonded over {1e6 * area:.4g} mm2: no pressure, no law"
+        if met is None:
+            ties.append(faces)
+            text += "; their nodes do not match, so that means over the finer elements hold them together"
+        else:
+            ends.append(met)
         notes.append(Note(code="bonded", joint=name, text=text))
     one, two = np.concatenate(ends, axis=1)
     _, column = connected_components(csr_array((np.ones(len(one)), (one, two)), shape=(n, n)), directed=False)
@@ -55,32 +65,30 @@ def bonded_mesh(mesh: Mesh, pairs: Sequence[tuple[str, tuple[str, str]]], *, sna
         node_numbers=None if mesh.node_numbers is None else mesh.node_numbers[first],
         turned=None if mesh.turned is None else mesh.turned[first],
         bonded=(*mesh.bonded, *((mesh.face_part[a], mesh.face_part[b]) for _, (a, b) in pairs)),
+        ties=(*mesh.ties, *ties),
         notes=(*mesh.notes, *notes),
     )
 
 
-def _matched(mesh: Mesh, name: str, faces: tuple[str, str], close: float) -> tuple[Index, float]:
-    """Nodes (2, m) of two faces that lie on each other, and the area [m2] over which the faces meet."""
+def matched(mesh: Mesh, faces: tuple[str, str], area: float, close: float) -> Index | None:
+    """Nodes (2, m) of two faces that lie on each other; None where the nodes of some of what meets do not match.
+
+    Args:
+        mesh: the parts and their faces.
+        faces: names of both.
+        area: over which the faces meet [m2].
+        close: nodes nearer than this are one [m].
+    """
     from scipy.spatial import cKDTree
 
-    for face in faces:
-        mesh.face(face)  # raises where there is none
-    if mesh.face_part[faces[0]] == mesh.face_part[faces[1]]:
-        raise InputError(f"joint {name!r}: both faces are on part {mesh.face_part[faces[0]]!r}; a bond needs two parts")
     a, b = (mesh.face_nodes(face) for face in faces)
     distance, index = cKDTree(mesh.points[a]).query(mesh.points[b])
     near = distance <= close
-    matched = np.zeros(len(mesh.points), dtype=bool)
-    matched[a[index[near]]] = True
-    area = _area(mesh.points, mesh.face(faces[0]), matched)
-    facing = float(join(mesh, *faces).weights.sum())  # raises where they do not meet
-    if abs(area - facing) > SHARE * facing:
-        raise InputError(
-            f"joint {name!r} is bonded, but its faces meet over {1e6 * facing:.4g} mm2 and their nodes match over "
-            f"{1e6 * area:.4g} mm2; mesh both parts together from a STEP file, let the mesher make their nodes one, or "
-            "unite the parts in the CAD program"
-        )
-    return np.stack([a[index[near]], b[near]]), facing
+    on_both = np.zeros(len(mesh.points), dtype=bool)
+    on_both[a[index[near]]] = True
+    if abs(_area(mesh.points, mesh.face(faces[0]), on_both) - area) > SHARE * area:
+        return None
+    return np.stack([a[index[near]], b[near]])
 
 
 def _area(points: Array, blocks: Blocks, nodes: Mask) -> float:

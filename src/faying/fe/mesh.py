@@ -38,7 +38,8 @@ class Mesh(Summary):
         source: File that the mesh came from.
         node_numbers: Numbers (n,) of the nodes in that file; 1, 2, ... where None.
         turned: Whether each node's displacements are in directions of its own in the file (n,); None where none are.
-        bonded: Pairs of parts that share nodes, where they are welded or glued.
+        bonded: Pairs of parts that are one body, where they are welded or glued: they share nodes, or are tied.
+        ties: Pairs of faces that are welded or glued and whose nodes do not match.
         notes: What the reader of the file left out.
 
     Raises:
@@ -53,6 +54,7 @@ class Mesh(Summary):
     node_numbers: Index | None = None
     turned: Mask | None = None
     bonded: tuple[tuple[str, str], ...] = ()
+    ties: tuple[tuple[str, str], ...] = ()
     notes: tuple[Note, ...] = ()
 
     def __post_init__(self) -> None:
@@ -163,16 +165,18 @@ class Mesh(Summary):
 
     @checked_call
     def bonded_at(self, *pairs: tuple[str, str]) -> "Mesh":
-        """Return the mesh with faces welded or glued: the nodes of both become one, and their parts one body.
+        """Return the mesh with faces welded or glued, and their parts one body.
+
+        Nodes of both faces become one where they match; else the faces are `ties`.
 
         Args:
-            pairs: Names of two faces each, on two parts, whose nodes match where the faces meet.
+            pairs: Names of two faces each, on two parts.
 
         Returns:
-            The mesh with fewer nodes; `bodies` are its parts that hang together.
+            The mesh; `bodies` are its parts that hang together.
 
         Raises:
-            InputError: A face does not exist, both are on one part, they do not meet, or their nodes do not match.
+            InputError: A face does not exist, both are on one part, or they do not meet.
         """
         from faying.fe.bonded import bonded_mesh
 

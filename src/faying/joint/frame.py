@@ -13,6 +13,7 @@ from faying.fe.corners import Corners
 from faying.fe.elasticity import Solid, assemble, rigid_motions
 from faying.fe.mesh import Mesh
 from faying.fe.sides import nodes_of
+from faying.fe.tied import tie_stiffness
 from faying.joint.attachments import PointMass, Support
 from faying.memory import available
 from faying.mpi.over_mpi import OverMpi, processes_named
@@ -43,8 +44,13 @@ class Frame:
 
     @cached_property
     def matrices(self) -> tuple[Any, Any]:
-        """Stiffness [N/m] and mass [kg] of the parts alone."""
-        return assemble(self.mesh, self.materials)
+        """Stiffness [N/m] and mass [kg] of the parts alone, with the ties of faces that are bonded."""
+        K, M = assemble(self.mesh, self.materials)
+        return added(K, [self._tie(faces) for faces in self.mesh.ties]), M
+
+    def _tie(self, faces: tuple[str, str]) -> Any:
+        modulus = max(self.materials[self.mesh.face_part[face]].E for face in faces)
+        return tie_stiffness(self.mesh, faces, modulus)
 
     @cached_property
     def corners(self) -> Corners | None:

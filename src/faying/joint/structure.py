@@ -10,8 +10,9 @@ import numpy as np
 from faying.bolt.bolt import Bolt, FittedBolt, solid_of
 from faying.bolt.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.errors import FayingError, InputError
+from faying.fe.bonded import CLOSE, matched
 from faying.fe.elasticity import Solid
-from faying.fe.interface import Interface
+from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.fe.outline import Outline, outline
 from faying.fe.quality import quality
@@ -348,7 +349,7 @@ class Structure(Summary):
 
     def bonded(self) -> Any | None:
         """Return the map that bonds the faces of every joint; see `bond`."""
-        return bond(self.mesh, [joint.faces for joint in self.joints])
+        return bond(self.mesh, [joint.faces for joint in self.joints], [joint.interface.area for joint in self.joints])
 
     def outline(self) -> tuple[Index, Index]:
         """Nodes of the outer surface and triangles between them (t, 3), for pictures."""
@@ -439,25 +440,22 @@ def merged(matrix: Any, merge: Any) -> Any:
     return merge.T.tocsr() @ columns
 
 
-def bond(mesh: Mesh, pairs: Sequence[tuple[str, str]]) -> Any | None:
+def bond(mesh: Mesh, pairs: Sequence[tuple[str, str]], areas: Sequence[float] | None = None) -> Any | None:
     """Return the sparse map (unknowns, fewer) that bonds pairs of faces node by node.
 
-    None where the meshes of a pair do not match.
+    None where the meshes of a pair do not match where its faces meet; areas: over which they do [m2].
     """
     from scipy.sparse import csr_array, get_index_dtype
     from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
 
-    n = len(mesh.points)
-    near, far = [], []
-    for first, second in pairs:
-        a, b = mesh.face_nodes(first), mesh.face_nodes(second)
-        distance, index = cKDTree(mesh.points[a]).query(mesh.points[b])
-        if not np.all(distance < 1e-6 * mesh.size):
+    n, found = len(mesh.points), []
+    for number, faces in enumerate(pairs):
+        area = join(mesh, *faces).area if areas is None else areas[number]
+        met = matched(mesh, faces, area, CLOSE * mesh.size)
+        if met is None:
             return None
-        near.append(a[index])
-        far.append(b)
-    ends = np.concatenate(near), np.concatenate(far)
+        found.append(met)
+    ends = tuple(np.concatenate(found, axis=1))
     # a node of several joints is bonded to all that it meets in any of them
     _, column = connected_components(csr_array((np.ones(len(ends[0])), ends), shape=(n, n)), directed=False)
     count = int(column.max()) + 1
