@@ -162,3 +162,41 @@ def channel(path):
     for x, y in places:
         web = _drilled(web - _box((x - 6, x + 6), (y - 4.5, y + 4.5), (12, 22)), ((x - 6, y), (x + 6, y)), 12, 22, 9)
     return _write(path, channel=web, plate=plate)
+
+
+MADE = {
+    "flanges": lambda path: flanges(path, pipe=20.0),
+    "raised_flanges": lambda path: flanges(path, raised=2.0, pipe=20.0),
+    "bracket": bracket,
+    "t_slots": t_slots,
+    "counterbored": counterbored,
+    "countersunk": countersunk,
+    "studded": studded,
+    "spacers": spacers,
+    "stepped_lap": stepped_lap,
+    "segments": segments,
+    "cover": cover,
+    "channel": channel,
+}
+# of elements that are coarse and cheap; the last two are files of others
+SIZES = {
+    "flanges": "15 mm",
+    "raised_flanges": "15 mm",
+    "bracket": "14 mm",
+    "t_slots": "14 mm",
+    "counterbored": "14 mm",
+    "countersunk": "10 mm",
+    "studded": "14 mm",
+    "spacers": "12 mm",
+    "stepped_lap": "15 mm",
+    "segments": "16 mm",
+    "cover": "12 mm",
+    "channel": "14 mm",
+    "pipe-flanges-flat": "15 mm",
+    "column-on-t-slots": "30 mm",
+}
+
+
+def made(name, path):
+    """Write the STEP file of an assembly."""
+    return MADE[name](path)

@@ -16,10 +16,10 @@ COLUMNS = 80
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, with the key and the line of each finding.")
 def command(study: Path, as_json: bool) -> int:
-    """Check STUDY without solving: keys, names, contacts, bolts, reach of the laws, unknowns, memory, time."""
+    """Check STUDY without solving: keys, names, contacts, bolts, reach of the laws, mesh, unknowns, memory, time."""
     from faying.setup.check import by_level, check
 
-    found = check(study)
+    found = check(study, mesh=True)
     if as_json:
         click.echo(json_text(to_dict(found)))
     else:

@@ -1,4 +1,4 @@
-"""What can be said of a study in seconds, before anything is meshed or solved: faults, notes, what a run will need."""
+"""What can be said of a study in seconds, before anything is solved: faults, notes, what a run will need."""
 
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
@@ -34,6 +34,7 @@ from faying.study.keys.reader import StudyFaults
 from faying.study.study import Study
 from faying.units import show
 
+MOST_MESHED = 400_000  # unknowns, as estimated: meshing them takes some ten seconds
 Level = Literal["ok", "note", "fault"]
 
 
@@ -90,11 +91,13 @@ class _Findings:
         return True
 
 
-def check(path: str | Path) -> Checked:
-    """Look at a study file without meshing or solving: its keys, names, contacts, bolts, seats, laws and size.
+def check(path: str | Path, *, mesh: bool = False) -> Checked:
+    """Look at a study file without solving: its keys, names, contacts, bolts, seats, laws and size.
 
     Args:
         path: the study file.
+        mesh: whether to mesh its STEP file, too, which counts the unknowns and finds what the mesher refuses; the mesh
+            is kept for the run. Not where it is expected to have more than 400,000 unknowns.
 
     Returns:
         Every finding; nothing is raised for faults of the study.
@@ -109,17 +112,17 @@ def check(path: str | Path) -> Checked:
     if study is None:
         return Checked(findings=tuple(found.out))
     found.add("ok", "keys", f"keys, units and files of {file.name}")
-    facts, mesh = _geometry(study, found)
+    facts, ready = _geometry(study, found)
     if facts is None:
         return Checked(findings=tuple(found.out))
     named = _named(study, facts, found)
     before = len(found.out)
     owner = {name: some[0].part for name, some in named.items()}
-    for key, fault in name_faults(study, list(facts.by_part), owner, () if mesh is None else mesh.bonded):
+    for key, fault in name_faults(study, list(facts.by_part), owner, () if ready is None else ready.bonded):
         found.add("fault", "names", fault, key)
-    expected = _expected(study, facts, named, mesh, found)
+    _sizes(study, named, found)
     if len(found.out) > before and any(one.level == "fault" for one in found.out):
-        return Checked(findings=tuple(found.out), expected=expected)
+        return Checked(findings=tuple(found.out), expected=_expected(study, facts, named, ready, found))
     found.add("ok", "names", f"{len(facts.parts)} parts and {len(named)} named faces of {facts.file}")
     sketch = Sketch(
         study=study,
@@ -131,14 +134,16 @@ def check(path: str | Path) -> Checked:
     )
     _contacts(sketch, found)
     for key, what, point in named_points(study):
-        found.tried("point", key, partial(on_structure, what, point, mesh or facts))
-    shared = set() if mesh is None else {face for face in mesh.faces if mesh.is_shared(face)}
+        found.tried("point", key, partial(on_structure, what, point, ready or facts))
+    shared = set() if ready is None else {face for face in ready.faces if ready.is_shared(face)}
     for joint in study.joints:
         if text := nothing_moves(joint.name, [face for face in joint.faces if face in shared]):
             found.add("fault", "contact", text, f"joint[{joint.number}].faces")
     sketch = _bolts(sketch, found, shared)
     for level, code, words, key in law_findings(sketch):
         found.add(level, code, words, key)
+    made = _meshed(study, facts, named, found) if mesh and ready is None else ready
+    expected = _expected(study, facts, named, made, found)
     return Checked(findings=tuple(found.out), expected=expected)
 
 
@@ -228,6 +233,28 @@ def _selector_key(study: Study, label: str) -> str:
     return f"geometry.face.{label}"
 
 
+def _meshed(
+    study: Study, facts: GeometryFacts, named: Mapping[str, tuple[FaceFacts, ...]], found: _Findings
+) -> Mesh | None:
+    """The mesh of a STEP file, as the run makes it; None where it would be large, or faults forbid it."""
+    spec = study.geometry
+    if any(one.level == "fault" for one in found.out):
+        return None
+    if unknowns_of(facts, spec.size, spec.face_size, named) > MOST_MESHED:
+        return None
+    made: list[Mesh] = []
+    found.tried("mesh", "geometry.size", lambda: made.append(mesh_of(spec)))
+    return made[0] if made else None
+
+
+def _sizes(study: Study, named: Mapping[str, tuple[FaceFacts, ...]], found: _Findings) -> None:
+    """Names of faces that are meshed finer."""
+    for name in study.geometry.face_size:
+        if name not in named:
+            text = f"size of face {name!r}: the faces are {', '.join(sorted(named))}"
+            found.add("fault", "names", text, f"geometry.face_size.{name}")
+
+
 def _expected(
     study: Study,
     facts: GeometryFacts,
@@ -236,14 +263,9 @@ def _expected(
     found: _Findings,
 ) -> Expected:
     spec = study.geometry
-    key = "geometry.mesh" if mesh is not None else "geometry.size"
-    for name in spec.face_size:
-        if name not in named:
-            known = ", ".join(sorted(named))
-            text = f"size of face {name!r}: the faces are {known}"
-            found.add("fault", "names", text, f"geometry.face_size.{name}")
+    key = "geometry.mesh" if spec.mesh is not None else "geometry.size"
     unknowns = mesh.unknowns if mesh is not None else unknowns_of(facts, spec.size, spec.face_size, named)
-    expected = Expected.of(study, unknowns)
+    expected = Expected.of(study, unknowns, counted=mesh is not None)
     free = available()
     about = "" if mesh is not None else "about "
     text = f"{about}{unknowns:,} unknowns, {expected.memory / 1e9:.2g} GB, {duration(max(expected.seconds, 1.0))}"

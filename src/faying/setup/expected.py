@@ -14,16 +14,18 @@ from faying.study.study import Study
 SEGMENTS = 2.0  # elements along a radius of curvature, as the mesher is told
 CURVED = 3.0  # so much more than beside a curved face alone: its edges are fine on the planes around, too (counted)
 # of the command with one load, on one thread: counted on assemblies of 17,000 to 370,000 unknowns
-START, EACH, GROWTH = 5.0, 2e-4, 1.13  # CPU seconds: those of any run, and EACH n^GROWTH
+START, EACH, GROWTH = 5.0, 1.7e-4, 1.13  # CPU seconds: those of any run, and EACH n^GROWTH
 LOAD, OTHER = 0.25, 0.5  # of that: what each further load takes, and each other law
 LEVELS, WAVES = 0.2, 0.2  # of that: the shares of damping at levels, and of waves where no joint has a form
+SOLID = 0.7  # of that: what the joints under head and nut take where a bolt is a part
 CURVE = 13.0  # CPU seconds of a curve over amplitude (docs/backbone.md)
 BARE, VECTORS = 0.13e9, 24e3  # B: of any run, and for each unknown, with PARDISO's factor in single precision
 OVER_MPI = 11e3  # B for each unknown that the processes of mpiexec take (docs/speed.md)
+ESTIMATED = "unknowns from volume, size and curved faces, within a factor of 2.5"
+COUNTED = "unknowns of the mesh"
 BASIS = (
-    "unknowns from volume, size and curved faces, within a factor of two; the greatest memory of the run, and its time "
-    "on one thread, as runs of as many unknowns took; the contact of a scan comes on top where it has not been solved "
-    "yet"
+    "the greatest memory of the run, and its time on one thread, as runs of as many unknowns took; the contact of a "
+    "scan comes on top where it has not been solved yet"
 )
 
 
@@ -41,12 +43,16 @@ class Expected:
     unknowns: int
     memory: float
     seconds: float
-    basis: str = BASIS
+    basis: str = f"{COUNTED}; {BASIS}"
 
     @classmethod
-    def of(cls, study: Study, unknowns: int) -> "Expected":
-        """What the run of a study of so many unknowns needs: its loads, other laws, damping, waves and curves."""
+    def of(cls, study: Study, unknowns: int, *, counted: bool = True) -> "Expected":
+        """What the run of a study of so many unknowns needs: its loads, other laws, damping, waves and curves.
+
+        counted: whether they are those of a mesh.
+        """
         share = 1.0 + LOAD * (len(study.loads) - 1) + OTHER * len(study.alternatives)
+        share += SOLID if any(bolt.part is not None for bolt in study.bolts) else 0.0
         share -= 0.0 if study.modes.levels else LEVELS
         share -= WAVES if any(joint.form is not None for joint in study.joints) else 0.0
         seconds = START + share * EACH * unknowns**GROWTH
@@ -58,7 +64,8 @@ class Expected:
         else:
             memory = BARE + VECTORS * unknowns
             memory += 0.0 if way in ("pardiso", BY_PARTS) else guessed(unknowns) - in_single(unknowns)
-        return cls(unknowns=unknowns, memory=memory, seconds=seconds)
+        basis = f"{COUNTED if counted else ESTIMATED}; {BASIS}"
+        return cls(unknowns=unknowns, memory=memory, seconds=seconds, basis=basis)
 
 
 def unknowns_of(
