@@ -14,7 +14,7 @@ from unittest.mock import patch
 import numpy as np
 
 import faying
-from faying.contact.measured_heights import MeasuredHeights
+from faying.contact.models.measured_heights import MeasuredHeights
 from faying.joint.joint_law import JointLaw
 from faying.microslip.microslip import Microslip
 from faying.typing import Array

@@ -43,12 +43,12 @@ def main():
     parser.add_argument("--seed", type=int, default=0)
     given = parser.parse_args()
 
-    from faying.identify.ensemble import Ensemble
-    from faying.identify.evaluate import Reduced
     from faying.identify.identify import identify_model, points_for
     from faying.identify.noise import DISCREPANCY_SD, TEST_SD
     from faying.identify.of_study import StudyModel, _Stage
-    from faying.identify.points import at_shares, sobol
+    from faying.identify.sampling.ensemble import Ensemble
+    from faying.identify.sampling.evaluate import Reduced
+    from faying.identify.sampling.points import at_shares, sobol
     from faying.study import Study
 
     study = Study.read(given.study)

@@ -16,7 +16,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
 from faying import CATALOGUE, ContactPair
-from faying.contact.half_space import STEP, HalfSpace
+from faying.contact.models.half_space import STEP, HalfSpace
 from tests.contact.test_loading_and_size import self_affine
 
 STEEL = CATALOGUE["45 steel"]

@@ -10,7 +10,7 @@ import numpy as np
 
 import faying
 from faying.contact.auto import pick
-from faying.contact.half_space import HalfSpace
+from faying.contact.models.half_space import HalfSpace
 from faying.contact.two_faces import faces_of
 from faying.surface.scan import Scan
 from faying.surface.synthesize import spectral

@@ -14,10 +14,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from faying.surface.files.write import write_scan
 from faying.surface.form import prepared
 from faying.surface.spectrum import spectrum, structure_function
 from faying.surface.synthesize import spectral
-from faying.surface.write import write_scan
 
 
 def seconds(call: Callable[[], Any], rounds: int) -> float:

@@ -15,7 +15,7 @@ import pytest
 import faying
 from faying import cache, files, netcdf
 from faying.cli.main import main
-from faying.identify import points
+from faying.identify.sampling import points
 from faying.study import part_folder
 from faying.text import json_text
 
@@ -145,7 +145,7 @@ def test_numbers_of_sobol_are_loaded_while_signals_wait(monkeypatch):
         "    os.kill(os.getpid(), signal.SIGINT)\n"
         "    return orig(self, key)\n"
         "np.lib.npyio.NpzFile.__getitem__ = get\n"
-        "from faying.identify.points import sobol\n"
+        "from faying.identify.sampling.points import sobol\n"
         "try:\n"
         "    sobol(4, 64, 0)\n"
         "except KeyboardInterrupt:\n"

@@ -12,10 +12,10 @@ import numpy as np
 
 from faying.contact.compare import Comparison, compare
 from faying.contact.inputs import SurfaceInputs
-from faying.contact.jk import JK
 from faying.contact.law import Response
 from faying.contact.mates import Mates
-from faying.contact.power_law import PowerLaw
+from faying.contact.models.jk import JK
+from faying.contact.models.power_law import PowerLaw
 from faying.materials import CATALOGUE, RIGID, ContactPair
 from faying.style import new_panels, save
 from faying.typing import Array

@@ -14,11 +14,11 @@ from pathlib import Path
 import numpy as np
 
 from faying.surface.convention import G_from_Rq
+from faying.surface.files.write import write_scan
 from faying.surface.form import levelled
 from faying.surface.fractal import fit_fractal
 from faying.surface.scan import Scan
 from faying.surface.synthesize import spectral
-from faying.surface.write import write_scan
 
 D, RA, SIDE, POINTS, SEED = 2.39, 0.8e-6, 4e-3, 800, 1
 FEED, CUTTER, MARKS = 0.8e-3, 31.5e-3, 0.1  # distance of the marks, cutter radius, their share of the mean square

@@ -11,11 +11,11 @@ from .bolt.bolt import Bolt as Bolt
 from .bolt.bolt import Washer as Washer
 from .bolt.solid_bolt import SolidBolt as SolidBolt
 from .contact.compare import Comparison as Comparison
-from .contact.half_space import HalfSpace as HalfSpace
-from .contact.jk import JK as JK
 from .contact.law import ContactLaw as ContactLaw
 from .contact.mates import Mates as Mates
 from .contact.mates import law_for as law_for
+from .contact.models.half_space import HalfSpace as HalfSpace
+from .contact.models.jk import JK as JK
 from .contact.response import Response as Response
 from .decks.matrices import read_matrices as read_matrices
 from .decks.meshfile import read_mesh as read_mesh
@@ -69,13 +69,13 @@ from .study import Study as Study
 from .surface import synthesize as synthesize
 from .surface.combine import Combined as Combined
 from .surface.combine import combine as combine
+from .surface.files.read import read_scan as read_scan
+from .surface.files.write import write_scan as write_scan
 from .surface.fractal import FractalFit as FractalFit
 from .surface.fractal import fit_fractal as fit_fractal
-from .surface.read import read_scan as read_scan
 from .surface.roughness import Roughness as Roughness
 from .surface.scan import Profile as Profile
 from .surface.scan import Scan as Scan
-from .surface.write import write_scan as write_scan
 from .sweeps.axes import axis_of as axis_of
 from .sweeps.sweep import sweep as sweep
 

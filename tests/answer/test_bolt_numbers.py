@@ -129,9 +129,9 @@ def test_tables_and_files(tight, tmp_path):
 @pytest.fixture(scope="module")
 def loose(made, tmp_path_factory):
     """A bolt that is a force, on a scan with a law that yields."""
+    from faying.surface.files.write import write_scan
     from faying.surface.scan import Scan
     from faying.surface.synthesize import spectral
-    from faying.surface.write import write_scan
 
     scan = spectral((96, 96), spacing=5e-6, D=2.2, Rq=1e-6, longest=1e-4, seed=7)
     assert isinstance(scan, Scan)

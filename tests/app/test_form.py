@@ -14,7 +14,7 @@ from faying.errors import InputError
 from faying.setup.edit import written
 from faying.setup.template import TEXT
 from faying.study import Study
-from faying.study.keys.reader import StudyFaults
+from faying.study.declaration.reader import StudyFaults
 from faying.study.keys.tables import STUDY as STUDY_KEYS
 from tests.app.test_server import ask
 from tests.setup.test_edit import leaves

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from faying.setup import template
+from faying.surface.files.write import write_scan
 from faying.surface.synthesize import spectral
-from faying.surface.write import write_scan
 from tests.helpers.browser import WAIT, opened, until
 from tests.helpers.laps import lapped
 

@@ -8,10 +8,10 @@ import pytest
 
 from faying.app.scans import MISSING, MOST, MOST_OF_LINE, OpenScan, band_of, window_of
 from faying.errors import InputError
+from faying.surface.files.write import write_scan
 from faying.surface.fractal import fit_fractal
 from faying.surface.scan import Profile, Scan
 from faying.surface.synthesize import spectral
-from faying.surface.write import write_scan
 from tests.app.test_page import page_at
 from tests.app.test_server import ask
 from tests.helpers.browser import until

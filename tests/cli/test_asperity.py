@@ -7,7 +7,7 @@ import pytest
 import xarray
 from click.testing import CliRunner
 
-from faying.cli.asperity import command
+from faying.cli.scan.asperity import command
 from faying.errors import FayingError, InputError, ReadError
 
 SMALL = ["--elements", "6", "--E", "100 GPa"]

@@ -11,8 +11,8 @@ from faying.cli.run import text
 from faying.contact.two_faces import faces_of
 from faying.result import Result
 from faying.setup import template
+from faying.surface.files.read import read_scan
 from faying.surface.fractal import fit_fractal
-from faying.surface.read import read_scan
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "two-blocks"
 GIVEN = 'D = 2.39\nG = "1.53e-10 m"\nscan_area = "16 mm^2"\n'

@@ -215,5 +215,6 @@ def measured_frfs():
 
 def test_the_libraries_are_loaded_only_when_needed():
     heavy = ("pyuff", "sdypy", "scipy")
-    code = f"import sys, faying.cli.test, faying.cli.law_table; sys.exit(any(m in sys.modules for m in {heavy}))"
+    modules = "faying.cli.measured.test, faying.cli.scan.law_table"
+    code = f"import sys, {modules}; sys.exit(any(m in sys.modules for m in {heavy}))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

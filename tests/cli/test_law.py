@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from faying import CATALOGUE, JK, ContactPair, InputError, Material
-from faying.cli.law import command
+from faying.cli.scan.law import command
 
 SPECIMEN = ["--D", "2.39", "--G", "1.53e-10 m", "--scan-area", "16 mm^2", "--material", "45 steel"]
 LAW = JK(D=2.39, G=1.53e-10, scan_area=16e-6, pair=ContactPair("45 steel", "45 steel"))

@@ -160,7 +160,7 @@ def test_completion_of_the_shell_knows_the_commands():
 
 def test_an_end_of_file_in_a_command_is_no_interruption(monkeypatch):
     """click takes EOFError for the user's wish to stop; it is a fault of ours, which must show."""
-    from faying.cli import models
+    from faying.cli.scan import models
 
     def ends(**_):
         raise EOFError("marshal data too short")

@@ -8,8 +8,8 @@ import pytest
 from click.testing import CliRunner
 
 from faying import ContactPair, InputError, fit_fractal, read_scan
-from faying.cli.law import command as law
-from faying.cli.models import command as models
+from faying.cli.scan.law import command as law
+from faying.cli.scan.models import command as models
 from faying.contact import JK, SurfaceInputs, laws
 from faying.contact.inputs import OF_SCAN
 

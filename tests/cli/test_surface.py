@@ -5,8 +5,8 @@ import pytest
 
 from faying import Scan
 from faying.cli import main
+from faying.surface.files.write import write_scan
 from faying.surface.synthesize import spectral, with_missing
-from faying.surface.write import write_scan
 
 
 @pytest.fixture

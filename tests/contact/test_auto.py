@@ -5,8 +5,8 @@ import pytest
 
 import faying
 from faying.contact.auto import CLOSE, pick
-from faying.contact.half_space import HalfSpace
 from faying.contact.inputs import FractalSurface, RoughSurface
+from faying.contact.models.half_space import HalfSpace
 from faying.contact.stability import COARSE, WHOLE, stability
 from faying.contact.two_faces import faces_of
 from faying.errors import InputError

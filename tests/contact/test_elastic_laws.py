@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from faying import RIGID, ContactPair, InputError, Material
 from faying.contact import JacksonStreator, Persson
-from faying.contact.jackson_streator import sinusoid_area
+from faying.contact.models.jackson_streator import sinusoid_area
 
 PAIR = ContactPair(Material(name="m", E=200e9, nu=0.3, hardness=994e6), RIGID)
 E = PAIR.E_star

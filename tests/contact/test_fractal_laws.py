@@ -12,7 +12,7 @@ from scipy.integrate import quad
 from faying import JK, RIGID, ContactPair, InputError, Material
 from faying.contact import MajumdarBhushan, MoragEtsion, WangKomvopoulos, YanKomvopoulos
 from faying.contact.asperity import LinLin
-from faying.contact.islands import domain_extension
+from faying.contact.models.islands import domain_extension
 
 PAIR = ContactPair(Material(name="m", E=200e9, nu=0.3, hardness=994e6, yield_strength=355e6), RIGID)
 H, E = PAIR.hardness, PAIR.E_star

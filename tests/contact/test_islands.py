@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from faying.contact.islands import Islands, domain_extension, power_integral
+from faying.contact.models.islands import Islands, domain_extension, power_integral
 from faying.errors import InputError
 
 # psi of Wang and Komvopoulos for a surface of dimension D, tabulated in theory notes to four decimals

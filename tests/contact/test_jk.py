@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from faying import JK, RIGID, ContactPair, InputError, Material
-from faying.contact.jk import asperity_regimes, slip_share
+from faying.contact.models.jk import asperity_regimes, slip_share
 
 STEEL = Material(name="45 steel", E=200e9, nu=0.3, density=7800.0, yield_strength=355e6, hardness=994e6, friction=0.25)
 PAIR = ContactPair(STEEL, RIGID)

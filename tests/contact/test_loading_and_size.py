@@ -10,7 +10,7 @@ import pytest
 
 import faying
 from faying import CATALOGUE, ContactPair, Mates
-from faying.contact.half_space import HalfSpace
+from faying.contact.models.half_space import HalfSpace
 from faying.errors import InputError
 from faying.halfspace import solve_half_space
 from faying.halfspace.solve import halved_map, refined_map

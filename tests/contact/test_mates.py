@@ -6,7 +6,7 @@ import pytest
 import faying
 from faying.contact import two_faces
 from faying.contact.build import kinds
-from faying.contact.half_space import HalfSpace
+from faying.contact.models.half_space import HalfSpace
 from tests.helpers.scans import gaussian
 
 POINTS, SIDE = 64, 0.5e-3

@@ -67,7 +67,7 @@ def test_a_file_comes_back_in_si(tmp_path: Path) -> None:
 
 def test_files_of_the_command_law_are_read(tmp_path: Path) -> None:
     from faying import JK, ContactPair
-    from faying.cli.law import csv_text
+    from faying.cli.scan.law import csv_text
     from faying.materials import CATALOGUE
 
     steel = CATALOGUE["45 steel"]

@@ -198,7 +198,7 @@ READERS = {
 def main():
 
     import faying
-    from faying.surface import instruments
+    from faying.surface.files import instruments
 
     instruments._library()
 

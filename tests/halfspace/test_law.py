@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from faying.contact.half_space import HalfSpace
 from faying.contact.law import ContactLaw
+from faying.contact.models.half_space import HalfSpace
 from faying.contact.pressure_series import is_twofold, quarters, solve_series
 from faying.errors import InputError
 from faying.halfspace import error_bound, solve_half_space

@@ -17,12 +17,12 @@ from faying.form.fit import fit_form
 from faying.halfspace import figure as half_space
 from faying.identify import prediction_figure as predicting
 from faying.identify.backbones import Backbones
-from faying.identify.ensemble import Inputs
 from faying.identify.identification_figure import figure as identification
 from faying.identify.identification_figure import identification_axes
 from faying.identify.identify import identify_model
 from faying.identify.noise import Losses
 from faying.identify.prediction import Prediction
+from faying.identify.sampling.ensemble import Inputs
 from faying.measured.compare import compare_modes
 from faying.measured.figure import identified
 from faying.measured.frf import FRF

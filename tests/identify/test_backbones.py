@@ -15,13 +15,13 @@ from faying.backbones.backbone import median_of
 from faying.cli import main
 from faying.errors import InputError
 from faying.form.form import Form
-from faying.identify import follow
 from faying.identify import predict as module
 from faying.identify import prediction_figure as drawing
 from faying.identify.backbones import Backbones
-from faying.identify.ensemble import Ensemble
-from faying.identify.follow import Follower, sliding
 from faying.identify.prediction import Prediction
+from faying.identify.sampling import follow
+from faying.identify.sampling.ensemble import Ensemble
+from faying.identify.sampling.follow import Follower, sliding
 from faying.output import prediction as tables
 from faying.output.report_predicted import predicted
 from faying.progress import silent

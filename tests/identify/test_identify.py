@@ -9,13 +9,13 @@ from scipy import stats
 import faying
 from faying.distribution import Distribution
 from faying.errors import InputError, ReadError
-from faying.identify.emulator import Emulator
 from faying.identify.fit import Seen
 from faying.identify.identification import Identification, mixed, weights_of
 from faying.identify.identification_figure import figure
 from faying.identify.identify import identify_model
 from faying.identify.noise import DISCREPANCY_SD, TEST_SD, Losses, offsets
-from faying.identify.tempering import temper
+from faying.identify.sampling.emulator import Emulator
+from faying.identify.sampling.tempering import temper
 from tests.helpers.chain import LOADS, Altered, Chain, DampedChain, Linear
 
 COUNT = 400

@@ -9,11 +9,11 @@ from scipy.stats import norm
 
 import faying
 from faying.errors import InputError
-from faying.identify.ensemble import Ensemble
-from faying.identify.evaluate import Reduced
 from faying.identify.identification import Identification
 from faying.identify.identify import identify_model
 from faying.identify.of_study import StudyModel, _Stage, left_out
+from faying.identify.sampling.ensemble import Ensemble
+from faying.identify.sampling.evaluate import Reduced
 from faying.study import Study
 from faying.study.keys import test as keys
 from faying.study.keys.law import LawChoice

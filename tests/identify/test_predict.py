@@ -11,11 +11,11 @@ import faying
 from faying.answer.run import run
 from faying.distribution import Distribution
 from faying.errors import FayingError, InputError
-from faying.identify import evaluate
 from faying.identify import predict as module
-from faying.identify.ensemble import Ensemble, Inputs
-from faying.identify.evaluate import Evaluator, Reduced
 from faying.identify.prediction import Prediction
+from faying.identify.sampling import evaluate
+from faying.identify.sampling.ensemble import Ensemble, Inputs
+from faying.identify.sampling.evaluate import Evaluator, Reduced
 from faying.joint.modal import ModesChoice
 from faying.numerics.damped import damped_modes
 from faying.numerics.modes import lowest_modes

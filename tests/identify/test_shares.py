@@ -5,8 +5,8 @@ import pytest
 
 from faying.distribution import Distribution
 from faying.errors import InputError
+from faying.identify.sampling.surrogate import Surrogate
 from faying.identify.shares import _indices, shares
-from faying.identify.surrogate import Surrogate
 
 TURN = Distribution(kind="uniform", centre=0, spread=np.pi)
 NORMAL = Distribution(kind="normal", centre=1, spread=2)

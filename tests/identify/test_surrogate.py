@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from faying.errors import InputError
-from faying.identify.surrogate import Surrogate
+from faying.identify.sampling.surrogate import Surrogate
 
 RNG = np.random.default_rng(3)
 MIXED = [False, True, False]

@@ -6,7 +6,7 @@ from scipy import special, stats
 
 from faying.distribution import Distribution
 from faying.errors import InputError
-from faying.identify.tempering import _systematic, temper
+from faying.identify.sampling.tempering import _systematic, temper
 
 NORMAL = Distribution(kind="normal", centre=0, spread=1)
 

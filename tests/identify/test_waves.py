@@ -7,8 +7,8 @@ import pytest
 
 import faying
 from faying.answer.run import run
-from faying.identify.ensemble import Ensemble
-from faying.identify.evaluate import LIMIT
+from faying.identify.sampling.ensemble import Ensemble
+from faying.identify.sampling.evaluate import LIMIT
 from faying.study import Study
 from faying.study.keys import test as keys
 from tests.helpers.studies import write

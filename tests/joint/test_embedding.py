@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 import faying
-from faying.contact.half_space import HalfSpace
+from faying.contact.models.half_space import HalfSpace
 from faying.halfspace.solve import solve_half_space
 from faying.joint.joint_law import JointLaw
 from faying.surface.scan import Scan

@@ -5,8 +5,8 @@ import pytest
 from scipy.sparse import csr_array, diags_array
 
 import faying
-from faying.contact.half_space import HalfSpace
-from faying.contact.tabulated import TabulatedLaw
+from faying.contact.models.half_space import HalfSpace
+from faying.contact.models.tabulated import TabulatedLaw
 from faying.joint.joint_law import JointLaw
 from faying.numerics.damped import damped_modes
 from faying.numerics.modes import lowest_modes

@@ -91,9 +91,9 @@ def law_named(folder, **law):
 
 def test_laws_given_in_full_need_no_surface(folder):
     """Each against the law made by hand."""
-    from faying.contact.greenwood_williamson import GreenwoodWilliamson
-    from faying.contact.power_law import PowerLaw
-    from faying.contact.tabulated import TabulatedLaw
+    from faying.contact.models.greenwood_williamson import GreenwoodWilliamson
+    from faying.contact.models.power_law import PowerLaw
+    from faying.contact.models.tabulated import TabulatedLaw
     from faying.materials import CATALOGUE, ContactPair
 
     steel = CATALOGUE["45 steel"]

@@ -10,8 +10,8 @@ from click.testing import CliRunner
 
 import faying
 from faying.case.case import checked_laws, surfaces_of
-from faying.cli.law import command as law_command
-from faying.identify.ensemble import Ensemble
+from faying.cli.scan.law import command as law_command
+from faying.identify.sampling.ensemble import Ensemble
 from faying.setup import template
 from faying.setup.reach import law_reach
 from faying.study import Study

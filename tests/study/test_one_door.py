@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 import faying
 from faying.case.case import Case
-from faying.cli.law import command as law_command
+from faying.cli.scan.law import command as law_command
 from faying.contact.build import AUTO, build, kinds
 from faying.decks.included import included
 from faying.study import Study

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from faying import ReadError, read_scan
+from faying.surface.files.write import write_scan
 from faying.surface.scan import Scan
-from faying.surface.write import write_scan
 
 RNG = np.random.default_rng(8)
 NY, NX = 24, 32

@@ -5,11 +5,11 @@ import pytest
 
 from faying import InputError, Scan, fit_fractal, read_scan
 from faying.surface.combine import combine
-from faying.surface.crosscheck import compare, cross_check
+from faying.surface.files.crosscheck import compare, cross_check
+from faying.surface.files.write import write_scan
 from faying.surface.lay import find_lay
 from faying.surface.summits import cutoff_study, summits
 from faying.surface.synthesize import spectral
-from faying.surface.write import write_scan
 
 
 def test_two_like_surfaces_add_up():
@@ -127,7 +127,7 @@ def test_comparison_names_points_and_spacing():
 
 
 def test_no_second_reader(tmp_path, monkeypatch):
-    from faying.surface import crosscheck
+    from faying.surface.files import crosscheck
 
     path = write_scan(spectral((20, 30), spacing=1e-6, D=2.4, Rq=1e-6), tmp_path / "a.x3p")
     monkeypatch.setattr(crosscheck, "find_spec", lambda name: None)

@@ -10,10 +10,10 @@ import pytest
 
 from faying import InputError, ReadError, Scan, fit_fractal, read_scan
 from faying.files import end_of
-from faying.surface.read import plausible
+from faying.surface.files.read import plausible
+from faying.surface.files.write import write_scan
 from faying.surface.scan import Profile
 from faying.surface.synthesize import spectral, with_missing
-from faying.surface.write import write_scan
 
 
 @pytest.fixture
@@ -444,7 +444,7 @@ def test_reading_in_one_go_and_line_by_line_agree(tmp_path, monkeypatch, delimit
     path = tmp_path / "a.csv"
     path.write_text("# points\n\n" + "".join(delimiter.join(row) + "\n" for row in rows), encoding="utf-8-sig")
     quick = read_scan(path, "um", "um")
-    monkeypatch.setattr("faying.surface.text._quickly", lambda *_: None)
+    monkeypatch.setattr("faying.surface.files.text._quickly", lambda *_: None)
     slow = read_scan(path, "um", "um")
     assert np.array_equal(quick.heights, slow.heights, equal_nan=True)
     assert slow.missing == sum(word in ("nan", "---", "bad") for word in words.values())

@@ -183,7 +183,7 @@ def test_fits_of_mutated_text_scans_end_in_words(scans):
 
 
 def test_the_same_reading_without_the_library(scans, monkeypatch):
-    from faying.surface import instruments
+    from faying.surface.files import instruments
 
     monkeypatch.setattr(instruments, "_library", lambda: None)
     with pytest.raises(ReadError, match=r"install SurfaceTopography \(pip install SurfaceTopography\)"):

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from faying.errors import FayingError, InputError, NotConverged, ReadError
-from faying.study.keys.reader import StudyFaults
+from faying.study.declaration.reader import StudyFaults
 from faying.sweeps import cluster as module
 from faying.sweeps.cluster import Parcel
 from faying.sweeps.parallel import each

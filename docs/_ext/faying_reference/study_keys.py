@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from faying.study.keys.declared import NAME, REQUIRED, Declared, Inner
-from faying.study.keys.declared import Key as DeclaredKey
+from faying.study.declaration.declared import NAME, REQUIRED, Declared, Inner
+from faying.study.declaration.declared import Key as DeclaredKey
 from faying.study.keys.tables import STUDY
 
 # tables with the keys of another one

@@ -7,8 +7,8 @@ import numpy as np
 
 from faying.case.case import Case, materials_at
 from faying.case.solve import LoadedCase
-from faying.contact.half_space import HalfSpace
 from faying.contact.mates import Mates
+from faying.contact.models.half_space import HalfSpace
 from faying.contact.stability import stability, stiffness_at
 from faying.errors import FayingError
 from faying.notes import Note

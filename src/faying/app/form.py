@@ -13,7 +13,7 @@ from faying.contact.build import AUTO, find
 from faying.errors import InputError
 from faying.setup.edit import edited, parsed, written
 from faying.setup.lines import KeyPath, line_of, lines_of, name_of
-from faying.study.keys.declared import NAME, NUMERAL, REQUIRED, Declared, Inner, Key
+from faying.study.declaration.declared import NAME, NUMERAL, REQUIRED, Declared, Inner, Key
 from faying.study.keys.tables import STUDY
 from faying.study.keys.uncertain import DISTRIBUTIONS, OF_MATERIAL, OWN, SHORT
 from faying.study.keys.varied import MODEL

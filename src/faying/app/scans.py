@@ -9,9 +9,9 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.surface.convention import density
+from faying.surface.files.read import read_scan
 from faying.surface.form import levelled, prepared
 from faying.surface.fractal import fit_fractal
-from faying.surface.read import read_scan
 from faying.surface.scan import Scan
 from faying.surface.spectrum import Spectrum, spectrum
 from faying.typing import Array, Index

@@ -7,7 +7,7 @@ from typing import Any
 from faying.errors import FayingError
 from faying.setup.lines import key_of, line_of, line_of_fault, lines_of
 from faying.study import Study
-from faying.study.keys.reader import StudyFaults
+from faying.study.declaration.reader import StudyFaults
 
 
 def faults_of(text: str, folder: Path) -> list[dict[str, Any]]:

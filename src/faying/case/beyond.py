@@ -7,8 +7,8 @@ import numpy as np
 
 from faying.case.case import Case, materials_at
 from faying.contact.build import AUTO, kinds
-from faying.contact.half_space import HalfSpace
 from faying.contact.mates import Mates
+from faying.contact.models.half_space import HalfSpace
 from faying.errors import FayingError
 from faying.fe.interface import Interface
 from faying.joint.shared_modes import EXACT, joined, modes_with

@@ -1,7 +1,7 @@
 """Contact laws: pressure in; real area, stiffness and loss out.
 
-Every law is a file of its own here and every single-asperity model one under `asperity`; `laws()` lists the laws that
-it finds. Names are imported when they are first used.
+Every law is a file of its own under `models` and every single-asperity model one under `asperity`; `laws()` lists the
+laws that it finds. Names are imported when they are first used.
 """
 
 import re
@@ -21,6 +21,6 @@ def __getattr__(name: str) -> Any:
     except AttributeError:
         if name[:1].isupper():
             for file in (re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower(), name.lower()):
-                if find_spec(f"{__name__}.{file}") is not None:
-                    return getattr(import_module(f"{__name__}.{file}"), name)
+                if find_spec(f"{__name__}.models.{file}") is not None:
+                    return getattr(import_module(f"{__name__}.models.{file}"), name)
         raise

@@ -1,24 +1,24 @@
 # The public names of faying.contact; __init__.py imports each when it is first used.
 from . import asperity
 from .build import build, find_law, laws
-from .cmy import CMY
 from .compare import Comparison, compare
-from .greenwood_williamson import GreenwoodWilliamson
-from .half_space import HalfSpace
 from .inputs import FractalSurface, RoughSurface, SurfaceInputs
-from .jackson_streator import JacksonStreator
-from .jk import JK
 from .law import ContactLaw, Response
-from .majumdar_bhushan import MajumdarBhushan
-from .measured_heights import MeasuredHeights
-from .mikic import Mikic
-from .morag_etsion import MoragEtsion
+from .models.cmy import CMY
+from .models.greenwood_williamson import GreenwoodWilliamson
+from .models.half_space import HalfSpace
+from .models.jackson_streator import JacksonStreator
+from .models.jk import JK
+from .models.majumdar_bhushan import MajumdarBhushan
+from .models.measured_heights import MeasuredHeights
+from .models.mikic import Mikic
+from .models.morag_etsion import MoragEtsion
+from .models.persson import Persson
+from .models.power_law import PowerLaw
+from .models.tabulated import TabulatedLaw
+from .models.wang_komvopoulos import WangKomvopoulos
+from .models.yan_komvopoulos import YanKomvopoulos
 from .parameter import Parameter
-from .persson import Persson
-from .power_law import PowerLaw
-from .tabulated import TabulatedLaw
-from .wang_komvopoulos import WangKomvopoulos
-from .yan_komvopoulos import YanKomvopoulos
 
 __all__ = [
     "CMY",

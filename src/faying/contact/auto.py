@@ -8,9 +8,9 @@ from typing import final
 import numpy as np
 
 from faying.contact.build import AUTO, LawKind, build, find, kinds
-from faying.contact.half_space import HalfSpace
 from faying.contact.inputs import RoughSurface
 from faying.contact.law import ContactLaw
+from faying.contact.models.half_space import HalfSpace
 from faying.errors import FayingError, InputError
 from faying.materials import ContactPair
 from faying.typing import Array

@@ -56,10 +56,10 @@ class LawKind:
 @cache
 def laws() -> Mapping[str, type[ContactLaw]]:
     """Return every contact law by the name of its class, in alphabetical order, found among the files."""
-    package = import_module("faying.contact")
+    package = import_module("faying.contact.models")
     found: dict[str, type[ContactLaw]] = {}
     for entry in iter_modules(package.__path__):
-        module = import_module(f"faying.contact.{entry.name}")
+        module = import_module(f"faying.contact.models.{entry.name}")
         for name, value in vars(module).items():
             own = isclass(value) and issubclass(value, ContactLaw) and value.__module__ == module.__name__
             if own and not isabstract(value) and "name" in vars(value):

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.checks import choice
-from faying.contact.half_space import HalfSpace
 from faying.contact.law import ContactLaw, Response, checked
+from faying.contact.models.half_space import HalfSpace
 from faying.contact.response import UNITS
 from faying.errors import FayingError, InputError, shown
 from faying.typing import Array

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from faying.contact.compare import Comparison
-from faying.contact.half_space import HalfSpace
+from faying.contact.models.half_space import HalfSpace
 from faying.contact.response import UNITS
 from faying.errors import InputError, shown
 

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 
 from faying.contact.compare import Comparison
 from faying.contact.comparison_table import label_and_scale
-from faying.contact.half_space import HalfSpace
 from faying.contact.law import ContactLaw, Response, checked
+from faying.contact.models.half_space import HalfSpace
 from faying.errors import InputError
 from faying.style import (
     COLOURS,

@@ -12,9 +12,9 @@ from faying.checks import instance, real
 from faying.contact.auto import Choice, pick
 from faying.contact.build import AUTO, NAMED, LawKind, find, kinds
 from faying.contact.compare import Comparison, compare
-from faying.contact.half_space import HalfSpace
 from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.law import ContactLaw, checked
+from faying.contact.models.half_space import HalfSpace
 from faying.contact.parameter import TABLE
 from faying.contact.two_faces import GIVEN, Counter, Faces, together
 from faying.errors import FayingError, InputError, shown

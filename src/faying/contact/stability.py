@@ -8,10 +8,10 @@ from typing import final
 import numpy as np
 
 from faying.contact.build import LawKind
-from faying.contact.half_space import HalfSpace
 from faying.contact.inputs import FractalSurface
 from faying.contact.law import ContactLaw
 from faying.contact.mates import Mates
+from faying.contact.models.half_space import HalfSpace
 from faying.contact.two_faces import Counter, Faces
 from faying.errors import FayingError, InputError
 from faying.halfspace.solve import halved_map

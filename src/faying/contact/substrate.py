@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.islands import Islands
+from faying.contact.models.islands import Islands
 from faying.errors import InputError
 from faying.typing import Array, Mask
 

@@ -176,8 +176,8 @@ def read_heights(path: Path, *, xy_unit: str | None = None, z_unit: str | None =
         table = read_list(path, (*_xy(xy_unit), z), "a list of measured points has the columns x, y, z")
         refuse_lonely(table[:, :2], table[:, 2], path.name)
         return table[:, :2], table[:, 2]
+    from faying.surface.files.read import read_scan
     from faying.surface.form import find_spikes, levelled
-    from faying.surface.read import read_scan
 
     scan: Any = read_scan(path, xy_unit=xy_unit, z_unit=z_unit)
     if scan.heights.ndim != 2:

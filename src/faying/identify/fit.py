@@ -5,8 +5,8 @@ from typing import final
 
 import numpy as np
 
-from faying.identify.emulator import Emulator
-from faying.identify.points import sobol
+from faying.identify.sampling.emulator import Emulator
+from faying.identify.sampling.points import sobol
 from faying.result.fields import Recorded, variable
 from faying.typing import Array, Index, Mask
 

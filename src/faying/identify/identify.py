@@ -9,7 +9,6 @@ import numpy as np
 from faying.distribution import Distribution
 from faying.errors import InputError
 from faying.identify import remarks
-from faying.identify.emulator import Emulator
 from faying.identify.fit import Fit, least_squares_ends, what_is_seen
 from faying.identify.identification import Identification
 from faying.identify.model import Model
@@ -24,8 +23,9 @@ from faying.identify.noise import (
     Offsets,
     offsets,
 )
-from faying.identify.points import at_shares, sobol
-from faying.identify.tempering import Tempered, temper
+from faying.identify.sampling.emulator import Emulator
+from faying.identify.sampling.points import at_shares, sobol
+from faying.identify.sampling.tempering import Tempered, temper
 from faying.progress import Report
 from faying.typing import Array, Mask
 

@@ -10,14 +10,14 @@ import numpy as np
 from faying import units
 from faying.case.case import mates_notes
 from faying.errors import InputError
-from faying.identify.ensemble import Ensemble, scattering
-from faying.identify.evaluate import LIMIT, Reduced
 from faying.identify.identification import Identification, mixed
 from faying.identify.identify import identify_model
 from faying.identify.identity import paired, settled
 from faying.identify.noise import DISCREPANCY_SD, LOSS_DISCREPANCY_SD, LOSS_TEST_SD, TEST_SD, Losses
 from faying.identify.predict import check, cut_notes, of_bases
-from faying.identify.store import SampleStore
+from faying.identify.sampling.ensemble import Ensemble, scattering
+from faying.identify.sampling.evaluate import LIMIT, Reduced
+from faying.identify.sampling.store import SampleStore
 from faying.joint.loads import preload_index
 from faying.misuse import checked_call
 from faying.progress import Report, silent

@@ -11,12 +11,12 @@ from faying.case.case import mates_notes
 from faying.case.provenance import provenance
 from faying.case.scatter import assumed, discrepancy
 from faying.errors import InputError
-from faying.identify.ensemble import Ensemble, by_reason
-from faying.identify.evaluate import LIMIT, Reduced
-from faying.identify.follow import Follower, choice_of, sliding
 from faying.identify.identity import paired, settled
 from faying.identify.prediction import Prediction
-from faying.identify.store import SampleStore
+from faying.identify.sampling.ensemble import Ensemble, by_reason
+from faying.identify.sampling.evaluate import LIMIT, Reduced
+from faying.identify.sampling.follow import Follower, choice_of, sliding
+from faying.identify.sampling.store import SampleStore
 from faying.misuse import checked_call
 from faying.notes import Note
 from faying.progress import Report

@@ -10,9 +10,9 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.identify.backbones import Backbones
-from faying.identify.ensemble import Inputs
+from faying.identify.sampling.ensemble import Inputs
+from faying.identify.sampling.surrogate import Surrogate
 from faying.identify.shares import Shares, shares
-from faying.identify.surrogate import Surrogate
 from faying.misuse import checked_call, shortened
 from faying.notes import Note
 from faying.result.fields import Recorded, load_labels, variable

@@ -8,7 +8,7 @@ import numpy as np
 
 from faying.distribution import Distribution
 from faying.errors import InputError
-from faying.identify.points import load_direction_numbers
+from faying.identify.sampling.points import load_direction_numbers
 from faying.typing import Array
 
 LEVEL = 0.9  # share of the repeats within the intervals

@@ -29,8 +29,8 @@ from faying.setup.expected import Expected, unknowns_of
 from faying.setup.lines import key_of, line_of, line_of_fault, lines_of
 from faying.setup.reach import law_findings
 from faying.setup.sketch import Sketch
+from faying.study.declaration.reader import StudyFaults
 from faying.study.keys.geometry import mesh_of
-from faying.study.keys.reader import StudyFaults
 from faying.study.study import Study
 from faying.units import show
 

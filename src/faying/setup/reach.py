@@ -10,9 +10,9 @@ from faying.bolt.bolt import BoltPlace
 from faying.bolt.vdi2230 import cone_pressure
 from faying.case.case import surfaces_of
 from faying.contact.build import AUTO
-from faying.contact.half_space import HalfSpace
 from faying.contact.law import ContactLaw
 from faying.contact.mates import line_of
+from faying.contact.models.half_space import HalfSpace
 from faying.errors import FayingError, InputError
 from faying.joint.clamping import BESIDE, seat_ring
 from faying.joint.joint_law import JointLaw

@@ -150,8 +150,8 @@ def surface(path: Path) -> None:
     It is as wide and as fine as the contact needs that is solved on it: at 4 MPa more than ten spots touch, half of the
     stiffness is on spots of four points or more, and half of the points give k_n within a quarter.
     """
+    from faying.surface.files.write import write_scan
     from faying.surface.synthesize import spectral
-    from faying.surface.write import write_scan
 
     scan = spectral((640, 640), spacing=5e-6, D=2.05, Rq=0.5e-6, longest=1e-4, seed=7)
     assert isinstance(scan, Scan)
@@ -189,7 +189,7 @@ def write(study: Path, *, force: bool = False) -> list[Path]:
 
 def _same_heights(scan: Path) -> bool:
     """Whether a file holds the scan that `surface` writes."""
-    from faying.surface.read import read_scan
+    from faying.surface.files.read import read_scan
 
     with TemporaryDirectory() as folder:
         fresh = Path(folder) / "surface.x3p"

@@ -8,7 +8,7 @@ from typing import Any
 
 from faying.errors import InputError
 from faying.misuse import shortened
-from faying.study.keys.declared import NAME, Declared, Inner, Key
+from faying.study.declaration.declared import NAME, Declared, Inner, Key
 from faying.study.keys.tables import STUDY
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
-from faying.study.keys.declared import NAME, NUMERAL, REQUIRED, Declared, Inner, Key
+from faying.study.declaration.declared import NAME, NUMERAL, REQUIRED, Declared, Inner, Key
 from faying.study.keys.face import SELECTOR
 from faying.study.keys.tables import STUDY
 

@@ -15,6 +15,7 @@ from faying.loads.load import Load
 from faying.materials import Material
 from faying.misuse import checked_call
 from faying.study.change import change_line, with_value
+from faying.study.declaration.reader import Faults, Table
 from faying.study.keys.alternative import AlternativeChoice
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.keys.bolt import read_bolt
@@ -24,7 +25,6 @@ from faying.study.keys.joint import JointChoice, read_joints
 from faying.study.keys.law import LAW, LawChoice
 from faying.study.keys.load import read_loads
 from faying.study.keys.material import read_materials, read_parts
-from faying.study.keys.reader import Faults, Table
 from faying.study.keys.solution import ResponseChoice, read_modes, read_order
 from faying.study.keys.support import read_mass, read_support
 from faying.study.keys.surface import SurfaceChoice

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.asperity.base import AsperityResponse, Piece, PowerModel, integrated, powers
-from faying.contact.jk import asperity_regimes
 from faying.contact.law import checked
+from faying.contact.models.jk import asperity_regimes
 from faying.contact.substrate import asperity_share
 from faying.errors import InputError
 from faying.typing import Array

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 from faying.form.form import Form
-from faying.study.keys.declared import Declared, Inner, text
+from faying.study.declaration.declared import Declared, Inner, text
+from faying.study.declaration.reader import Table
 from faying.study.keys.form import FORM, read_form
 from faying.study.keys.law import LAW, LawChoice
-from faying.study.keys.reader import Table
 from faying.study.keys.surface import SURFACE, SurfaceChoice
 
 ALTERNATIVE: Declared = {

@@ -10,7 +10,7 @@ from faying.contact.build import find
 from faying.errors import InputError
 from faying.joint.modal import MOST_MODES
 from faying.measured.ring_down import MeasuredBackbone
-from faying.study.keys.declared import (
+from faying.study.declaration.declared import (
     NUMBER,
     QUANTITY,
     WORDS,
@@ -23,9 +23,9 @@ from faying.study.keys.declared import (
     point,
     text,
 )
+from faying.study.declaration.reader import Table
+from faying.study.declaration.values import number
 from faying.study.keys.law import LawChoice
-from faying.study.keys.reader import Table
-from faying.study.keys.values import number
 
 Point = tuple[float, float, float]
 RANGE = (0.1, 100.0)  # m/s2

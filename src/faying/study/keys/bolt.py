@@ -10,7 +10,7 @@ from faying.bolt.solid_bolt import SolidBolt
 from faying.bolt.threads import PROOF, Fastener, Thread
 from faying.errors import InputError
 from faying.materials import CATALOGUE, Material
-from faying.study.keys.declared import (
+from faying.study.declaration.declared import (
     QUANTITY,
     REQUIRED,
     Declared,
@@ -23,9 +23,9 @@ from faying.study.keys.declared import (
     quantity,
     text,
 )
+from faying.study.declaration.reader import Table
+from faying.study.declaration.values import quantity as read_quantity
 from faying.study.keys.face import face_names, two_faces
-from faying.study.keys.reader import Table
-from faying.study.keys.values import quantity as read_quantity
 
 OF_THE_MESH = (
     "material",

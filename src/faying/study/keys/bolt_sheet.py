@@ -6,9 +6,9 @@ from typing import Any, Literal
 
 from faying.bolt.tightening import tightening
 from faying.errors import InputError
-from faying.study.keys.declared import QUANTITY, WORDS, Declared, Key, listed, one_or_more, own, quantity, text
-from faying.study.keys.reader import Table
-from faying.study.keys.values import quantity as read_quantity
+from faying.study.declaration.declared import QUANTITY, WORDS, Declared, Key, listed, one_or_more, own, quantity, text
+from faying.study.declaration.reader import Table
+from faying.study.declaration.values import quantity as read_quantity
 
 MOST_FACTOR = 10.0  # greatest tightening factor that is no slip of the pen
 

@@ -8,7 +8,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.geometry.face_facts import Point
 from faying.geometry.selectors import AXES, WITHIN, Selector
-from faying.study.keys.declared import (
+from faying.study.declaration.declared import (
     REQUIRED,
     WHOLE,
     WORDS,
@@ -21,10 +21,10 @@ from faying.study.keys.declared import (
     text,
     truth,
 )
-from faying.study.keys.reader import Table
-from faying.study.keys.values import direction as read_direction
-from faying.study.keys.values import text as read_text
-from faying.study.keys.values import whole_number
+from faying.study.declaration.reader import Table
+from faying.study.declaration.values import direction as read_direction
+from faying.study.declaration.values import text as read_text
+from faying.study.declaration.values import whole_number
 
 FORM = '"upper.joint", or {part = "upper", normal = "+z"}'
 

@@ -4,8 +4,18 @@ from typing import Any
 
 from faying.form.form import PARAMETERS, Form
 from faying.form.gap_map import FaceMap, GapMap, read_gap_map, read_heights
-from faying.study.keys.declared import REQUIRED, Declared, Inner, direction, file, of_parameter, point, text, truth
-from faying.study.keys.reader import Table
+from faying.study.declaration.declared import (
+    REQUIRED,
+    Declared,
+    Inner,
+    direction,
+    file,
+    of_parameter,
+    point,
+    text,
+    truth,
+)
+from faying.study.declaration.reader import Table
 from faying.study.keys.waviness import WAVINESS, read_waviness
 
 

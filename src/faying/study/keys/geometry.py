@@ -10,9 +10,9 @@ from faying.errors import InputError
 from faying.fe.mesh import Mesh
 from faying.geometry.mesh_facts import mesh_facts
 from faying.geometry.selectors import Selector, chosen, points_of
-from faying.study.keys.declared import NAME, REQUIRED, WORDS, Declared, Inner, file, listed, own, quantity, text
+from faying.study.declaration.declared import NAME, REQUIRED, WORDS, Declared, Inner, file, listed, own, quantity, text
+from faying.study.declaration.reader import Faults, Table
 from faying.study.keys.face import SELECTOR, read_selector
-from faying.study.keys.reader import Faults, Table
 
 
 @dataclass(frozen=True, kw_only=True)

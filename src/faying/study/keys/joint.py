@@ -6,13 +6,13 @@ from typing import Any, Literal
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.form.form import Form
-from faying.study.keys.declared import NUMBER, Declared, Inner, own, quantity, text, truth, within
+from faying.study.declaration.declared import NUMBER, Declared, Inner, own, quantity, text, truth, within
+from faying.study.declaration.reader import Table
+from faying.study.declaration.values import MOST_FRICTION
 from faying.study.keys.face import face_names, two_faces
 from faying.study.keys.form import FORM, read_form
 from faying.study.keys.law import LAW, LawChoice
-from faying.study.keys.reader import Table
 from faying.study.keys.surface import SURFACE, SurfaceChoice
-from faying.study.keys.values import MOST_FRICTION
 
 TANGENTIAL = Parameter("", "tangential over normal stiffness, k_t/k_n", 0, 2, "(]")
 

@@ -11,10 +11,10 @@ from faying.contact.inputs import RoughSurface
 from faying.contact.mates import Mates
 from faying.contact.parameter import TABLE
 from faying.materials import CATALOGUE, RIGID, ContactPair, Material
-from faying.study.keys.declared import WORDS, Inner, Key, of_parameter, own, text
-from faying.study.keys.reader import Table
+from faying.study.declaration.declared import WORDS, Inner, Key, of_parameter, own, text
+from faying.study.declaration.reader import Table
+from faying.study.declaration.values import text as read_text
 from faying.study.keys.surface import Surface
-from faying.study.keys.values import text as read_text
 
 # D, G and area of a surface are written under [surface], where a scan would give them
 OF_SURFACE = ("D", "G", "scan_area")

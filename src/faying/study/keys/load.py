@@ -5,7 +5,7 @@ from typing import Any
 
 from faying.errors import InputError
 from faying.loads.load import MOST_INCREMENTS, NOTHING, Displacement, Force, Load, Pressure, Vector, in_order
-from faying.study.keys.declared import (
+from faying.study.declaration.declared import (
     QUANTITY,
     REQUIRED,
     Declared,
@@ -18,10 +18,10 @@ from faying.study.keys.declared import (
     quantity,
     text,
 )
+from faying.study.declaration.reader import Made, Table
+from faying.study.declaration.values import number
+from faying.study.declaration.values import quantity as read_quantity
 from faying.study.keys.face import face_name, one_face
-from faying.study.keys.reader import Made, Table
-from faying.study.keys.values import number
-from faying.study.keys.values import quantity as read_quantity
 
 LENGTH = '["0 mm", "0 mm", "0.1 mm"]'
 EXAMPLES = {"N": '["0 N", "0 N", "5 kN"]', "N*m": '["0 N*m", "20 N*m", "0 N*m"]', "m": LENGTH}

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 from faying.errors import InputError
 from faying.materials import CATALOGUE, STIFFEST, Material
-from faying.study.keys.declared import NAME, REQUIRED, Declared, Inner, number, quantity, text, within
-from faying.study.keys.reader import Table
-from faying.study.keys.values import MOST_FRICTION
+from faying.study.declaration.declared import NAME, REQUIRED, Declared, Inner, number, quantity, text, within
+from faying.study.declaration.reader import Table
+from faying.study.declaration.values import MOST_FRICTION
 
 
 def read_materials(top: Table) -> dict[str, Material]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from faying.errors import InputError
 from faying.joint.modal import MOST_MODES, SOLVERS, ModesChoice
-from faying.study.keys.declared import (
+from faying.study.declaration.declared import (
     QUANTITY,
     REQUIRED,
     WORDS,
@@ -23,9 +23,9 @@ from faying.study.keys.declared import (
     truth,
     within,
 )
-from faying.study.keys.reader import Table
-from faying.study.keys.values import MOST_LOSS
-from faying.study.keys.values import quantity as read_quantity
+from faying.study.declaration.reader import Table
+from faying.study.declaration.values import MOST_LOSS
+from faying.study.declaration.values import quantity as read_quantity
 
 MOST_POINTS, MOST_PASSES = 1_000_000, 100
 Point = tuple[float, float, float]

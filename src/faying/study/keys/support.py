@@ -4,9 +4,9 @@ from typing import Any
 
 from faying.errors import InputError
 from faying.joint.attachments import PointMass, Support
-from faying.study.keys.declared import REQUIRED, Declared, listed, own, point, quantity
+from faying.study.declaration.declared import REQUIRED, Declared, listed, own, point, quantity
+from faying.study.declaration.reader import Table
 from faying.study.keys.face import face_name, one_face
-from faying.study.keys.reader import Table
 
 
 def read_support(table: Table) -> Support | None:

@@ -10,11 +10,11 @@ from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.two_faces import COUNTERS, Counter, Faces
 from faying.errors import InputError
 from faying.form.waviness import ScanWaves
-from faying.study.keys.declared import QUANTITY, Declared, file, number, own, quantity, text
-from faying.study.keys.reader import Table
+from faying.study.declaration.declared import QUANTITY, Declared, file, number, own, quantity, text
+from faying.study.declaration.reader import Table
 from faying.surface.estimators.table import METHODS
+from faying.surface.files.read import read_scan
 from faying.surface.fractal import FractalFit
-from faying.surface.read import read_scan
 from faying.surface.scan import Profile, Scan
 
 

@@ -1,10 +1,10 @@
 """All tables of a study."""
 
+from faying.study.declaration.declared import Declared, Inner, text
 from faying.study.keys.alternative import ALTERNATIVE
 from faying.study.keys.backbone import BACKBONE
 from faying.study.keys.bolt import BOLT
 from faying.study.keys.bolt_sheet import BOLT_SHEET
-from faying.study.keys.declared import Declared, Inner, text
 from faying.study.keys.geometry import GEOMETRY
 from faying.study.keys.joint import JOINT
 from faying.study.keys.law import LAW

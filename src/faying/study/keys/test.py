@@ -10,12 +10,23 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.joint.loads import preload_index
-from faying.study.keys.declared import QUANTITY, REQUIRED, WORDS, Declared, file, listed, number, own, quantity, text
-from faying.study.keys.reader import Table
-from faying.study.keys.values import direction as read_direction
-from faying.study.keys.values import point as read_point
-from faying.study.keys.values import quantity as read_quantity
-from faying.study.keys.values import text as read_text
+from faying.study.declaration.declared import (
+    QUANTITY,
+    REQUIRED,
+    WORDS,
+    Declared,
+    file,
+    listed,
+    number,
+    own,
+    quantity,
+    text,
+)
+from faying.study.declaration.reader import Table
+from faying.study.declaration.values import direction as read_direction
+from faying.study.declaration.values import point as read_point
+from faying.study.declaration.values import quantity as read_quantity
+from faying.study.declaration.values import text as read_text
 from faying.typing import Array, Index
 
 QUANTITIES = ("receptance", "mobility", "accelerance")

@@ -15,9 +15,9 @@ from faying.errors import InputError
 from faying.form.form import PARAMETERS as SHAPES
 from faying.form.form import VARIED
 from faying.materials import Material
+from faying.study.declaration.reader import Faults
+from faying.study.declaration.values import quantity
 from faying.study.keys.joint import JointChoice
-from faying.study.keys.reader import Faults
-from faying.study.keys.values import quantity
 from faying.study.keys.varied import MODEL, swept
 
 # short keys, and what they stand for

@@ -5,8 +5,8 @@ from typing import Any
 from faying.contact.parameter import Parameter
 from faying.form.machining import GAUSSIAN, PROCESSES, RMS_OF_FLATNESS
 from faying.form.waviness import OF_WAVES, PARAMETERS, Waviness
-from faying.study.keys.declared import Declared, of_parameter, text
-from faying.study.keys.reader import Table
+from faying.study.declaration.declared import Declared, of_parameter, text
+from faying.study.declaration.reader import Table
 from faying.units import show
 
 SIZES = {

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import log, pi, sqrt
 from typing import ClassVar, final
 
-from faying.contact.bearing import BearingLaw
+from faying.contact.models.bearing import BearingLaw
 from faying.contact.parameter import FRACTAL, GAMMA
 
 

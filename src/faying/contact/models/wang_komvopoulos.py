@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, final
 
-from faying.contact.islands import Islands
-from faying.contact.majumdar_bhushan import MajumdarBhushanBase
+from faying.contact.models.islands import Islands
+from faying.contact.models.majumdar_bhushan import MajumdarBhushanBase
 
 
 @final

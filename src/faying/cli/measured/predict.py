@@ -60,8 +60,8 @@ def command(
     from faying.errors import InputError
     from faying.files import new_folder, write_text
     from faying.identify import prediction_figure as drawing
-    from faying.identify.follow import choice_of
     from faying.identify.predict import check, predict
+    from faying.identify.sampling.follow import choice_of
     from faying.output.prediction import text
     from faying.output.report_predicted import predicted
     from faying.study import Study

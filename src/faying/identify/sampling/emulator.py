@@ -8,7 +8,7 @@ from typing import Self, final
 import numpy as np
 
 from faying.distribution import Distribution
-from faying.identify.surrogate import Surrogate
+from faying.identify.sampling.surrogate import Surrogate
 from faying.typing import Array, Mask
 
 ANSWERED = 0.5  # share of the points at which a frequency has to be known

@@ -38,9 +38,9 @@ def command(
     plot: str | None,
 ) -> None:
     """Roughness, fractal dimension D and fractal roughness G of the scan in FILE."""
+    from faying.surface.files.read import read_scan
     from faying.surface.form import prepared
     from faying.surface.fractal import FractalFit, fit_all, fit_fractal
-    from faying.surface.read import read_scan
     from faying.surface.roughness import roughness
     from faying.units import lengths
 
@@ -55,7 +55,7 @@ def command(
         fits = {method: fit_fractal(scan, method, self_test=test, **options)}
     document = describe(scan, ready, roughness(ready), fits)
     if check:
-        from faying.surface.crosscheck import cross_check
+        from faying.surface.files.crosscheck import cross_check
 
         document["cross_check"] = [vars(o) for o in cross_check(scan, file, xy_unit, z_unit)]
     if plot:

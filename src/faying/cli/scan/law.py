@@ -99,7 +99,7 @@ def command(
 
     Example: faying law --D 2.39 --G "1.53e-10 m" --scan-area "16 mm^2" --material "45 steel"
     """
-    from faying.cli import law_table
+    from faying.cli.scan import law_table
     from faying.contact.auto import pick
     from faying.contact.build import find
     from faying.errors import InputError

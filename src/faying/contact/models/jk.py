@@ -35,8 +35,8 @@ from typing import Any, ClassVar, Literal, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.islands import Islands
 from faying.contact.law import ContactLaw, Response, checked, require
+from faying.contact.models.islands import Islands
 from faying.contact.parameter import FRACTAL, GAMMA, TEXT, Parameter
 from faying.contact.substrate import (
     MOST_RATIO,

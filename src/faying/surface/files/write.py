@@ -5,7 +5,7 @@ from pathlib import Path
 from faying.checks import instance
 from faying.checks import path as checked_path
 from faying.errors import InputError
-from faying.surface import text, x3p
+from faying.surface.files import text, x3p
 from faying.surface.scan import Profile, Scan
 
 

@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.islands import Islands
 from faying.contact.law import ContactLaw, Response, checked, require
+from faying.contact.models.islands import Islands
 from faying.contact.parameter import FRACTAL_MB
 from faying.materials import ContactPair
 from faying.typing import Array

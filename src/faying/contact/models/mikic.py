@@ -7,8 +7,8 @@ from typing import ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.area_fraction import OF_PROFILES, AreaFractionLaw
 from faying.contact.law import Response
+from faying.contact.models.area_fraction import OF_PROFILES, AreaFractionLaw
 from faying.materials import ContactPair
 
 POWER = 0.94

@@ -10,8 +10,8 @@ from faying.checks import instance, number, shown
 from faying.checks import path as checked_path
 from faying.errors import FayingError, InputError, ReadError
 from faying.files import end_of
+from faying.surface.files.text import TextLayout
 from faying.surface.scan import Profile, Scan
-from faying.surface.text import TextLayout
 from faying.units import scale
 
 ASK = 'for example read_scan("{name}", xy_unit="mm", z_unit="um"), or on the command line --xy-unit mm --z-unit um'
@@ -89,7 +89,7 @@ def read_scan(
     lateral = Lateral.of(size, spacing)
     head = _head(file)
     if head[:2] == b"PK" and _is_x3p(file):
-        from faying.surface import x3p
+        from faying.surface.files import x3p
 
         _no_units(file, xy_unit, z_unit)
         scan: Scan | Profile = x3p.read(file)
@@ -134,7 +134,7 @@ def _no_units(file: Path, xy_unit: str | None, z_unit: str | None) -> None:
 
 
 def _text_or_other(file: Path, xy_unit: str | None, z_unit: str | None, lateral: Lateral) -> Scan | Profile:
-    from faying.surface import instruments, text
+    from faying.surface.files import instruments, text
 
     try:
         layout = text.layout(file)

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from faying.errors import FayingError
-from faying.identify.ensemble import Ensemble
 from faying.identify.identity import by_name, named
-from faying.identify.points import at_shares, sobol
-from faying.identify.store import SampleStore
+from faying.identify.sampling.ensemble import Ensemble
+from faying.identify.sampling.points import at_shares, sobol
+from faying.identify.sampling.store import SampleStore
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Structure
 from faying.measured.mac import mac

@@ -11,7 +11,7 @@ from faying.case.case import surfaces_of
 from faying.contact.build import kinds
 from faying.distribution import Distribution
 from faying.errors import FayingError, InputError
-from faying.identify.points import at_shares, sobol
+from faying.identify.sampling.points import at_shares, sobol
 from faying.study.keys.surface import Surface
 from faying.study.keys.uncertain import Input, UncertainChoice
 from faying.study.keys.varied import MODEL, formed

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.asperity.lin_lin import LinLin
-from faying.contact.islands import Islands
 from faying.contact.law import ContactLaw, Response, checked, require
+from faying.contact.models.islands import Islands
 from faying.contact.parameter import FRACTAL_MB, Parameter
 from faying.materials import ContactPair
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import pi, sqrt
 from typing import ClassVar, final
 
-from faying.contact.bearing import BearingLaw
+from faying.contact.models.bearing import BearingLaw
 
 
 @dataclass(frozen=True, kw_only=True)

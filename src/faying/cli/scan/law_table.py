@@ -61,7 +61,7 @@ def conducted(comparison: Any, pair: Any) -> dict[str, Any]:
 
 def draw_contact(laws: dict[str, Any], pressure: float, path: str) -> None:
     """Write the picture of where the scan touches at a pressure [Pa]; InputError unless one is solved on the scan."""
-    from faying.contact.half_space import HalfSpace
+    from faying.contact.models.half_space import HalfSpace
     from faying.errors import InputError
     from faying.halfspace.figure import contact_figure
     from faying.style import save

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from faying.contact.parameter import FILE, TEXT, Parameter
-from faying.study.keys import values
-from faying.study.keys.values import MOST
+from faying.study.declaration import values
+from faying.study.declaration.values import MOST
 
 REQUIRED: Any = object()
 NAME = "NAME"  # stands for the names that a user gives

@@ -8,8 +8,8 @@ from typing import Any, ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.area_fraction import OF_PROFILES, AreaFractionLaw
 from faying.contact.law import Response, require
+from faying.contact.models.area_fraction import OF_PROFILES, AreaFractionLaw
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.hardness import VickersHardness

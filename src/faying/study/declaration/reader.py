@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 from faying.contact.parameter import FILE, Parameter
 from faying.errors import InputError
 from faying.geometry.selectors import Selector
-from faying.study.keys.declared import NAME, REQUIRED, Declared, inner_of, key_of
+from faying.study.declaration.declared import NAME, REQUIRED, Declared, inner_of, key_of
 
 
 class StudyFaults(InputError):

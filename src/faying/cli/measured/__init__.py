@@ -1,0 +1,1 @@
+"""Commands about tests, and what they tell of a model."""

@@ -1,0 +1,1 @@
+"""Commands about a scan and the laws that follow from it."""

@@ -1,0 +1,1 @@
+"""How keys of a study are declared, read and checked."""

@@ -1,0 +1,1 @@
+"""Scans from the files of instruments, and into files."""
