@@ -1,5 +1,6 @@
-"""Scripts as users write them: they run, and mypy accepts them in its strict mode."""
+"""Scripts as users write them: they run, and the type checkers mypy (strict) and pyright accept them."""
 
+import json
 import runpy
 import shutil
 import subprocess
@@ -36,5 +37,16 @@ def test_mypy_accepts_them_in_strict_mode(tmp_path):
     pytest.importorskip("mypy")
     command = [sys.executable, "-m", "mypy", "--strict", "--config-file", "", "--cache-dir", str(tmp_path)]
     command += ["--follow-imports", "silent", *map(str, SCRIPTS)]
+    found = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert found.returncode == 0, found.stdout
+
+
+def test_pyright_accepts_them(tmp_path):
+    pytest.importorskip("basedpyright", reason="the checker pyright is not installed")
+    for script in SCRIPTS:
+        shutil.copy(script, tmp_path)
+    paths = {"typeCheckingMode": "standard", "extraPaths": [str(ROOT / "src")]}
+    (tmp_path / "pyrightconfig.json").write_text(json.dumps(paths))
+    command = [sys.executable, "-m", "basedpyright", "--project", str(tmp_path), "--pythonpath", sys.executable]
     found = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
     assert found.returncode == 0, found.stdout
