@@ -49,17 +49,6 @@ def test_cylinders_in_series(given, hand):
     assert delta("M10", 30e-3, **given) == pytest.approx(by_hand(10e-3, 1.5e-3, 30e-3, **hand), rel=1e-12)
 
 
-def test_a_flange_bolt_of_pyflange():
-    """M80x6, shank of 76.1 mm over 270 mm of 400 mm: 1831 MN/m.
-
-    Source: pyFlange (KCI The Engineers, Siemens Gamesa, TNO), tests/bolts_test.py, test_axial_stiffness, whose bolts
-    follow VDI 2230; E = 210 GPa.
-    """
-    thread = Thread(diameter=80e-3, pitch=6e-3)
-    sections = bolt_sections(thread, free=0.4, E=E, diameter=76.1e-3, shank=0.27)
-    assert 1 / sum(s.compliance for s in sections) == pytest.approx(1831e6, rel=5e-4)
-
-
 @pytest.mark.parametrize(
     ("diameter", "printed"),
     [
