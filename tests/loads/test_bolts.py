@@ -69,8 +69,9 @@ def test_a_share_of_the_load_and_the_rest_of_the_clamp_force(meshed):
     joint = found.joints.index("lower.joint")
     change = found.bolt_force[:, 0] - PRELOAD
     lost = found.normal_preload[joint] - found.normal_force[:, joint]
-    assert change + lost == pytest.approx([800, 0, 0, 0], abs=1e-3)
-    assert found.working_load[:, 0] == pytest.approx([800, 0, 0, 0], abs=1e-3)
+    # a case ends where 1e-7 of its forces is left, and those of heat are 77 kN
+    assert change + lost == pytest.approx([800, 0, 0, 0], abs=0.01)
+    assert found.working_load[:, 0] == pytest.approx([800, 0, 0, 0], abs=0.01)
     assert found.load_factor[0, 0] == pytest.approx(change[0] / 800, rel=1e-5)
     assert np.isnan(found.load_factor[2, 0])
     assert np.isnan(found.seat_pressure).all()  # its heads meet their seats in joints, which have their own pressure

@@ -76,11 +76,15 @@ def test_superposition_does_for_small_loads_and_not_for_great_ones(tight):
 
 
 def test_the_answer_does_not_depend_on_the_basis_or_on_the_company(tight):
-    """One case alone, and after others in the same basis."""
+    """One case alone, and after others in the same basis.
+
+    Sliders remember increments on the way, which may leave 1e-2 of the load: pressures differ by 1e-3 at most then.
+    """
+    near = 1e-4 if tight.structure.joints[0].friction is None else 1e-3
     alone = faying.load_cases(tight, cases(1500.0)[:1], modes=False)
     others = faying.load_cases(tight, [*cases(1500.0)[1:2], *cases(1500.0)[:1]], modes=False)
     assert alone.bolt_force[0] == pytest.approx(others.bolt_force[1], rel=1e-6)
-    assert alone.pressure[0] == pytest.approx(others.pressure[1], abs=1e-4 * alone.pressure[0].max())
+    assert alone.pressure[0] == pytest.approx(others.pressure[1], abs=near * alone.pressure[0].max())
     # and it satisfies the equations of the whole structure
     statics = statics_of(of_state(tight, modes=False))
     acts = acting(tight.structure, cases(1500.0))

@@ -35,6 +35,8 @@ MORE = 4  # times what vectors and their images take, while they are made
 ROUNDS = 80  # of new vectors
 NEWTON_STEPS = 30
 HALVINGS = 6
+ROUNDS_AHEAD = 1  # whose vectors are found before joints are balanced again
+AHEAD = 40  # times the vectors of the linear answers' first round, for which there is room from the beginning
 KEPT = 0.01  # relative change of a tangent from which a Newton step counts it
 
 
@@ -61,6 +63,14 @@ class LoadedState:
     error: float
 
 
+@dataclass(frozen=True)
+class _Local:
+    """How tractions (q, 3) [Pa] and tangents (q, 3, 3) [Pa/m] of each joint differ from those of its springs."""
+
+    tractions: list[Array]
+    tangents: list[Array]
+
+
 @dataclass
 class _Task:
     """One load on its way."""
@@ -73,7 +83,7 @@ class _Task:
     start: tuple[ContactState, ...]
     x: Array
     sides: Array  # of offset and before in the basis (m, 2), as far as it was projected on
-    tractions: list[Array] | None = None  # of each joint, less what its springs at the preload give
+    local: "_Local | None" = None  # of its joints at x
     error: float = np.inf
 
 
@@ -108,6 +118,7 @@ class LoadStatics:
         none = np.zeros((stiffness.shape[0], 0))
         self._vectors, self._images = GrowingColumns(none), GrowingColumns(none)
         self._relative = [np.zeros((3 * len(contact.weights), 0)) for _, contact in self.joints]
+        self._single = [np.zeros((len(contact.weights), 3, 0), dtype=np.float32) for _, contact in self.joints]
         self._at_rest = [contact.advance(contact.start, contact.rest)[1] for _, contact in self.joints]
         self.solutions = 0  # by the factorisation
 
@@ -236,43 +247,73 @@ class LoadStatics:
             if not more or (worst.error <= ROUNDED and _stands(past)):
                 return
             past.append(worst.error)
-            if not self._extend(z[:, more], sizes[more]):
+            if not self._extend(*self._ahead([tasks[left[column]] for column in more], z[:, more], sizes[more])):
                 if worst.error <= ROUNDED:
                     return
                 raise self._lost(worst)
         raise self._lost(max(tasks, key=lambda task: task.error))
 
+    def _ahead(self, tasks: Sequence[_Task], new: Array, size: Array) -> tuple[Array, Array]:
+        """Vectors (unknowns, k) and those that the next rounds would find if tangents stayed as they are."""
+        vectors, sizes = [new], [size]
+        for _ in range(ROUNDS_AHEAD):
+            rest = np.stack([self._turned(task, column) for task, column in zip(tasks, new.T, strict=True)], axis=1)
+            new = self._solved(rest)
+            size = np.sqrt(np.maximum(np.einsum("ij,ij->j", rest, new), 0.0))
+            vectors.append(new)
+            sizes.append(size)
+        return np.concatenate(vectors, axis=1), np.concatenate(sizes)
+
+    def _turned(self, task: _Task, motion: Array) -> Array:
+        """Forces [N] (unknowns,) by which joints depart from their springs, of a small motion (unknowns,)."""
+        assert task.local is not None
+        total = np.zeros_like(motion)
+        for (trace, contact), change in zip(self.joints, task.local.tangents, strict=True):
+            by = np.asarray(trace.relative @ motion).reshape(-1, 3, 1)
+            total -= trace.relative.T @ (contact.weights[:, None] * np.matmul(change, by)[:, :, 0]).ravel()
+        return admissible(total, self._rigid, self.fixed)
+
     def _balance(self, task: _Task, tolerance: float) -> None:
         """Newton's iteration within the basis."""
         x = np.zeros(self.size)
         x[: len(task.x)] = task.x
-        left, tangents, tractions = self._left(task, x)
+        # vectors that are new have changed no motion yet
+        local = task.local or self._local(task, x)
+        left = self._left(task, x, local)
         size = float(np.linalg.norm(left))
         goal = max(0.03 * min(task.error, 1.0), 0.1 * tolerance) * self._scale(task)
         for _ in range(NEWTON_STEPS):
             if size <= goal or not len(x):
                 break
-            step = np.linalg.solve(self._tangent(tangents), left)
+            step = np.linalg.solve(self._tangent(local.tangents), left)
             best, length = None, 1.0
             for _ in range(HALVINGS):
-                tried = self._left(task, x + length * step)
-                now = float(np.linalg.norm(tried[0]))
+                there = self._local(task, x + length * step)
+                rest = self._left(task, x + length * step, there)
+                now = float(np.linalg.norm(rest))
                 if best is None or now < best[0]:
-                    best = now, length, tried
+                    best = now, length, rest, there
                 if now < (1 - 0.3 * length) * size:
                     break
                 length /= 2
             assert best is not None
             gained = best[0] < 0.999 * size
             x = x + best[1] * step
-            size, (left, tangents, tractions) = best[0], best[2]
+            size, _, left, local = best
             if not gained:
                 break
-        task.x, task.tractions = x, tractions
+        task.x, task.local = x, local
 
-    def _left(self, task: _Task, x: Array) -> tuple[Array, list[Array], list[Array]]:
-        """Forces left over in the basis (m,); how tangents (q, 3, 3) and tractions (q, 3) differ from the springs'."""
-        left, changes, tractions = task.sides[:, 0] - x, [], []
+    def _left(self, task: _Task, x: Array, local: _Local) -> Array:
+        """Forces left over in the basis (m,)."""
+        left = task.sides[:, 0] - x
+        for k, (_, contact) in enumerate(self.joints):
+            left = left - self._relative[k].T @ (contact.weights[:, None] * local.tractions[k]).ravel()
+        return np.asarray(left)
+
+    def _local(self, task: _Task, x: Array) -> _Local:
+        """What the joints do at coordinates (m,)."""
+        changes, tractions = [], []
         for k, (_, contact) in enumerate(self.joints):
             by = (self._relative[k] @ x).reshape(-1, 3)
             motion = contact.rest + task.moved[k] + by
@@ -280,32 +321,34 @@ class LoadStatics:
             local = traction - self._at_rest[k]
             local[:, 0] -= contact.k_n * by[:, 0]
             local[:, 1:] -= contact.k_t[:, None] * by[:, 1:]
-            left = left - self._relative[k].T @ (contact.weights[:, None] * local).ravel()
             tractions.append(local)
             tangent[:, 0, 0] -= contact.k_n
             tangent[:, 1, 1] -= contact.k_t
             tangent[:, 2, 2] -= contact.k_t
             changes.append(tangent)
-        return left, changes, tractions
+        return _Local(tractions, changes)
 
     def _tangent(self, changes: Sequence[Array]) -> Array:
-        """Tangent (m, m) in the basis: 1 and what the joints change of it."""
-        total = np.eye(self.size)
-        for relative, change, (_, contact) in zip(self._relative, changes, self.joints, strict=True):
+        """Tangent (m, m) in the basis: 1 and what the joints change of it.
+
+        In single precision, in which Newton's method converges as fast: what is left over is found in double.
+        """
+        total = np.zeros((self.size, self.size), dtype=np.float32)
+        for rows, change, (_, contact) in zip(self._single, changes, self.joints, strict=True):
             size = np.abs(change).max(axis=(1, 2))
-            some = size > KEPT * np.maximum(contact.k_n, KEPT * contact.k_n.max())
-            rows = relative.reshape(len(change), 3, -1)[some]
-            turned = np.matmul(contact.weights[some, None, None] * change[some], rows)
-            total += rows.reshape(-1, self.size).T @ turned.reshape(-1, self.size)
-        return total
+            some = np.flatnonzero(size > KEPT * np.maximum(contact.k_n, KEPT * contact.k_n.max()))
+            here = rows[some]
+            turned = np.matmul((contact.weights[some, None, None] * change[some]).astype(np.float32), here)
+            total += here.reshape(-1, self.size).T @ turned.reshape(-1, self.size)
+        return np.eye(self.size) + total
 
     def _left_over(self, tasks: Sequence[_Task]) -> Array:
         """What the answers leave of the forces on the whole structure [N] (unknowns, tasks)."""
         out = np.stack([task.offset for task in tasks], axis=1)
         out -= combined(self._images.values, np.stack([task.x for task in tasks], axis=1))
         for column, task in enumerate(tasks):
-            assert task.tractions is not None
-            for (trace, contact), local in zip(self.joints, task.tractions, strict=True):
+            assert task.local is not None
+            for (trace, contact), local in zip(self.joints, task.local.tractions, strict=True):
                 out[:, column] -= trace.relative.T @ (contact.weights[:, None] * local).ravel()
             out[:, column] = admissible(out[:, column], self._rigid, self.fixed)
         return out
@@ -371,7 +414,7 @@ class LoadStatics:
             return 0
         found, image = extension(new, self._vectors.values, self._images.values, self.stiffness, least=1e-20)
         if not self.size:  # room is made ahead of the first columns
-            self._vectors, self._images = GrowingColumns(found), GrowingColumns(image)
+            self._vectors, self._images = GrowingColumns(found, ahead=AHEAD), GrowingColumns(image, ahead=AHEAD)
         else:
             self._vectors.add(found)
             self._images.add(image)
@@ -379,6 +422,7 @@ class LoadStatics:
             np.concatenate([old, np.asarray(trace.relative @ found)], axis=1)
             for old, (trace, _) in zip(self._relative, self.joints, strict=True)
         ]
+        self._single = [one.astype(np.float32).reshape(len(one) // 3, 3, -1) for one in self._relative]
         return int(found.shape[1])
 
     def _lost(self, task: _Task) -> NotConverged:

@@ -124,12 +124,15 @@ class Span:
 
 
 class GrowingColumns:
-    """Columns (n, m) of a matrix that grows, without a copy of all of it for each that comes."""
+    """Columns (n, m) of a matrix that grows, without a copy of all of it for each that comes.
 
-    def __init__(self, first: Array) -> None:
+    ahead: times the first columns, for which there is room from the beginning.
+    """
+
+    def __init__(self, first: Array, *, ahead: int = AHEAD) -> None:
         self._size, self._used = first.shape
         # column by column; what is not written yet takes no memory
-        self._numbers = np.empty(max(first.size, min(AHEAD * first.size, RESERVED)))
+        self._numbers = np.empty(max(first.size, min(ahead * first.size, RESERVED)))
         self.values[:] = first
 
     @property
