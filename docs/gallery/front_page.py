@@ -20,7 +20,8 @@ from faying.fe.figure import draw_shape_flat
 from faying.result import Result
 from faying.result.figure import face_map
 from faying.result.level_figure import damping_of
-from faying.style import COLOURS, SOFT, WIDE, drawing, load_label, new_figure, save
+from faying.style import COLOURS, SOFT, WIDE, drawing, new_figure, save
+from faying.units import load_text
 
 ROOT = Path(__file__).parents[2]
 MODE = 0  # of the test, from 0
@@ -43,9 +44,7 @@ def shape(ax: Any, result: Result, mode: int) -> None:
     """Draw a mode shape at the last load."""
     points, motion = lying(result, mode)
     draw_shape_flat(ax, points, result.triangles, motion)
-    ax.set_title(
-        f"mode {MODE + 1} of the test: {result.frequencies[-1, mode]:.0f} Hz at {load_label(result.loads[-1])}"
-    )
+    ax.set_title(f"mode {MODE + 1} of the test: {result.frequencies[-1, mode]:.0f} Hz at {load_text(result.loads[-1])}")
 
 
 def in_the_test(ax: Any, result: Result) -> None:
@@ -75,7 +74,7 @@ def all_measured(ax: Any, result: Result) -> None:
     ax.set_yticks(y, [f"{k + 1}: {value:.0f} Hz" for k, value in enumerate(test[-1])])
     ax.invert_yaxis()
     ax.set_xlabel("test over computed, less 1 [%]")
-    ax.set_title(f"{inside.sum()} of {len(inside)} inside at {load_label(result.loads[-1])}")
+    ax.set_title(f"{inside.sum()} of {len(inside)} inside at {load_text(result.loads[-1])}")
     ax.grid(axis="x", alpha=0.3)
 
 

@@ -89,11 +89,6 @@ def load_colours(count: int) -> list[Any]:
     return [colormaps["viridis"](0.85 * k / max(count - 1, 1)) for k in range(count)]
 
 
-def load_label(load: float) -> str:
-    """A preload [N] in a legend."""
-    return f"{load / 1e3:.4g} kN"
-
-
 def legend_above(ax: Any, columns: int = 3) -> None:
     """A legend over the axes, where it hides no curve; none where nothing has a label."""
     if ax.get_legend_handles_labels()[0]:

@@ -201,6 +201,11 @@ def _name_like(unit: str) -> str:
     return EXAMPLES.get(unit, f"1 {unit}").partition(" ")[2]
 
 
+def load_text(load: float) -> str:
+    """Write a preload [N] in kN: load_text(12000.0) is "12 kN"."""
+    return f"{load / 1e3:.4g} kN"
+
+
 def show(value: float, unit: str, *, digits: int = 4) -> str:
     """Write an SI value with a prefix: show(12000.0, "N") is "12 kN". Units with powers get no prefix."""
     if value == 0 or not isfinite(value) or any(mark in unit for mark in "^*") or unit.startswith("kg"):

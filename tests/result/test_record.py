@@ -8,7 +8,7 @@ import pytest
 
 import faying
 from faying.result import Result
-from faying.result.fields import load_labels
+from faying.result.fields import load_texts
 from tests.helpers.scenes import two_boxes
 
 
@@ -28,7 +28,7 @@ def test_the_tree_has_groups_and_loads_by_their_names(written):
     result, path = written
     tree = faying.load(path).to_xarray()
     assert {"modes", "joints", "bolts", "points", "surface"} <= set(tree.children)
-    name = load_labels(result.loads)[1]
+    name = load_texts(result.loads)[1]
     found = tree["modes"].frequency.sel(load=name)
     assert np.array_equal(found.values, result.frequencies[1])
     assert found.attrs["units"] == "Hz"
@@ -41,7 +41,7 @@ def test_a_table_has_a_row_for_each_load_and_mode(written):
     table = result.to_dataframe("modes")
     assert list(table.index.names) == ["load", "mode"]
     assert len(table) == result.frequencies.size
-    name = load_labels(result.loads)[-1]
+    name = load_texts(result.loads)[-1]
     assert table.frequency[name, 2] == result.frequencies[-1, 1]
     assert table.bonded[name, 2] == result.bonded[1]
     assert table.preload[name, 1] == result.loads[-1]
@@ -104,8 +104,8 @@ def test_a_file_of_an_earlier_version_has_all_in_its_root(written, tmp_path):
 
 
 def test_labels_of_loads_differ():
-    assert load_labels(np.array([4e3, 8e3, 12.5e3])) == ("4 kN", "8 kN", "12.5 kN")
-    assert len(set(load_labels(np.array([8e3, 8e3 * (1 + 1e-9)])))) == 2
+    assert load_texts(np.array([4e3, 8e3, 12.5e3])) == ("4 kN", "8 kN", "12.5 kN")
+    assert len(set(load_texts(np.array([8e3, 8e3 * (1 + 1e-9)])))) == 2
 
 
 def test_equality_sees_every_array(written):

@@ -12,6 +12,7 @@ from faying.contact.models.half_space import HalfSpace
 from faying.contact.stability import stability, stiffness_at
 from faying.errors import FayingError
 from faying.notes import Note
+from faying.units import load_text
 
 FALL = 1e-6  # relative: a smaller fall is none
 FAR = 2.0  # factor between a law and the exact contact that is told
@@ -34,7 +35,7 @@ def falling(case: Case, states: Sequence[LoadedCase]) -> list[Note]:
         which = ", ".join(str(k + 1) for k in down)
         text = (
             f"mode{'s' * (len(down) > 1)} {which} fall{'s' * (len(down) == 1)} from {before.load / 1e3:g} to "
-            f"{after.load / 1e3:g} kN, by up to {-change.min():.2g} of the frequency: as the parts bend under the "
+            f"{load_text(after.load)}, by up to {-change.min():.2g} of the frequency: as the parts bend under the "
             f"bolts, pressure falls on {less:.0%} of the joint{opened}, while it grows elsewhere"
         )
         out.append(Note(code="falls", load=after.load, text=text))

@@ -26,11 +26,11 @@ from faying.style import (
     drawing,
     headline,
     legend_above,
-    load_label,
     plain_numbers,
     shared_legend,
 )
 from faying.typing import Array
+from faying.units import load_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,7 +64,7 @@ class LevelCurves(Summary):
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return a heading, and the frequency and damping of the first modes at both ends."""
-        head = f"Curves of {self.frequencies.shape[1]} modes of {self.title!r} at {self.load / 1e3:g} kN"
+        head = f"Curves of {self.frequencies.shape[1]} modes of {self.title!r} at {load_text(self.load)}"
         rows = {"levels": f"{len(self.levels)}, {self.levels[0]:.3g} to {self.levels[-1]:.3g} m/s2"}
         for mode in range(min(8, self.frequencies.shape[1])):
             f, z = self.frequencies[[0, -1], mode], 100 * self.damping[[0, -1], mode]
@@ -98,7 +98,7 @@ class LevelCurves(Summary):
             one.grid(alpha=0.3)
             plain_numbers(one.xaxis)
         plain_numbers(axes[1].yaxis)
-        heading = f"{headline(self.title)}, {load_label(self.load)}"
+        heading = f"{headline(self.title)}, {load_text(self.load)}"
         if ax is None:
             shared_legend(axes[0].figure, axes, title=heading)
         else:

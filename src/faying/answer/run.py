@@ -33,6 +33,7 @@ from faying.progress import Report
 from faying.result import BoltNumbers, MeasuredComparison, Receptance, Result
 from faying.study.study import Study
 from faying.typing import Array
+from faying.units import load_text
 
 LEVEL_FIELDS = ("frequencies", "damping", "low", "high", "slip", "error")
 NOT_ZERO = 1e-3  # of the first frequency: a rigid motion above it has cost 1e-6 of that mode's eigenvalue, and is noted
@@ -108,7 +109,7 @@ def findings(case: Case, states: Sequence[LoadedCase]) -> list[Note]:
 
 def stages(study: Study) -> list[str]:
     """The stages that `run` reports for a study, in their order."""
-    loads = [f"{load / 1e3:g} kN" for load in study.loads]
+    loads = [load_text(load) for load in study.loads]
     out = [] if study.hammer is None else ["hammer test"]
     out += ["surface", "mesh"]
     for number, load in enumerate(loads):

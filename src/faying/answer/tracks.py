@@ -11,6 +11,7 @@ from faying.measured.pairing import Paired, changes, pair_over_loads
 from faying.notes import Note
 from faying.result import MeasuredComparison
 from faying.typing import Array
+from faying.units import load_text
 
 
 def shapes_of(case: Case, states: Sequence[LoadedCase]) -> list[Array]:
@@ -41,7 +42,7 @@ def encounters(states: Sequence[LoadedCase], steps: Sequence[Array]) -> list[Not
     for code, word, found in zip(("modes-cross", "modes-couple"), ("cross", "couple"), changes(steps), strict=True):
         for step in sorted({k for k, _, _ in found}):
             pairs = ", ".join(f"{i + 1} and {j + 1}" for k, i, j in found if k == step)
-            before, after = (f"{states[step + k].load / 1e3:g} kN" for k in (0, 1))
+            before, after = (load_text(states[step + k].load) for k in (0, 1))
             text = f"modes {pairs} {word} between {before} and {after} (MAC weighted by mass)"
             out.append(Note(code=code, load=states[step + 1].load, text=text))
     return out

@@ -17,6 +17,7 @@ from faying.files import make_folder, write_atomically
 from faying.result import Result
 from faying.setup.edit import written
 from faying.setup.lines import KeyPath, name_of
+from faying.units import load_text
 
 MOST = 8  # results that are kept
 MOST_BYTES = 2 << 30  # that they may have together
@@ -94,7 +95,7 @@ class Runs:
         files = [one.provenance.files for one in results]
         other = sorted(name for name in files[0] if name in files[1] and files[0][name] != files[1][name])
         return {
-            "preloads": [f"{one.loads[at] / 1e3:.4g} kN" for one, at in zip(results, found.loads, strict=True)],
+            "preloads": [load_text(one.loads[at]) for one, at in zip(results, found.loads, strict=True)],
             "changes": [*changes(*texts), *([name, "file", "other content"] for name in other)],
             "modes": found.mode_rows(),
             "joints": found.joint_rows(),
@@ -123,7 +124,7 @@ class Runs:
                 self._said[name] = facts | {
                     "title": result.title,
                     "laws": list(laws),
-                    "preloads": [f"{load / 1e3:.4g} kN" for load in result.loads],
+                    "preloads": [load_text(load) for load in result.loads],
                     "study": result.provenance.study,
                 }
         return dict(self._said[name])

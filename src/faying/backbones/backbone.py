@@ -35,6 +35,7 @@ from faying.study.keys.law import LawChoice
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
 from faying.typing import Array
+from faying.units import load_text
 
 EXTRA_MODES = 14  # real modes beyond the one that is followed, in its basis
 SPRINGS = 32  # of the law's curve at a point
@@ -314,7 +315,7 @@ def _bases(places: Sequence[tuple[Case, int]], choice: BackboneChoice, progress:
         study, structure = case.study, case.structure
         if case is not before:
             problem, before = structure.assembly(solver=study.modes.solver), case
-        progress.stage(f"preload {study.loads[index] / 1e3:g} kN", 0.2)
+        progress.stage(f"preload {load_text(study.loads[index])}", 0.2)
         preload = settled(case, index, problem)
         springs = structure.springs(preload.pressures)
         for joint, own in zip(structure.joints, springs, strict=True):

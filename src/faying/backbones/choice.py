@@ -9,6 +9,7 @@ from faying.errors import InputError
 from faying.joint.loads import preload_index
 from faying.study.keys.backbone import BackboneChoice, check_friction
 from faying.study.study import Study
+from faying.units import load_text
 
 
 def chosen(study: Study, friction: float | Sequence[float] | None, asked: dict[str, Any]) -> BackboneChoice:
@@ -23,8 +24,8 @@ def load_index(study: Study, load: float) -> int:
     """Index of a preload [N] of the study. Raises InputError where it has none such."""
     index = preload_index(study.loads, load)
     if index is None:
-        known = ", ".join(f"{value / 1e3:g} kN" for value in study.loads)
-        raise InputError(f"no preload of {load / 1e3:g} kN in the study; it has {known}")
+        known = ", ".join(load_text(value) for value in study.loads)
+        raise InputError(f"no preload of {load_text(load)} in the study; it has {known}")
     return index
 
 

@@ -17,6 +17,7 @@ from faying.joint.structure import Structure
 from faying.notes import Note
 from faying.numerics.damped import DampedModes, damped_modes
 from faying.typing import Array, Mask
+from faying.units import load_text
 
 STIFF = 1e3  # times the stiffness of the parts over their size: what counts as bonded
 STIFFER = 1e4  # and at least so many times the law's own
@@ -81,7 +82,7 @@ def _bonded(springs: Springs[Interface], past: Mask, parts: float) -> Springs[In
 def _notes(
     case: Case, load: float, springs: Sequence[Springs[Interface]], past: Sequence[Mask], change: Array
 ) -> tuple[Note, ...]:
-    kilo = f"{load / 1e3:g} kN"
+    kilo = load_text(load)
     worst = int(np.argmax(np.abs(change)))
     out = []
     for number, (joint, s, mask) in enumerate(zip(case.structure.joints, springs, past, strict=True)):

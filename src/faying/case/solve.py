@@ -20,6 +20,7 @@ from faying.notes import Note
 from faying.numerics.damped import DampedModes
 from faying.numerics.modes import Modes
 from faying.typing import Array, Mask
+from faying.units import load_text
 
 SOFTENED = (0.3, 0.1)  # of k_t: joints that slip
 SHAPE_ERROR = 1e-5  # of squared frequencies: shapes are then right to its root, and damping by slip to twice that
@@ -76,10 +77,10 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
     """
     study, structure = case.study, case.structure
     load = study.loads[number]
-    progress.begin(f"preload {load / 1e3:g} kN")
+    progress.begin(f"preload {load_text(load)}")
     preload = engine.preload(number)
     springs = structure.springs(preload.pressures)
-    progress.begin(f"modes at {load / 1e3:g} kN")
+    progress.begin(f"modes at {load_text(load)}")
     found = engine.vibrate(springs)
     modes, damped = found.modes, found.damped
     loaded = LoadedStructure(
@@ -134,7 +135,7 @@ def _responses(
     response = test_response = None
     notes: list[Note] = []
     if study.response is not None:
-        progress.begin(f"frequency response at {study.loads[number] / 1e3:g} kN")
+        progress.begin(f"frequency response at {load_text(study.loads[number])}")
         response, more = loaded.response(study.response)
         notes += more
     if hammer is not None and case.test_points is not None and number == hammer.choice.load and hammer.has_frf:

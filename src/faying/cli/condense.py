@@ -8,6 +8,7 @@ import click
 from faying.cli.progress import Form, Shown, progress_options
 from faying.decks.programs import CONDENSED
 from faying.text import json_text
+from faying.units import load_text
 
 WORDS = ("x", "y", "z", "turn x", "turn y", "turn z")
 
@@ -73,7 +74,7 @@ def command(
         return
     place = ", ".join(f"{x:.4g}" for x in (1e3 * found.joint.point).round(6) + 0.0)
     lines = [
-        f"{found.name} at {found.load / 1e3:g} kN, about ({place}) mm: stiffness [N/m, N, N m]",
+        f"{found.name} at {load_text(found.load)}, about ({place}) mm: stiffness [N/m, N, N m]",
         *_matrix(found.joint.stiffness),
         *(["no loss is predicted"] if found.lossless else ["loss, its imaginary part", *_matrix(found.joint.loss)]),
         "",

@@ -20,6 +20,7 @@ from faying.measured.mac import mac
 from faying.progress import Report
 from faying.study.study import Study
 from faying.typing import Array
+from faying.units import load_text
 
 LIKE = 0.5  # MAC by mass from which two modes are one
 CLOSE = 0.01  # error of a frequency up to which the condensed joint counts as right
@@ -70,7 +71,7 @@ class Condensed:
         system = UnitSystem(unit, force_unit)
         stiffness, loss = self.joint.between(*self.points)
         facts = (
-            f"Joint {self.name!r} of {self.study!r} at {self.load / 1e3:g} kN as one 6 x 6 stiffness between two "
+            f"Joint {self.name!r} of {self.study!r} at {load_text(self.load)} as one 6 x 6 stiffness between two "
             f"points, written by Faying {version('faying')}",
             system.describe(),
             *(("the contact law predicts no loss: none is written",) if self.lossless else ()),
@@ -155,7 +156,7 @@ def condense(
     structure = case.structure
     problem = structure.assembly(solver=study.modes.solver)
     for k in range(index + 1):
-        progress.begin(f"preload {study.loads[k] / 1e3:g} kN")
+        progress.begin(f"preload {load_text(study.loads[k])}")
         state = settled(case, k, problem)
     springs = structure.springs(state.pressures)
     progress.begin("modes")
@@ -206,7 +207,7 @@ def _load(study: Study, preload: str | None) -> int:
     wanted = units.parse(preload, "N", name="--preload")
     index = preload_index(study.loads, wanted)
     if index is None:
-        loads = ", ".join(f"{load / 1e3:g} kN" for load in study.loads)
+        loads = ", ".join(load_text(load) for load in study.loads)
         raise InputError(f"--preload {preload}: the study has {loads}")
     return index
 

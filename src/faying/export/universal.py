@@ -12,6 +12,7 @@ from faying.measured.uff_write import write_uff
 from faying.result import Receptance, Result
 from faying.study.keys.solution import ResponseChoice
 from faying.typing import Array
+from faying.units import load_text
 
 MOST_POINTS = 400
 TEST_FILES = ("test_modes.uff", "test_frf.uff")
@@ -40,7 +41,7 @@ def write(result: Result, folder: Path) -> list[Path]:
     nodes = _spread(result.outline, [_nearest(result.outline, p) for p in labels])
     positions = {k + 1: tuple(float(v) for v in result.outline[node]) for k, node in enumerate(nodes)}
     positions |= {k: p for p, k in labels.items()}
-    title = f"{result.title}, {result.loads[-1] / 1e3:g} kN"
+    title = f"{result.title}, {load_text(result.loads[-1])}"
     modes = _modes(result.frequencies[-1], _losses(result), result.shapes[-1][:, nodes].astype(float), positions)
     made = [write_uff(folder / "modes.uff", modes, title=title)]
     if response is not None:
@@ -53,7 +54,7 @@ def _at_test(result: Result, folder: Path) -> list[Path]:
     if beside is None:
         return []
     model, points = beside.model, beside.point_map
-    title = f"{model.title}, {model.load / 1e3:g} kN, at the points of the test"
+    title = f"{model.title}, {load_text(model.load)}, at the points of the test"
     labels = list(points.nodes)
     # shapes in the axes of the test: x_test = rotation^T x_model
     shapes = model.shapes[:, [beside.places[k] for k in labels]] @ points.transform.rotation

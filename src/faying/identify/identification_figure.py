@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from faying.identify.identification import Identification
-from faying.style import COLOURS, WIDE, axes_of, drawing, load_colours, load_label, new_figure
+from faying.style import COLOURS, WIDE, axes_of, drawing, load_colours, new_figure
 from faying.typeset import name_of
 from faying.typing import Array
+from faying.units import load_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -92,7 +93,7 @@ def _beside_test(ax: Any, found: Identification, test: Array, predicted: Array, 
         place = np.arange(modes) + (k - (len(loads) - 1) / 2) * 0.7 / len(loads)
         colour = shades[k]
         ends = [100 * (1 - low[k] / middle[k]), 100 * (high[k] / middle[k] - 1)]
-        label = load_label(load) + (", left out" if found.left_out[k] else "")
+        label = load_text(load) + (", left out" if found.left_out[k] else "")
         ax.errorbar(np.zeros(modes), place, xerr=ends, fmt="|", color=colour, lw=2.2, ms=7, label=label)
         face = "white" if found.left_out[k] else colour
         ax.plot(100 * (test[k] / middle[k] - 1), place, "s", ms=4, mfc=face, mec=colour, mew=1.3)

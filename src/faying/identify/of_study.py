@@ -29,6 +29,7 @@ from faying.study.study import Study
 from faying.sweeps.parallel import Rows
 from faying.sweeps.variation import check_key
 from faying.typing import Array, Index
+from faying.units import load_text
 
 COUNT = 1000  # samples of the posterior
 
@@ -154,8 +155,8 @@ def left_out(study: Study, wanted: str | float | Sequence[str | float] | None) -
         load = units.parse(one, "N", name="leave_out") if isinstance(one, str) else float(one)
         index = preload_index(study.loads, load)
         if index is None:
-            known = ", ".join(f"{value / 1e3:g} kN" for value in study.loads)
-            raise InputError(f"leave_out: no preload of {load / 1e3:g} kN in the study; it has {known}")
+            known = ", ".join(load_text(value) for value in study.loads)
+            raise InputError(f"leave_out: no preload of {load_text(load)} in the study; it has {known}")
         out.append(index)
     if len(set(out)) == len(study.loads):
         raise InputError("leave_out names every preload of the study; keep one or more to identify from")

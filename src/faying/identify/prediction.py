@@ -15,7 +15,7 @@ from faying.identify.sampling.surrogate import Surrogate
 from faying.identify.shares import Shares, shares
 from faying.misuse import checked_call, shortened
 from faying.notes import Note
-from faying.result.fields import Recorded, load_labels, variable
+from faying.result.fields import Recorded, load_texts, variable
 from faying.result.fields import listed as numbers
 from faying.result.provenance import Provenance
 from faying.result.result import preload_slope
@@ -150,12 +150,12 @@ class Prediction(Recorded):
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return a heading, what scatters, and the intervals of the first frequencies at the last preload."""
         head = f"Prediction {self.title!r}: {self.answered} of {len(self.values)} samples have an answer"
-        rows = {"scatters": listed(self.names, 4), "preloads": listed(load_labels(self.loads))}
+        rows = {"scatters": listed(self.names, 4), "preloads": listed(load_texts(self.loads))}
         if not self.answered:
             return head, rows | {"why": shortened("; ".join(self.reasons))}
         values, test = self.observed
         low, middle, high = _levels(self._with_discrepancy(values[self.sound][:, -1]), LEVELS)
-        rows["frequencies"] = f"5 % | 50 % | 95 % at {load_labels(self.loads)[-1]}"
+        rows["frequencies"] = f"5 % | 50 % | 95 % at {load_texts(self.loads)[-1]}"
         shown = min(len(middle), MOST_MODES)
         for k in range(shown):
             measured = f", test {test[-1, k]:.2f} Hz" if np.isfinite(test[-1, k]) else ""
@@ -375,7 +375,7 @@ class Prediction(Recorded):
 
     def labels(self) -> dict[str, Any]:
         """Labels of the dimensions of its arrays, by the name of the dimension."""
-        out: dict[str, Any] = {"load": load_labels(self.loads), "mode": np.arange(1, self.frequencies.shape[2] + 1)}
+        out: dict[str, Any] = {"load": load_texts(self.loads), "mode": np.arange(1, self.frequencies.shape[2] + 1)}
         out["input"] = self.names
         return out | ({} if self.test is None else {"test_mode": np.arange(1, self.test.shape[1] + 1)})
 

@@ -16,12 +16,12 @@ from faying.style import (
     drawing,
     headline,
     load_colours,
-    load_label,
     new_figure,
     prefixed,
     shared_legend,
 )
 from faying.typeset import name_of
+from faying.units import load_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -60,7 +60,7 @@ def _draw_intervals(ax: Any, found: Prediction) -> None:
         y = np.arange(middle.shape[1]) + (load - (count - 1) / 2) * 0.7 / count
         shade = shades[load]
         ends = [100 * (1 - low[load] / middle[load]), 100 * (high[load] / middle[load] - 1)]
-        label = load_label(found.loads[load])
+        label = load_text(found.loads[load])
         ax.errorbar(np.zeros(len(y)), y, xerr=ends, fmt="|", color=shade, lw=2.2, ms=7, capsize=0, label=label)
         ax.plot(100 * (test[load] / middle[load] - 1), y, "s", ms=4.5, mfc="white", mec=shade, mew=1.2)
     if np.isfinite(test).any():
@@ -107,7 +107,7 @@ def tornado(found: Prediction) -> Any:
     ax.invert_yaxis()
     ax.set_yticks(range(modes), [str(k + 1) for k in range(modes)])
     ax.set(xlim=(0, 100), ylabel="mode" if found.paired is None else "test mode")
-    ax.set_xlabel(f"share of the variance at {load_label(found.loads[-1])} [%]")
+    ax.set_xlabel(f"share of the variance at {load_text(found.loads[-1])} [%]")
     fig.legend(loc="outside lower center", ncols=2)
     ax.set_title(headline(found.title))
     return fig
@@ -167,6 +167,6 @@ def backbones(found: Prediction) -> Any:
         framed(ax, quantity)
     at = ", ".join(f"{1e3 * x:.4g}" for x in curves.at)
     lower.set_xlabel(f"acceleration at ({at}) mm [m/s²]")
-    upper.set_title(f"{headline(found.title)}: mode {curves.mode}, {load_label(curves.preload)}")
+    upper.set_title(f"{headline(found.title)}: mode {curves.mode}, {load_text(curves.preload)}")
     shared_legend(fig, [upper], 2)
     return fig

@@ -24,7 +24,7 @@ from faying.numerics.modes import Modes
 from faying.style import Summary
 from faying.text import titled
 from faying.typing import Array
-from faying.units import positive, show
+from faying.units import load_text, positive, show
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -306,7 +306,7 @@ def _order(structure: Structure, order: Sequence[str] | None) -> list[int] | Non
 
 def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[Note]:
     """Say where contact is lost, and how much of a joint's stiffness lies outside the validity range of its law."""
-    kilo = f"{load / 1e3:g} kN"
+    kilo = load_text(load)
     out = [
         Note(code="open", joint=name, load=load, text=f"{name}, {kilo}: no contact is left; the joint carries nothing")
         for name in open_joints(structure, preload.pressures)
@@ -327,7 +327,7 @@ def end_notes(structure: Structure, springs: Sequence[Springs[Interface]], load:
         if share > 0:
             model = joint.law.model
             text = (
-                f"{joint.name}, {load / 1e3:g} kN: on {share:.2%} of the joint the pressure exceeds the "
+                f"{joint.name}, {load_text(load)}: on {share:.2%} of the joint the pressure exceeds the "
                 f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends; stiffness is held there"
             )
             out.append(Note(code="beyond-law", joint=joint.name, load=load, share=share, text=text))

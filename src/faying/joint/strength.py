@@ -15,7 +15,7 @@ from faying.fe.faces import NamedFaces, face_centre
 from faying.joint.structure import Structure
 from faying.notes import Note
 from faying.typing import Array
-from faying.units import show
+from faying.units import load_text, show
 
 GRAVITY = 9.81  # m/s2
 FASTEST = 20e3  # m/s; the speed sqrt(E/density) of diamond, the fastest of all solids, is 18 km/s
@@ -187,7 +187,7 @@ def pressure_notes(structure: Structure, pressures: Sequence[Array], load: float
         share = float(joint.interface.weights @ (pressure > strength) / joint.interface.area)
         if share > 0:
             text = (
-                f"{joint.name}, {load / 1e3:g} kN: on {share:.2%} of the joint the pressure exceeds the yield strength "
+                f"{joint.name}, {load_text(load)}: on {share:.2%} of the joint the pressure exceeds the yield strength "
                 f"of the softer part, {show(strength, 'Pa')}; the parts stay elastic here. Lower the preload, or check "
                 "the area of the joint and the yield_strength of its parts"
             )

@@ -10,6 +10,7 @@ from faying.measured.frf import QUANTITIES
 from faying.misuse import checked_call, numbers
 from faying.style import Summary
 from faying.typing import Array, Complex, Index
+from faying.units import load_text
 
 SAME_DIRECTION = 0.9998  # cosine of a degree
 
@@ -72,7 +73,7 @@ class ModelModes(Summary):
         shown = ", ".join(f"{f:.2f}" for f in self.frequencies[:8])
         more = f" and {len(self.frequencies) - 8} more" if len(self.frequencies) > 8 else ""
         rows = {"frequencies": f"{shown}{more} Hz", "points": str(len(self.points)), "source": self.source or "a run"}
-        return f"{len(self.frequencies)} modes of {self.title or 'a model'!r} at {self.load / 1e3:g} kN", rows
+        return f"{len(self.frequencies)} modes of {self.title or 'a model'!r} at {load_text(self.load)}", rows
 
     def __post_init__(self) -> None:
         m = len(numbers(self.frequencies, "frequencies", "modes"))

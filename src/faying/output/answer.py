@@ -10,6 +10,7 @@ from faying.result.result import preload_slope
 from faying.result.score import Score
 from faying.result.shape_names import part_and_axis
 from faying.typing import Array
+from faying.units import load_text
 
 
 def answer(result: Result) -> Rows:
@@ -17,7 +18,7 @@ def answer(result: Result) -> Rows:
     if result.interval_low is None or result.interval_high is None:
         return []
     several, levels = len(result.loads) > 1, result.levels
-    heads = ["mode", "moves most", f"{result.loads[-1] / 1e3:g} kN [Hz]", "5 to 95 %"]
+    heads = ["mode", "moves most", f"{load_text(result.loads[-1])} [Hz]", "5 to 95 %"]
     heads += ["Hz/kN"] * several
     heads += [] if levels is None else [f"damping, {levels[len(levels) // 2]:g} m/s2 [%]"]
     rows: Rows = [heads]
@@ -33,7 +34,7 @@ def answer(result: Result) -> Rows:
 
 def lead(result: Result) -> str:
     """The answer in two or three sentences: the modes at the greatest preload, how the test lies, what limits it."""
-    f, load = result.frequencies[-1], f"{result.loads[-1] / 1e3:g} kN"
+    f, load = result.frequencies[-1], load_text(result.loads[-1])
     if len(f) == 1:
         words = [f"At {load} the structure has one elastic mode of interest, at {_hertz(f[0])} Hz."]
     else:
@@ -130,7 +131,7 @@ def score(result: Result) -> Rows:
     found = Score.of(result)
     if found is None:
         return []
-    rows: Rows = [["rms error [%]", *(f"{load / 1e3:g} kN" for load in found.loads)]]
+    rows: Rows = [["rms error [%]", *(load_text(load) for load in found.loads)]]
     for name in found.guesses:
         rows.append([name, *("-" if np.isnan(e) else f"{100 * e:.2f}" for e in found.errors(name))])
     return rows

@@ -8,6 +8,7 @@ from faying.errors import InputError
 from faying.identify.prediction import LEVELS, Prediction
 from faying.output.table import Rows
 from faying.output.table import text as aligned
+from faying.units import load_text
 
 WIDTH = 80  # columns of a terminal
 SHOWN = 0.03  # share of the variance from which an input is named
@@ -29,7 +30,7 @@ def scatter(found: Prediction) -> Rows:
 def intervals(found: Prediction) -> Rows:
     """One row per mode: 5 % .. median .. 95 % of the frequency at each preload."""
     q = found.quantiles(LEVELS).frequencies
-    rows: Rows = [["mode", *(f"{load / 1e3:g} kN [Hz]" for load in found.loads)]]
+    rows: Rows = [["mode", *(f"{load_text(load)} [Hz]" for load in found.loads)]]
     for mode in range(q.shape[2]):
         rows.append([str(mode + 1), *(_three(q[:, load, mode]) for load in range(q.shape[1]))])
     return rows
@@ -48,7 +49,7 @@ def losses(found: Prediction) -> Rows:
     q = found.quantiles(LEVELS).loss_factors
     if not np.isfinite(q).any():
         return []
-    rows: Rows = [["mode", *(f"{load / 1e3:g} kN (loss)" for load in found.loads)]]
+    rows: Rows = [["mode", *(f"{load_text(load)} (loss)" for load in found.loads)]]
     for mode in range(q.shape[2]):
         cells = [" .. ".join(f"{v:.1e}" for v in q[:, load, mode]) for load in range(q.shape[1])]
         rows.append([str(mode + 1), *cells])
@@ -77,7 +78,7 @@ def observed_at(found: Prediction) -> str:
     if curves is None:
         return ""
     at = ", ".join(f"{1e3 * x:.4g}" for x in curves.at)
-    return f"mode {curves.mode} at {curves.preload / 1e3:g} kN, acceleration at ({at}) mm"
+    return f"mode {curves.mode} at {load_text(curves.preload)}, acceleration at ({at}) mm"
 
 
 def beside_test(found: Prediction) -> Rows:
@@ -91,7 +92,7 @@ def beside_test(found: Prediction) -> Rows:
             low, _, high = paired[:, load, mode]
             value = found.test[load, mode]
             inside = "yes" if low <= value <= high else "no"
-            rows.append([str(mode + 1), f"{preload / 1e3:g} kN", f"{value:.1f}", _three(paired[:, load, mode]), inside])
+            rows.append([str(mode + 1), load_text(preload), f"{value:.1f}", _three(paired[:, load, mode]), inside])
     return rows
 
 
@@ -145,7 +146,7 @@ def text(found: Prediction) -> str:
     if lines := beside_test(found):
         head = textwrap.fill(f"compared with the test ({found.test_source}): {inside} of {count} inside", WIDTH)
         parts.append(f"\n{head}\n" + aligned(lines))
-    last = f"{found.loads[-1] / 1e3:g} kN"
+    last = load_text(found.loads[-1])
     parts.append(f"\nwhat makes the scatter at {last}\n" + _wrapped(rows) + "\n\n" + textwrap.fill(words, WIDTH) + "\n")
     return "\n".join([*parts, *(textwrap.fill(f"note: {note.text}", WIDTH) for note in found.notes)])
 

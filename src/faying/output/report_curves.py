@@ -10,6 +10,7 @@ from faying.result import Result
 from faying.result.backbone import Backbone
 from faying.result.backbone_figure import ROUNDING, label
 from faying.result.response_figure import words
+from faying.units import load_text
 
 AROUND = 1.05  # room beside measured points, as a factor of the acceleration
 
@@ -18,7 +19,7 @@ def response_curves(result: Result, most: int = 12) -> list[dict[str, Any]]:
     """Accelerance of the first pairs of output and input at every preload, for curves in a page."""
     found = result.response
     assert found is not None
-    loads = [f"{load / 1e3:g} kN" for load in result.loads]
+    loads = [load_text(load) for load in result.loads]
     accelerance = -((2 * np.pi * found.frequencies) ** 2)[None, :, None, None] * found.values
     return [
         packed_curves(

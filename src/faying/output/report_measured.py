@@ -10,6 +10,7 @@ from faying.measured.compare import ModalComparison
 from faying.output.page import BITMAPS, curves, document, saved, table
 from faying.output.scene.text import packed_curves
 from faying.style import COLUMN, WIDE, drawing, new_figure
+from faying.units import load_text
 
 CAPTIONS = {
     "mac": "MAC of the modes of the test against those of the model, at the points of the test. Pairs are framed.",
@@ -48,7 +49,7 @@ def section(comparison: ModalComparison, pictures: dict[str, str], *, moving: bo
     parts = [
         "<h2>Hammer test</h2>",
         f"<p>{escape(comparison.test.source)} against {escape(comparison.model.title)} at "
-        f"{comparison.model.load / 1e3:g} kN. {len(points.nodes)} points of the test found a node, the farthest "
+        f"{load_text(comparison.model.load)}. {len(points.nodes)} points of the test found a node, the farthest "
         f"{worst * 1e3:.3g} mm away.</p>",
     ]
     parts += [f'<p class="flag">{escape(note)}</p>' for note in comparison.notes]

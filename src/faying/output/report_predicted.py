@@ -9,6 +9,7 @@ from faying.identify.identification import Identification
 from faying.identify.prediction import LEVELS, Prediction
 from faying.notes import Note
 from faying.output import page, prediction
+from faying.units import load_text
 
 MEANS = (
     "If the listed numbers scatter as stated and the model is right, nine of ten such structures lie inside 5 % to "
@@ -39,7 +40,7 @@ def predicted(found: Prediction) -> str:
             prediction.beside_test(found),
             f"{inside} of {count} measured frequencies inside. {found.test_source}",
         ),
-        (f"What makes the scatter at {found.loads[-1] / 1e3:g} kN", rows, words),
+        (f"What makes the scatter at {load_text(found.loads[-1])}", rows, words),
     ]
     body = [
         f"<h1>{escape(found.title)}: prediction</h1>",

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from faying.output import answer, table
 from faying.output.table import Rows
 from faying.result import Result
+from faying.units import load_text
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +42,7 @@ def sections(result: Result) -> list[ReportSection]:
 
 
 def _last(result: Result) -> str:
-    return f"at {result.loads[-1] / 1e3:g} kN"
+    return f"at {load_text(result.loads[-1])}"
 
 
 def _answer(result: Result) -> tuple[ReportSection, ...]:
@@ -210,6 +211,6 @@ def _tests(result: Result) -> tuple[ReportSection, ...]:
         ReportSection(
             name="hammer",
             rows=table.hammer(result),
-            title=f"Hammer test at {hammer.model.load / 1e3:g} kN" if hammer else "Hammer test",
+            title=f"Hammer test at {load_text(hammer.model.load)}" if hammer else "Hammer test",
         ),
     )

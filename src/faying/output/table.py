@@ -12,7 +12,7 @@ from faying.result import Result
 from faying.result.backbone import Backbone
 from faying.result.result import preload_slope
 from faying.typing import Array
-from faying.units import show
+from faying.units import load_text, show
 
 Rows = list[list[str]]
 FRACTAL = ["D", "95 % interval", "G", "95 % interval", "band", "implied Rq"]  # heads of `fractal`
@@ -24,7 +24,7 @@ SAME = 1e-4  # relative difference of two frequencies that is not shown
 def modes(result: Result) -> Rows:
     """One row per mode: free, then each preload with its loss factor where one is predicted, then bonded."""
     lost = bool(np.isfinite(result.loss_factors).any())
-    heads = [f"{load / 1e3:g} kN [Hz]{' (loss)' * lost}" for load in result.loads]
+    heads = [f"{load_text(load)} [Hz]{' (loss)' * lost}" for load in result.loads]
     rows: Rows = [["mode", "free [Hz]", *heads, "bonded [Hz]"]]
     for j in range(len(result.bonded)):
         cells = [
@@ -42,7 +42,7 @@ def ranges(result: Result) -> Rows:
     """
     if result.low is None or result.high is None:
         return []
-    rows: Rows = [["mode", *(f"{load / 1e3:g} kN [Hz]" for load in result.loads)]]
+    rows: Rows = [["mode", *(f"{load_text(load)} [Hz]" for load in result.loads)]]
     for j in range(len(result.bonded)):
         pairs = zip(result.low[:, j], result.high[:, j], strict=True)
         rows.append([str(j + 1), *(f"{_five(low)} .. {_five(high)}" for low, high in pairs)])
@@ -72,7 +72,7 @@ def beyond(result: Result) -> Rows:
     """One row per mode: held at the end of the law and bonded beyond it; empty where the law covers all pressures."""
     if result.beyond_frequencies is None or result.beyond_loss_factors is None:
         return []
-    rows: Rows = [["mode", *(f"{load / 1e3:g} kN held .. bonded [Hz] (loss)" for load in result.loads)]]
+    rows: Rows = [["mode", *(f"{load_text(load)} held .. bonded [Hz] (loss)" for load in result.loads)]]
     for j in range(len(result.bonded)):
         cells = []
         for i in range(len(result.loads)):
@@ -127,7 +127,7 @@ def waves(result: Result) -> Rows:
     """One row per mode: least, median and greatest over the draws of waves, at each load and of d f/d preload."""
     if result.wave_frequencies is None:
         return []
-    heads = [f"{load / 1e3:g} kN [Hz]" for load in result.loads]
+    heads = [f"{load_text(load)} [Hz]" for load in result.loads]
     rows: Rows = [["mode", *heads, *(["d f/d preload [Hz/kN]"] if result.wave_slopes is not None else [])]]
     for j in range(result.wave_frequencies.shape[2]):
         cells = [_over_draws(values, ".2f") for values in result.wave_frequencies[:, :, j].T]
@@ -175,7 +175,7 @@ def comparison(result: Result) -> Rows:
     others = [] if c.alternatives is None else list(zip(result.alternatives, c.alternatives, strict=True))
     ours = [*others, ("Faying", c.predicted)]
     for i, load in enumerate(result.loads):
-        rows.append([f"{load / 1e3:g} kN", f"{c.reference} [Hz]", *(f"{f:.1f}" for f in c.frequencies[i])])
+        rows.append([load_text(load), f"{c.reference} [Hz]", *(f"{f:.1f}" for f in c.frequencies[i])])
         for name, values in (*theirs, *ours):
             rows.append(["", f"{name} [Hz]", *(_or_dash(f, ".1f") for f in values[i])])
             errors = 100 * (values[i] / c.frequencies[i] - 1)
@@ -201,7 +201,7 @@ def joints(result: Result) -> Rows:
         area = float(weights.sum())
         rows.append(
             [
-                f"{load / 1e3:g} kN",
+                load_text(load),
                 name,
                 f"{pressure.max() * 1e-6:.3g}",
                 f"{float(weights @ pressure) / area * 1e-6:.3g}",
@@ -231,7 +231,7 @@ def bolts(result: Result) -> Rows:
         return []
     rows: Rows = [["preload", *(f"{name} [kN]" for name in result.bolts)]]
     for load, forces in zip(result.loads, result.bolt_forces, strict=True):
-        rows.append([f"{load / 1e3:g} kN", *(f"{force / 1e3:.3f}" for force in forces)])
+        rows.append([load_text(load), *(f"{force / 1e3:.3f}" for force in forces)])
     return rows
 
 
@@ -270,7 +270,7 @@ def bolting(result: Result) -> Rows:
             known = np.isfinite(b.embedding[0, i, :, k]).any()
             rows.append(
                 [
-                    f"{load / 1e3:g} kN" if k == 0 else "",
+                    load_text(load) if k == 0 else "",
                     name,
                     f"{result.bolt_forces[i, k] / 1e3:.3f}",
                     *(
@@ -329,7 +329,7 @@ def conductance(result: Result) -> Rows:
         return []
     rows: Rows = [["preload", *(f"{name} [{unit}]" for _, unit in fields for name in result.joints)]]
     for i, load in enumerate(result.loads):
-        rows.append([f"{load / 1e3:g} kN", *(_or_dash(v, ".4g") for values, _ in fields for v in values[i])])
+        rows.append([load_text(load), *(_or_dash(v, ".4g") for values, _ in fields for v in values[i])])
     return rows
 
 

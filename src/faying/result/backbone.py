@@ -16,6 +16,7 @@ from faying.notes import Note
 from faying.result.fields import Recorded, declared, in_units, listed, variable
 from faying.result.provenance import Provenance
 from faying.typing import Array, Index
+from faying.units import load_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -186,7 +187,7 @@ class Backbone(Recorded):
     @property
     def settings(self) -> str:
         """Preload, laws and friction in words."""
-        return ", ".join([f"{self.preload / 1e3:g} kN", *dict.fromkeys(self.laws), f"friction {self.friction_text}"])
+        return ", ".join([load_text(self.preload), *dict.fromkeys(self.laws), f"friction {self.friction_text}"])
 
     @property
     def measured(self) -> MeasuredBackbone | None:

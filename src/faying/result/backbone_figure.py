@@ -8,18 +8,8 @@ import numpy as np
 
 from faying.measured.ring_down import MeasuredBackbone
 from faying.result.backbone import Backbone
-from faying.style import (
-    COLUMN,
-    axes_of,
-    colour,
-    drawing,
-    headline,
-    legend_above,
-    load_label,
-    new_figure,
-    plain,
-    plain_numbers,
-)
+from faying.style import COLUMN, axes_of, colour, drawing, headline, legend_above, new_figure, plain, plain_numbers
+from faying.units import load_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,7 +23,7 @@ def label(curve: Backbone, curves: Sequence[Backbone]) -> str:
     if len({other.laws for other in curves}) > 1:
         parts.append(", ".join(dict.fromkeys(curve.laws)))
     if len({other.preload for other in curves}) > 1:
-        parts.append(f"{curve.preload / 1e3:g} kN")
+        parts.append(load_text(curve.preload))
     if len({other.friction for other in curves}) > 1 or not parts:
         parts.append(f"friction {curve.friction_text}")
     return ", ".join(parts)
@@ -143,7 +133,7 @@ def backbone_axes(curve: Backbone, ax: Any = None) -> "list[Axes]":
     for one, quantity in zip(axes, ("frequency", "damping"), strict=True):
         panel(one, [curve], quantity)
         one.set_xlabel(f"acceleration at ({at}) mm [m/s²]")
-    axes[1].set_title(f"{headline(curve.title)}: mode {curve.mode}, {load_label(curve.preload)}")
+    axes[1].set_title(f"{headline(curve.title)}: mode {curve.mode}, {load_text(curve.preload)}")
     legend_above(axes[0], 1)
     return axes
 

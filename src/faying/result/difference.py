@@ -10,6 +10,7 @@ from faying.joint.loads import preload_index
 from faying.measured.mac import mac
 from faying.result.result import Result
 from faying.typing import Array, Index
+from faying.units import load_text
 
 ALIKE = 0.5  # MAC that a pair of modes must have
 APART = 0.05  # of the size of the structure, how far nodes of two meshes may lie apart to stand for each other
@@ -151,7 +152,7 @@ def compare_runs(first: Result, second: Result, preload: float | None = None) ->
         loads = _shared(first.loads, second.loads) or (len(first.loads) - 1, len(second.loads) - 1)
     at = first.loads[loads[0]], second.loads[loads[1]]
     if abs(at[1] / at[0] - 1) > SAME_LOAD:
-        notes.append(f"the preloads differ: {at[0] / 1e3:.4g} kN in the first run, {at[1] / 1e3:.4g} kN in the second")
+        notes.append(f"the preloads differ: {load_text(at[0])} in the first run, {load_text(at[1])} in the second")
     modes, alike, why = _paired(first, second, loads)
     if why:
         notes.append(why)
@@ -169,8 +170,8 @@ def compare_runs(first: Result, second: Result, preload: float | None = None) ->
 def _at(result: Result, preload: float, which: str) -> int:
     index = preload_index(result.loads, preload)
     if index is None:
-        there = ", ".join(f"{load / 1e3:.4g} kN" for load in result.loads)
-        raise InputError(f"the {which} run has no preload of {preload / 1e3:.4g} kN; it has {there}")
+        there = ", ".join(load_text(load) for load in result.loads)
+        raise InputError(f"the {which} run has no preload of {load_text(preload)}; it has {there}")
     return index
 
 

@@ -297,7 +297,7 @@ def with_preload(tree: Group) -> Group:
     return lend(tree)
 
 
-def load_labels(loads: Array) -> tuple[str, ...]:
+def load_texts(loads: Array) -> tuple[str, ...]:
     """Loads [N] in words, each different from the others: "8 kN"."""
     for digits in range(4, 17):
         words = tuple(show(float(load), "N", digits=digits) for load in loads)

@@ -21,13 +21,13 @@ from faying.style import (
     drawing,
     legend_above,
     load_colours,
-    load_label,
     new_figure,
     percent,
     plain,
     shared_legend,
 )
 from faying.text import listed
+from faying.units import load_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,7 +59,7 @@ def face_map(ax: Any, result: Result, field: str, load: int = -1, joint: int = 0
         areas=result.weights[here],
         label=label,
         unit=unit,
-        title=f"{plain(result.joints[joint])}, {load_label(result.loads[load])}: {percent(share)} open",
+        title=f"{plain(result.joints[joint])}, {load_text(result.loads[load])}: {percent(share)} open",
     ).paint(ax)
 
 
@@ -192,11 +192,11 @@ def comparison(ax: Any, result: Result) -> Any:
             color=shades[row],
             elinewidth=2.0,
             capsize=0,
-            label=f"computed, {load_label(load)}",
+            label=f"computed, {load_text(load)}",
         )
         if c.published is not None:
             theirs = 100 * (c.published[row] / c.frequencies[row] - 1)
-            ax.plot(place, theirs, "x", ms=5, color=shades[row], label=f"{plain(c.published_name)}, {load_label(load)}")
+            ax.plot(place, theirs, "x", ms=5, color=shades[row], label=f"{plain(c.published_name)}, {load_text(load)}")
     ax.axhline(0, color=INK, lw=0.8)
     ax.set(xlabel=f"mode of the {c.reference}", ylabel=f"difference from the {c.reference} [%]", xticks=modes)
     ax.set_xlim(0.5, len(modes) + 0.5)

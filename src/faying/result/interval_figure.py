@@ -6,8 +6,9 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.result.score import Score
-from faying.style import COLOURS, WIDE, drawing, legend_above, load_label, new_figure
+from faying.style import COLOURS, WIDE, drawing, legend_above, new_figure
 from faying.typeset import typeset
+from faying.units import load_text
 
 if TYPE_CHECKING:
     from faying.result.result import Result
@@ -52,7 +53,7 @@ def intervals(result: "Result") -> Any:
     left.set_yticks(y, [f"{k + 1}: {f:.0f} Hz" for k, f in enumerate(value)])
     left.invert_yaxis()
     left.set_xlabel("difference from the value as computed [%]")
-    left.set_ylabel(f"mode at {load_label(result.loads[-1])}")
+    left.set_ylabel(f"mode at {load_text(result.loads[-1])}")
     left.grid(axis="x", alpha=0.3)
     before = np.zeros(count)
     for name, share in zip(interval.sources, 100 * interval.shares[:, -1], strict=True):

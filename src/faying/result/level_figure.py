@@ -6,17 +6,8 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.result.result import Result
-from faying.style import (
-    COLOURS,
-    TALLEST,
-    WIDE,
-    colour,
-    drawing,
-    load_label,
-    new_figure,
-    plain_numbers,
-    shared_legend,
-)
+from faying.style import COLOURS, TALLEST, WIDE, colour, drawing, new_figure, plain_numbers, shared_legend
+from faying.units import load_text
 
 
 @drawing
@@ -38,7 +29,7 @@ def damping_levels(result: Result, load: int = -1) -> Any:
         damping_of(axes.flat[mode], result, mode, load)
         axes.flat[mode].tick_params(labelbottom=mode + columns >= count)
         axes.flat[mode].set_title(f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz", pad=3)
-    fig.supxlabel(f"peak acceleration where the mode moves most [m/s²], at {load_label(result.loads[load])}")
+    fig.supxlabel(f"peak acceleration where the mode moves most [m/s²], at {load_text(result.loads[load])}")
     fig.supylabel("damping ratio [%]")
     shared_legend(fig, axes.flat[:count])
     return fig

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from faying.result.result import Result
-from faying.style import COLUMN, SMALL, TALLEST, WIDE, drawing, legend_above, load_colours, load_label, new_figure
+from faying.style import COLUMN, SMALL, TALLEST, WIDE, drawing, legend_above, load_colours, new_figure
+from faying.units import load_text
 
 WRITTEN = 6  # modes at most for which the values of MAC stand in the map
 
@@ -17,7 +18,7 @@ def _curves(ax: Any, result: Result, output: int, input: int, of: Any) -> None:
     shades = load_colours(len(result.loads))
     for load, receptance, shade in zip(result.loads, response.values, shades, strict=True):
         values = -((2 * np.pi * f) ** 2) * receptance[:, output, input]
-        ax.plot(f, of(values), color=shade, lw=1.0, label=load_label(load))
+        ax.plot(f, of(values), color=shade, lw=1.0, label=load_text(load))
     ax.set(xlabel="frequency [Hz]", xlim=(f[0], f[-1]))
     ax.grid(alpha=0.3)
 
@@ -87,7 +88,7 @@ def mac_between_loads(ax: Any, result: Result, load: int = -1) -> Any:
     ax.set_xticks(count[::step], [str(k + 1) for k in count[::step]])
     ax.set_yticks(count[::step], [str(k + 1) for k in count[::step]])
     ax.spines[:].set_visible(False)
-    ax.set(xlabel=f"mode at {load_label(result.loads[load])}", ylabel=f"mode at {load_label(result.loads[0])}")
+    ax.set(xlabel=f"mode at {load_text(result.loads[load])}", ylabel=f"mode at {load_text(result.loads[0])}")
     return ax
 
 

@@ -18,11 +18,12 @@ from faying.misuse import checked_call, shortened
 from faying.notes import Note, grouped
 from faying.result.backbone import Backbone
 from faying.result.bolts import BoltNumbers
-from faying.result.fields import Recorded, in_units, load_labels, variable
+from faying.result.fields import Recorded, in_units, load_texts, variable
 from faying.result.interval import Interval
 from faying.result.provenance import Provenance
 from faying.text import listed
 from faying.typing import Array, Complex, Index
+from faying.units import load_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -561,7 +562,7 @@ class Result(Recorded):
         rows = {"joints": listed(self.joints) + (f" ({listed(filter(None, laws))})" if any(laws) else "")}
         rows["bolts"] = listed(self.bolts)
         few = list(range(len(self.loads))) if len(self.loads) <= MOST_LOADS else [0, len(self.loads) // 2, -1]
-        words = load_labels(self.loads)
+        words = load_texts(self.loads)
         rows["frequencies"] = f"[Hz] free | {' | '.join(words[k] for k in few)} | bonded"
         shown = len(self.free) if len(self.free) <= MOST_MODES else MOST_MODES - 1
         for mode in range(shown):
@@ -641,8 +642,8 @@ class Result(Recorded):
         if index is None:
             assert load is not None
             raise InputError(
-                f"{source}: no preload of {load / 1e3:g} kN; it holds "
-                f"{', '.join(f'{v / 1e3:g} kN' for v in self.loads)}"
+                f"{source}: no preload of {load_text(load)}; it holds "
+                f"{', '.join(f'{load_text(v)}' for v in self.loads)}"
             )
         return ModelModes(
             frequencies=self.frequencies[index],
@@ -683,7 +684,7 @@ class Result(Recorded):
 
     def labels(self) -> dict[str, Any]:
         """Labels of the dimensions of its arrays, by the name of the dimension."""
-        out: dict[str, Any] = {"load": load_labels(self.loads), "mode": np.arange(1, len(self.free) + 1)}
+        out: dict[str, Any] = {"load": load_texts(self.loads), "mode": np.arange(1, len(self.free) + 1)}
         out |= {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
         out |= {"part": self.parts} if self.parts else {}
         out |= {"source": self.interval_sources} if self.interval_sources else {}

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from faying.text import json_text
+from faying.units import load_text
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -97,7 +98,7 @@ def command(
         click.echo(json_text(comparison.to_dict() | {"files": [str(f) for f in files]}))
         return
     click.echo(
-        f"{model.title} at {model.load / 1e3:g} kN; {len(comparison.point_map.nodes)} points of the test found a node\n"
+        f"{model.title} at {load_text(model.load)}; {len(comparison.point_map.nodes)} points of the test found a node\n"
     )
     click.echo(table.text(comparison.rows()))
     for line in comparison.notes:

@@ -28,6 +28,7 @@ from faying.study.declaration.values import point as read_point
 from faying.study.declaration.values import quantity as read_quantity
 from faying.study.declaration.values import text as read_text
 from faying.typing import Array, Index
+from faying.units import load_text
 
 QUANTITIES = ("receptance", "mobility", "accelerance")
 
@@ -154,8 +155,8 @@ def _file(table: Table, loads: tuple[float, ...]) -> HammerChoice:
         wanted = read_quantity(value, "N", name)
         index = preload_index(loads, wanted)
         if index is None:
-            known = ", ".join(f"{v / 1e3:g} kN" for v in loads)
-            raise InputError(f"{name} = {wanted / 1e3:g} kN is no preload of the study; its first bolt has {known}")
+            known = ", ".join(load_text(v) for v in loads)
+            raise InputError(f"{name} = {load_text(wanted)} is no preload of the study; its first bolt has {known}")
         return index
 
     table.take("frequencies", lambda _value, _name: None, None)
