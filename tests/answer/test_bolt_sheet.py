@@ -301,6 +301,24 @@ def test_loads_of_the_sheet_are_those_of_a_case(made):
     assert least < -1  # of the case that presses
 
 
+def test_a_case_may_have_the_name_that_the_sheet_gives_to_heat_alone(made):
+    """The case that the study calls so stays what it is; that of the temperatures has another name."""
+    named = {"name": "heat of pull", "force": OTHER["force"]}
+    given = {"support": [HELD], "bolt_sheet": {"load": ["pull"]}}
+    alone, beside = (bolt_sheet(made(load=loads, **given)).sheets[0] for loads in ([PULL], [PULL, named]))
+    both = bolt_sheet(made(load=[PULL, named], **(given | {"bolt_sheet": {"load": ["pull", "heat of pull"]}}))).sheets[
+        0
+    ]
+    inputs = [
+        {one.symbol: one.value for row in sheet.rows for one in row.inputs if one.value is not None}
+        for sheet in (alone, beside, both)
+    ]
+    assert inputs[0]["F_th"] > 100
+    assert inputs[1] == pytest.approx(inputs[0], rel=1e-6)
+    assert inputs[2]["F_th"] == pytest.approx(inputs[0]["F_th"], rel=1e-6)
+    assert inputs[2]["F_Au"] == pytest.approx(-400, rel=1e-6)
+
+
 def test_another_case_never_takes_stress_from_a_bolt(made):
     """A moment bends the joint open and pulls the bolt, at no working load along it; the sheet counts its force."""
     bend = {"name": "bend", "force": [{"face": "upper.seat", "moment": ["0 N*m", "12 N*m", "0 N*m"]}]}

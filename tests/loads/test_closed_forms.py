@@ -8,8 +8,12 @@ import pytest
 import faying
 from faying.answer.load_answers import Preloaded, answers, near_factor
 from faying.case.case import Progress
+from faying.fe.bonded import bonded_mesh
+from faying.fe.interface import join
 from faying.joint.attachments import PointMass, Support
-from tests.helpers.bars import AREA, LENGTH, SIMPLE, bars
+from faying.loads.contact import LoadedContact
+from tests.helpers.bars import AREA, LENGTH, SIMPLE, WIDTH, bars
+from tests.helpers.boxes import row
 
 PRELOAD = 5000.0
 
@@ -154,6 +158,45 @@ def test_acceleration_pulls_by_the_mass_beyond_the_joint(held):
     assert found.bolt_force[0, 0] - found.normal_force[0, 0] == pytest.approx(weight, rel=1e-8)
 
 
+def test_acceleration_of_a_free_body_is_refused(free):
+    """Its mass times the acceleration is left over."""
+    made, state = free
+    bolt = made.structure.fitted_bolts[0].mass @ np.tile([1.0, 0, 0], len(made.structure.mesh.points))
+    force = 3.0 * (made.structure.mass + bolt.sum())
+    with pytest.raises(faying.InputError, match=rf"load 'a' does not balance: forces of \({-force:.4g}, 0, 0\) N"):
+        faying.load_cases(state, [faying.Load("a", acceleration=(3.0, 0, 0))])
+
+
+def test_what_is_bonded_to_a_bar_pulls_with_it():
+    """A third bar that is bonded to the second: the joint loses what both weigh."""
+    made = bars(held=True, diameter=None)
+    apart = row([LENGTH] * 3, [2] * 3, kinds=("hex20",) * 3, sections=((1, 1),) * 3, width=WIDTH, height=WIDTH)
+    mesh = bonded_mesh(apart, [("weld", ("p1.right", "p2.left"))])
+    assert len(mesh.points) < len(apart.points)
+    joint = replace(made.structure.joints[0], interface=join(mesh, "p0.right", "p1.left"))
+    bolt = faying.Bolt("b", ("p0.left", "p2.right"))
+    structure = faying.Structure(
+        mesh, dict.fromkeys(mesh.parts, SIMPLE), (joint,), (bolt,), supports=made.structure.supports
+    )
+    loads = [faying.Load("a", acceleration=(-500.0, 0, 0))]
+    found = faying.load_cases(structure.solve(PRELOAD, modes=2), loads, modes=False)
+    assert PRELOAD - found.normal_force[0, 0] == pytest.approx(500 * SIMPLE.density * AREA * 2 * LENGTH, rel=1e-8)
+
+
+def test_numbers_that_are_none_are_no_answer(held, monkeypatch):
+    """A law that ends in NaN stops the case by its name."""
+    closing = LoadedContact.normal
+
+    def broken(self, motion):
+        pressure, slope = closing(self, motion)
+        return np.where(pressure < 0.5 * PRELOAD / AREA, np.nan, pressure), slope
+
+    monkeypatch.setattr(LoadedContact, "normal", broken)
+    loads = [faying.Load("much", forces=[faying.Force("p1.right", force=(4000.0, 0, 0))])]
+    with pytest.raises(faying.NotConverged, match="load 'much': no equilibrium is found"):
+        faying.load_cases(held[1], loads, modes=False)
+
+
 def test_a_point_mass_pulls_as_well():
     made = bars(held=True, diameter=None)
     heavy = faying.Structure(
@@ -213,6 +256,27 @@ def test_displacement_of_a_support(held):
     assert found.bolt_force[:, 0] == pytest.approx(PRELOAD + ways / made.bolt, rel=1e-8)
     assert found.normal_force[:, 0] == pytest.approx(PRELOAD - ways / made.members, rel=1e-8)
     assert found.displacement == pytest.approx(np.abs(ways), rel=1e-8)
+
+
+def test_two_displacements_of_one_face_are_refused(held):
+    """Unless they say the same, or speak of different directions."""
+    move = [faying.Displacement("p0.left", (1e-6, 0, 0)), faying.Displacement("p0.left", ("2 um", 0, 0))]
+    with pytest.raises(faying.InputError, match=r"'p0.left' is moved along x by 2 um, and some of its nodes by 1 um"):
+        faying.load_cases(held[1], [faying.Load("m", displacements=move)], modes=False)
+    same = [move[0], faying.Displacement("p0.left", (1e-6, 0, 1e-6))]
+    found = faying.load_cases(held[1], [faying.Load("m", displacements=same)], modes=False)
+    assert found.displacement[0] == pytest.approx(np.sqrt(2) * 1e-6, rel=1e-6)  # all of it moves as one
+    assert found.bolt_force[0, 0] == pytest.approx(PRELOAD, rel=1e-8)
+
+
+def test_ranges_of_factors_and_temperatures():
+    for given, text in (
+        ({"combine": {"a": 1001.0}}, r"combine takes 'a' 1001 times; give a factor from -1000 to 1000"),
+        ({"temperature": {"p0": "-1001 K"}}, r"temperature of 'p0' changes by -1001 K; give a change since"),
+        ({"temperature": {"p0": 2001.0}}, "-1000 to 2000 K"),
+    ):
+        with pytest.raises(faying.InputError, match=text):
+            faying.Load("far", **given)
 
 
 def test_a_load_that_nothing_holds_is_refused(free):

@@ -150,6 +150,14 @@ def test_the_command(study, tmp_path, capsys):
             ('temperature = { bolt = "20 K"', 'temperature = { bolt = "20 degC"'),
             "has a zero of its own; give a difference",
         ),
+        (
+            ('temperature = { bolt = "20 K"', 'temperature = { bolt = "20 kK"'),
+            "changes by 20000 K; give a change since",
+        ),
+        (
+            ('combine = { "10 g" = 1.5 }', 'combine = { "10 g" = 1500 }'),
+            "'10 g' 1500 times; give a factor from -1000 to",
+        ),
         (('force = ["300 N", "0 N", "0 N"]', 'force = ["300 N", "0 N"]'), "should be three components, for example"),
         (("increments = 3", "increment = 3"), "increment is not a key that a study has; did you mean increments"),
         (('face = "upper.seat"\nforce', "force"), "a force needs a face, or a point"),
@@ -205,6 +213,16 @@ def test_intervals_follow_preload_and_friction(study, tmp_path):
     assert np.all(some.slip_margin[1] >= found.slip_margin_worst * (1 - 1e-9))
     assert some.check[row] < 0.03
     assert len(some.inputs) == 2
+    # of next to no load: no division by nothing, no width for a use of friction that is counted as LEAST
+    row = found.cases.index("whisper")
+    use = found.friction_needed_worst[row, 0] / 0.25
+    assert 0 < use < 1e-10
+    assert some.slip_use[:, row, 0] == pytest.approx([use, use], rel=1e-12)
+    assert some.bolt_force[:, row, 0] == pytest.approx([(1 - half) * 6000, (1 + half) * 6000], rel=1e-6)
+    assert some.check[row] < 1e-6
+    assert (found.opened[row, 0], found.sliding[row, 0]) == (0, 0)
+    assert found.superposition[row] < 1e-3
+    assert np.isnan(found.load_factor[row, 0])
     assert faying.LoadCases.load(found.save(tmp_path / "kept.nc")) == found
     assert "90 % intervals over preload of bolt +-20%" in " ".join(terminal(found).split())
 
@@ -215,6 +233,13 @@ name = "aside"
 [[load.force]]
 face = { part = "upper", normal = "+x" }
 force = ["200 N", "0 N", "0 N"]
+point = ["40 mm", "0 mm", "0 mm"]
+
+[[load]]
+name = "whisper"
+[[load.force]]
+face = { part = "upper", normal = "+x" }
+force = ["1e-9 N", "0 N", "0 N"]
 point = ["40 mm", "0 mm", "0 mm"]
 """
 

@@ -16,6 +16,15 @@ from faying.study.keys.bolt_sheet import choice_of
 
 HEAT = "heat of "  # stands before the name of a case of which the temperatures alone act
 COLD = "without heat: "  # the same of what else acts
+AGAIN = "'"  # stands behind where a study has a case of that name
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Parted:
+    """Cases with temperatures, by name: the case of these alone, and that of all else."""
+
+    heat: dict[str, Load]
+    rest: dict[str, Load]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,28 +66,38 @@ def bolt_loads(
         return {}
     asked = _with_needs(study.load_cases, names)
     base = preloaded_case(case, state.preload, state.springs, engine, modes=False)
-    found = answers(base, (*asked, *_parted(asked, names)), progress)
-    return {k: _bolt_load(found, k, some, float(numbers.load_factor[0, k])) for k, some in wanted.items() if some}
+    parted = _parted(asked, names)
+    found = answers(base, (*asked, *parted.heat.values(), *parted.rest.values()), progress)
+    shares = numbers.load_factor[0]
+    return {k: _bolt_load(found, k, some, float(shares[k]), parted) for k, some in wanted.items() if some}
 
 
-def _parted(asked: Sequence[Load], names: Sequence[str]) -> list[Load]:
+def _parted(asked: Sequence[Load], names: Sequence[str]) -> _Parted:
     """For each case of these names that has temperatures: a case of them alone, and one without them."""
-    out, by_name = [], {load.name: load for load in asked}
+    out, by_name = _Parted(heat={}, rest={}), {load.name: load for load in asked}
+    taken = set(by_name)
+
+    def free(name: str) -> str:
+        while name in taken:
+            name += AGAIN
+        taken.add(name)
+        return name
+
     for name in names:
         changes = {what: change for what, change in _temperatures(by_name, name).items() if change}
         if changes:
-            out.append(Load(HEAT + name, temperature=changes))
+            out.heat[name] = Load(free(HEAT + name), temperature=changes)
             without = {what: -change for what, change in changes.items()}
-            out.append(Load(COLD + name, combine={name: 1.0}, temperature=without))
+            out.rest[name] = Load(free(COLD + name), combine={name: 1.0}, temperature=without)
     return out
 
 
-def _bolt_load(found: LoadCases, k: int, names: Sequence[str], share: float) -> BoltLoad:
+def _bolt_load(found: LoadCases, k: int, names: Sequence[str], share: float, parted: _Parted) -> BoltLoad:
     """What cases are to one bolt; share: its load factor Phi_K for a load at the seats."""
     rows = [found.index(name) for name in names]
     change = found.bolt_force[:, k] - found.bolt_preload[k]
-    heat = np.array([change[found.index(HEAT + name)] if HEAT + name in found.cases else 0.0 for name in names])
-    across = [COLD + name if COLD + name in found.cases else name for name in names]
+    heat = np.array([change[found.index(parted.heat[name].name)] if name in parted.heat else 0.0 for name in names])
+    across = [parted.rest[name].name if name in parted.rest else name for name in names]
     working = found.working_load[rows, k]
     most = int(np.argmax(working if working.max() > 0 else np.abs(working)))
     known = np.isfinite(found.load_factor[rows[most], k]) and share > 0
@@ -86,7 +105,7 @@ def _bolt_load(found: LoadCases, k: int, names: Sequence[str], share: float) -> 
     own = change[rows] - heat
     if len(rows) == 1:  # from nothing to it
         working, own = np.append(working, 0.0), np.append(own, 0.0)
-    heated = any(HEAT + name in found.cases for name in names)
+    heated = any(name in parted.heat for name in names)
     return BoltLoad(
         axial=(float(working.min()), max(float(working.max()), 0.0)),
         transverse=max(_across(found, found.index(name), k) for name in across),

@@ -8,6 +8,8 @@ from faying.misuse import checked_call, shortened
 from faying.units import si
 
 MOST_INCREMENTS = 1000  # of one case
+MOST_FACTOR = 1000.0  # on another case, either way
+COLDEST, WARMEST = -1000.0, 2000.0  # K, change of temperature
 Vector = tuple[float, float, float]
 NOTHING: Vector = (0.0, 0.0, 0.0)
 
@@ -108,9 +110,10 @@ class Load:
         pressures: Pressures on faces.
         acceleration: Of the whole structure (3,) [m/s2], or text with a unit; the inertia of parts, bolts and point
             masses pulls the other way.
-        temperature: Part or bolt -> change of its temperature since the bolts were tightened [K], or text with a unit.
+        temperature: Part or bolt -> change of its temperature since the bolts were tightened [K], -1000 to 2000, or
+            text with a unit.
         displacements: Displacements of supported faces.
-        combine: Other cases by name, with the factor on what acts in them; it acts here too.
+        combine: Other cases by name, with the factor on what acts in them, -1000 to 1000; it acts here too.
         after: Case whose state this one starts from: its load gives way to that of this case. The preload where None.
         increments: Into how many parts the way to this load is cut, 1 to 1000; friction depends on the way.
 
@@ -162,6 +165,18 @@ class Load:
             raise InputError("a load has an empty name; give it one, by which results call it")
         if not 1 <= increments <= MOST_INCREMENTS:
             raise InputError(f"{what}: increments = {increments}; give a whole number from 1 to {MOST_INCREMENTS}")
+        for part, change in self.temperature.items():
+            if not COLDEST <= change <= WARMEST:
+                raise InputError(
+                    f"{what}: temperature of {part!r} changes by {change:g} K; give a change since the bolts were "
+                    f"tightened, {COLDEST:g} to {WARMEST:g} K"
+                )
+        for other, factor in self.combine.items():
+            if not abs(factor) <= MOST_FACTOR:
+                raise InputError(
+                    f"{what}: combine takes {other!r} {factor:g} times; give a factor from {-MOST_FACTOR:g} to "
+                    f"{MOST_FACTOR:g}"
+                )
         if not self.acts and after is None:
             raise InputError(
                 f"{what}: nothing acts; give forces, pressures, an acceleration, temperatures or displacements, or "

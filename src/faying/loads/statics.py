@@ -13,6 +13,7 @@ next vector, for all loads together.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,7 @@ STRAIGHT = 1e-9  # of the load: what a linear answer may leave over
 TOLERANCE = 1e-7  # the same of a state with opening and friction
 ON_THE_WAY = 1e-2  # the same at increments before the last, which tell no more than the way
 ROUNDED = 1e-6  # error below which an answer stands where rounding lets it fall no further
+SMALLEST = 1e-8  # of the preload: a smaller load counts as this, since pressures have 16 digits
 STILL = 5  # rounds in which an error does not halve: it stands
 MORE = 4  # times what vectors and their images take, while they are made
 ROUNDS = 80  # of new vectors
@@ -51,7 +53,7 @@ class LoadedState:
         tractions: Of each joint (q, 3) [Pa]: minus pressure, shear beyond that of the preload.
         motions: Relative motion of each joint (q, 3) [m].
         dissipated: By the sliders of each joint on the way here from the state before [J].
-        error: Forces that are left over, over the load, both in the energy that they have on K_0 [-].
+        error: Forces that are left over, over the load or SMALLEST of the preload, in their energy on K_0 [-].
     """
 
     coordinates: Array
@@ -222,8 +224,17 @@ class LoadStatics:
             task.sides = np.concatenate([task.sides, np.stack([new @ task.offset, new @ task.before], axis=1)])
 
     def _scale(self, task: _Task) -> float:
-        """Root of twice the energy [J^0.5] that the greater of the loads of a task has on K_0."""
-        return float(np.linalg.norm(task.sides, axis=0).max(initial=0.0)) or 1.0
+        """Root of twice the energy [J^0.5] that the greater of the loads of a task has on K_0, or least counts."""
+        return max(float(np.linalg.norm(task.sides, axis=0).max(initial=0.0)), self._least) or 1.0
+
+    @cached_property
+    def _least(self) -> float:
+        """The same of the forces of the joints under the preload, times SMALLEST."""
+        total = np.zeros(self.stiffness.shape[0])
+        for (trace, contact), traction in zip(self.joints, self._at_rest, strict=True):
+            total += trace.relative.T @ (contact.weights[:, None] * traction).ravel()
+        total = admissible(total, self._rigid, self.fixed)
+        return SMALLEST * float(np.sqrt(max(float(total @ self._solved(total[:, None])[:, 0]), 0.0)))
 
     def _settle(self, tasks: Sequence[_Task], tolerances: Sequence[float]) -> None:
         """Bring all tasks into equilibrium."""

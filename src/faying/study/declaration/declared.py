@@ -191,10 +191,13 @@ def own(
     *,
     read: Read | None = None,
     unit: str = "",
+    allowed: str = "",
     examples: Callable[[], Iterable[str]] = tuple,
 ) -> Key:
     """A key with a form of its own; read: None where the reader of its table converts it."""
-    return Key(says=says, kind=kind, schema=schema, read=read, default=default, unit=unit, examples=examples)
+    return Key(
+        says=says, kind=kind, schema=schema, read=read, default=default, unit=unit, allowed=allowed, examples=examples
+    )
 
 
 def of_parameter(parameter: Parameter, default: Any = None) -> Key:

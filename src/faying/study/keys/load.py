@@ -4,7 +4,19 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from faying.errors import InputError
-from faying.loads.load import MOST_INCREMENTS, NOTHING, Displacement, Force, Load, Pressure, Vector, in_order
+from faying.loads.load import (
+    COLDEST,
+    MOST_FACTOR,
+    MOST_INCREMENTS,
+    NOTHING,
+    WARMEST,
+    Displacement,
+    Force,
+    Load,
+    Pressure,
+    Vector,
+    in_order,
+)
 from faying.study.declaration.declared import (
     QUANTITY,
     REQUIRED,
@@ -164,13 +176,18 @@ LOAD: Declared = {
         {},
         read=_changes,
         unit="K",
+        allowed=f"{COLDEST:g} K to {WARMEST:g} K",
     ),
     "combine": own(
         'factors by load, for example {"10 g" = 1.5}',
-        {"type": "object", "additionalProperties": {"type": "number"}},
+        {
+            "type": "object",
+            "additionalProperties": {"type": "number", "minimum": -MOST_FACTOR, "maximum": MOST_FACTOR},
+        },
         "Factors by the names of other cases, whose loads act here too.",
         {},
         read=_factors,
+        allowed=f"{-MOST_FACTOR:g} to {MOST_FACTOR:g}",
     ),
     "after": text("Case from whose state this one starts: its load gives way to this one. The preload where left out."),
     "increments": count(
