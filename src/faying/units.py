@@ -214,3 +214,8 @@ def show(value: float, unit: str, *, digits: int = 4) -> str:
         if abs(value) >= factor * (1 - 1e-12):
             return f"{value / factor:.{digits}g} {prefix}{unit}"
     return f"{value:.{digits}g} {unit}"
+
+
+def show_area(area: float) -> str:
+    """An area [m2] for a reader, in mm2 to four digits and without an exponent: "10,490 mm2"."""
+    return f"{float(f'{1e6 * area:.4g}'):,.15g} mm2"

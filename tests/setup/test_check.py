@@ -356,7 +356,7 @@ def test_the_mesh_counts_the_unknowns_and_is_kept_for_the_run(folder, monkeypatc
     found = check(folder / "study.toml", mesh=True)
     assert not found.faults
     assert "about" not in next(one.text for one in found.findings if one.code == "expected")
-    assert found.expected.basis.startswith("unknowns of the mesh;")
+    assert found.expected.basis.startswith("the unknowns are those of the mesh;")
     monkeypatch.setattr("faying.geometry.geometry.ask", None)  # nothing is meshed again
     assert mesh_of(study.geometry).unknowns == found.expected.unknowns
 

@@ -188,7 +188,7 @@ def test_the_joint_under_a_head_carries_the_force_of_its_bolt_once(tmp_path, mes
         )
         (tmp_path / "t.toml").write_text(re.sub(r"^at = .*", f"at = [{middle}]", study, flags=re.M))
         out = " ".join(call("check", tmp_path / "t.toml").output.split())
-        assert len(re.findall(r"5 kN on [\d.]+ mm2 press", out)) == 3
+        assert len(re.findall(r"5 kN on [\d.,]+ mm2 press", out)) == 3
         assert "10 kN" not in out
 
 

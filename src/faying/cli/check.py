@@ -25,7 +25,7 @@ def command(study: Path, as_json: bool) -> int:
     else:
         lines = [line for one in by_level(found) for line in _lines(one)]
         if found.expected is not None:
-            lines += textwrap.wrap(f"expected needs: {found.expected.basis}", COLUMNS)
+            lines += textwrap.wrap(f"what the run needs: {found.expected.basis}", COLUMNS)
         count = len(found.faults)
         notes = sum(one.level == "note" for one in found.findings)
         last = f"{count} fault{'s' * (count != 1)}, {notes} note{'s' * (notes != 1)}"

@@ -12,6 +12,7 @@ from faying.fe.mesh import Mesh
 from faying.fe.sides import Blocks
 from faying.notes import Note
 from faying.typing import Array, Index, Mask
+from faying.units import show_area
 
 CLOSE = 1e-6  # of the size of the mesh: nodes nearer than this are one
 SHARE = 1e-3  # of the area over which faces meet: how much of it may lack nodes that match
@@ -43,7 +44,7 @@ def bonded_mesh(mesh: Mesh, pairs: Sequence[tuple[str, tuple[str, str]]], *, sna
             raise InputError(f"joint {name!r}: both faces are on part {part!r}; a bond needs two parts")
         area = join(mesh, *faces).area  # raises where they do not meet
         met = matched(mesh, faces, area, max(snap, CLOSE * mesh.size))
-        text = f"{name}: {faces[0]} and {faces[1]} are bonded over {1e6 * area:.4g} mm2: no pressure, no law"
+        text = f"{name}: {faces[0]} and {faces[1]} are bonded over {show_area(area)}: no pressure, no law"
         if met is None:
             ties.append(faces)
             text += "; their nodes do not match, so that means over the finer elements hold them together"

@@ -8,7 +8,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.geometry.face_facts import FACING, FaceFacts, GeometryFacts, Point
-from faying.units import show
+from faying.units import show, show_area
 
 WITHIN = 1e-3  # m: a point farther from a face than this does not mean it
 AMBIGUOUS = 1e-6  # m: faces whose distances differ by less are not told apart
@@ -125,7 +125,7 @@ def listed(faces: Sequence[FaceFacts]) -> str:
         looks = f"radius {1e3 * face.radius:.4g} mm" if face.radius is not None else face.kind
         if face.normal is not None:
             looks = f"normal ({', '.join(f'{x:.3g}' for x in face.normal)})"
-        words.append(f"number {face.number} ({1e6 * face.area:.4g} mm2 about ({where}) mm, {looks})")
+        words.append(f"number {face.number} ({show_area(face.area)} about ({where}) mm, {looks})")
     more = len(faces) - LISTED
     return "; ".join(words) + (f"; and {more} more" if more > 0 else "")
 

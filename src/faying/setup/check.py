@@ -32,7 +32,7 @@ from faying.setup.sketch import Sketch
 from faying.study.declaration.reader import StudyFaults
 from faying.study.keys.geometry import mesh_of
 from faying.study.study import Study
-from faying.units import show
+from faying.units import show, show_area
 
 MOST_MESHED = 400_000  # unknowns, as estimated: meshing them takes some ten seconds
 Level = Literal["ok", "note", "fault"]
@@ -301,13 +301,13 @@ def _contacts(sketch: Sketch, found: _Findings) -> None:
                 found.add("fault", "contact", text, key)
             continue
         widest = max(abs(contact.gap) for contact in meets)
-        area = 1e6 * sum(contact.area for contact in meets)
+        area = sum(contact.area for contact in meets)
         reach = joint.search_distance or 0.01 * size
         if joint.bonded and widest > max(TOUCHING * size, spec.snap):
             text = f"joint {joint.name!r} is bonded, but its faces are {show(widest, 'm')} apart"
             found.add("fault", "contact", f"{text}; move a part, or give geometry.snap", key)
         elif joint.bonded:
-            text = f"joint {joint.name!r}: its faces are bonded over {area:.4g} mm2"
+            text = f"joint {joint.name!r}: its faces are bonded over {show_area(area)}"
             found.add("ok", "contact", text, key)
         elif widest > reach:
             text = f"joint {joint.name!r}: its faces are {show(widest, 'm')} apart, more than {show(reach, 'm')}"
@@ -319,7 +319,7 @@ def _contacts(sketch: Sketch, found: _Findings) -> None:
                 "note", "gap", f"{text} until bolts close it; geometry.snap of as much counts it as touching", key
             )
         else:
-            found.add("ok", "contact", f"joint {joint.name!r}: its faces touch over {area:.4g} mm2", key)
+            found.add("ok", "contact", f"joint {joint.name!r}: its faces touch over {show_area(area)}", key)
 
 
 def _bolts(sketch: Sketch, found: _Findings, shared: set[str]) -> Sketch:

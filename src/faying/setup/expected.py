@@ -21,11 +21,11 @@ SOLID = 0.7  # of that: what the joints under head and nut take where a bolt is 
 CURVE = 13.0  # CPU seconds of a curve over amplitude (docs/backbone.md)
 BARE, VECTORS = 0.13e9, 24e3  # B: of any run, and for each unknown, with PARDISO's factor in single precision
 OVER_MPI = 11e3  # B for each unknown that the processes of mpiexec take (docs/speed.md)
-ESTIMATED = "unknowns from volume, size and curved faces, within a factor of 2.5"
-COUNTED = "unknowns of the mesh"
+ESTIMATED = "the unknowns are estimated from volume, size and curved faces, within a factor of 2.5"
+COUNTED = "the unknowns are those of the mesh"
 BASIS = (
-    "the greatest memory of the run, and its time on one thread, as runs of as many unknowns took; the contact of a "
-    "scan comes on top where it has not been solved yet"
+    "memory is the greatest of the run, time that of one thread, as in runs of as many unknowns; the contact of a scan "
+    "that has not been solved yet takes longer"
 )
 
 

@@ -16,7 +16,7 @@ from faying.setup.bolt_names import grouped
 from faying.setup.mesh_proposal import propose_mesh
 from faying.setup.proposal import GRADE, SHARE, BoltProposal, Proposal, propose
 from faying.setup.template import SCHEMA, surface
-from faying.units import show
+from faying.units import show, show_area
 
 STEEL = "S355"
 
@@ -225,7 +225,7 @@ def _joints(proposal: Proposal) -> str:
         lines += [
             "[[joint]]",
             f"name = {_quoted(joint.name)}",
-            f"faces = [{', '.join(map(_quoted, joint.faces))}]  # {1e6 * joint.area:.4g} mm2{gap}",
+            f"faces = [{', '.join(map(_quoted, joint.faces))}]  # {show_area(joint.area)}{gap}",
             "",
         ]
     return "\n".join(lines)

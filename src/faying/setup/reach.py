@@ -23,7 +23,7 @@ from faying.setup.sketch import Sketch
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.surface import Surface
 from faying.typing import Array
-from faying.units import show
+from faying.units import show, show_area
 
 Line = tuple[Literal["ok", "note", "fault"], str, str, str]
 
@@ -124,7 +124,7 @@ def _beside(
         for one in bolts
         if (pressures := _rim(sketch, one, area / len(bolts))) is not None
     ]
-    text = f"joint {joint.name!r}: {show(force, 'N')} on {1e6 * area:.4g} mm2 press {show(mean, 'Pa', digits=3)} on it"
+    text = f"joint {joint.name!r}: {show(force, 'N')} on {show_area(area)} press {show(mean, 'Pa', digits=3)} on it"
     highest = mean
     if rims:
         cone, highest = (max(column) for column in zip(*rims, strict=True))
