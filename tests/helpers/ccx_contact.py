@@ -1,10 +1,12 @@
 """A preloaded structure with linear contact in CalculiX (`ccx`): the same mesh, stiffness per area and loads."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 
 import faying
+from faying.fe.elements import FACES, SOLIDS
 from faying.fe.interface import join
 from faying.fe.sides import sides_on
 from faying.joint.attachments import Support
@@ -17,21 +19,21 @@ from tests.helpers.ccx import deck, run
 K_N, K_T = 2e13, 1e13  # Pa/m, of every face that touches
 STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0, expansion=1e-5)
 
-SIDES = ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0))  # S1 to S6 of a brick
-
-
 STICKS = 9.0  # friction [-] of faces that stick
 
 
 def surface(name, mesh, face):
     """A *SURFACE of element faces, matched by their corners."""
-    wanted = {frozenset(nodes[:4]) for block in mesh.face(face) for nodes in block.tolist()}
+    wanted = {
+        frozenset(nodes[: FACES[block.shape[1]].corners]) for block in mesh.face(face) for nodes in block.tolist()
+    }
     lines, number = [f"*SURFACE,NAME={name},TYPE=ELEMENT"], 0
     for blocks in mesh.parts.values():
         for cells in blocks:
+            sides = [list(side) for side in SOLIDS[cells.shape[1]].shape.sides]
             for nodes in cells:
                 number += 1
-                lines += [f"{number},S{k}" for k, side in enumerate(SIDES, 1) if frozenset(nodes[list(side)]) in wanted]
+                lines += [f"{number},S{k}" for k, side in enumerate(sides, 1) if frozenset(nodes[side]) in wanted]
     assert len(lines) == 1 + len(wanted)
     return lines
 
@@ -80,6 +82,27 @@ def solve(folder, mesh, materials, pairs, *, held, shrunk, temperature, loads, f
         )
     run(folder, text)
     return read(folder, len(mesh.points))
+
+
+def preloaded(folder, mesh, materials, pairs, *, k_n, k_t, held, force, modes):
+    """Displacements [m] (3n,) under nodal forces [N] (3n,), and frequencies [Hz] about that state.
+
+    held: unknowns that are at rest, in both steps; modes: how many, 0 for none.
+    """
+    lines = []
+    for k, (first, second) in enumerate(pairs):
+        lines += surface(f"A{k}", mesh, first) + surface(f"B{k}", mesh, second)
+        lines += ["*CONTACT PAIR,INTERACTION=BED,TYPE=SURFACE TO SURFACE", f"A{k},B{k}"]
+    lines += ["*SURFACE INTERACTION,NAME=BED", "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR", f"{k_n * 1e-9:.9e}"]
+    lines += ["*FRICTION", f"9.,{k_t * 1e-9:.9e}"]  # MPa/mm
+    lines += ["*BOUNDARY", *(f"{one // 3 + 1},{one % 3 + 1}" for one in held)]
+    lines += ["*STEP,INC=200", "*STATIC", "1.,1.,1e-5,1.", *forces_card(force)]
+    lines += ["*NODE PRINT,NSET=NALL,FREQUENCY=1000", "U", "*END STEP"]
+    if modes:
+        lines += ["*STEP,PERTURBATION", "*FREQUENCY,SOLVER=ARPACK", f"{modes}", "*END STEP"]
+    run(folder, deck(mesh, materials, step=lines))
+    found = re.findall(r"^ +\d+(?: +\S+)? +\S+ +(\S+) +0\.0000000E\+00$", (folder / "job.dat").read_text(), re.M)
+    return read(folder, len(mesh.points))[0], np.array([float(value) for value in found])
 
 
 def read(folder, nodes):

@@ -87,7 +87,9 @@ def mesh_notes(case: Case, found: MeshError | None) -> list[Note]:
     over = [str(k + 1) for k in np.flatnonzero(worst > MESH_NOTED)]
     if not over:
         return []
-    which = f"all {len(over)} modes" if 1 < len(over) == len(worst) else f"mode{'s' * (len(over) > 1)} {', '.join(over)}"
+    which = (
+        f"all {len(over)} modes" if 1 < len(over) == len(worst) else f"mode{'s' * (len(over) > 1)} {', '.join(over)}"
+    )
     text = f"the mesh is coarse: {which} may be off by up to "
     text += f"{100 * worst.max():.2g} %; "
     geometry = case.study.geometry
