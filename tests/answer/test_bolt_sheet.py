@@ -2,12 +2,14 @@
 
 import json
 import tomllib
+from html import escape
 from math import pi, sqrt, tan
 
 import numpy as np
 import pytest
 
 import faying
+from faying import units
 from faying.answer.bolt_sheet import DEFAULT_WAY, bolt_sheet, choice_for
 from faying.answer.run import run
 from faying.cli.main import main
@@ -111,6 +113,34 @@ def test_every_number_follows_from_its_printed_inputs(full):
             assert row["utilisation"] == pytest.approx(value / limit, rel=1e-12), symbol
             assert row["verdict"] == ("exceeded" if value > limit else "ok"), symbol
     assert computed == len(sheet["rows"]) - 2  # no scan: neither guide value nor law predicts an embedding
+
+
+def test_every_number_follows_from_the_digits_that_the_page_prints(full):
+    """Four digits of each input give the printed value to 0.5 %; limits and inputs are those of the rows they name."""
+
+    def read(quantity):
+        text = shown.value_of(quantity)
+        return units.parse(text, quantity.unit) if quantity.unit not in ("", "1") else float(text)
+
+    (sheet,) = full.sheets
+    rows = {row.result.symbol: row for row in sheet.rows}
+    page = shown.html(full)
+    for symbol, row in rows.items():
+        if row.result.value is None:
+            continue
+        values = {one.symbol: read(one) for one in row.inputs}
+        assert read(row.result) == pytest.approx(HAND[symbol](values), rel=5e-3), symbol
+        assert escape(f"{row.result.symbol}: {row.result.name}") in page
+        for one in (*row.inputs, *([] if row.limit is None else [row.limit])):
+            assert escape(f"{one.symbol} = {shown.value_of(one)}") in page
+            if one.symbol in rows:
+                assert one.value == rows[one.symbol].result.value
+        if row.limit is not None:
+            assert row.utilisation == pytest.approx(read(row.result) / read(row.limit), rel=1e-3), symbol
+    limits = {row.limit.symbol: row.limit.value for row in sheet.rows if row.limit is not None}
+    assert set(limits) - set(rows) == {"A_S", "R_p09", "R_p", "p_G", "F_p", "tau_BS"} & set(limits)
+    assert limits["tau_BS"] == pytest.approx(0.6 * 800e6)
+    assert limits["F_p"] == pytest.approx(580e6 * limits["A_S"])
 
 
 def test_inputs_are_those_of_study_and_structure(made, full):

@@ -12,7 +12,11 @@ from faying.units import show
 SHOWN = {"m^2": (1e6, "mm^2"), "m/N": (1e9, "um/kN"), "N m": (1.0, "N m"), "": (1.0, "")}
 DIGITS = 4
 HEADS = ["step", "quantity", "value", "limit", "used", "verdict"]
-STYLE = "<style>.bolt{break-after:page}.bolt :is(td,th){text-align:left;vertical-align:top}</style>"
+STYLE = (
+    "<style>.bolt:not(:last-of-type){break-after:page}.bolt :is(td,th){text-align:left;vertical-align:top}"
+    ".bolt :is(td:nth-child(5),td:nth-child(9)){white-space:nowrap}@page{size:A4 landscape}"
+    "@media print{.bolt .scroll{break-inside:auto}.bolt h3{break-after:avoid}}</style>"
+)
 SCOPE = (
     "Concentric clamping and loading. The load factor holds while the joint neither opens nor slips. Bending of the "
     "bolt is not in the sheet."
