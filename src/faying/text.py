@@ -1,6 +1,7 @@
 """Short texts of objects, for a console and for a notebook, and trees as JSON."""
 
 import json
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from typing import Any
@@ -34,6 +35,15 @@ def _finite(tree: Any) -> Any:
     return None if isinstance(tree, float) and not isfinite(tree) else tree
 
 
+MERGED = re.compile(r" {4}-1[^\d\s.,eEdD+-]")  # a mark with something else in place of the end of the line
+NUMBERS = (15, 18, 55, 56, 58, 82, 151, 164, 780, 781, 1858, 2411, 2412, 2414, 2420, 2429, 2430, 2432, 2435, 2452, 2467)
+
+
+def _begins(line: str) -> bool:
+    """Whether a line is the number of a data set that is known, as it stands after its mark: in six columns."""
+    return len(line.rstrip()) == 6 and line.strip().isdigit() and int(line) in NUMBERS
+
+
 def check_data_sets(lines: Sequence[str], where: str) -> None:
     """Raise ReadError unless all lines of a universal file stand in data sets: -1, a number, data, -1.
 
@@ -51,6 +61,11 @@ def check_data_sets(lines: Sequence[str], where: str) -> None:
                     f"{where}, line {number}: {text[:40]!r} is not the number of a data set, which follows on -1; is "
                     "the file damaged, or a line -1 too much or too few?"
                 )
+        elif inside and (MERGED.match(line) or _begins(line)):
+            raise ReadError(
+                f"{where}, line {number}: {text[:40]!r} stands inside a data set and looks like the beginning of "
+                "another; is a line -1 missing or damaged before it?"
+            )
         elif text and not inside:
             raise ReadError(
                 f"{where}, line {number}: {text[:40]!r} stands between two data sets; is a line -1 missing before it?"

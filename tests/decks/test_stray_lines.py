@@ -27,6 +27,16 @@ def test_a_mark_that_is_missing_or_twice_is_found(missing):
         check_data_sets(SETS[:missing] + SETS[missing : missing + 1] + SETS[missing:], "f")
 
 
+@pytest.mark.parametrize("line", ["    -1*    -1", "    58", "  2411  "])
+def test_a_data_set_that_begins_inside_another_is_found(line):
+    with pytest.raises(faying.ReadError, match="line 3: .* looks like the beginning of another"):
+        check_data_sets([*SETS[:2], line, *SETS[2:]], "f")
+
+
+def test_numbers_inside_a_data_set_are_no_beginning():
+    check_data_sets(["    -1", "    82", "        58", "    -1.5  2.0", "    -1    -1", "    -1"], "f")
+
+
 @pytest.fixture(scope="module")
 def seeds(tmp_path_factory):
     return {path.name: path for _, path in written(tmp_path_factory.mktemp("stray"))}
@@ -54,6 +64,60 @@ def test_a_file_without_one_of_its_lines_is_refused(seeds, name, line, says):
     read(path)
     with pytest.raises(faying.ReadError, match=says):
         read(cut)
+
+
+@pytest.mark.parametrize(
+    ("name", "section", "says"),
+    [
+        ("two.msh", "$Elements", "says 28 records and holds 29 lines"),
+        ("two.msh", "$Nodes", "says 63 records and holds 64 lines"),
+        ("four.msh", "$Entities", "goes on after its last record|middle of a record"),
+    ],
+)
+def test_a_count_that_stands_twice_is_refused(seeds, name, section, says):
+    path: Path = seeds[name]
+    lines = path.read_text().splitlines(keepends=True)
+    at = next(k for k, text in enumerate(lines) if text.startswith(section)) + 1
+    twice = path.with_name(f"twice-{at}-{name}")
+    twice.write_text("".join([*lines[: at + 1], *lines[at:]]))
+    with pytest.raises(faying.ReadError, match=says):
+        faying.read_mesh(twice, unit="mm")
+
+
+def test_a_physical_volume_without_elements_is_said(seeds):
+    path: Path = seeds["two.msh"]
+    renamed = path.with_name("renamed.msh")
+    renamed.write_text(re.sub(r'(?m)^3 50 "', '3 77 "', path.read_text(), count=1))
+    assert renamed.read_text() != path.read_text()
+    notes = [note.text for note in faying.read_mesh(renamed, unit="mm").notes]
+    assert [text for text in notes if "the physical volume 'p0' holds no elements" in text], notes
+
+
+def test_a_line_too_many_in_a_component_is_refused(seeds):
+    path: Path = seeds["a.cdb"]
+    lines = path.read_text().splitlines(keepends=True)
+    at = next(k for k, text in enumerate(lines) if text.startswith("CMBLOCK")) + 2
+    twice = path.with_name("twice.cdb")
+    twice.write_text("".join([*lines[: at + 1], *lines[at:]]))
+    with pytest.raises(faying.ReadError, match="stands in no block"):
+        faying.read_mesh(twice, unit="mm")
+
+
+def test_blocks_that_are_not_read_are_passed(seeds):
+    path: Path = seeds["a.cdb"]
+    other = path.with_name("rlblock.cdb")
+    block = "RLBLOCK,       1,       1,       6,       7\n(2i8,6g16.9)\n(7g16.9)\n"
+    block += "       1       2 1.00000000     -1.00000000E-03\n"
+    other.write_text(path.read_text().replace("NBLOCK", block + "NBLOCK", 1))
+    assert len(faying.read_mesh(other, unit="mm").points) == len(faying.read_mesh(path, unit="mm").points)
+
+
+def test_points_are_numbered_from_one(tmp_path):
+    file = tmp_path / "p.uff"
+    line = f"{-1:10d}{0:10d}{0:10d}{8:10d}{0.1:13.5E}{0:13.5E}{0:13.5E}\n"
+    file.write_text(f"    -1\n    15\n{line}    -1\n")
+    with pytest.raises(faying.ReadError, match="numbers of points begin at 1"):
+        faying.read_uff(file)
 
 
 def test_a_property_of_nastran_is_a_whole_number(seeds):

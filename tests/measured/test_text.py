@@ -30,6 +30,7 @@ def test_several_frfs_in_one_table(tmp_path):
     [
         ("", ReadError, "no FRF in it"),
         ("(1+2j)\n(3+4j)\n", InputError, "--frequency-step"),
+        ("0,1,2\n1,1e300,3\n", InputError, "no structure answers so"),
         ("0,1\n1,2\n", ReadError, "lines of 2 numbers"),
         ("0,1,2\n1,2\n", ReadError, "expected frequency"),
         ("0,1,2\n1,2,x\n", ReadError, "'x' is no number"),
@@ -140,3 +141,36 @@ def test_units_above_complex_numbers_are_refused(tmp_path):
     path.write_text("FRF [g/N]\n(1+2j)\n(3+4j)\n")
     with pytest.raises(ReadError, match=r'line 1: "FRF \[g/N\]" speaks of units'):
         read_frf_text([path], quantity="accelerance", frequency_step=1.0)
+
+
+def test_a_missing_line_among_even_steps_is_said(tmp_path):
+    rows = [f"{0.5 * k},{k},1" for k in range(40)]
+    file = tmp_path / "a.csv"
+    file.write_text("\n".join(rows) + "\n")
+    assert read_frf_text([file], quantity="mobility").warnings == ()
+    del rows[7]
+    file.write_text("\n".join(rows) + "\n")
+    (said,) = read_frf_text([file], quantity="mobility").warnings
+    assert "steps of 0.5 Hz, but from 3 to 4 Hz there is none; is a line missing?" in said
+
+
+def test_frequencies_of_uneven_steps_are_fine(tmp_path):
+    file = tmp_path / "a.csv"
+    file.write_text("".join(f"{1.1**k:.6f},{k},1\n" for k in range(40)))
+    assert read_frf_text([file], quantity="mobility").warnings == ()
+
+
+@pytest.mark.parametrize("line", ["(3j)", "(-0.2751630801031998j)", "(1+2)", "(1+2j"])
+def test_a_complex_number_in_brackets_has_two_parts(tmp_path, line):
+    file = tmp_path / "a.txt"
+    file.write_text(f"(1+2j)\n{line}\n")
+    with pytest.raises(ReadError, match="no complex number of two parts"):
+        read_frf_text([file], quantity="receptance", frequency_step=1.0)
+
+
+@pytest.mark.parametrize("line", ["(1e-3-2.5e+02j)", "(-.5+1j)", "( 1.0e+00 +2.0e+00j)", "1-2j", "3j"])
+def test_complex_numbers_as_programs_write_them(tmp_path, line):
+    file = tmp_path / "a.txt"
+    file.write_text(f"(1+2j)\n{line}\n")
+    frf = read_frf_text([file], quantity="receptance", frequency_step=1.0)
+    assert frf.values[0, 0, 1] == complex(line.replace(" ", "").strip("()"))

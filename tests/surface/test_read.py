@@ -98,6 +98,16 @@ def test_a_unit_wrong_by_1e9_is_noticed(tmp_path, wrong):
     plausible(scan)
 
 
+def test_one_height_that_no_face_has_is_refused(tmp_path):
+    scan = spectral((40, 40), spacing=5e-6, D=2.4, Rq=1e-6)
+    heights = scan.heights.copy()
+    heights[3, 7] = 1e12
+    with pytest.raises(ReadError, match="one height of 1e.12 m on a scan of 0.0002 m; the number is damaged"):
+        plausible(scan.with_heights(heights))
+    heights[3, 7] = 1e-4  # a speck of dust, which the treatment of spikes finds
+    plausible(scan.with_heights(heights))
+
+
 def test_missing_empty_and_unknown_files(tmp_path):
     with pytest.raises(ReadError, match="no such file"):
         read_scan(tmp_path / "none.x3p")

@@ -48,8 +48,12 @@ class _Words:
         return [int(i) for i in index(self._take(count))]
 
     def count(self) -> int:
-        """A number that stands in a line of its own in front of the records."""
-        return self.ints(1)[0]
+        """How many records there are, each in a line of its own behind the line that says it."""
+        count = self.ints(1)[0]
+        lines = sum(bool(line.strip()) for line in self.data.splitlines()) - 1
+        if lines != count:
+            raise ReadError(f"${self.name} says {count} records and holds {lines} lines of them; is the file complete?")
+        return count
 
     sizes = ints
 
@@ -191,6 +195,8 @@ def read(path: Path) -> RawMesh:
             extra += corners
             for tag in tags if code in _FACES else ():
                 faces.setdefault(names.get((2, tag), f"face{tag}"), []).append(corners)
+    for name in ("Entities", "Nodes", "Elements"):
+        _used_up(sections.get(name), path)
     own, same = _distinct(bodies)
     if not solids:
         raise ReadError(f"{path} holds no solid elements; mesh the volumes (gmsh -3) and save them all")
@@ -201,11 +207,28 @@ def read(path: Path) -> RawMesh:
         bodies={name: index(some) for name, some in own.items()},
         face_elements={name: face_blocks(some) for name, some in faces.items()},
         extra=index(extra),
-        notes=tuple(
-            f"the physical volumes {other!r} and {name!r} hold the same elements; the part is called {name!r}"
-            for other, name in same.items()
+        notes=(
+            *(
+                f"the physical volumes {other!r} and {name!r} hold the same elements; the part is called {name!r}"
+                for other, name in same.items()
+            ),
+            *(
+                f"the physical {'volume' if dimension == 3 else 'surface'} {name!r} holds no elements"
+                for (dimension, _), name in names.items()
+                if dimension > 1 and name not in (bodies if dimension == 3 else faces)
+            ),
         ),
     )
+
+
+def _used_up(words: _Words | _Bytes | None, path: Path) -> None:
+    """Raise ReadError where a section of text holds more numbers than its records take."""
+    if isinstance(words, _Words) and words.at < len(words.words):
+        shown = b" ".join(words.words[words.at : words.at + 6]).decode("utf-8", errors="replace")
+        raise ReadError(
+            f"{path}: ${words.name} goes on after its last record with {shown[:60]!r}; is a line there twice, or a "
+            "count wrong?"
+        )
 
 
 def _distinct(bodies: dict[str, list[int]]) -> tuple[dict[str, list[int]], dict[str, str]]:

@@ -38,7 +38,7 @@ def read(path: Path) -> RawMesh:
     turned: list[int] = []
     dropped: list[str] = []
     commands: list[str] = []
-    bolts = _Bolts()
+    bolts, others = _Bolts(), _Others(path)
     k = 0
     try:
         while k < len(lines):
@@ -62,7 +62,7 @@ def read(path: Path) -> RawMesh:
                 k, values = _block(lines, k + 2, count, width)
                 sets[words[2].upper()[:4]][words[1]] = _unrolled(values)
                 continue
-            k = _led(lines, k, path)
+            k = others.passed(lines, k)
     except ReadError:
         raise
     except (ValueError, IndexError, KeyError) as fault:
@@ -90,16 +90,32 @@ def read(path: Path) -> RawMesh:
     )
 
 
-def _led(lines: list[str], k: int, path: Path) -> int:
-    """The next line; ReadError where line k tells the form of a block, and none of its commands stands before it."""
-    before = lines[k - 1].lstrip().upper()
-    led = before.startswith("(") or "BLOCK" in before.partition(",")[0]  # RLBLOCK has two lines of forms
-    if lines[k].lstrip().startswith("(") and not led:
-        raise ReadError(
-            f"{path.name}, line {k + 1}: {lines[k].strip()!r} tells the form of a block, and the line before is no "
-            "command of one (NBLOCK, EBLOCK, CMBLOCK, ...); is it missing?"
-        )
-    return k + 1
+@dataclass
+class _Others:
+    """Lines that are not read: commands, and the blocks of other commands (RLBLOCK, SFEBLOCK, ...)."""
+
+    path: Path
+    end: int = -1  # the last line of such a block, its form or its numbers
+
+    def passed(self, lines: list[str], k: int) -> int:
+        """The next line; ReadError where line k belongs to a block whose command or form is not there."""
+        line = lines[k].strip()
+        before = lines[k - 1].lstrip().upper()
+        led = before.startswith("(") or "BLOCK" in before.partition(",")[0]  # RLBLOCK has two lines of forms
+        if line.startswith("(") and not led:
+            raise ReadError(
+                f"{self.path.name}, line {k + 1}: {line!r} tells the form of a block, and the line before is no "
+                "command of one (NBLOCK, EBLOCK, CMBLOCK, ...); is it missing?"
+            )
+        numbers = re.fullmatch(r"[-+]?[\d.]+(?:[eEdD][-+]?\d+)?(?:[\s-]+[-+]?[\d.eEdD+-]+)*", line) is not None
+        if numbers and line != "-1" and self.end != k - 1:
+            raise ReadError(
+                f"{self.path.name}, line {k + 1}: {line[:40]!r} stands in no block; does the block before it hold more "
+                "lines than its head says?"
+            )
+        if numbers or line.startswith("("):
+            self.end = k
+        return k + 1
 
 
 def _says_counts(lines: list[str]) -> bool:

@@ -15,6 +15,7 @@ Position = tuple[float, float, float]
 
 # how often the displacement is differentiated in time
 QUANTITIES = {"receptance": 0, "mobility": 1, "accelerance": 2}
+LARGEST = 1e18  # SI: beyond what any structure answers by any of the three quantities
 UNITS = {"receptance": "m/N", "mobility": "m/(N*s)", "accelerance": "m/(N*s^2)"}
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 DIRECTIONS = ("x", "y", "z", "-x", "-y", "-z", "rx", "ry", "rz", "-rx", "-ry", "-rz", "")
@@ -129,6 +130,11 @@ class FRF(Summary):
         if np.any(measured.any(axis=2) != measured.all(axis=2)) or not measured.any():
             raise InputError(
                 "an FRF holds NaN at some of its frequencies only; leave such spectral lines out, or the whole FRF"
+            )
+        if np.abs(values[measured]).max() > LARGEST:
+            raise InputError(
+                f"values up to {np.abs(values[measured]).max():.3g} {self.unit}; no structure answers so, look for a "
+                "damaged number or a wrong unit"
             )
         if self.coherence is not None and np.shape(self.coherence) != shape:
             raise InputError(

@@ -16,6 +16,9 @@ from faying.measured.frf_table import FORM, FrfColumns, plain_layout, read_layou
 from faying.measured.uff_units import DIMENSIONS
 from faying.typing import Array, Complex
 
+BOTH_PARTS = re.compile(r"\(\s*[-+]?[^-+\s]+(?:[eE][-+]?\d+)?\s*[-+]\s*[^-+\s]+(?:[eE][-+]?\d+)?[ij]\s*\)")
+EVEN = 0.9  # share of steps that are alike, from which on a longer one is a gap
+
 
 def read_frf_text(
     files: Sequence[str | Path], *, quantity: str, frequency_step: float | None = None, direction: str = "z"
@@ -74,6 +77,9 @@ def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex
                 f"{path}: the file states no frequencies; give their step, for example frequency_step=1.0 [Hz] or "
                 '--frequency-step "1 Hz"'
             )
+        for line in lines:
+            if line.startswith("(") and not BOTH_PARTS.fullmatch(line):
+                raise ReadError(f"{path}: {line[:60]!r} is no complex number of two parts, as (-0.07+2.6e-08j)")
         values = [_number(complex, path, line.replace("i", "j").replace(" ", "").strip("()")) for line in lines]
         return np.arange(len(values), dtype=float) * step, np.array([values], dtype=np.complex128), ()
     for line in lines:
@@ -89,7 +95,25 @@ def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex
         )
     data = np.array(table)
     functions = np.array([pair.values(data) for pair in layout.pairs])
-    return layout.hertz * data[:, layout.frequency], functions, layout.notes
+    frequency = layout.hertz * data[:, layout.frequency]
+    return frequency, functions, (*layout.notes, *_gaps(frequency, path))
+
+
+def _gaps(frequency: Array, path: Path) -> list[str]:
+    """A sentence where frequencies of even steps have gaps of whole steps."""
+    steps = np.diff(frequency)
+    step = float(np.median(steps))
+    alike = np.abs(steps - step) < 0.02 * abs(step)
+    if step <= 0 or alike.all() or alike.mean() < EVEN:
+        return []
+    gaps = np.flatnonzero(steps > 1.9 * step)
+    if not gaps.size:
+        return []
+    k = int(gaps[0])
+    return [
+        f"{path}: the frequencies go in steps of {step:.4g} Hz, but from {frequency[k]:.6g} to {frequency[k + 1]:.6g} "
+        f"Hz there is none{f', and {gaps.size - 1} more gaps' if gaps.size > 1 else ''}; is a line missing?"
+    ]
 
 
 def _layout(above: list[tuple[int, str]], width: int, quantity: str, path: Path) -> FrfColumns:

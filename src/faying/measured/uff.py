@@ -270,6 +270,8 @@ def _points(
         numbers = [_whole(s[name], where) for name in ("node_nums", "def_cs", "disp_cs")]
         places = np.stack(_like(numbers, [s[name] for name in "xyz"], where), axis=1)
         for label, own, motion, place in zip(*(n.tolist() for n in numbers), places, strict=True):
+            if label < 1:
+                raise ReadError(f"{where}: a point has the number {label}; numbers of points begin at 1")
             moved = known.get(own) if s["type"] == 15 else None
             if any(system is not None and system.kind != 0 for system in (moved, known.get(motion))):
                 raise ReadError(

@@ -183,6 +183,11 @@ def direction(says: str, default: Any = None) -> Key:
     return Key(says=says, kind=kind, schema=listed({"type": "number"}, 3, 3), read=values.direction, default=default)
 
 
+def length_unit(says: str) -> Key:
+    """The name of a unit of length, such as "mm"."""
+    return Key(says=says, kind="text", schema=WORDS, read=values.length_unit, examples=lambda: ("mm", "um", "m"))
+
+
 def own(
     kind: str,
     schema: Schema,

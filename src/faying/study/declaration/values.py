@@ -85,6 +85,13 @@ def truth(value: Any, name: str) -> bool:
     return value
 
 
+def length_unit(value: Any, name: str) -> str:
+    """Check the name of a unit of length."""
+    unit = text(value, name)
+    units.scale(unit, "m", name=name)
+    return unit
+
+
 def text(value: Any, name: str, choices: tuple[str, ...] = ()) -> str:
     """Check a text, one of some choices where they are given."""
     if not isinstance(value, str):

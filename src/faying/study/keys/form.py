@@ -10,6 +10,7 @@ from faying.study.declaration.declared import (
     Inner,
     direction,
     file,
+    length_unit,
     of_parameter,
     point,
     text,
@@ -70,7 +71,7 @@ def _face(table: Table) -> FaceMap | None:
 
 GAP: Declared = {
     "file": file("Table of x, y, gap.", REQUIRED),
-    "xy_unit": text("Unit of x and y, where the heading of the file states none."),
+    "xy_unit": length_unit("Unit of x and y, where the heading of the file states none."),
     "gap_unit": text("Unit of the gap, where the heading of the file states none."),
     "origin": point("Point of the structure at which x = y = 0.", (0.0, 0.0, 0.0)),
     "x_axis": direction("Direction of x.", (1.0, 0.0, 0.0)),
@@ -78,8 +79,8 @@ GAP: Declared = {
 }
 HEIGHTS: Declared = {
     "file": file("Scan, or table of x, y, z.", REQUIRED),
-    "xy_unit": text("Unit of x and y, where the file states none."),
-    "z_unit": text("Unit of the heights, where the file states none."),
+    "xy_unit": length_unit("Unit of x and y, where the file states none."),
+    "z_unit": length_unit("Unit of the heights, where the file states none."),
     "origin": point("Point at which x = y = 0; the middle of the map lies on the middle of the joint where left out."),
     "x_axis": direction("Direction of x; the longer side of the face where left out."),
     "y_axis": direction("Direction of y; as seen from outside the face where left out."),

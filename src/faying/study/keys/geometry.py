@@ -10,7 +10,19 @@ from faying.errors import InputError
 from faying.fe.mesh import Mesh
 from faying.geometry.mesh_facts import mesh_facts
 from faying.geometry.selectors import Selector, chosen, points_of
-from faying.study.declaration.declared import NAME, REQUIRED, WORDS, Declared, Inner, file, listed, own, quantity, text
+from faying.study.declaration.declared import (
+    NAME,
+    REQUIRED,
+    WORDS,
+    Declared,
+    Inner,
+    file,
+    length_unit,
+    listed,
+    own,
+    quantity,
+    text,
+)
 from faying.study.declaration.reader import Faults, Table
 from faying.study.keys.face import SELECTOR, read_selector
 
@@ -166,7 +178,7 @@ GEOMETRY: Declared = {
         read=_parts,
     ),
     "mesh": file("Mesh file, in place of step and size.", REQUIRED),
-    "unit": text('Unit of the coordinates of the mesh file, for example "mm"; needed with mesh.'),
+    "unit": length_unit('Unit of the coordinates of the mesh file, for example "mm"; needed with mesh.'),
     "sets": Inner(
         says="Element sets of the mesh file that are the parts, where its bodies are not.",
         keys={NAME: text("Element set of the part NAME, or several joined by a plus sign.", REQUIRED)},

@@ -10,7 +10,7 @@ from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.two_faces import COUNTERS, Counter, Faces
 from faying.errors import InputError
 from faying.form.waviness import ScanWaves
-from faying.study.declaration.declared import QUANTITY, Declared, file, number, own, quantity, text
+from faying.study.declaration.declared import QUANTITY, Declared, file, length_unit, number, own, quantity, text
 from faying.study.declaration.reader import Table
 from faying.surface.estimators.table import METHODS
 from faying.surface.files.read import read_scan
@@ -189,8 +189,8 @@ NO_SURFACE = Surface(faces=None, origin="none: the contact law brings its own he
 LENGTHS = 'text, for example "4 mm x 3 mm"'
 SURFACE: Declared = {
     "scan": file("Scan of one face: X3P, text, or an instrument's format."),
-    "xy_unit": text("Unit of x and y, where the file states none."),
-    "z_unit": text("Unit of the heights, where the file states none."),
+    "xy_unit": length_unit("Unit of x and y, where the file states none."),
+    "z_unit": length_unit("Unit of the heights, where the file states none."),
     "size": own(
         LENGTHS, QUANTITY, "Size of the scan, where the file states neither size nor spacing.", read=_lengths, unit="m"
     ),

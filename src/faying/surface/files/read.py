@@ -225,6 +225,9 @@ def _believable(sizes: tuple[float, ...], spacing: tuple[float, ...]) -> bool:
     return max(sizes) <= 10 and min(spacing) >= 1e-11
 
 
+OUTLYING = 100.0  # sides of the scan: no point of a face lies so far from the others
+
+
 def plausible(scan: Scan | Profile) -> None:
     """Raise ReadError where sizes or heights cannot be those of a measured surface: as a rule, a wrong unit."""
     sizes = scan.size if isinstance(scan, Scan) else (scan.length,)
@@ -243,5 +246,11 @@ def plausible(scan: Scan | Profile) -> None:
     span = float(high - low)
     if span > 3 * max(sizes):
         raise ReadError(f"{scan.source}: heights over {span:.3g} m on a scan of {max(sizes):.3g} m; {hint}")
+    farthest = float(known[np.argmax(np.abs(known - np.median(known)))])
+    if abs(farthest - float(np.median(known))) > OUTLYING * max(sizes):
+        raise ReadError(
+            f"{scan.source}: one height of {farthest:.3g} m on a scan of {max(sizes):.3g} m; the number is damaged, or "
+            "stands for a missing point: take it out"
+        )
     if 0 < span < max(1e-13, 1e-10 * max(sizes)):
         raise ReadError(f"{scan.source}: heights over {span:.3g} m, less than an atom; {hint}")
