@@ -44,7 +44,7 @@ LIMITS = frozenset(
         "near-proof",
         "size",
         "waves-assumed",
-        "bonded-by-springs",
+        "bonded-by-ties",
         "viscous",
         "wave-band",
         "uncertain-cut",

@@ -46,9 +46,10 @@ class Frame:
     def matrices(self) -> tuple[Any, Any]:
         """Stiffness [N/m] and mass [kg] of the parts alone, with the ties of faces that are bonded."""
         K, M = assemble(self.mesh, self.materials)
-        return added(K, [self._tie(faces) for faces in self.mesh.ties]), M
+        return added(K, [self.tie(faces) for faces in self.mesh.ties]), M
 
-    def _tie(self, faces: tuple[str, str]) -> Any:
+    def tie(self, faces: tuple[str, str]) -> Any:
+        """Stiffness [N/m] that ties two faces which meet, whether or not their nodes match; see `tie_stiffness`."""
         modulus = max(self.materials[self.mesh.face_part[face]].E for face in faces)
         return tie_stiffness(self.mesh, faces, modulus)
 

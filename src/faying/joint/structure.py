@@ -351,6 +351,11 @@ class Structure(Summary):
         """Return the map that bonds the faces of every joint; see `bond`."""
         return bond(self.mesh, [joint.faces for joint in self.joints], [joint.interface.area for joint in self.joints])
 
+    def tied(self) -> Any:
+        """Stiffness [N/m] that bonds the faces of every joint where their nodes do not match; fixed ones cleared."""
+        ties = added(None, [self._frame.tie(joint.faces) for joint in self.joints])
+        return constrain(ties, self.fixed, 0.0)
+
     def outline(self) -> tuple[Index, Index]:
         """Nodes of the outer surface and triangles between them (t, 3), for pictures."""
         found = self.surface()
