@@ -91,7 +91,18 @@ def read_columns(
         rows = [_row(_cells(line, mark), names, passed_over, f"{path}, line {number}", form) for number, line in body]
         values = {name: np.array([row[name] for row in rows]) for name in names if name in known}
     found = {name: factor * values[name] for name, factor in columns if name in known}
+    for name, column in found.items():
+        if known[name]:
+            too_large = np.flatnonzero(np.abs(column) > GREATEST)
+            if too_large.size:
+                raise ReadError(
+                    f"{path}, line {body[too_large[0]][0]}: {column[too_large[0]]:.3g} {known[name]} in the column "
+                    f'"{name}" is damaged: nothing measured is so large'
+                )
     return Columns(values=found, head=first, lines=[number for number, _ in body], factors=dict(columns))
+
+
+GREATEST = 1e15  # in any SI unit
 
 
 class _Head:

@@ -33,6 +33,13 @@ def test_a_data_set_that_begins_inside_another_is_found(line):
         check_data_sets([*SETS[:2], line, *SETS[2:]], "f")
 
 
+def test_a_header_has_seven_lines():
+    header = ["    -1", "   151", *["title"] * 7, "    -1"]
+    check_data_sets(header, "f")
+    with pytest.raises(faying.ReadError, match="line 10: '1.0 2.0' is one line too many for a header"):
+        check_data_sets([*header[:-1], "1.0 2.0", "    -1"], "f")
+
+
 def test_numbers_inside_a_data_set_are_no_beginning():
     check_data_sets(["    -1", "    82", "        58", "    -1.5  2.0", "    -1    -1", "    -1"], "f")
 
@@ -108,6 +115,7 @@ def test_blocks_that_are_not_read_are_passed(seeds):
     other = path.with_name("rlblock.cdb")
     block = "RLBLOCK,       1,       1,       6,       7\n(2i8,6g16.9)\n(7g16.9)\n"
     block += "       1       2 1.00000000     -1.00000000E-03\n"
+    block += "LCURV,       1, 1,       1,       2,   0.0    ,   1.0\n \n   1   2   0   4   2\n   20.0       20.0\n"
     other.write_text(path.read_text().replace("NBLOCK", block + "NBLOCK", 1))
     assert len(faying.read_mesh(other, unit="mm").points) == len(faying.read_mesh(path, unit="mm").points)
 
@@ -145,3 +153,13 @@ def test_a_list_holds_no_infinite_number(tmp_path):
     file.write_text("x [mm],y [mm],z [um]\n0,0,1\n1,0,2\n0,1,-inf\n1,1,nan\n")
     with pytest.raises(faying.ReadError, match="row 3 of the numbers holds an infinite one"):
         read_heights(file)
+
+
+@pytest.mark.parametrize("place", ["1e300", "-99999999999999999999"])
+def test_a_place_that_nothing_has_is_refused(tmp_path, place):
+    from faying.measured.mapping import read_points
+
+    file = tmp_path / "points.csv"
+    file.write_text(f"point,x [mm],y [mm],z [mm]\n1,1,2,3\n2,1,{place},3\n")
+    with pytest.raises(faying.ReadError, match='line 3: .* in the column "y" is damaged'):
+        read_points(file)

@@ -490,3 +490,13 @@ def test_rigid_modes_are_left_out_with_a_note_and_negative_frequencies_refused(t
     assert any("1 mode shapes at 0 Hz" in note for note in file.warnings)
     with pytest.raises(ReadError, match="negative frequency"):
         read_uff(changed(tmp_path, lambda text: text.replace("1.00000e+02", "-1.0000e+02"), measured[:1]))
+
+
+def test_reading_prints_nothing(tmp_path, capsys):
+    """pyuff prints the groups of nodes (data set 2467) that it reads, which would break what commands print."""
+    path = tmp_path / "groups.uff"
+    group = [f"{1:10d}" + 6 * f"{0:10d}" + f"{1:10d}", "Left_Side", f"{7:10d}{1:10d}{0:10d}{0:10d}"]
+    points = f"{1:10d}{0:10d}{0:10d}{8:10d}{0.1:13.5E}{0:13.5E}{0:13.5E}"
+    path.write_text("\n".join(["    -1", "    15", points, "    -1", "    -1", "  2467", *group, "    -1", ""]))
+    assert len(read_uff(path).positions) == 1
+    assert capsys.readouterr() == ("", "")

@@ -92,10 +92,10 @@ def read(path: Path) -> RawMesh:
 
 @dataclass
 class _Others:
-    """Lines that are not read: commands, and the blocks of other commands (RLBLOCK, SFEBLOCK, ...)."""
+    """Lines that are not read: commands, and the numbers of other commands (RLBLOCK, LCURV, *PREAD, ...)."""
 
     path: Path
-    end: int = -1  # the last line of such a block, its form or its numbers
+    last: int = -1  # the last of them; a block that is read ends at any other line
 
     def passed(self, lines: list[str], k: int) -> int:
         """The next line; ReadError where line k belongs to a block whose command or form is not there."""
@@ -108,13 +108,12 @@ class _Others:
                 "command of one (NBLOCK, EBLOCK, CMBLOCK, ...); is it missing?"
             )
         numbers = re.fullmatch(r"[-+]?[\d.]+(?:[eEdD][-+]?\d+)?(?:[\s-]+[-+]?[\d.eEdD+-]+)*", line) is not None
-        if numbers and line != "-1" and self.end != k - 1:
+        if numbers and line != "-1" and self.last != k - 1:
             raise ReadError(
                 f"{self.path.name}, line {k + 1}: {line[:40]!r} stands in no block; does the block before it hold more "
                 "lines than its head says?"
             )
-        if numbers or line.startswith("("):
-            self.end = k
+        self.last = k
         return k + 1
 
 

@@ -7,7 +7,9 @@ The formats: University of Cincinnati, Structural Dynamics Research Lab, https:/
 
 import re
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, redirect_stdout
+from io import StringIO
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -133,8 +135,7 @@ def _sets(file: Path) -> list[dict[str, Any]]:
     if not file.is_file():
         raise ReadError(f"{file}: no such file")
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+        with _quiet():
             uff = pyuff.UFF(str(file))
             kinds = [int(k) for k in uff.get_set_types()]
     except Exception as fault:  # pyuff raises nothing more precise
@@ -156,8 +157,7 @@ def _sets(file: Path) -> list[dict[str, Any]]:
             out.append({"type": kind, "number": number + 1})
             continue
         try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
+            with _quiet():
                 data = uff.read_sets(number)
         except Exception as fault:
             raise ReadError(
@@ -166,6 +166,14 @@ def _sets(file: Path) -> list[dict[str, Any]]:
             ) from None
         out.append({**data, "type": kind, "number": number + 1})
     return out
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Leave out what pyuff warns of and prints: of some data sets it prints all that it reads."""
+    with warnings.catch_warnings(), redirect_stdout(StringIO()):
+        warnings.simplefilter("ignore")
+        yield
 
 
 def _dof(point: int, code: int) -> Dof:
