@@ -1,5 +1,8 @@
 """Files for ParaView, read back by meshio and by the standard library: the numbers of the result, in their places."""
 
+import json
+import shutil
+import subprocess
 from base64 import b64decode
 from xml.etree import ElementTree
 
@@ -114,3 +117,45 @@ def test_the_command_writes_them_and_refuses_what_is_no_result(result, tmp_path)
     assert "--vtu writes a result (.nc) for ParaView; s.toml is none" in str(refused.exception)
     both = ["view", str(tmp_path / "result.nc"), "--vtu", str(tmp_path / "b.pvd"), "--out", "x.html"]
     assert "leave out --out and --unit" in str(CliRunner().invoke(cli, both).exception)
+
+
+IN_PARAVIEW = """
+import json, sys
+from paraview import servermanager
+from paraview.simple import IntegrateVariables, OpenDataFile, Threshold, UpdatePipeline, WarpByVector
+
+reader = OpenDataFile(sys.argv[1])
+out = {"times": list(reader.TimestepValues), "forces": [], "areas": []}
+for time in reader.TimestepValues:
+    joint = Threshold(Input=reader, Scalars=["CELLS", "joint"], LowerThreshold=-0.5, UpperThreshold=0.5)
+    total = IntegrateVariables(Input=joint)
+    UpdatePipeline(time=time, proxy=total)
+    row = servermanager.Fetch(total)
+    out["forces"].append(row.GetPointData().GetArray("pressure [Pa]").GetValue(0))
+    out["areas"].append(row.GetCellData().GetArray("Area").GetValue(0))
+moved = WarpByVector(Input=reader, Vectors=["POINTS", "mode 1 real"], ScaleFactor=0.25)
+UpdatePipeline(time=reader.TimestepValues[0], proxy=moved)
+out["bounds"] = list(moved.GetDataInformation().GetBounds())
+print(json.dumps(out))
+"""
+
+
+@pytest.mark.skipif(shutil.which("pvbatch") is None, reason="ParaView's pvbatch is not installed")
+def test_paraview_opens_it(result, files, tmp_path):
+    """ParaView's own integral of the pressure over the joint is the force of the map, at each preload."""
+    script = tmp_path / "look.py"
+    script.write_text(IN_PARAVIEW)
+    done = subprocess.run(["pvbatch", str(script), str(files[0])], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout.splitlines()[-1])
+    assert found["times"] == result.loads.tolist()
+    for force, total, file in zip(found["forces"], found["areas"], files[1:], strict=True):
+        read = meshio.read(file)
+        triangles = read.cells[0].data[read.cell_data["joint"][0] == 0]
+        a, b, c = (read.points[triangles[:, k]] for k in range(3))
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+        assert force == pytest.approx(float(area @ read.point_data["pressure [Pa]"][triangles].mean(axis=1)), rel=1e-5)
+        assert total == pytest.approx(area.sum(), rel=1e-6)
+    read = meshio.read(files[1])
+    moved = read.points + 0.25 * read.point_data["mode 1 real"]
+    assert found["bounds"] == pytest.approx(np.stack([moved.min(axis=0), moved.max(axis=0)]).T.ravel(), rel=1e-6)
