@@ -92,17 +92,24 @@ def read_columns(
         values = {name: np.array([row[name] for row in rows]) for name in names if name in known}
     found = {name: factor * values[name] for name, factor in columns if name in known}
     for name, column in found.items():
-        if known[name]:
-            too_large = np.flatnonzero(np.abs(column) > GREATEST)
-            if too_large.size:
-                raise ReadError(
-                    f"{path}, line {body[too_large[0]][0]}: {column[too_large[0]]:.3g} {known[name]} in the column "
-                    f'"{name}" is damaged: nothing measured is so large'
-                )
+        damaged = _too_large(column, known[name])
+        if damaged is not None:
+            raise ReadError(
+                f'{path}, line {body[damaged][0]}: {column[damaged]:.3g} {known[name]} in the column "{name}" is '
+                "damaged: nothing measured is so large"
+            )
     return Columns(values=found, head=first, lines=[number for number, _ in body], factors=dict(columns))
 
 
-GREATEST = 1e15  # in any SI unit
+GREATEST_LENGTH, GREATEST = 1e4, 1e15  # m; in any other SI unit
+
+
+def _too_large(column: Array, unit: str) -> int | None:
+    """Index of a number that is larger than anything measured; None where there is none, and for plain numbers."""
+    if not unit:
+        return None
+    found = np.flatnonzero(np.abs(column) > (GREATEST_LENGTH if unit == "m" else GREATEST))
+    return int(found[0]) if found.size else None
 
 
 class _Head:
@@ -292,7 +299,14 @@ def read_list(path: Path, wanted: Sequence[Wanted], form: str) -> Any:
     columns = []
     for k, column in enumerate(wanted):
         place = k if heading is None else next(i for i, one in enumerate(heading) if one.name in column.names)
-        columns.append(table[:, place] * column.factor(None if heading is None else heading[place], where))
+        values = table[:, place] * column.factor(None if heading is None else heading[place], where)
+        damaged = _too_large(values, column.unit)
+        if damaged is not None:
+            raise ReadError(
+                f"{path.name}: row {damaged + 1} of the numbers holds {values[damaged]:.3g} {column.unit}, which is "
+                "damaged: nothing measured is so large"
+            )
+        columns.append(values)
     return np.stack(columns, axis=1)
 
 

@@ -155,7 +155,7 @@ def test_a_list_holds_no_infinite_number(tmp_path):
         read_heights(file)
 
 
-@pytest.mark.parametrize("place", ["1e300", "-99999999999999999999"])
+@pytest.mark.parametrize("place", ["1e300", "-99999999999999999999", "2147483648"])
 def test_a_place_that_nothing_has_is_refused(tmp_path, place):
     from faying.measured.mapping import read_points
 
@@ -163,3 +163,12 @@ def test_a_place_that_nothing_has_is_refused(tmp_path, place):
     file.write_text(f"point,x [mm],y [mm],z [mm]\n1,1,2,3\n2,1,{place},3\n")
     with pytest.raises(faying.ReadError, match='line 3: .* in the column "y" is damaged'):
         read_points(file)
+
+
+def test_a_point_of_a_form_that_nothing_has_is_refused(tmp_path):
+    from faying.form.gap_map import read_heights
+
+    file = tmp_path / "form.csv"
+    file.write_text("x [mm],y [mm],z [um]\n0,0,1\n1,0,2\n99999999999999999999,1,3\n1,1,2\n")
+    with pytest.raises(faying.ReadError, match="row 3 of the numbers holds 1e.17 m, which is damaged"):
+        read_heights(file)

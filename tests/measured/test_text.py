@@ -160,7 +160,7 @@ def test_frequencies_of_uneven_steps_are_fine(tmp_path):
     assert read_frf_text([file], quantity="mobility").warnings == ()
 
 
-@pytest.mark.parametrize("line", ["(3j)", "(-0.2751630801031998j)", "(1+2)", "(1+2j"])
+@pytest.mark.parametrize("line", ["(3j)", "(-0.2751630801031998j)", "(1+2)", "(1+2j", "7943-1.195j)"])
 def test_a_complex_number_in_brackets_has_two_parts(tmp_path, line):
     file = tmp_path / "a.txt"
     file.write_text(f"(1+2j)\n{line}\n")

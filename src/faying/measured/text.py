@@ -78,7 +78,7 @@ def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex
                 '--frequency-step "1 Hz"'
             )
         for line in lines:
-            if line.startswith("(") and not BOTH_PARTS.fullmatch(line):
+            if set(line) & set("()") and not BOTH_PARTS.fullmatch(line):
                 raise ReadError(f"{path}: {line[:60]!r} is no complex number of two parts, as (-0.07+2.6e-08j)")
         values = [_number(complex, path, line.replace("i", "j").replace(" ", "").strip("()")) for line in lines]
         return np.arange(len(values), dtype=float) * step, np.array([values], dtype=np.complex128), ()
