@@ -30,9 +30,10 @@ def count_inside(seed, pressures, thin, step=1):
         surface = faces_of(scan, "smooth").rough
         choice = pick("auto", {}, surface, PAIR)
         exact = HalfSpace(surface.scan, PAIR)
-        said = exact.at_pressure(pressures)
+        asked = np.minimum(pressures, 0.8 * exact.greatest_pressure)  # some maps touch everywhere below ten times it
+        said = exact.at_pressure(asked)
         truth = HalfSpace(faces_of(fine, "smooth").rough.scan, PAIR)
-        known = np.array([truth.contact_at(p).normal_stiffness(loading=False) for p in pressures])
+        known = np.array([truth.contact_at(p).normal_stiffness(loading=False) for p in asked])
         inside += bool(np.all((said.k_n_low <= known) & (known <= said.k_n_high)))
         if choice.law.name != exact.name:
             taken.append(float(choice.law.at_pressure(MIDDLE).k_n / exact.at_pressure(MIDDLE).k_n))
