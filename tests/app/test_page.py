@@ -105,6 +105,28 @@ def test_from_a_step_file_without_names_and_a_scan_to_a_result(browser, server, 
     assert (tmp_path / "results" / "result.nc").is_file()
 
 
+def test_from_the_text_alone_to_a_result(browser, server, example, tmp_path):
+    """In an empty folder a STEP file is added, the study is typed, its fault mended by what the page says, and run."""
+    typed = (example / "study.toml").read_text()
+    wrong = typed.replace('preload = "6 kN"', 'preload = "6 kNm"')
+    assert wrong != typed
+    with page_at(browser, server) as page:
+        page.wait_for_selector("#steps:not([hidden])")
+        page.set_input_files("#file", example / "two-blocks.step")
+        until(page, "window.fayingView !== undefined")
+        set_text(page, wrong)
+        until(page, "document.querySelectorAll('#faults li').length > 0")
+        assert "preload" in page.inner_text("#faults")
+        set_text(page, typed)
+        until(page, "document.querySelector('#check-hint').textContent === 'no fault'")
+        page.click("#tab-run")
+        page.click("#start")
+        page.wait_for_selector("#report:not([hidden])", timeout=5 * WAIT)
+        page.frame_locator("#report").get_by_role("heading", name="Modes at every preload", exact=True).wait_for()
+    assert (tmp_path / "study.toml").read_text() == typed
+    assert (tmp_path / "results" / "result.nc").is_file()
+
+
 def test_faults_stand_at_their_lines_and_go(browser, server, example, tmp_path):
     for name in ("study.toml", "two-blocks.step"):
         shutil.copy(example / name, tmp_path)
