@@ -1,8 +1,10 @@
 """Notes: what they mean for a result, and how many of a kind are said as one."""
 
+from dataclasses import replace
+
 import pytest
 
-from faying.notes import LIMITS, WRONG, Note, by_severity, grouped, percent
+from faying.notes import LIMITS, WRONG, Note, by_severity, grave, grouped, percent
 
 
 def outside(load, share, joint="flange", why="fewer than 10 spots touch"):
@@ -21,9 +23,31 @@ def test_loads_and_shares_become_spans():
 
 
 def test_what_differs_in_words_stays_apart():
-    notes = [outside(4, 0.2), outside(4, 0.3, joint="lap"), outside(4, 0.4, why="another reason"), outside(8, 0.2)]
-    assert [note.joint for note in grouped(notes)] == ["flange", "lap", "flange"]
+    notes = [outside(4, 0.2), outside(4, 0.4, why="another reason"), outside(8, 0.2)]
+    assert [note.text[:16] for note in grouped(notes)] == ["flange, 4 to 8 k", "flange, 4 kN: th"]
     assert grouped(notes)[1] == notes[1]
+
+
+def test_many_joints_are_named_in_one_note():
+    both = [outside(load, 0.1 * load, joint=joint) for joint in ("flange 1", "lap") for load in (2, 4)]
+    (one,) = grouped(both)
+    assert one.text.startswith("flange 1 and lap, 2 to 4 kN: the law is outside its validity range for 20 to 40%")
+    assert (one.joint, one.share) == ("", 0.4)
+    silent = [Note(code="no-loss", joint=f"joint {k}", text=f"joint {k}: no damping at rest") for k in range(1, 7)]
+    assert [note.text for note in grouped(silent)] == ["joint 1, joint 2 and 4 more: no damping at rest"]
+    other = [replace(note, text=f"alternative JK: {note.text}") for note in silent[:3]]
+    assert grouped(other)[0].text == "alternative JK: joint 1, joint 2 and joint 3: no damping at rest"
+
+
+def test_joints_that_differ_in_too_many_numbers_have_a_note_each():
+    def four(joint, load):
+        return Note(code="x", joint=joint, text=f"{joint}, {load} kN: at {load}, {load + 1} and {len(joint)} mm")
+
+    notes = [four(joint, load) for joint in ("a", "bbb") for load in (1, 2)]
+    assert [note.text for note in grouped(notes)] == [
+        "a, 1 to 2 kN: at 1 to 2, 2 to 3 and 1 mm",
+        "bbb, 1 to 2 kN: at 1 to 2, 2 to 3 and 3 mm",
+    ]
 
 
 def test_many_differences_are_no_spans():
@@ -45,6 +69,17 @@ def test_the_same_twice_is_said_once():
 )
 def test_no_share_is_said_to_be_none(share, words):
     assert percent(share) == words
+
+
+def test_what_concerns_little_or_an_alternative_alone_comes_last():
+    other = Note(code="window", text="alternative JK: c")
+    notes = [other, outside(4, 0.01), outside(8, 0.04), Note(code="window", text="b"), outside(4, 0.6, why="c")]
+    found = grave(notes)
+    assert [note.text[:5] for note in found] == ["b", "flang", "flang", "alter"]
+    assert found[1].share == 0.6
+    assert found[2].share == 0.04  # the greatest of those that are said as one
+    assert by_severity(notes, found[:3]) == {"limit": (other,)}
+    assert by_severity(notes, found) == {}
 
 
 def test_the_gravest_come_first():

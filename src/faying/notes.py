@@ -65,8 +65,11 @@ LIMITS = frozenset(
         "load-intervals",
     }
 )
-NUMBER = re.compile(r"(?<![\w.])\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?(?![\w])")
+NUMBER = re.compile(r"(?<![\w.])\d+(?:,\d{3})*(?:\.\d+)?(?:e[+-]?\d+)?(?![\w])")
+MOST_NAMES = 3  # of joints in one note
 FIRST_NOTES = 3  # that stand before the tables
+SLIGHT = 0.05  # share of a joint below which a note comes after the others of its severity
+OF_ALTERNATIVE = "alternative "  # begins what is said of a law that was not asked to answer
 MOST_DIFFERENCES = 3  # numbers that may differ between notes that are said as one
 
 
@@ -104,21 +107,26 @@ def percent(share: float) -> str:
 
 
 def grouped(notes: Iterable[Note]) -> tuple[Note, ...]:
-    """Notes of one kind that differ in a few numbers alone, as one with the least and the greatest of them.
+    """Notes of one kind that differ in their joint and in a few numbers alone, as one with the least and the greatest.
 
     "flange, 4 kN: ... on 16% of the joint" and "flange, 12 kN: ... on 18% of the joint" become "flange, 4 to 12 kN: ...
-    on 16 to 18% of the joint". A grouped note is in the place of the first; those of another joint stay apart.
+    on 16 to 18% of the joint". A grouped note is in the place of the first, with the greatest share.
     """
-    groups: dict[tuple[str, str, str], list[Note]] = {}
+    groups: dict[tuple[str, str], list[Note]] = {}
     for note in notes:
-        groups.setdefault((note.code, note.joint, NUMBER.sub("#", note.text)), []).append(note)
+        groups.setdefault((note.code, NUMBER.sub("#", "".join(_around(note)))), []).append(note)
     return tuple(one for group in groups.values() for one in _as_one(group))
 
 
-def by_severity(notes: Iterable[Note]) -> dict[Severity, tuple[Note, ...]]:
-    """Grouped notes of each severity that occurs, the gravest first."""
-    every = grouped(notes)
-    found = {kind: tuple(note for note in every if note.severity == kind) for kind in TITLES}
+def by_severity(notes: Iterable[Note], leave_out: Iterable[Note] = ()) -> dict[Severity, tuple[Note, ...]]:
+    """Grouped notes of each severity that occurs, the gravest first.
+
+    What concerns little of a joint, and what concerns an alternative alone, comes last in its severity.
+
+    leave_out: grouped notes that stand elsewhere.
+    """
+    every, shown = sorted(grouped(notes), key=_weight), set(leave_out)
+    found = {kind: tuple(note for note in every if note.severity == kind and note not in shown) for kind in TITLES}
     return {kind: some for kind, some in found.items() if some}
 
 
@@ -127,14 +135,46 @@ def grave(notes: Iterable[Note]) -> tuple[Note, ...]:
     return tuple(note for kind, some in by_severity(notes).items() if kind != "remark" for note in some)
 
 
+def _weight(note: Note) -> int:
+    """0, 1 or 2: the more, the later."""
+    if note.text.startswith(OF_ALTERNATIVE):
+        return 2
+    return int(note.share is not None and note.share < SLIGHT)
+
+
+def _around(note: Note) -> tuple[str, str]:
+    """What stands before and after the name of the joint that a note begins with; all after where it does not."""
+    for separator in (": ", ", "):
+        before, found, after = note.text.partition(note.joint + separator)
+        if note.joint and found and (not before or before.endswith(": ")):
+            return before, separator + after
+    return "", note.text
+
+
 def _as_one(group: Sequence[Note]) -> Sequence[Note]:
     distinct = list(dict.fromkeys(group))
-    rows = [NUMBER.findall(note.text) for note in distinct]
-    differing = [k for k in range(len(rows[0])) if len({row[k] for row in rows}) > 1]
+    joints = list(dict.fromkeys(note.joint for note in distinct))
+    rows = [[NUMBER.findall(part) for part in _around(note)] for note in distinct]
+    numbers = [before + after for before, after in rows]
+    differing = [k for k in range(len(numbers[0])) if len({row[k] for row in numbers}) > 1]
     if len(distinct) < 2 or len(differing) > MOST_DIFFERENCES:
-        return distinct
-    spans = iter(_span([row[k] for row in rows]) for k in range(len(rows[0])))
-    return [replace(distinct[0], text=NUMBER.sub(lambda _: next(spans), distinct[0].text), load=None, share=None)]
+        if len(joints) < 2:
+            return distinct
+        return [one for joint in joints for one in _as_one([note for note in distinct if note.joint == joint])]
+    spans = iter(_span([row[k] for row in numbers]) for k in range(len(numbers[0])))
+    before, after = (NUMBER.sub(lambda _: next(spans), part) for part in _around(distinct[0]))
+    begins = len("".join(_around(distinct[0]))) < len(distinct[0].text)
+    named = joint_names(joints) if begins else ""
+    share = max((note.share for note in distinct if note.share is not None), default=None)
+    text, joint = f"{before}{named}{after}", joints[0] if len(joints) == 1 else ""
+    return [replace(distinct[0], text=text, joint=joint, load=None, share=share)]
+
+
+def joint_names(names: Sequence[str]) -> str:
+    """Names of joints in a sentence: three at most."""
+    if len(names) > MOST_NAMES:
+        return f"{', '.join(names[: MOST_NAMES - 1])} and {len(names) - MOST_NAMES + 1} more"
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
 def _span(words: Sequence[str]) -> str:

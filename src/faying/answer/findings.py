@@ -9,9 +9,9 @@ from faying.case.case import Case, materials_at
 from faying.case.solve import LoadedCase
 from faying.contact.mates import Mates
 from faying.contact.models.half_space import HalfSpace
-from faying.contact.stability import stability, stiffness_at
+from faying.contact.stability import COARSE, stability, stiffness_at
 from faying.errors import FayingError
-from faying.notes import Note
+from faying.notes import Note, percent
 from faying.units import load_text
 
 FALL = 1e-6  # relative: a smaller fall is none
@@ -31,12 +31,12 @@ def falling(case: Case, states: Sequence[LoadedCase]) -> list[Note]:
         for joint, p, q in zip(case.structure.joints, before.preload.pressures, after.preload.pressures, strict=True):
             less += float(joint.interface.weights @ (q < p)) / area
             more += float(joint.interface.weights @ ((p > 0) & (q <= 0))) / area
-        opened = f" and {more:.1%} opens" if more else ""
+        opened = f" and {percent(more)} opens" if more else ""
         which = ", ".join(str(k + 1) for k in down)
         text = (
             f"mode{'s' * (len(down) > 1)} {which} fall{'s' * (len(down) == 1)} from {before.load / 1e3:g} to "
-            f"{load_text(after.load)}, by up to {-change.min():.2g} of the frequency: as the parts bend under the "
-            f"bolts, pressure falls on {less:.0%} of the joint{opened}, while it grows elsewhere"
+            f"{load_text(after.load)}, by up to {-100 * change.min():.2g} %: as the parts bend under the "
+            f"bolts, pressure falls on {percent(less)} of the joint{opened}, while it grows elsewhere"
         )
         out.append(Note(code="falls", load=after.load, text=text))
     return out
@@ -79,6 +79,10 @@ def against_exact_contact(case: Case, state: LoadedCase) -> list[Note]:
             continue
         if not found.stable:
             name, factor = found.worst
-            text = f"{at}: {law.name} has {factor:.2g} times the k_n on the {name} of the scan (faying law --stability)"
+            remedy = "a finer scan" if name == COARSE else "a larger scan, or several,"
+            text = (
+                f"{at}: {law.name} has {factor:.2g} times the k_n on the {name} of the scan that it has on the whole: "
+                f"{remedy} would say which one holds"
+            )
             out.append(Note(code="window", joint=joint.name, text=text))
     return out

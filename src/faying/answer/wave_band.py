@@ -13,7 +13,7 @@ from faying.form.face_axes import FaceAxes
 from faying.form.form import Form
 from faying.form.machining import ASSUMED, ASSUMED_GAP
 from faying.form.waviness import LaidWaves
-from faying.notes import Note
+from faying.notes import Note, joint_names
 from faying.result.result import preload_slope
 from faying.typing import Array
 from faying.units import show
@@ -121,7 +121,7 @@ class Draws:
         if not silent:
             return []
         text = (
-            f"{', '.join(silent)}: the study gives no form of the faces. The table of modes has them as meshed; "
+            f"{joint_names(silent)}: the study gives no form of the faces. The table of modes has them as meshed; "
             f"machined faces have waves, and {DRAWS} draws of waves with a gap of {show(ASSUMED_GAP, 'm')} rms say how "
             "far that moves each frequency. Give [joint.form] a measured map, waviness, or flat = true"
         )

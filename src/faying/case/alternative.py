@@ -10,7 +10,7 @@ from faying.case.case import Case, Progress, interface_of, joint_law, law_reason
 from faying.case.engine import Engine
 from faying.case.solve import LoadedCase, solve
 from faying.errors import FayingError
-from faying.notes import Note
+from faying.notes import OF_ALTERNATIVE, Note
 from faying.numerics.solve import Released
 from faying.study.keys.alternative import AlternativeChoice
 from faying.study.study import Study
@@ -47,11 +47,11 @@ def solve_alternative(case: Case, choice: AlternativeChoice, engine: Engine, pro
         states = tuple(_slim(solve(other, k, solver, progress, ranges=False)) for k in loads)
     except FayingError as fault:
         progress.done = done + 2 * len(case.study.loads)
-        text = f"alternative {choice.name}: no answer: {fault}"
+        text = f"{OF_ALTERNATIVE}{choice.name}: no answer: {fault}"
         return Alternative(name=choice.name, case=None, states=(), notes=(Note(code="alternative", text=text),))
     notes = [*law_reasons(other.structure, other.surfaces), *(note for state in states for note in state.notes)]
     told = tuple(
-        replace(note, text=f"alternative {choice.name}: {note.text}")
+        replace(note, text=f"{OF_ALTERNATIVE}{choice.name}: {note.text}")
         for note in notes
         if note.code in TOLD and note not in case.notes
     )

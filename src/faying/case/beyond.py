@@ -14,7 +14,7 @@ from faying.fe.interface import Interface
 from faying.joint.shared_modes import EXACT, joined, modes_with
 from faying.joint.springs import Springs
 from faying.joint.structure import Structure
-from faying.notes import Note
+from faying.notes import Note, percent
 from faying.numerics.damped import DampedModes, damped_modes
 from faying.typing import Array, Mask
 from faying.units import load_text
@@ -22,6 +22,7 @@ from faying.units import load_text
 STIFF = 1e3  # times the stiffness of the parts over their size: what counts as bonded
 STIFFER = 1e4  # and at least so many times the law's own
 MATTERS = 5e-3  # relative difference of a frequency from which the law has no answer
+LEAST = 1e-4  # relative change of a frequency that is printed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,18 +85,18 @@ def _notes(
 ) -> tuple[Note, ...]:
     kilo = load_text(load)
     worst = int(np.argmax(np.abs(change)))
+    shown = abs(change[worst]) >= LEAST
     out = []
     for number, (joint, s, mask) in enumerate(zip(case.structure.joints, springs, past, strict=True)):
         if not np.any(mask):
             continue
         model, weights = joint.law.model, s.interface.weights
         share = float(weights @ mask / weights.sum())
-        where = f"{joint.name}, {kilo}: on {share:.2%} of the joint the pressure exceeds the "
+        where = f"{joint.name}, {kilo}: on {percent(share)} of the joint the pressure exceeds the "
         where += f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends with this surface"
-        text = f"{where}; stiffness is held there, and bonding these points instead moves mode {worst + 1} most, by "
-        out.append(
-            Note(code="beyond-law", joint=joint.name, load=load, share=share, text=f"{text}{change[worst]:+.2%}")
-        )
+        effect = f"moves mode {worst + 1} most, by {change[worst]:+.2%}" if shown else f"moves no mode by {LEAST:.2%}"
+        text = f"{where}; stiffness is held there, and bonding these points instead {effect}"
+        out.append(Note(code="beyond-law", joint=joint.name, load=load, share=share, text=text))
         strong = np.flatnonzero(np.abs(change) > MATTERS)
         if len(strong):
             which = f"mode{'s' * (len(strong) > 1)} {', '.join(str(k + 1) for k in strong)}"

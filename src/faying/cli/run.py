@@ -99,14 +99,15 @@ def text(result: Any) -> str:
         f"{result.damping} loss in the joints\n"
     )
     first, *others = (f"{section.above}\n{table.text(section.rows)}\n" for section in sections(result))
-    before = grave(result.notes)
+    every = grave(result.notes)
+    before = every[:FIRST_NOTES]
     lines = [*_wrapped(answer.limit(result)), *_wrapped(answer.score_line(result))]
-    lines += [line for note in before[:FIRST_NOTES] for line in _item(note.text)]
-    more = len(before) - FIRST_NOTES
+    lines += [line for note in before for line in _item(note.text)]
+    more = len(every) - len(before)
     lines += [f"  {more} more at the end"] if more > 0 else []
     notes = [
         line
-        for kind, some in by_severity(result.notes).items()
+        for kind, some in by_severity(result.notes, before).items()
         for line in (f"\n{TITLES[kind]}", *(part for note in some for part in _item(note.text)))
     ]
     hammer = [] if result.hammer is None else [line for text in result.hammer.notes for line in _item(text)]

@@ -13,7 +13,7 @@ from faying.errors import InputError
 from faying.fe.elasticity import Solid
 from faying.fe.faces import NamedFaces, face_centre
 from faying.joint.structure import Structure
-from faying.notes import Note
+from faying.notes import Note, percent
 from faying.typing import Array
 from faying.units import load_text, show
 
@@ -187,9 +187,9 @@ def pressure_notes(structure: Structure, pressures: Sequence[Array], load: float
         share = float(joint.interface.weights @ (pressure > strength) / joint.interface.area)
         if share > 0:
             text = (
-                f"{joint.name}, {load_text(load)}: on {share:.2%} of the joint the pressure exceeds the yield strength "
-                f"of the softer part, {show(strength, 'Pa')}; the parts stay elastic here. Lower the preload, or check "
-                "the area of the joint and the yield_strength of its parts"
+                f"{joint.name}, {load_text(load)}: on {percent(share)} of the joint the pressure exceeds the yield "
+                f"strength of the softer part, {show(strength, 'Pa')}; the parts stay elastic here. Lower the preload, "
+                "or check the area of the joint and the yield_strength of its parts"
             )
             out.append(Note(code="joint-yield", joint=joint.name, load=load, share=share, text=text))
     return out

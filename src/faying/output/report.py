@@ -119,9 +119,9 @@ def _first_notes(result: Result) -> list[str]:
 
 
 def _notes(result: Result) -> list[str]:
-    """What may be wrong and what limits the result."""
+    """What may be wrong and what limits the result, but for what stands first."""
     out = []
-    for kind, some in by_severity(result.notes).items():
+    for kind, some in by_severity(result.notes, grave(result.notes)[:FIRST_NOTES]).items():
         if kind != "remark":
             title = TITLES[kind][:1].upper() + TITLES[kind][1:]
             out += [f"<h3>{title}</h3>", _list([note.text for note in some])]

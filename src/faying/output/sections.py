@@ -52,8 +52,8 @@ def _answer(result: Result) -> tuple[ReportSection, ...]:
             name="answer",
             rows=answer.answer(result),
             title=f"Modes {_last(result)}",
-            below=f"{answer.limit(result)} 5 to 95 % hold all that is not known and listed below. Damping: low, "
-            "median, high, at the stated acceleration of the point that moves most.",
+            below=f"{answer.limit(result)} The interval, 5 to 95 %, contains each cause that is listed below. Damping: "
+            "low, median, high, at the stated acceleration of the point that moves most.",
         ),
         ReportSection(
             name="shares",
