@@ -72,7 +72,7 @@ def test_brinell_outside_the_fit_is_an_error_with_the_range(brinell: float) -> N
 def test_faults_say_what_is_allowed() -> None:
     with pytest.raises(InputError, match="c1 = 0 Pa; it must be positive"):
         VickersHardness(c1=0, c2=-0.2)
-    with pytest.raises(InputError, match=r"c2 = -1.5; it must lie between -1 and 1"):
+    with pytest.raises(InputError, match=r"c2 = -1.5; it must be between -1 and 1"):
         VickersHardness(c1=5e9, c2=-1.5)
     law = VickersHardness(c1=5e9, c2=-0.2)
     with pytest.raises(InputError, match="diagonal of an indentation must be positive"):

@@ -91,7 +91,7 @@ def test_a_point_that_stands_alone_is_named(tmp_path, off, row):
     table[row, 2] += off
     path = tmp_path / "form.csv"
     path.write_text("x [mm],y [mm],z [um]\n" + "\n".join(",".join(map(repr, map(float, r))) for r in table) + "\n")
-    with pytest.raises(InputError, match=rf"1 of 108 points stand alone; row {row + 1} of the numbers"):
+    with pytest.raises(InputError, match=rf"1 of 108 points are alone; row {row + 1} of the numbers"):
         read_heights(path)
 
 

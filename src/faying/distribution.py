@@ -243,7 +243,7 @@ class Distribution:
         share = min(sum(exp(part - whole) for part in outside), 1.0)
         if share > 0.5:
             raise InputError(
-                f"{self.text('')} lies for {share:.0%} outside the allowed {least:g} to {greatest:g} (SI units); at "
+                f"{self.text('')} is for {share:.0%} outside the allowed {least:g} to {greatest:g} (SI units); at "
                 "most half may be cut, so that another centre or spread is needed"
             )
         support = self.support

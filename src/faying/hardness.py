@@ -45,7 +45,7 @@ class VickersHardness:
         if not (isfinite(self.least) and self.least >= 0):
             raise InputError(f"Vickers hardness: least = {self.least:g} Pa; it must be 0 or more")
         if not abs(self.c2) < STEEPEST:
-            raise InputError(f"Vickers hardness: c2 = {self.c2:g}; it must lie between -1 and 1, for example -0.25")
+            raise InputError(f"Vickers hardness: c2 = {self.c2:g}; it must be between -1 and 1, for example -0.25")
 
     @classmethod
     def from_brinell(cls, brinell: float) -> Self:

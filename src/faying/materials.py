@@ -81,7 +81,7 @@ class Material:
         if isnan(self.E) or self.E <= 0:
             raise InputError(f"material {self.name!r}: E = {self.E} Pa; it must be positive, for example 200e9")
         if not -1 < self.nu <= 0.5:
-            raise InputError(f"material {self.name!r}: nu = {self.nu}; it must lie in (-1, 0.5], for example 0.3")
+            raise InputError(f"material {self.name!r}: nu = {self.nu}; it must be in (-1, 0.5], for example 0.3")
         strengths = ("yield_strength", "hardness", "brinell", "bearing_limit")
         for field in ("density", *strengths, "conductivity", "resistivity"):
             value = getattr(self, field)

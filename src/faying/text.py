@@ -77,5 +77,5 @@ def check_data_sets(lines: Sequence[str], where: str) -> None:
             header += 1
         elif text and not inside:
             raise ReadError(
-                f"{where}, line {number}: {text[:40]!r} stands between two data sets; is a line -1 missing before it?"
+                f"{where}, line {number}: {text[:40]!r} is between two data sets; is a line -1 missing before it?"
             )

@@ -51,7 +51,7 @@ def test_torque_by_friction(d, pitch, friction, force, torque):
 def test_torque_needs_all_it_takes():
     for given, text in (
         ({"torque": -1.0, "nut_factor": 0.2}, "must both be positive"),
-        ({"nut_factor": 20.0}, "lies between 0.02 and 1"),
+        ({"nut_factor": 20.0}, "must be between 0.02 and 1"),
         ({}, "a torque gives no preload by itself"),
         ({"pitch": 1e-3, "thread_friction": 0.1}, "a torque gives no preload by itself"),
     ):
@@ -222,7 +222,7 @@ def test_seats_without_a_common_axis_need_a_point_on_it():
     points[mesh.part_nodes("high"), 0] += 0.06
     shifted = replace(mesh, points=points)
     with pytest.raises(
-        faying.InputError, match=r"look away from each other, but no axis .* 60 mm aside .*give at .* and seat"
+        faying.InputError, match=r"look away from each other, but no axis .* 60 mm apart .*give at .* and seat"
     ):
         bolt().fitted(shifted)
     fitted = bolt(at=(0.07, 0.02, 0.0), seat=(0.0, 12e-3)).fitted(shifted)

@@ -82,7 +82,7 @@ def test_a_long_bolt_is_a_rod():
 
 def test_what_no_bolt_is():
     for given, text in (
-        ({"shank": 31e-3}, "the shank is 31 mm long, but only 30 mm lie"),
+        ({"shank": 31e-3}, "the shank is 31 mm long, but only 30 mm are"),
         ({"shank": -1e-3}, "give a length from 0"),
         ({"head": "round"}, 'give "hexagon" or "socket"'),
         ({"E_tapped": 0.0}, "moduli above 0"),

@@ -194,7 +194,7 @@ def test_the_command_writes_report_figures_and_files(result, tmp_path, monkeypat
 
 def test_what_no_universal_file_can_state_is_said_before_the_run(plan, tmp_path, capsys):
     oblique = replace(plan.response, inputs=((plan.response.inputs[0][0], (1.0, 1.0, 0.0)),))
-    with pytest.raises(faying.InputError, match="lies along none of x, y, z"):
+    with pytest.raises(faying.InputError, match="is along none of x, y, z"):
         universal.check(oblique)
     universal.check(plan.response)
     universal.check(None)
@@ -210,7 +210,7 @@ def test_a_test_that_cannot_be_read_or_mapped_stops_before_anything_is_solved(pl
     bad.write_text("no universal file")
     with pytest.raises(faying.ReadError):
         run(replace(plan, hammer=replace(plan.hammer, file=bad)), report=lambda stage, done, total: said.append(stage))
-    with pytest.raises(faying.InputError, match="no point of the test lies within"):
+    with pytest.raises(faying.InputError, match="no point of the test is within"):
         run(
             replace(plan, hammer=replace(plan.hammer, frame=None)), report=lambda stage, done, total: said.append(stage)
         )

@@ -64,7 +64,7 @@ def test_persson_marks_its_ground() -> None:
 def test_persson_refuses(change: dict[str, float], message: str) -> None:
     with pytest.raises(InputError, match=message):
         PERSSON.with_(**change)
-    with pytest.raises(InputError, match="lies between 0 and 1"):
+    with pytest.raises(InputError, match="is between 0 and 1"):
         PERSSON.at_closure([0.5, 1.0])
 
 

@@ -472,7 +472,7 @@ def test_flags_begin_at_their_limits() -> None:
         ({"substrate": "other"}, '"exact" or "computed"'),
         ({"modulus_ratio": 0.0}, "positive"),
         ({"shear_ratio": -0.1}, "at least 0"),
-        ({"shear_ratio": 1.0}, "slips as a whole"),
+        ({"shear_ratio": 1.0}, "slips everywhere"),
         ({"shear_stress": -1.0}, "at least 0"),
         ({"shear_stress": 1e6, "shear_ratio": 0.1}, "give one of them"),
         (

@@ -133,7 +133,7 @@ def test_the_joint_closes_by_the_loading_slope() -> None:
 def test_flags() -> None:
     law = uniform(density=3e8)
     r = law.at_closure(np.array([1e-6, 19e-6, 21e-6]))
-    assert r.reasons["closing beyond the largest measured gap"].tolist() == [False, False, True]
+    assert r.reasons["closing above the largest measured gap"].tolist() == [False, False, True]
     assert r.reasons["real area above 0.3 of the nominal area"].tolist() == [False, True, True]
 
 

@@ -23,7 +23,7 @@ def test_a_mark_that_is_missing_or_twice_is_found(missing):
     """The last one shows by the end of the file, which the readers look at themselves."""
     with pytest.raises(faying.ReadError, match="f, line [0-9]+: .*"):
         check_data_sets(SETS[:missing] + SETS[missing + 1 :], "f")
-    with pytest.raises(faying.ReadError, match="is not the number of a data set|stands between"):
+    with pytest.raises(faying.ReadError, match="is not the number of a data set|is between"):
         check_data_sets(SETS[:missing] + SETS[missing : missing + 1] + SETS[missing:], "f")
 
 
@@ -52,7 +52,7 @@ def seeds(tmp_path_factory):
 @pytest.mark.parametrize(
     ("name", "line", "says"),
     [
-        ("real.uff", "    -1", "is not the number of a data set|stands between"),
+        ("real.uff", "    -1", "is not the number of a data set|is between"),
         ("u.unv", "    -1", "has no end"),
         ("four.msh", "$PhysicalNames", "is in no section"),
         ("four.msh", "$EndMeshFormat", "is in no section"),

@@ -62,8 +62,8 @@ def test_messages():
     good = np.full(len(GRID), 1e-6)
     with pytest.raises(faying.InputError, match="not at right angles"):
         GapMap(places=GRID, gaps=good, y_axis=(1.0, 1.0, 0.0)).at(np.zeros((1, 3)))
-    with pytest.raises(faying.InputError, match=r"100% of the joint lies far from the map, which covers 0 to 80 mm"):
+    with pytest.raises(faying.InputError, match=r"100% of the joint is far from the map, which covers 0 to 80 mm"):
         GapMap(places=GRID, gaps=good).at(np.full((5, 3), 3.0))
     line = np.stack([np.linspace(0, 1, 6), np.zeros(6)], axis=1)
-    with pytest.raises(faying.InputError, match="lie on one line"):
+    with pytest.raises(faying.InputError, match="are on one line"):
         GapMap(places=line, gaps=np.ones(6)).at(np.array([[0.5, 0.0, 0.0]]))

@@ -275,7 +275,7 @@ def test_progress_reports_and_its_exception_stops_the_run(rough):
         ({"heights": np.zeros(8)}, "give a map of rows and columns"),
         ({"spacing": 0.0}, "spacing = 0 m; it must be positive"),
         ({"E_star": -1.0}, "E_star = -1 Pa; it must be positive"),
-        ({"nu": 0.6}, "must lie in"),
+        ({"nu": 0.6}, "must be in"),
         ({"hardness": 0.0}, "hardness = 0.0 Pa; it must be positive"),
         ({"tol": 0.0}, "tol = 0.0"),
         ({"pressure": -1.0}, "pressure = -1.0 Pa; give 0 or more"),
@@ -285,7 +285,7 @@ def test_progress_reports_and_its_exception_stops_the_run(rough):
         ({"displacement": 1.0}, "either pressure or displacement"),
         ({"pressure": None, "displacement": -1.0}, "displacement = -1.0 m; give 0 or more"),
         ({"pressure": None, "displacement": 10.0}, "closes every gap"),
-        ({"pressure": None, "displacement": 1e4, "hardness": 0.1, "periodic": False}, "beyond what the hardness"),
+        ({"pressure": None, "displacement": 1e4, "hardness": 0.1, "periodic": False}, "more than the hardness"),
     ],
 )
 def test_bad_input_is_named_with_its_remedy(change, text):

@@ -415,7 +415,7 @@ def test_many_combinations_are_counted():
         ({"test": np.ones(3)}, r"test of shape \(3,\) for loads of shape \(3,\); it must be \(load, mode\)"),
         ({"loads": LOADS[:2]}, "for loads of shape"),
         ({"test": np.full((3, 4), np.nan)}, "the test has no frequency; an identification needs"),
-        ({"leave_out": [0, 1, 2]}, "no frequency beside the loads that are left out"),
+        ({"leave_out": [0, 1, 2]}, "no frequency apart from the loads that are left out"),
         ({"leave_out": [3]}, "leave_out = 3; the test has 3 loads, counted from 0"),
         ({"test": -np.ones((3, 4))}, "a frequency of -1 Hz; frequencies are positive"),
         ({"test": np.ones((3, 5))}, r"frequencies of shape \(256, 3, 4\); \(256, 3, 5\) is needed"),

@@ -227,7 +227,7 @@ def test_sections_of_a_cone_add_up():
             cone_compliance([(30e-3, 2e11)], **(given | changes))
     with pytest.raises(faying.InputError, match="positive length"):
         cone_compliance([(0.0, 2e11)], **given)
-    with pytest.raises(faying.InputError, match="beyond the guideline's cone"):
+    with pytest.raises(faying.InputError, match="outside the range of the guideline's cone"):
         cone_compliance([(1e-9, 2e11)], **given)
 
 

@@ -40,9 +40,9 @@ def test_three_points_are_enough_even_in_a_plane():
     ("test", "model", "match"),
     [
         (np.eye(3)[:2], np.eye(3)[:2], "three pairs or more"),
-        (np.outer(range(4), [1.0, 1, 0]), np.outer(range(4), [1.0, 1, 0]), "lie on one line"),
+        (np.outer(range(4), [1.0, 1, 0]), np.outer(range(4), [1.0, 1, 0]), "are on one line"),
         (np.vstack([np.eye(3), np.zeros(3)]), np.vstack([np.eye(3), np.zeros(3)]) * [1, 1, -1], "left-handed"),
-        (np.eye(3) * 1000, np.eye(3), "the sizes stand as 1 to 0.001"),
+        (np.eye(3) * 1000, np.eye(3), "the sizes are as 1 to 0.001"),
     ],
 )
 def test_pairs_that_cannot_be_fitted(test, model, match):

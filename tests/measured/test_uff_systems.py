@@ -64,7 +64,7 @@ def test_systems_of_data_set_18_through_each_other(tmp_path, scale, padded):
 @pytest.mark.parametrize(
     ("lines", "match"),
     [
-        (system(1, 0, 0, (0, 0, 0), (1, 0, 0), (2, 0, 0)), "lie on one line"),
+        (system(1, 0, 0, (0, 0, 0), (1, 0, 0), (2, 0, 0)), "are on one line"),
         (system(1, 0, 4, (0, 0, 0), (1, 0, 0), (0, 0, 1)), "refers to system 4, which the file does not hold"),
         (system(1, 1, 0, (0, 0, 0), (1, 0, 0), (0, 0, 1)), "cylindrical or spherical"),
         (system(1, 0, 0, (0, 0, 0), (1, 0, 0), (0, 0, 1))[:3], "no three points"),

@@ -168,7 +168,7 @@ def test_on_paper_and_without_scripts_the_pictures_stand(browser, address, page)
     with opened(browser, address, java_script_enabled=False) as still:
         pictures = still.locator("figure.static, figure.of-response")
         assert all(pictures.nth(k).is_visible() for k in range(2))
-        assert "the pictures below stand in" in still.locator("#why").inner_text()
+        assert "the pictures below replace it" in still.locator("#why").inner_text()
 
 
 def test_without_webgl_the_pictures_stand(browser, address):

@@ -120,7 +120,7 @@ def test_a_head_over_the_edge_of_a_wide_hole_is_refused(flanged):
     _, _, study, structure = flanged
     bolt = study.bolts[0]
     inside = (20e-3, 0.0, bolt.at[2])
-    with pytest.raises(faying.InputError, match="beside the centre of the hole"):
+    with pytest.raises(faying.InputError, match="away from the centre of the hole"):
         replace(bolt, at=inside).placed(structure.mesh)
 
 

@@ -33,7 +33,7 @@ def test_a_gap_that_is_closed_is_that_of_faces_that_touch(tmp_path):
     assert np.all(closed.joints[0].interface.gap == 0)
     assert frequencies(closed, 3e3) == pytest.approx(frequencies(touching, 3e3), rel=2e-3)
     (note,) = [note for note in closed.notes if note.code == "snapped"]
-    assert note.text == "joint: the faces lie up to 50 um apart; geometry.snap = 100 um closes that"
+    assert note.text == "joint: the faces are up to 50 um apart; geometry.snap = 100 um closes that"
     assert not [note for note in touching.notes if note.code == "snapped"]
 
 

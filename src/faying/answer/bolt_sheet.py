@@ -179,7 +179,11 @@ def _beyond(numbers: BoltNumbers, index: int, choice: BoltSheetChoice, found: Bo
         (low, high), (least, most) = found.axial, found.additional
         more = (least - share * low, most - share * high, found.taken - (1 - share) * high)
     names = ("least bolt force", "greatest bolt force", "force that the joint loses")
-    under = ", as found beyond the load factor" if found is not None else " beyond the load factor (no load case: none)"
+    under = (
+        ", as found, that the load factor does not give"
+        if found is not None
+        else " that the load factor does not give (no load case: none)"
+    )
     return [
         _quantity(symbol, name + under, "N", value, "bolt.diameter and bolt.material")
         for symbol, name, value in zip(("dF_u", "dF_o", "dF_P"), names, more, strict=True)

@@ -82,7 +82,7 @@ def _unmatched(pairs: Paired, measured: Array, threshold: float) -> list[Note]:
     if len(lost):
         which = ", ".join(f"{k + 1} ({measured[0, k]:.1f} Hz)" for k in lost)
         text = (
-            f"test mode {which}: no computed mode that moves at the points of the test lies within 30 % of it; it is "
+            f"test mode {which}: no computed mode that moves at the points of the test is within 30 % of it; it is "
             "left out. Raise modes.count, or look whether the test has a mode of something else"
         )
         out.append(Note(code="test-modes", text=text))

@@ -174,7 +174,7 @@ class Session:
         try:
             at = float(request.given("at"))
         except ValueError:
-            raise InputError("the request lacks where the line lies, a share from 0 to 1") from None
+            raise InputError("the request lacks the place of the line, a share from 0 to 1") from None
         return self._scan(request).line(request.given("along"), at, window_of(request.given("window")))
 
     def faces(self, request: Request) -> dict[str, Any]:

@@ -340,7 +340,7 @@ def _check_shape(case: AsperityCase) -> None:
             f"layer {layer.name if layer else None!r} with layer_thickness = {thickness} m; give both, or neither"
         )
     if not 0 <= case.hardening < 1:
-        raise InputError(f"hardening = {case.hardening}; the tangent modulus over E must lie in [0, 1)")
+        raise InputError(f"hardening = {case.hardening}; the tangent modulus over E must be in [0, 1)")
     if case.elements < 4 or (case.steps is not None and case.steps < 1):
         raise InputError(f"elements = {case.elements}, steps = {case.steps}; at least 4 elements and 1 step are needed")
     if case.domain is not None and not (

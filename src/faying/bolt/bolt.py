@@ -49,7 +49,7 @@ def torque_to_preload(
         raise InputError(f"torque {torque:g} N m and diameter {diameter:g} m must both be positive")
     if nut_factor is not None:
         if not 0.02 <= nut_factor <= 1:
-            raise InputError(f"nut_factor = {nut_factor:g}: it lies between 0.02 and 1, about 0.2 for dry steel")
+            raise InputError(f"nut_factor = {nut_factor:g}: it must be between 0.02 and 1, about 0.2 for dry steel")
         return torque / (nut_factor * diameter)
     if pitch is None or thread_friction is None or head_friction is None:
         raise InputError(
@@ -317,9 +317,9 @@ class Bolt:
             if normal_a @ normal_b < -0.5 and apart > 1e-6 * mesh.size:
                 raise InputError(
                     f"the bolt's faces {first!r} and {second!r} look away from each other, but no axis joins their "
-                    f"centres, which lie {show(float(np.linalg.norm(axis - (axis @ normal_a) * normal_a)), 'm')} "
-                    "aside of each other; give at (a point on the bolt's axis) and seat (the ring that head and nut "
-                    "press on)"
+                    f"centres, which are {show(float(np.linalg.norm(axis - (axis @ normal_a) * normal_a)), 'm')} "
+                    "apart across the normal; give at (a point on the bolt's axis) and seat (the ring that head and "
+                    "nut press on)"
                 )
             raise InputError(
                 f"the bolt's faces {first!r} and {second!r} do not look away from each other; name the two seats "
@@ -342,7 +342,7 @@ class Bolt:
         free = float((hole.point - centre) @ hole.axis)
         if free <= 0:
             raise InputError(
-                f"bolt {self.name!r}: the face {first!r} under its head lies {show(-free, 'm')} below the mouth of the "
+                f"bolt {self.name!r}: the face {first!r} under its head is {show(-free, 'm')} below the mouth of the "
                 f"tapped hole {second!r}; check which faces they are"
             )
         diameter = self.diameter or 2 * hole.radius
@@ -376,7 +376,7 @@ class Bolt:
         if near:
             beside, hole, face = min(near, key=lambda one: one[0])
             raise InputError(
-                f"bolt {self.name!r}: its axis lies {show(beside, 'm')} beside the centre of the hole of "
+                f"bolt {self.name!r}: its axis is {show(beside, 'm')} away from the centre of the hole of "
                 f"{show(2 * hole.radius, 'm')} in {face!r}, at "
                 f"({', '.join(f'{1e3 * x:.4g}' for x in hole.centre)}) mm; "
                 "give that point as `at`"

@@ -74,7 +74,7 @@ def bolt_sections(
         raise InputError(f"a bolt needs a free length and moduli above 0; its free length is {free:g} m")
     if not 0 <= shank <= free * (1 + 1e-9):
         raise InputError(
-            f"the shank is {show(shank, 'm')} long, but only {show(free, 'm')} lie between head and thread; "
+            f"the shank is {show(shank, 'm')} long, but only {show(free, 'm')} are between head and thread; "
             "give a length from 0 to that"
         )
     d = thread.diameter

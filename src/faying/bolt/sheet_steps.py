@@ -130,7 +130,7 @@ def _shares() -> tuple[Step, ...]:
         _step(
             "R3",
             "least additional bolt force",
-            "load factor times the least working load + what was found beyond that",
+            "load factor times the least working load + what a load case adds",
             "Phi F_Au dF_u",
             symbol="F_SAu",
             unit="N",
@@ -139,7 +139,7 @@ def _shares() -> tuple[Step, ...]:
         _step(
             "R3",
             "greatest additional bolt force",
-            "load factor times the greatest working load + what was found beyond that",
+            "load factor times the greatest working load + what a load case adds",
             "Phi F_Ao dF_o",
             symbol="F_SAo",
             unit="N",
@@ -204,7 +204,7 @@ def _preloads() -> tuple[Step, ...]:
         _step(
             "R5",
             "assembly preload that is needed",
-            "clamp load + (1 - load factor) times the working load + what was found beyond that + loss by embedding + "
+            "clamp load + (1 - load factor) times the working load + what a load case adds + loss by embedding + "
             "loss by temperature",
             "F_Kreq Phi F_Ao dF_P F_Zd F_thd",
             symbol="F_Mreq",
@@ -372,7 +372,7 @@ def _slip() -> tuple[Step, ...]:
         _step(
             "R12",
             "what the working load takes from the joint",
-            "(1 - load factor) times the greatest working load + what was found beyond that; the joint opens where it "
+            "(1 - load factor) times the greatest working load + what a load case adds; the joint opens where it "
             "exceeds the preload",
             "Phi F_Ao dF_P",
             symbol="F_PA",

@@ -64,7 +64,9 @@ def cone_compliance(
     total = sum(length for length, _ in sections)
     slope = 2 * cone_angle(total, seat, outer, tapped=tapped)
     if slope <= 0:
-        raise InputError(f"parts {total:g} m thick under a seat of {seat:g} m are beyond the guideline's cone")
+        raise InputError(
+            f"parts {total:g} m thick under a seat of {seat:g} m are outside the range of the guideline's cone"
+        )
     widest = total if tapped else total / 2  # from the seat to where the cone ends
     flank = min(max((outer - seat) / slope, 0.0), widest)  # from the seat to where it is as wide as the parts
     start = min(seat, outer)

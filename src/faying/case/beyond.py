@@ -95,13 +95,14 @@ def _notes(
         where = f"{joint.name}, {kilo}: on {percent(share)} of the joint the pressure exceeds the "
         where += f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends with this surface"
         effect = f"moves mode {worst + 1} most, by {change[worst]:+.2%}" if shown else f"moves no mode by {LEAST:.2%}"
-        text = f"{where}; stiffness is held there, and bonding these points instead {effect}"
+        text = f"{where}; stiffness stays constant there; bonding these points instead {effect}"
         out.append(Note(code="beyond-law", joint=joint.name, load=load, share=share, text=text))
         strong = np.flatnonzero(np.abs(change) > MATTERS)
         if len(strong):
             which = f"mode{'s' * (len(strong) > 1)} {', '.join(str(k + 1) for k in strong)}"
             text = (
-                f"{joint.name}, {kilo}: {model.name} cannot answer for {which}: held at its end or bonded beyond it, "
+                f"{joint.name}, {kilo}: {model.name} cannot answer for {which}: with constant stiffness above "
+                f"its end, or bonded there, "
                 f"the frequencies differ by up to {np.abs(change).max():.1%}; take both as bounds. "
                 f"{_others(case, number, float(s.pressure.max()))}"
             )
@@ -127,4 +128,8 @@ def _others(case: Case, number: int, pressure: float) -> str:
         if reach >= pressure:
             found.append((reach, label.lower()))
     listed = ", ".join(f"{label} to {reach / 1e9:.3g} GPa" for reach, label in sorted(found, reverse=True))
-    return f"On this surface {pressure / 1e6:.3g} MPa lie within {listed}" if found else "No law on this surface does"
+    return (
+        f"On this surface these laws reach {pressure / 1e6:.3g} MPa: {listed}"
+        if found
+        else "No law on this surface does"
+    )

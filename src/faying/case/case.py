@@ -374,7 +374,7 @@ def snapped(interface: Interface, snap: float, name: str) -> tuple[Interface, li
     widest = float(np.abs(interface.gap).max())
     if not SEEN * snap < widest <= snap:
         return interface, []
-    text = f"{name}: the faces lie up to {show(widest, 'm')} apart; geometry.snap = {show(snap, 'm')} closes that"
+    text = f"{name}: the faces are up to {show(widest, 'm')} apart; geometry.snap = {show(snap, 'm')} closes that"
     return replace(interface, gap=np.zeros_like(interface.gap)), [Note(code="snapped", joint=name, text=text)]
 
 

@@ -126,7 +126,6 @@ def poor(frequencies: Array, error: Array, which: str) -> list[Note]:
         return []
     text = (
         f"the frequency response {which} leaves a residual of {error[worst]:.1%} at {frequencies[worst]:g} Hz, where "
-        f"modes "
-        "beyond those computed count; raise modes.count, or end at a lower frequency"
+        "modes that were not computed count; raise modes.count, or end at a lower frequency"
     )
     return [Note(code="response-residual", text=text)]

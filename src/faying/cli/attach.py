@@ -43,7 +43,7 @@ from faying.text import json_text
     help="Springs node by node, or per area between all nodes that share an overlap.",
 )
 @click.option(
-    "--frequency", metavar="FREQUENCY", help="Where viscous dampers c = eta k/omega stand for the loss factor."
+    "--frequency", metavar="FREQUENCY", help="Frequency at which viscous dampers c = eta k/omega give the loss factor."
 )
 @click.option(
     "--damping",

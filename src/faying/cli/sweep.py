@@ -81,7 +81,7 @@ def command(
         click.echo(f"note: {count} point{'s have' if count > 1 else ' has'} no answer: {text}")
     if summary["beyond_law"]:
         click.echo(
-            f"note: {summary['beyond_law']} of the points press more than a tenth of the contact beyond the end of the "
-            "law, where its stiffness is held; faying run bounds what that does to a frequency"
+            f"note: {summary['beyond_law']} of the points press more than a tenth of the contact above the end of the "
+            "law, where its stiffness stays constant; faying run bounds what that does to a frequency"
         )
     click.echo(f"\nwritten to {done.path}" + (f" and {plot}" if plot else ""))

@@ -96,7 +96,7 @@ def _choose(surface: RoughSurface, pair: ContactPair, exact: HalfSpace | None) -
             f"{nearest}, with {middle[nearest]:.2f} times the k_n of the half-space, which does not resolve the contact"
         )
         return Choice(law=build(nearest, {}, surface, pair), reason=f"{reason} {at}: {faults[0]}", ratios=middle)
-    reason = f"half-space, though {faults[0]} {at}: no analytic law lies within {CLOSE - 1:.0%} of it{said}"
+    reason = f"half-space, though {faults[0]} {at}: no analytic law is within {CLOSE - 1:.0%} of it{said}"
     return Choice(law=law, reason=reason, ratios=middle)
 
 

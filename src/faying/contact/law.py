@@ -210,7 +210,7 @@ class ContactLaw(Summary, ABC):
             rows["materials"] = f"{pair.first.name} on {pair.second.name}"
         rows["covers"] = self._reach()
         rows["valid for"] = self.validity
-        rows["assumes"] = "; ".join(self._assumed()) or "nothing beyond its parameters"
+        rows["assumes"] = "; ".join(self._assumed()) or "nothing but its parameters"
         return f"Contact law {self.name}", rows
 
     def _assumed(self) -> tuple[str, ...]:

@@ -121,7 +121,7 @@ class Mates(Summary):
             raise InputError(f'of = {shown(of)}; D and G are those of "{BOTH}" together, or of "{ONE}"')
         dimension, roughness = real(D, "D"), si(G, "m", name="G")
         if not 2 < dimension < 3:
-            raise InputError(f"D = {dimension}: the dimension of a surface lies between 2 and 3, for example 2.4")
+            raise InputError(f"D = {dimension}: the dimension of a surface is between 2 and 3, for example 2.4")
         if roughness <= 0:
             raise InputError(f"G = {roughness} m; it must be positive")
         stated = GIVEN

@@ -74,7 +74,7 @@ class Faces:
         if isinstance(self.face, Profile) and isinstance(self.counter, Scan):
             raise InputError(f"{self.face.source} is a line scan; two faces need two areal scans")
         if self.D is not None and not 2 < self.D < 3:
-            raise InputError(f"D = {self.D}: the dimension of a surface lies between 2 and 3, for example 2.4")
+            raise InputError(f"D = {self.D}: the dimension of a surface is between 2 and 3, for example 2.4")
         for name, value in (("G", self.G), ("scan_area", self.scan_area)):
             if value is not None and not 0 < value < inf:
                 raise InputError(f"{name} = {value}; it must be positive and finite")

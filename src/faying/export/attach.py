@@ -188,7 +188,7 @@ def _interface(mesh: Mesh, faces: tuple[str, str], tolerance: float | None, any_
     if mesh.face_part[faces[0]] != mesh.face_part[faces[1]] and float(normals[0] @ normals[1]) > 0.5:
         raise InputError(
             f"faces {faces[0]!r} and {faces[1]!r} are turned the same way (normals {_vector(normals[0])} and "
-            f"{_vector(normals[1])}); a joint needs two that face each other: was the opposite side meant?"
+            f"{_vector(normals[1])}); a joint needs two that face each other: should it be the opposite side?"
         )
     interface = join(mesh, *faces, search_distance=tolerance)
     if not any_size and not SMALLEST <= interface.area <= LARGEST:
@@ -218,8 +218,8 @@ def _apart(mesh: Mesh, faces: tuple[str, str], interface: Interface) -> list[str
     gap = float(np.abs(interface.gap).max())
     if gap > TOUCHING * mesh.size:
         notes.append(
-            f"the faces lie up to {gap * 1e3:.3g} mm apart: springs between nodes that do not coincide resist a "
-            "rotation of the whole model"
+            f"the faces are up to {gap * 1e3:.3g} mm apart: springs between nodes that do not coincide resist a "
+            "rotation of the model"
         )
     return notes
 
@@ -304,7 +304,7 @@ def _flags(law: JointLaw, pressure: Array, area: Array) -> list[str]:
     if np.any(beyond):
         out.append(
             f"validity: on {float(area @ beyond) / total:.2%} of the joint the pressure exceeds the "
-            f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends; stiffness is held there"
+            f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends; stiffness stays constant there"
         )
     for reason, share in law.outside_validity(pressure, area).items():
         where = f"{model.name} is outside its validity range for {percent(share)} of the joint's stiffness"

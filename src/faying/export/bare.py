@@ -42,7 +42,7 @@ def modes_with_joint(
     if still not in (0, 6):
         raise InputError(
             f"the matrices leave {still} of the six rigid motions free; take them from the model without supports, or "
-            "held in all directions"
+            "fixed in all directions"
         )
     speeds = [(m.E / (m.density or np.inf)) ** 0.5 for m in attachment.materials.values()]
     shift = 0.02 * max(speeds) / mesh.size

@@ -78,7 +78,7 @@ class Condensed:
             f"tie node {nodes[0]} to the first face and node {nodes[1]} to the second: by their mean motion (RBE3, "
             "distributing coupling), right within 1 % "
             + (f"up to {self.reach:.4g} Hz in the study, " if self.reach else "in no mode of the study, ")
-            + "too soft beyond; rigid ties (RBE2) are too stiff",
+            + "too soft above; rigid ties (RBE2) are too stiff",
         )
         return CondensedDeck(
             points=self.points,

@@ -63,7 +63,7 @@ class CondensedJoint:
         scale = np.repeat([1.0, 1 / size], 3) if size > 0 else np.repeat([1.0, 0.0], 3)
         values = np.linalg.eigvalsh(about.stiffness * np.outer(scale, scale))
         if values[0] < OPEN * values[-1]:
-            raise InputError("the springs of the joint lie on one line or at one point, so that its faces can turn")
+            raise InputError("the springs of the joint are on one line or at one point, so that its faces can turn")
         return about if point is None else cls(springs=springs, point=np.asarray(point, dtype=float))
 
     @cached_property

@@ -23,7 +23,7 @@ def check(spec: ResponseChoice | None) -> None:
     for point, axis in (*spec.inputs, *spec.outputs) if spec else ():
         if _name(axis) is None:
             raise InputError(
-                f"response: the direction {list(axis)} at {[f'{1e3 * v:g} mm' for v in point]} lies along none of x, "
+                f"response: the direction {list(axis)} at {[f'{1e3 * v:g} mm' for v in point]} is along none of x, "
                 f"y, z, the only "
                 "ones of data set 58; turn it, or leave out --uff"
             )

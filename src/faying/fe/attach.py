@@ -79,7 +79,7 @@ def mean_motion(points: Array, blocks: Blocks, at: Array, region: Ring | DepthBa
     scale = np.diag([1, 1, 1, 1 / size, 1 / size, 1 / size])
     if np.linalg.cond(scale @ gram @ scale) > 1e10:
         raise InputError(
-            "the points of a face lie on one line, so that it has no rotation; widen the ring or refine the mesh"
+            "the points of a face are on one line, so that it has no rotation; widen the ring or refine the mesh"
         )
     column, entry = np.concatenate(columns), np.concatenate(entries, axis=1)
     solved = np.linalg.solve(gram, entry)

@@ -60,7 +60,7 @@ class GapMap(Summary):
             raise InputError(f"the map has {np.count_nonzero(good)} points with numbers; a map needs four or more")
         spread = np.linalg.svd(self.places[good] - self.places[good].mean(axis=0), compute_uv=False)
         if spread[1] < 1e-9 * spread[0]:
-            raise InputError("the points of the map lie on one line; a map covers an area, with x and y both varying")
+            raise InputError("the points of the map are on one line; a map covers an area, with x and y both varying")
         object.__setattr__(self, "places", self.places[good])
         object.__setattr__(self, "gaps", self.gaps[good])
 
@@ -76,8 +76,8 @@ class GapMap(Summary):
         outside = np.any((local < low - 0.25 * (high - low)) | (local > high + 0.25 * (high - low)), axis=1)
         if outside.mean() > 0.2:
             raise InputError(
-                f"{outside.mean():.0%} of the joint lies far from the map, which covers {_box(low, high)} while "
-                f"the joint lies at {_box(local.min(axis=0), local.max(axis=0))}; check origin, axes and units"
+                f"{outside.mean():.0%} of the joint is far from the map, which covers {_box(low, high)} while "
+                f"the joint is at {_box(local.min(axis=0), local.max(axis=0))}; check origin, axes and units"
             )
         inside = LinearNDInterpolator(self.places, self.gaps)(local)
         return np.asarray(np.where(np.isfinite(inside), inside, NearestNDInterpolator(self.places, self.gaps)(local)))

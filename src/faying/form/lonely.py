@@ -51,7 +51,7 @@ def refuse_lonely(places: Array, heights: Array, name: str) -> None:
         worst = alone[np.argmax(away[alone])]
         x, y = (1e3 * v for v in xy[worst])
         raise InputError(
-            f"{name}: {len(alone)} of {len(z)} points stand alone; row {rows[worst] + 1} of the numbers, at "
+            f"{name}: {len(alone)} of {len(z)} points are alone; row {rows[worst] + 1} of the numbers, at "
             f"x = {x:.4g} mm, y = {y:.4g} mm, is {1e6 * away[worst]:.4g} um off the median of its {NEIGHBOURS} "
             f"neighbours, where half of the points are within {1e6 * float(np.median(away)):.3g} um. Leave such points "
             "out, or measure more points there where the step is real"

@@ -98,6 +98,6 @@ def _check(shear_ratio: float, friction: float) -> None:
         raise InputError(f"shear_ratio = {shear_ratio}; it must be 0 or more, and below 1")
     if shear_ratio >= 1:
         raise InputError(
-            f"shear_ratio = {shear_ratio}: at T = mu F and above the joint slips as a whole; "
+            f"shear_ratio = {shear_ratio}: at T = mu F and above the joint slips everywhere; "
             "lower the shear load or raise the preload"
         )

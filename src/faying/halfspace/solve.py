@@ -334,8 +334,8 @@ def _at_displacement(problem: _Pressing, displacement: float, start: Array | Non
     while above < 0:
         if high >= ceiling:
             raise InputError(
-                f"displacement {displacement:.4g} m lies beyond what the hardness "
-                f"{most * problem.options.E_star:.4g} Pa resists: the whole map is at hardness; give less"
+                f"displacement {displacement:.4g} m is more than the hardness "
+                f"{most * problem.options.E_star:.4g} Pa allows: all of the map is at hardness; give less"
             )
         low, below = high, above
         high = min(high + 2, ceiling)
@@ -405,9 +405,9 @@ def _checked_hardness(hardness: float | ArrayLike | None, shape: tuple[int, ...]
 
 def _check_numbers(nu: float, tol: float) -> None:
     if not -1 < nu <= 0.5:
-        raise InputError(f"nu = {nu}; it must lie in (-1, 0.5], for example 0.3")
+        raise InputError(f"nu = {nu}; it must be in (-1, 0.5], for example 0.3")
     if not 0 < tol < 1:
-        raise InputError(f"tol = {tol}; it must lie between 0 and 1, for example 1e-6")
+        raise InputError(f"tol = {tol}; it must be between 0 and 1, for example 1e-6")
 
 
 def _check_pressure(pressure: float, hardness: float | Array | None) -> None:
@@ -415,7 +415,7 @@ def _check_pressure(pressure: float, hardness: float | Array | None) -> None:
         raise InputError(f"pressure = {pressure} Pa; give 0 or more")
     if hardness is not None and pressure >= (most := float(np.mean(hardness))):
         raise InputError(
-            f"pressure {pressure:.4g} Pa is not below the hardness {most:.4g} Pa: the whole map would be "
+            f"pressure {pressure:.4g} Pa is not below the hardness {most:.4g} Pa: all of the map would be "
             "at hardness and flow; lower the load or check the units"
         )
 

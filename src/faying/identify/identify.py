@@ -132,7 +132,7 @@ def _what_counts(test: Array, loads: Array, leave_out: Sequence[int]) -> tuple[M
     left_out = np.isin(np.arange(len(loads)), list(leave_out))
     wanted = known & ~left_out[:, None]
     if not wanted.any():
-        rest = " beside the loads that are left out" if left_out.any() else ""
+        rest = " apart from the loads that are left out" if left_out.any() else ""
         raise InputError(f"the test has no frequency{rest}; an identification needs at least one")
     return wanted, left_out
 

@@ -151,8 +151,8 @@ def _notes(study: Study, found: Prediction) -> list[Note]:
     far = int(np.count_nonzero(np.nanmax(found.beyond_share[found.sound], axis=1) > BEYOND))
     if far:
         text = (
-            f"{far} of {found.answered} samples press more than a tenth of the contact beyond the end of the law, "
-            "where its stiffness is held; faying run bounds what that does to a frequency"
+            f"{far} of {found.answered} samples press more than a tenth of the contact above the end of the law, "
+            "where its stiffness stays constant; faying run bounds what that does to a frequency"
         )
         out.append(Note(code="beyond", text=text))
     if found.paired is not None:

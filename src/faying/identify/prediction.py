@@ -114,7 +114,7 @@ class Prediction(Recorded):
         "sample",
         "load",
         unit="1",
-        long_name="share of the contact beyond the end of the law",
+        long_name="share of the contact above the end of the law",
         gaps=True,
         group="samples",
         name="above_range_share",

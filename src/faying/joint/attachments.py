@@ -118,6 +118,6 @@ def too_far(what: str, point: tuple[float, float, float], distance: float, low: 
     """What is said of a point [m] at some distance [m] from a structure between two corners [m]."""
     at, first, last = (", ".join(f"{1e3 * x:.4g}" for x in corner) for corner in (point, low, high))
     return (
-        f"{what}: the nearest node to ({at}) mm is {1e3 * distance:.3g} mm away; the structure lies between ({first}) "
+        f"{what}: the nearest node to ({at}) mm is {1e3 * distance:.3g} mm away; the structure is between ({first}) "
         f"and ({last}) mm; check the point and its unit"
     )

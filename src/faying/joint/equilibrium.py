@@ -323,7 +323,7 @@ class Equilibrium(ABC):
             apart = min(float(trace.gap.min()) for trace, _ in self.joints)
             raise NotConverged(
                 "preload: the search direction does not lower the energy; a joint may be fully open (before any load "
-                f"the nearest faces lie {apart * 1e6:.4g} um apart): put the faces on each other, or pull harder"
+                f"the nearest faces are {apart * 1e6:.4g} um apart): put the faces on each other, or pull harder"
             )
         end = slope(1.0)
         if abs(end) <= 0.5 * abs(start):

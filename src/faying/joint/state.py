@@ -328,7 +328,7 @@ def end_notes(structure: Structure, springs: Sequence[Springs[Interface]], load:
             model = joint.law.model
             text = (
                 f"{joint.name}, {load_text(load)}: on {percent(share)} of the joint the pressure exceeds the "
-                f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends; stiffness is held there"
+                f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends; stiffness stays constant there"
             )
             out.append(Note(code="beyond-law", joint=joint.name, load=load, share=share, text=text))
     return out

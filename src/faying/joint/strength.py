@@ -135,7 +135,7 @@ def _shank(bolt: Bolt, force: float) -> list[Note]:
         return []
     text = (
         f"bolt {bolt.name!r}: {show(force, 'N')} pull its shank of {show(bolt.diameter, 'm')} to {show(stress, 'Pa')}, "
-        f"beyond the yield strength of its material, {show(strength, 'Pa')}; the shank stays elastic here. "
+        f"above the yield strength of its material, {show(strength, 'Pa')}; the shank stays elastic here. "
         "Lower the preload, take a thicker bolt, or give its grade"
     )
     return [Note(code="bolt-yield", load=force, text=text)]
@@ -165,7 +165,7 @@ def _seats(structure: Bolted, fitted: FittedBolt | BoltPlace, force: float) -> l
         if limit is not None and pressure > limit[0]:
             text = (
                 f"bolt {fitted.bolt.name!r}: {show(force, 'N')} press its seat on {face!r} with "
-                f"{show(pressure, 'Pa')}, beyond the {limit[1]} of the part, {show(limit[0], 'Pa')}; "
+                f"{show(pressure, 'Pa')}, above the {limit[1]} of the part, {show(limit[0], 'Pa')}; "
                 "the part stays elastic here. Lower the preload, widen the seat, or give the part's bearing_limit"
             )
             out.append(Note(code="seat-yield", load=force, text=text))

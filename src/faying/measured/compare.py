@@ -318,7 +318,7 @@ def _overlay(
     o = [k for k, d in enumerate(frf.outputs) if d.point in points.nodes]
     i = [k for k, d in enumerate(frf.inputs) if d.point in points.nodes]
     if not o or not i or not np.isfinite(frf.values[np.ix_(o, i)]).any():
-        notes.append("no FRF lies between points that found a node; FRFs are not compared")
+        notes.append("no FRF is between points that have a node; FRFs are not compared")
         return None, None, None, None
     outputs, inputs = tuple(frf.outputs[k] for k in o), tuple(frf.inputs[k] for k in i)
     shared = FRF(
@@ -353,14 +353,14 @@ def _kind_of_response(frf: FRF, predicted: Complex, full: Mask, model: ModelMode
     superposed = "its elastic modes superposed: rigid motion and higher modes are not in them"
     if not count:
         return [f"the model's FRFs are {superposed}"]
-    out = ["the model's FRFs are its full response, with rigid motion and the modes beyond the last"]
+    out = ["the model's FRFs are its full response, with rigid motion and the static part of higher modes"]
     if count < len(measured):
         out = [f"the model's FRFs: {count} of {len(measured)} are its full response; the others are {superposed}"]
     pair = next(p for p in measured if full[p])
     lines = frf.frequency[np.isfinite(predicted[pair])]
     if lines[0] > frf.frequency[frf.frequency > 0][0] or lines[-1] < frf.frequency[-1]:
         out.append(
-            f"the full response reaches from {lines[0]:g} to {lines[-1]:g} Hz; the spectral lines beyond do not count "
+            f"the full response reaches from {lines[0]:g} to {lines[-1]:g} Hz; the other spectral lines do not count "
             "in FRAC"
         )
     return out

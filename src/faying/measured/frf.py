@@ -129,7 +129,7 @@ class FRF(Summary):
         measured = np.isfinite(values)
         if np.any(measured.any(axis=2) != measured.all(axis=2)) or not measured.any():
             raise InputError(
-                "an FRF holds NaN at some of its frequencies only; leave such spectral lines out, or the whole FRF"
+                "an FRF holds NaN at some of its frequencies only; leave such spectral lines out, or the FRF"
             )
         if np.abs(values[measured]).max() > LARGEST:
             raise InputError(

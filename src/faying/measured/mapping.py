@@ -54,7 +54,7 @@ def fit_transform(test: Any, model: Any) -> Transform:
     spread = np.linalg.svd(a0, compute_uv=False)
     if spread[1] < 1e-3 * spread[0] or spread[0] == 0:
         raise InputError(
-            "the points of the pairs lie on one line, about which the test may be turned at will; add one off that line"
+            "the points of the pairs are on one line, about which the test can turn; add one off that line"
         )
     u, _, vt = np.linalg.svd(a0.T @ b0)
     flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(vt.T @ u.T))])
@@ -65,7 +65,7 @@ def fit_transform(test: Any, model: Any) -> Transform:
     if rms > 0.1 * np.linalg.norm(b0) / np.sqrt(len(b)):
         raise InputError(
             f"no rigid motion carries the test's points onto the model's: {rms * 1e3:.3g} mm remain and the sizes "
-            f"stand as 1 to {ratio:.4g}. Check the pairs, the unit of length, and that neither frame is "
+            f"are as 1 to {ratio:.4g}. Check the pairs, the unit of length, and that neither frame is "
             "left-handed"
         )
     return Transform(rotation=rotation, shift=shift, rms=rms)
@@ -124,7 +124,7 @@ def map_points(
     if not here.any():
         own = float(np.linalg.norm(np.ptp(there, axis=0)))
         raise InputError(
-            f"no point of the test lies within {limit * 1e3:.3g} mm of the model; the nearest is "
+            f"no point of the test is within {limit * 1e3:.3g} mm of the model; the nearest is "
             f"{distance.min() * 1e3:.3g} mm away. The test spans {own:.3g} m, the model {size:.3g} m: check the unit "
             "(--length-unit), give the frame (--frame pairs.csv), or raise the tolerance"
         )

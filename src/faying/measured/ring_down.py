@@ -243,7 +243,7 @@ def ring_down_of_frf(
 def _check_band(band: tuple[float, float], highest: float) -> None:
     low, high = band
     if not 0 < low < high <= highest:
-        raise InputError(f"band = {low:g} to {high:g} Hz: it must rise and lie between 0 and {highest:g} Hz")
+        raise InputError(f"band = {low:g} to {high:g} Hz: it must rise and be between 0 and {highest:g} Hz")
 
 
 def _filter(frequency: Array, band: tuple[float, float]) -> Array:

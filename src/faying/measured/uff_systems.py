@@ -125,7 +125,7 @@ def _resolved(file: Path, label: int, own: Mapping[int, tuple[int, int, Array]],
     size = np.linalg.norm(x), np.linalg.norm(y)
     if not min(size) > 1e-6 * max(float(np.linalg.norm(z)), float(size[0]), 1e-300):
         raise ReadError(
-            f"{file}: the three points of coordinate system {label} (data set 18) lie on one line; export it again"
+            f"{file}: the three points of coordinate system {label} (data set 18) are on one line; export it again"
         )
     x, y = x / size[0], y / size[1]
     return UffSystem(kind=kind, axes=np.stack([x, y, np.cross(x, y)]), origin=origin)

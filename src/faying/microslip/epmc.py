@@ -204,7 +204,7 @@ class Epmc:
             except NotConverged as fault:
                 step = step**0.5
                 if np.log(step) < SHORTEST * np.log(longest):
-                    reason = f"no periodic motion is found beyond {points[-1].level:.3g}: {fault}"
+                    reason = f"no periodic motion is found above {points[-1].level:.3g}: {fault}"
                     return EpmcCurve(points=tuple(points), code="not-converged", reason=reason)
                 continue
             points.append(point)

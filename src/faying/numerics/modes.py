@@ -107,7 +107,7 @@ def check_shift(stiffness: Any, mass: Any, shift_frequency: float) -> None:
     highest = float(np.sqrt(ratio.max(initial=0.0))) / (2 * np.pi)
     if shift_frequency > TOO_HIGH * highest > 0:
         raise InputError(
-            f"a shift of {shift_frequency:.4g} Hz lies above all modes of these matrices, which end near "
+            f"a shift of {shift_frequency:.4g} Hz is above all modes of these matrices, which end near "
             f"{highest:.3g} Hz; give one near the first elastic mode"
         )
 

@@ -40,13 +40,13 @@ def lead(result: Result) -> str:
     if len(f) == 1:
         words = [f"At {load} the structure has one elastic mode of interest, at {_hertz(f[0])} Hz."]
     else:
-        words = [f"At {load} the lowest {len(f)} elastic modes lie from {_hertz(f[0])} to {_hertz(f[-1])} Hz."]
+        words = [f"At {load} the lowest {len(f)} elastic modes are from {_hertz(f[0])} to {_hertz(f[-1])} Hz."]
     if result.interval_low is not None and result.interval_high is not None:
         ends = _interval(float(result.interval_low[-1, 0]), float(result.interval_high[-1, 0])).replace("..", "and")
-        words.append(f"The first lies between {ends} Hz (5 to 95 %).")
+        words.append(f"The first is between {ends} Hz (5 to 95 %).")
     found = Score.of(result)
     if found is not None and found.inside is not None:
-        words.append(f"{int(found.inside.sum())} of {found.measured} measured frequencies lie within 5 to 95 %.")
+        words.append(f"{int(found.inside.sum())} of {found.measured} measured frequencies are within 5 to 95 %.")
     return " ".join(words)
 
 
@@ -149,7 +149,7 @@ def score_line(result: Result) -> str:
         return ""
     words = []
     if found.inside is not None:
-        words.append(f"{int(found.inside.sum())} of {found.measured} measured frequencies lie within 5 to 95 %.")
+        words.append(f"{int(found.inside.sum())} of {found.measured} measured frequencies are within 5 to 95 %.")
     if np.isfinite(found.gain):
         helps = "helps" if found.gain < 1 else "does not help"
         words.append(

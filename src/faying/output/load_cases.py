@@ -14,7 +14,7 @@ WIDTH = 80
 CASES_IN_TABLE = 3  # cases in one table of frequencies
 MOST_MODES = 10  # that the table of frequencies has
 SCOPE = (
-    "Forces in N where no unit stands, moments in N m, pressures in MPa. F_A: load that pulls the parts apart at a "
+    "Forces in N where no unit is given, moments in N m, pressures in MPa. F_A: load that pulls the parts apart at a "
     "bolt; Phi: change of the bolt's force over it, as found; M, V: bending moment of the bolt and force across it; "
     "seat: mean pressure on it. N, Q, T: normal force, shear force and torque of a joint; mu >: friction that the "
     "part round the worst bolt needs. A margin is friction over the shear and torque to carry, of a head, a joint, or "

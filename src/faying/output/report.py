@@ -99,7 +99,7 @@ def _figure(name: str, picture: str, kind: str = "") -> str:
 
 def _view(result: Result, pictures: dict[str, str]) -> list[str]:
     """The structure to look at, its data, and the pictures that stand in for it on paper and without scripts."""
-    why = "Without JavaScript the structure does not move; the pictures below stand in."
+    why = "Without JavaScript the structure does not move; the pictures below replace it."
     return [
         f'<p id="why" class="soft"><noscript>{why}</noscript></p><div id="stage"></div>',
         pages.data(to_text(of_result(result)), "scene"),
@@ -114,7 +114,7 @@ def _first_notes(result: Result) -> list[str]:
     out = [f'<p class="flag">{escape(note.text)}</p>' for note in every[:FIRST_NOTES]]
     more = len(every) - FIRST_NOTES
     if more > 0:
-        out.append(f'<p class="soft">{more} more stand under <a href="#notes">Notes</a>.</p>')
+        out.append(f'<p class="soft">{more} more are under <a href="#notes">Notes</a>.</p>')
     return out
 
 
@@ -243,7 +243,7 @@ FIGURES = {
     "frequencies": ReportFigure(
         draw=structure.frequencies,
         caption="Frequency of each mode against preload. Band: 5 to 95 % of all that is not known, where the study "
-        "asks for intervals, else the range that the law states. Dotted, where it lies near: faces bonded.",
+        "asks for intervals, else the range that the law states. Dotted, where it is near: faces bonded.",
     ),
     "comparison": ReportFigure(
         draw=_on_axes(structure.comparison),

@@ -12,8 +12,8 @@ from faying.output import page, prediction
 from faying.units import load_text
 
 MEANS = (
-    "If the listed numbers scatter as stated and the model is right, nine of ten such structures lie inside 5 % to "
-    "95 %. What is not listed is not held: the error of the mesh, a wrong dimension, a law that is wrong in its shape."
+    "If the listed numbers scatter as stated and the model is right, nine of ten such structures are inside 5 % to "
+    "95 %. What is not listed is not in it: the error of the mesh, a wrong dimension, a law that is wrong in its shape."
 )
 TELLS = (
     "An interval of a number is that of the model's number: where the model lacks something that the structure has, "

@@ -105,15 +105,15 @@ def _modes(result: Result) -> tuple[ReportSection, ...]:
         ReportSection(
             name="beyond",
             rows=table.beyond(result),
-            title="Beyond the end of a law: stiffness held, and bonded",
+            title="Above the end of a law: stiffness constant, and bonded",
         ),
         ReportSection(
             name="laws",
             rows=table.laws(result),
             title=laws,
-            line=f"l{laws[1:]}: where they end, shares of the joint beyond their end and outside their validity range, "
+            line=f"l{laws[1:]}: where they end, shares of the joint above their end and outside their validity range, "
             "modes that differ most",
-            below="Where each law ends, shares of the joints beyond that and outside its validity range, and the modes "
+            below="Where each law ends, shares of the joints above that and outside its validity range, and the modes "
             "that differ most between the laws.",
         ),
     )

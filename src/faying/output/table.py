@@ -72,7 +72,7 @@ def beyond(result: Result) -> Rows:
     """One row per mode: held at the end of the law and bonded beyond it; empty where the law covers all pressures."""
     if result.beyond_frequencies is None or result.beyond_loss_factors is None:
         return []
-    rows: Rows = [["mode", *(f"{load_text(load)} held .. bonded [Hz] (loss)" for load in result.loads)]]
+    rows: Rows = [["mode", *(f"{load_text(load)} constant .. bonded [Hz] (loss)" for load in result.loads)]]
     for j in range(len(result.bonded)):
         cells = []
         for i in range(len(result.loads)):

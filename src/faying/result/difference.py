@@ -202,7 +202,7 @@ def _paired(first: Result, second: Result, loads: tuple[int, int]) -> tuple[Inde
     apart = float(distance[:, 0].max())
     if apart > APART * size:
         count = min(first.frequencies.shape[1], second.frequencies.shape[1])
-        why = f"the surfaces of the two runs lie up to {1e3 * apart:.3g} mm apart, so modes are paired by their number"
+        why = f"the surfaces of the two runs are up to {1e3 * apart:.3g} mm apart, so modes are paired by their number"
         return np.repeat(np.arange(count)[:, None], 2, axis=1), np.full(count, np.nan), why
     shapes: list[Any] = [np.asarray(first.shapes[loads[0]], float), np.asarray(second.shapes[loads[1]], float)]
     weights = 1 / (distance + 1e-9 * size) ** 2

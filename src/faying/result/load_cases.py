@@ -127,7 +127,7 @@ class LoadCases(Recorded):
         "case", "joint", unit="1", long_name="share of the area in contact that slides", group="joints", gaps=True
     )
     friction_needed: Array = variable(
-        "case", "joint", unit="1", long_name="shear over normal force of the whole joint", group="joints", gaps=True
+        "case", "joint", unit="1", long_name="shear over normal force of all of the joint", group="joints", gaps=True
     )
     friction_needed_worst: Array = variable(
         "case", "joint", unit="1", long_name="the same round the worst bolt", group="joints", gaps=True

@@ -105,7 +105,7 @@ def _bolt(
 ) -> BoltProposal | str:
     """The bolt of a section; why there is none, where its part or its seats are not known."""
     if len(parts) != 1:
-        held = "no solid holds it, as of a beam" if not parts else f"it lies on {', '.join(map(repr, parts))}"
+        held = "no solid holds it, as of a beam" if not parts else f"it is on {', '.join(map(repr, parts))}"
         return f"{section.text}: no bolt is proposed, as {held}; give the bolt by hand"
     part = parts[0]
     places = mesh.points[np.isin(mesh.numbers, section.nodes)]

@@ -247,9 +247,9 @@ def result(
     sound = 2 < e.D < 3 and 0 < e.G < float("inf")
     words = [*facts.notes, *e.notes]
     if not 2 < e.D < 3:
-        words.append(f"D = {e.D:.3f} lies outside 2 .. 3: over this band the surface is not fractal, G means nothing")
+        words.append(f"D = {e.D:.3f} is outside 2 .. 3: over this band the surface is not fractal, G means nothing")
     elif not 2.1 <= e.D <= 2.9:
-        words.append(f"D = {e.D:.3f} lies outside 2.1 .. 2.9, where G is very uncertain and the JK model is unproven")
+        words.append(f"D = {e.D:.3f} is outside 2.1 .. 2.9, where G is very uncertain and the JK model is unproven")
     if e.misfit > 3:
         words.append(f"the spectrum strays from a power law (misfit {e.misfit:.1f}); the intervals are widened for it")
     words += consistency(e.D, e.G, Rq=facts.Rq, length=facts.length, c=c) if sound else []

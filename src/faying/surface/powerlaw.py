@@ -74,7 +74,7 @@ class _Bins:
         use = (spectrum.frequency >= low) & (spectrum.frequency <= high) & (spectrum.density > 0)
         f = spectrum.frequency[use]
         if len(f) < 5:
-            raise NotConverged(f"only {len(f)} bins of frequency lie in the band {low:.4g} .. {high:.4g} 1/m; widen it")
+            raise NotConverged(f"only {len(f)} bins of frequency are in the band {low:.4g} .. {high:.4g} 1/m; widen it")
         shape = 2 * pi * f if spectrum.axes == 2 else np.full(len(f), 2.0)
         weight = 1 / spectrum.spread[use] ** 2
         pivot = float(np.exp(np.average(np.log(f), weights=weight)))
@@ -191,7 +191,7 @@ def fit_lines(spectrum: Spectrum, low: float, high: float) -> FittedPowerLaw:
     use = (spectrum.frequency >= low) & (spectrum.frequency <= high)
     f = spectrum.frequency[use]
     if len(f) < 5:
-        raise NotConverged(f"only {len(f)} bins of frequency lie in the band {low:.4g} .. {high:.4g} 1/m; widen it")
+        raise NotConverged(f"only {len(f)} bins of frequency are in the band {low:.4g} .. {high:.4g} 1/m; widen it")
     density, width = spectrum.density[use], spectrum.width[use]
     x = np.log(f)
     pivot = float(np.exp((x[0] + x[-1]) / 2))
@@ -333,8 +333,8 @@ def _roll_off_in_words(spectrum: Spectrum, plateau: FittedPowerLaw, law: FittedP
     level = float(np.mean(np.log(plateau.expected / plateau.used**turn)))
     corner = law.pivot * float(np.exp((law.log_level - turn * np.log(law.pivot) - level) / (law.slope + turn)))
     return (
-        f"the spectrum is a plateau beyond a roll-off at about {show(1 / corner, 'm', digits=3)}; D and G are those "
-        "of the waves below",
+        f"the spectrum is a plateau for waves longer than a roll-off at about {show(1 / corner, 'm', digits=3)}; "
+        "D and G are those of the shorter waves",
     )
 
 

@@ -53,7 +53,7 @@ def summits(scan: Scan | Prepared) -> Summits:
     inner = (slice(1, -1), slice(1, -1))
     peak = z[inner] > maximum_filter(z, footprint=ring, mode="nearest")[inner]
     if not peak.any():
-        raise InputError(f"{ready.scan.source}: no point stands above its neighbours; the scan has no summit")
+        raise InputError(f"{ready.scan.source}: no point is above its neighbours; the scan has no summit")
     curvature = -(bends[0][1:-1, :][peak] + bends[1][:, 1:-1][peak]) / 2
     tops = z[inner][peak] - z.mean()
     return Summits(

@@ -151,7 +151,7 @@ def _check_laws(grid: Grid) -> None:
 
 def _check(study: Study, tolerance: float) -> None:
     if not 1e-10 <= tolerance <= 1e-2:
-        raise InputError(f"tolerance {tolerance:g} should lie between 1e-10 and 1e-2, for example 1e-6")
+        raise InputError(f"tolerance {tolerance:g} should be between 1e-10 and 1e-2, for example 1e-6")
     if study.modes.damping == "viscous":
         raise InputError("a sweep gives hysteretic loss; leave out modes.damping, or run studies one by one")
     if any(joint.springs == "per-node" for joint in study.joints):

@@ -18,7 +18,7 @@ from faying.units import load_text
 @click.option(
     "--frame",
     type=click.Path(path_type=Path),
-    help="The same table for three points or more, where they lie in the model; turns and shifts the test.",
+    help="The same table for three points or more, with their places in the model; turns and shifts the test.",
 )
 @click.option("--length-unit", help='Unit of the positions in TEST, where it states none, for example "mm".')
 @click.option("--tolerance", help='Greatest distance of point and node, for example "5 mm". Default: 2 % of the model.')

@@ -21,7 +21,7 @@ def roughness_of_cap(R: float, height: float, *, D: float, gamma: float = 1.5) -
     """Return G [m] of the surface of dimension D whose cap has radius R [m] and height h_a [m]. InputError outside."""
     log_r, half = _cap(R, height, gamma)
     if not 2 < D < 3:
-        raise InputError(f"D = {D}; the dimension of a surface lies between 2 and 3, for example 2.4")
+        raise InputError(f"D = {D}; the dimension of a surface is between 2 and 3, for example 2.4")
     return exp((log(height) - (3 - D) * (log(2) + log_r) - half) / (D - 2))
 
 
@@ -46,7 +46,7 @@ def dimension_of_cap(R: float, height: float, *, G: float, gamma: float = 1.5) -
 def cap_of_fractal(D: float, G: float, radius: float, *, gamma: float = 1.5) -> tuple[float, float]:
     """Return R and h_a [m] of the cap of base radius r_a [m] on the surface of D and G [m], eqs. (4), (6)."""
     if not 2 < D < 3:
-        raise InputError(f"D = {D}; the dimension of a surface lies between 2 and 3, for example 2.4")
+        raise InputError(f"D = {D}; the dimension of a surface is between 2 and 3, for example 2.4")
     if not (0 < G < inf and 0 < radius < inf and gamma > 1):
         raise InputError(f"G = {G} m, radius = {radius} m, gamma = {gamma}; need positive lengths and gamma above 1")
     height = 2 ** (3 - D) * G ** (D - 2) * sqrt(log(gamma)) * radius ** (3 - D)

@@ -17,7 +17,7 @@ def mixed_modulus(layer: float, substrate: float, share: ArrayLike) -> Array:
     _need(layer, substrate)
     x = np.asarray(share, float)
     if np.any((x < 0) | (x > 1) | np.isnan(x)):
-        raise InputError(f"share = {share!r}; the layer's share of the compliance lies between 0 and 1")
+        raise InputError(f"share = {share!r}; the layer's share of the compliance is between 0 and 1")
     return np.asarray(1 / (x / layer + (1 - x) / substrate))
 
 

@@ -35,7 +35,7 @@ class ZX(AsperityModel):
     def __post_init__(self) -> None:
         super().__post_init__()
         if not 2 < self.D < 3:
-            raise InputError(f"ZX: D = {self.D}; the dimension of a surface lies between 2 and 3, for example 2.4")
+            raise InputError(f"ZX: D = {self.D}; the dimension of a surface is between 2 and 3, for example 2.4")
         if not 0 < self.height < np.inf:
             raise InputError(f"ZX: height = {self.height} m; it must be positive, for example 1e-7")
 

@@ -28,7 +28,7 @@ class AreaFractionLaw(ContactLaw):
         """Area fractions as floats; InputError unless above 0 and at most a half."""
         A = np.asarray(area, float)
         good = bool(np.all((A > 0) & (A <= MOST * (1 + 1e-9))))
-        require(self.name, good, "the real area fraction lies above 0, up to 0.5")
+        require(self.name, good, "the real area fraction is above 0, up to 0.5")
         return A
 
     @staticmethod

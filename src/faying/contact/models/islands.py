@@ -47,7 +47,7 @@ def domain_extension(D: float) -> float:
     from scipy.optimize import brentq
 
     if not 2 < D < 3:
-        raise InputError(f"D = {D}: the dimension of a surface lies between 2 and 3, for example 2.4")
+        raise InputError(f"D = {D}: the dimension of a surface is between 2 and 3, for example 2.4")
     q = (3 - D) / (D - 1)
 
     def residual(psi: float) -> float:

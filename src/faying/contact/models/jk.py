@@ -185,7 +185,7 @@ class JK(ContactLaw):
             "", "share of the deformation that the asperity takes", 0, 1, "(]", choices=("exact", "computed")
         ),
         "cutoff": Parameter("", "least area that adds stiffness, over the smaller of a1c' and al'", 0, 1),
-        "loss": Parameter(TEXT, "loss factor beyond the small stage", choices=("held", "literal")),
+        "loss": Parameter(TEXT, "loss factor above the small stage", choices=("held", "literal")),
         "shear_ratio": Parameter("", "tangential load over mu times normal load", 0, 1, "[)"),
         "psi": Parameter("", "domain extension, solved where not given", 1, ends="[)"),
         "modulus_ratio": Parameter("", "E of the asperity over that of its substrate", 0),
@@ -196,7 +196,7 @@ class JK(ContactLaw):
         need = partial(require, "JK")
         need(
             not self.shear_ratio >= 1,
-            f"shear_ratio = {self.shear_ratio}: at T = mu F and above the joint slips as a whole and has no "
+            f"shear_ratio = {self.shear_ratio}: at T = mu F and above the joint slips everywhere and has no "
             "stiffness; lower the shear load or raise the preload",
         )
         super().__post_init__()

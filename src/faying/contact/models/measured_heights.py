@@ -207,6 +207,6 @@ class MeasuredHeights(ContactLaw):
             k_load=np.asarray(p * curve(x, 1) / np.exp(x)),
             reasons={
                 "real area above 0.3 of the nominal area": np.asarray(area > 0.3),
-                "closing beyond the largest measured gap": np.asarray(np.exp(x) > self._span * (1 + 1e-9)),
+                "closing above the largest measured gap": np.asarray(np.exp(x) > self._span * (1 + 1e-9)),
             },
         )

@@ -56,7 +56,7 @@ class Persson(ContactLaw):
 
         A = np.asarray(area, float)
         if not np.all((A > 0) & (A < 1)):
-            raise InputError("Persson: the real area fraction lies between 0 and 1")
+            raise InputError("Persson: the real area fraction is between 0 and 1")
         spread = self.pair.E_star * self.slope / 2 * np.sqrt(0.42 + 0.58 * A if self.corrected else np.ones_like(A))
         p = sqrt(2) * spread * erfinv(A)
         k_n = p / (self.gamma * self.h_rms)

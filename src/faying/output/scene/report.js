@@ -82,7 +82,7 @@ try {
   document.body.classList.add("live");
 } catch (fault) {
   document.body.classList.add("still");
-  document.getElementById("why").textContent = `This browser cannot show the moving view (${fault.message}); the pictures below stand in.`;
+  document.getElementById("why").textContent = `This browser cannot show the moving view (${fault.message}); the pictures below replace it.`;
 }
 for (const place of document.querySelectorAll("[data-curves]")) {
   await (place.dataset.curves === "backbones" ? backbones : curves)(place, read(place.dataset.curves));

@@ -36,7 +36,7 @@ def clean_spectrum(scan: Scan | Profile) -> tuple[Spectrum, tuple[str, ...]]:
     share = float(power[marked].sum() / power.sum())
     if share < 1e-4:
         return binned(scan, power, frequency, axes), ()
-    words = f"tool marks: {100 * share:.2g} % of the power lies in sharp peaks of the spectrum; D and G exclude it"
+    words = f"tool marks: {100 * share:.2g} % of the power is in sharp peaks of the spectrum; D and G exclude it"
     return binned(scan, power, frequency, axes, exclude=marked), (words,)
 
 

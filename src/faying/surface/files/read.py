@@ -213,7 +213,7 @@ def without_sentinels(scan: Scan | Profile) -> Scan | Profile:
         if span > 0 and min(gaps) > span:
             heights = np.where(np.isin(scan.heights, some), np.nan, scan.heights)
             notes = (
-                f"{np.sum(known == end)} points are exactly {end:.6g} m high, {gap:.3g} m from all others, which lie "
+                f"{np.sum(known == end)} points are exactly {end:.6g} m high, {gap:.3g} m from all others, which are "
                 f"within {span:.3g} m: they are taken as missing"
                 for end, gap in zip(some, gaps, strict=True)
             )

@@ -229,7 +229,7 @@ def _refuse_positions(path: Path, data: Array) -> None:
         which = " and ".join(["the first row"] * row + ["the first column"] * column)
         raise ReadError(
             f"{path}: {which} of the matrix rise{'s' * (row != column)} evenly, as positions or numbers of rows do and "
-            "heights do not; take them out, so that only heights stand in the file"
+            "heights do not; take them out, so that the file has heights alone"
         )
 
 
