@@ -9,8 +9,10 @@ import pytest
 import faying
 from faying.answer.run import run
 from faying.case.level_damping import FRICTION, REST
+from faying.cli.run import text
 from faying.export import universal
 from faying.form.form import Form
+from faying.notes import Note, grave
 from faying.output import table
 from faying.study import Study
 from tests.helpers import studies
@@ -70,6 +72,19 @@ def test_the_table_has_a_row_for_each_mode(found):
     rows = table.damping(found)
     assert [len(row) for row in rows] == [5] * 5
     assert rows[1][1].count(" .. ") == 2
+    assert not {"-0.000", "+0.000"} & {row[-1] for row in rows}
+
+
+def test_the_terminal_says_no_note_twice_and_three_first(found):
+    more = tuple(
+        Note(code="window", text=f"joint: {word} of the scan") for word in ("half", "quarter", "third", "fifth")
+    )
+    lines = text(replace(found, notes=(*found.notes, *more))).splitlines()
+    said = [line for line in lines if line.startswith("- ")]
+    assert len(said) == len(set(said))
+    end = lines.index(f"  {len(grave((*found.notes, *more))) - 3} more at the end")
+    assert sum(line.startswith("- ") for line in lines[:end]) == 3
+    assert all(any(note.text in line for line in said) for note in more)
 
 
 def test_csv_and_universal_file_have_the_damping(found, tmp_path):
@@ -101,7 +116,7 @@ def test_no_levels_no_damping(study):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("mode", [3, 4])
+@pytest.mark.parametrize("mode", [3, 4, 5])
 def test_levels_are_those_of_the_backbone(fine, mode):
     """Harmonic balance with harmonics 0 to 3, on the same laws and points: half a per cent of a damping up to 0.3 %."""
     joints = tuple(replace(joint, friction=0.2) for joint in fine.joints)

@@ -18,6 +18,7 @@ Rows = list[list[str]]
 FRACTAL = ["D", "95 % interval", "G", "95 % interval", "band", "implied Rq"]  # heads of `fractal`
 SHOWN = 2  # modes in the table of laws
 MOST_MEASURED = 12  # measured points in the table of a backbone
+LEAST_CHANGE = 5e-4  # per cent that three digits show
 SAME = 1e-4  # relative difference of two frequencies that is not shown
 
 
@@ -59,7 +60,7 @@ def damping(result: Result) -> Rows:
     change = 100 * (result.level_frequencies[-1, -1] / result.frequencies[-1] - 1)
     for j in range(len(result.bonded)):
         cells = [" .. ".join(f"{100 * one[k, j]:.2g}" for one in ends) for k in range(len(result.levels))]
-        rows.append([str(j + 1), *cells, f"{change[j]:+.3f}"])
+        rows.append([str(j + 1), *cells, f"{change[j]:+.3f}" if abs(change[j]) >= LEAST_CHANGE else "0"])
     return rows
 
 
