@@ -29,7 +29,9 @@ def test_it_runs(script, monkeypatch, capsys, tmp_path):
     figures = [plt.figure(number) for number in plt.get_fignums()]
     plt.close("all")
     assert figures
-    assert all(ax.get_xlabel() for figure in figures for ax in figure.axes if ax.get_visible() and ax.lines)
+    assert all(
+        ax.get_xlabel() for figure in figures for ax in figure.axes if ax.axison and ax.get_visible() and ax.lines
+    )
     assert capsys.readouterr().out
 
 
