@@ -214,7 +214,7 @@ def _notes(curve: BackboneCurve, bounds: ErrorBounds, witness: Witness | None) -
         ("half of the instants of a cycle", bounds.samples_damping),
     ):
         if abs(value) > NOTED:
-            text = f"at {bounds.acceleration:.3g} m/s2 {what} change the joints' damping by {value:+.0%}"
+            text = f"at {bounds.acceleration:.4g} m/s2 {what} change the joints' damping by {value:+.0%}"
             out.append(Note(code="backbone-bound", load=load, text=text))
     if line.points[-1].damping <= NOTHING:
         text = (
@@ -239,7 +239,7 @@ def _differences(curve: BackboneCurve, witness: Witness) -> list[Note]:
             continue
         point = min(curve.line.points, key=lambda p: abs(np.log(p.level / level)))
         why = (
-            f"at {level:.3g} m/s2 the static cycle has {change:+.1%} of the curve's damping from slip: it loads the "
+            f"at {level:.4g} m/s2 the static cycle has {change:+.1%} of the curve's damping from slip: it loads the "
             f"structure as the mode at rest moves, while other modes and harmonics make {point.other_modes:.1%} of the "
             f"motion and {point.slipping:.0%} of the joints' friction slides"
         )

@@ -63,7 +63,7 @@ def pick(
         raise InputError('model = "auto" takes its inputs from a surface; give [surface] with a scan, or name a law')
     if surface.scan is None:
         law = build("JK", given, surface, pair)
-        return Choice(law=law, reason="JK, for there is no areal scan to solve; a scan would give a better answer")
+        return Choice(law=law, reason="JK, since there is no areal scan to solve; a scan would give a better answer")
     return _choose(surface, pair, exact)
 
 

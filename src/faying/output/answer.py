@@ -80,10 +80,11 @@ def limit(result: Result) -> str:
         return ""
     mode = int(np.argmax(interval.width[-1]))
     most = interval.sources[int(np.argmax(interval.shares[:, -1, mode]))]
-    text = f"Widest is mode {mode + 1}, {100 * interval.width[-1, mode]:.2g} % from 5 to 95 %, most of it by {most}."
+    width = f"{100 * interval.width[-1, mode]:.2g} %"
+    text = f"The widest interval is that of mode {mode + 1}: {width} from 5 to 95 %. Most of it comes from {most}."
     less = gains(interval).get(most)
     if less is not None:
-        text += f" Known better ({SCATTER[most].remedy}), it would be {100 * less[mode]:.0f} % narrower."
+        text += f" What helps: {SCATTER[most].remedy}; the interval is then {100 * less[mode]:.0f} % narrower."
     return text
 
 

@@ -42,7 +42,7 @@ def heading(found: LoadCases, k: int) -> str:
     """Return what a case comes to, in one sentence."""
     after = f" after {found.after[k]!r}" if found.after[k] else ""
     apart = float(found.superposition[k])
-    linear = f"superposition would do, to {apart:.1%}" if apart <= ENOUGH else f"superposition is off by {apart:.0%}"
+    linear = f"superposition holds, to {apart:.1%}" if apart <= ENOUGH else f"superposition is off by {apart:.0%}"
     return f"load {found.cases[k]!r}{after}: moves up to {show(float(found.displacement[k]), 'm')}; {linear}"
 
 

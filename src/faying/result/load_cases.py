@@ -203,13 +203,13 @@ class LoadCases(Recorded):
         return self.cases.index(case)
 
     def summary(self) -> tuple[str, dict[str, str]]:
-        """Return a heading, and for each case the bolt forces, opening, slip and whether superposition does."""
+        """Return a heading, and for each case the bolt forces, opening, slip and whether superposition holds."""
         head = f"Load cases of {self.title} at {show(self.preload, 'N')}: {len(self.bolts)} bolts, "
         head += f"{len(self.joints)} joint{'s' * (len(self.joints) > 1)}"
         rows = {}
         for k, name in enumerate(self.cases[:MOST_CASES]):
             low, high = (show(float(one), "N") for one in (self.bolt_force[k].min(), self.bolt_force[k].max()))
-            linear = "superposition does" if self.superposes[k] else f"{self.superposition[k]:.0%} from superposition"
+            linear = "superposition holds" if self.superposes[k] else f"{self.superposition[k]:.0%} from superposition"
             rows[name] = f"bolts {low} to {high}, {self.opened[k].max():.1%} opens, {linear}"
         if len(self.cases) > MOST_CASES:
             rows["more cases"] = str(len(self.cases) - MOST_CASES)
