@@ -58,6 +58,8 @@ def seeds(tmp_path_factory):
         ("four.msh", "$EndMeshFormat", "is in no section"),
         ("two.msh", "$EndPhysicalNames", "is in no section"),
         ("two.msh", "6", "announces .* names and holds"),
+        ("assembly.inp", "*End Instance", "stands before the .END INSTANCE of what began before it"),
+        ("assembly.inp", "*End Part", "stands before the .END PART of what began before it"),
         ("a.cdb", "CMBLOCK,P0_LEFT", "tells the form of a block, and the line before is no command of one"),
     ],
 )
@@ -172,3 +174,26 @@ def test_a_point_of_a_form_that_nothing_has_is_refused(tmp_path):
     file.write_text("x [mm],y [mm],z [um]\n0,0,1\n1,0,2\n99999999999999999999,1,3\n1,1,2\n")
     with pytest.raises(faying.ReadError, match="row 3 of the numbers holds 1e.17 m, which is damaged"):
         read_heights(file)
+
+
+def test_an_frf_whose_point_cannot_be_read_is_refused(seeds):
+    path: Path = seeds["frf.uff"]
+    text = path.read_text()
+    lines = [line.rstrip() for line in text.splitlines()]
+    at = next(k for k, line in enumerate(lines) if line.startswith("    4 ") and line.endswith("NONE         1   3"))
+    lines[at] = lines[at].removesuffix("1   3") + "x   3"
+    other = path.with_name("spoilt.uff")
+    other.write_text("\n".join(lines) + "\n")
+    with pytest.raises(faying.ReadError, match="an FRF without a reference point, where other FRFs"):
+        faying.read_uff(other)
+
+
+def test_a_point_in_a_system_that_is_not_there_is_refused(seeds):
+    path: Path = seeds["systems.uff"]
+    lines = path.read_text().splitlines()
+    at = next(k for k, line in enumerate(lines) if line.startswith("         2         1         1         8  2.0"))
+    lines[at] = lines[at].replace("         2         1", "         2        -1", 1)
+    other = path.with_name("nowhere.uff")
+    other.write_text("\n".join(lines) + "\n")
+    with pytest.raises(faying.ReadError, match="point 2 is given in the system -1, which the file does not define"):
+        faying.read_uff(other)

@@ -36,6 +36,8 @@ def read(path: Path) -> RawMesh:
     last: Block | None = None
     for block in blocks(path):
         options, last = block.options, block
+        if opened in ("PART", "INSTANCE") and block.keyword in ("PART", "INSTANCE", "ASSEMBLY", "END ASSEMBLY"):
+            raise ReadError(f"{block.where}: *{block.keyword} stands before the *END {opened} of what began before it")
         if block.keyword == "PART":
             scope, opened = parts.setdefault(options.get("NAME", ""), Scope()), block.keyword
         elif block.keyword in ("END PART", "END INSTANCE"):

@@ -42,6 +42,8 @@ KINDS = {
     13: "cumulative distribution",
     22: "impulse response",
 }
+FRF_TYPE = 4
+GLOBAL = (0, 1)  # systems that a file need not define
 LINE = 6  # numbers in a line of data set 58
 OWN = (18, 2414)  # data sets that Faying reads itself
 TAKEN = {*OWN, 15, 55, 58, 82, 151, 164, 2411, 2412, 2420}  # and all that it takes from a file
@@ -83,6 +85,7 @@ def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFi
         )
     elif nodal:
         shapes = [_nodal_shape(s, file) for s in nodal]
+    _check_numbered([s for s in sets if s["type"] == 58 and s["func_type"] == FRF_TYPE], file)
     return UniversalFile(
         source=str(file),
         title=next((s["model_name"] for s in sets if s["type"] == 151), ""),
@@ -101,6 +104,17 @@ def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFi
             *_about_lengths(file, positions, stated=units is not None or length_unit is not None),
         ),
     )
+
+
+def _check_numbered(frfs: Sequence[dict[str, Any]], file: Path) -> None:
+    """Raise ReadError where some FRFs have a point and others have none: what cannot be read comes as 0."""
+    for name, what in (("rsp_node", "response"), ("ref_node", "reference")):
+        without = [s["number"] for s in frfs if s[name] == 0]
+        if without and len(without) < len(frfs):
+            raise ReadError(
+                f"{file}, data set {without[0]}: an FRF without a {what} point, where other FRFs of the file have one; "
+                "its header is damaged"
+            )
 
 
 def _about_others(file: Path, sets: Sequence[dict[str, Any]]) -> tuple[str, ...]:
@@ -281,6 +295,11 @@ def _points(
             if label < 1:
                 raise ReadError(f"{where}: a point has the number {label}; numbers of points begin at 1")
             moved = known.get(own) if s["type"] == 15 else None
+            if s["type"] == 15 and known and own not in (*known, *GLOBAL):
+                raise ReadError(
+                    f"{where}: point {label} is given in the system {own}, which the file does not define; it defines "
+                    f"{', '.join(map(str, known))}"
+                )
             if any(system is not None and system.kind != 0 for system in (moved, known.get(motion))):
                 raise ReadError(
                     f"{file}: point {label} is given in a cylindrical or spherical system; export it in Cartesian ones"
