@@ -58,7 +58,7 @@ def check_data_sets(lines: Sequence[str], where: str) -> None:
             inside, begun = not inside, not inside
         elif begun:
             begun, header = False, 1 if text == "151" else 0
-            if not text.split(None, 1)[:1] or not text.split()[0].rstrip("b").isdigit():
+            if not line[:6].strip().isdigit():  # the number stands in six columns
                 raise ReadError(
                     f"{where}, line {number}: {text[:40]!r} is not the number of a data set, which follows on -1; is "
                     "the file damaged, or a line -1 too much or too few?"

@@ -197,3 +197,31 @@ def test_a_point_in_a_system_that_is_not_there_is_refused(seeds):
     other.write_text("\n".join(lines) + "\n")
     with pytest.raises(faying.ReadError, match="point 2 is given in the system -1, which the file does not define"):
         faying.read_uff(other)
+
+
+def test_an_option_that_is_not_known_is_said(seeds):
+    path: Path = seeds["flat.inp"]
+    other = path.with_name("option.inp")
+    other.write_text(path.read_text().replace(" elset=p1", " e,set=p1", 1))
+    assert other.read_text() != path.read_text()
+    notes = [note.text for note in faying.read_mesh(other, unit="mm").notes]
+    assert [text for text in notes if "*ELEMENT: not known, and passed over: E, SET" in text], notes
+
+
+def test_a_data_set_without_its_number_is_refused(seeds):
+    lines = seeds["systems.uff"].read_text().splitlines()
+    at = next(k for k, line in enumerate(lines) if line.strip() == "18")
+    other = seeds["systems.uff"].with_name("unnumbered.uff")
+    other.write_text("\n".join(lines[:at] + lines[at + 1 :]) + "\n")
+    with pytest.raises(faying.ReadError, match="is not the number of a data set"):
+        faying.read_uff(other)
+
+
+def test_a_response_over_time_has_no_frequencies(seeds):
+    lines = seeds["frf.uff"].read_text().splitlines()
+    at = next(k for k, line in enumerate(lines) if line.startswith("    4   "))
+    lines[at] = "    1" + lines[at][5:]
+    other = seeds["frf.uff"].with_name("time.uff")
+    other.write_text("\n".join(lines) + "\n")
+    with pytest.raises(faying.ReadError, match="a time response over frequency"):
+        faying.read_uff(other)

@@ -69,6 +69,16 @@ class Scope:
     notes: list[str] = field(default_factory=list)
 
 
+# what a keyword may say in its line, by the manuals of Abaqus and CalculiX
+_OF_SETS = {"GENERATE", "INSTANCE", "INTERNAL", "UNSORTED"}
+OPTIONS = {
+    "NODE": {"NSET", "SYSTEM", "INPUT"},
+    "ELEMENT": {"TYPE", "ELSET", "INPUT", "FILE", "OFFSET", "PARENT", "SOLID ELEMENT NUMBERING"},
+    "NSET": {"NSET", "ELSET", *_OF_SETS},
+    "ELSET": {"ELSET", *_OF_SETS},
+}
+
+
 def take(block: Block, scope: Scope) -> None:
     """Note what a keyword and its lines say. Raises ReadError, naming both, where they cannot be read."""
     options, keyword = block.options, block.keyword
@@ -79,6 +89,9 @@ def take(block: Block, scope: Scope) -> None:
         scope.unknown.append(keyword)
     if keyword in DATA and not block.words():
         scope.notes.append(f"{block.where}: *{keyword} has no data lines: the file may be cut short")
+    strange = [key for key in options if keyword in OPTIONS and key not in OPTIONS[keyword]]
+    if strange:
+        scope.notes.append(f"{block.where}: *{keyword}: not known, and passed over: {', '.join(strange)}")
     try:
         if keyword == "NODE":
             _nodes(block, scope)

@@ -19,7 +19,7 @@ import numpy as np
 from faying.errors import InputError, ReadError
 from faying.measured.frf import Dof, Position
 from faying.measured.uff_systems import NodalShape, UffSystem, export_note, shapes_2414, systems
-from faying.measured.uff_units import FileUnits
+from faying.measured.uff_units import FREQUENCY, FileUnits
 from faying.measured.universal import Function, UniversalFile
 from faying.misuse import checked_call
 from faying.text import check_data_sets
@@ -42,7 +42,7 @@ KINDS = {
     13: "cumulative distribution",
     22: "impulse response",
 }
-FRF_TYPE = 4
+FRF_TYPE, OVER_TIME = 4, (1, 7, 8, 22)
 GLOBAL = (0, 1)  # systems that a file need not define
 LINE = 6  # numbers in a line of data set 58
 OWN = (18, 2414)  # data sets that Faying reads itself
@@ -208,6 +208,10 @@ def _function(data: dict[str, Any], where: str) -> Function:
         )
     if not (np.all(np.isfinite(values)) and np.all(np.isfinite(x))):
         raise ReadError(f"{where}: it holds NaN or infinite values; measure or export that function again")
+    if data["func_type"] in OVER_TIME and data["abscissa_spec_data_type"] == FREQUENCY:
+        raise ReadError(
+            f"{where}: a {KINDS[data['func_type']]} over frequency; its header is damaged, export that function again"
+        )
     return Function(
         kind=KINDS.get(data["func_type"], f"function of type {data['func_type']}"),
         x=x,
