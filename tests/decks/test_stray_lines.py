@@ -225,3 +225,14 @@ def test_a_response_over_time_has_no_frequencies(seeds):
     other.write_text("\n".join(lines) + "\n")
     with pytest.raises(faying.ReadError, match="a time response over frequency"):
         faying.read_uff(other)
+
+
+def test_a_group_of_elements_that_are_not_there_is_said(seeds):
+    path: Path = seeds["u.unv"]
+    lines = path.read_text().splitlines()
+    assert not [note for note in faying.read_mesh(path, unit="mm").notes if "does not hold" in note.text]
+    at = next(k for k, line in enumerate(lines) if line.startswith("         9       115"))
+    other = path.with_name("lost.unv")
+    other.write_text("\n".join(lines[:at] + lines[at + 2 :]) + "\n")
+    notes = [note.text for note in faying.read_mesh(other, unit="mm").notes]
+    assert "the group 'p0' names elements that the file does not hold: 9" in notes

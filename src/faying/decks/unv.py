@@ -50,6 +50,7 @@ def read(path: Path) -> RawMesh:
     groups: dict[str, tuple[list[int], list[int]]] = {}
     notes: list[str] = []
     exported: set[int] = set()
+    held: set[int] = set()  # numbers of all elements, those that are left out among them
     datasets = _datasets(path)
     moved = {label for number, lines in datasets if number == "2420" for label in _moved(lines)}
     for number, lines in datasets:
@@ -63,7 +64,7 @@ def read(path: Path) -> RawMesh:
                 exported |= {int(head.split()[1])} & moved
                 points[int(head.split()[0])] = [float(word.replace("D", "E")) for word in place.split()]
         elif number in _ELEMENTS:
-            extra += _elements(path, lines, solids, shells)
+            extra += _elements(path, lines, solids, shells, held)
         elif number in _GROUPS:
             groups |= _groups(path, lines)
     if exported:
@@ -73,6 +74,10 @@ def read(path: Path) -> RawMesh:
         )
     faces: dict[str, list[list[int]]] = {}
     for name, (elements, _) in groups.items():
+        absent = sorted({*elements} - held)
+        if absent:
+            shown = ", ".join(map(str, absent[:5])) + (", ..." if len(absent) > 5 else "")
+            notes.append(f"the group {name!r} names elements that the file does not hold: {shown}")
         on = [shells[e] for e in elements if e in shells]
         if on:
             faces[name] = on
@@ -103,7 +108,11 @@ def _moved(lines: list[str]) -> list[int]:
 
 
 def _elements(
-    path: Path, lines: list[str], solids: dict[str, list[tuple[int, list[int]]]], shells: dict[int, list[int]]
+    path: Path,
+    lines: list[str],
+    solids: dict[str, list[tuple[int, list[int]]]],
+    shells: dict[int, list[int]],
+    held: set[int],
 ) -> list[int]:
     """Sort the elements of a data set into solids and shells; return the nodes of beams."""
     beams: list[int] = []
@@ -113,6 +122,7 @@ def _elements(
         if len(head) < 6:
             raise ReadError(f"{path}: the element {lines[k].strip()!r} has no six numbers; is the file complete?")
         number, code, count = int(head[0]), int(head[1]), int(head[5])
+        held.add(number)
         k += 2 if code in _BEAMS else 1
         nodes: list[int] = []
         while len(nodes) < count and k < len(lines):
