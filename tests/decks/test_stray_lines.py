@@ -236,3 +236,20 @@ def test_a_group_of_elements_that_are_not_there_is_said(seeds):
     other.write_text("\n".join(lines[:at] + lines[at + 2 :]) + "\n")
     notes = [note.text for note in faying.read_mesh(other, unit="mm").notes]
     assert "the group 'p0' names elements that the file does not hold: 9" in notes
+
+
+def test_a_group_with_a_wrong_count_is_refused(seeds):
+    lines = seeds["u.unv"].read_text().splitlines()
+    at = next(k for k, line in enumerate(lines) if line == "p1.right") - 1
+    lines[at] = lines[at][:-1] + "0"
+    other = seeds["u.unv"].with_name("count.unv")
+    other.write_text("\n".join(lines) + "\n")
+    with pytest.raises(faying.ReadError, match="stands where a group has its name|names .* things and holds"):
+        faying.read_mesh(other, unit="mm")
+
+
+def test_a_set_of_numbers_that_are_not_there_is_said(seeds):
+    other = seeds["flat.inp"].with_name("absent.inp")
+    other.write_text(seeds["flat.inp"].read_text() + "*ELSET, ELSET=mine\n17, 1939\n")
+    notes = [note.text for note in faying.read_mesh(other, unit="mm").notes]
+    assert "the set 'mine' names numbers that the file does not hold: 1939" in notes

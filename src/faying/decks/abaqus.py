@@ -148,6 +148,11 @@ def _numbered(what: str, shifts: Mapping[str, int]) -> int | None:
     return int(number) + shifts[same] if same is not None and number.isdecimal() else None
 
 
+def _few(numbers: Index) -> str:
+    """The first of some numbers, as text."""
+    return ", ".join(map(str, numbers[:5].tolist())) + (", ..." if len(numbers) > 5 else "")
+
+
 def _resolved(
     sets: Mapping[str, Items], instances: Mapping[str, tuple[int, Index]], notes: list[str]
 ) -> dict[str, Index]:
@@ -159,6 +164,7 @@ def _resolved(
     as_written = {name.upper(): name for name in instances}
     upper = {name.upper(): items for name, items in sets.items()}
     done: dict[str, Index] = {}
+    everything = np.concatenate([held for _, held in instances.values()])
 
     written = {name.upper(): name for name in sets}
 
@@ -191,6 +197,9 @@ def _resolved(
                 found.append(numbers(label, (*seen, name)))
             else:
                 found.append(what + shifts[instance])
+                absent = np.setdiff1d(found[-1], everything) - shifts[instance]
+                if absent.size:
+                    notes.append(f"the set {written[name]!r} names numbers that the file does not hold: {_few(absent)}")
         done[name] = np.unique(np.concatenate(found))
         return done[name]
 

@@ -4,6 +4,7 @@ Data sets 2411 (nodes), 2412 (elements), and 2467, 2477, 2452, 2435 (groups), af
 Structural Dynamics Research Laboratory, University of Cincinnati.
 """
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -153,6 +154,8 @@ def _groups(path: Path, lines: list[str]) -> dict[str, tuple[list[int], list[int
             k += 1
             continue
         count, name = int(lines[k].split()[-1]), lines[k + 1].strip()
+        if re.fullmatch(r"(\d+\s+){3,}\d+", name):
+            raise ReadError(f"{path}: {name[:60]!r} stands where a group has its name; is the count of one wrong?")
         words: list[int] = []
         k += 2
         while len(words) < 4 * count and k < len(lines):
