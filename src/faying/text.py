@@ -7,6 +7,7 @@ from math import isfinite
 from typing import Any
 
 from faying.errors import ReadError
+from faying.typing import Index
 
 MOST_NAMES = 6
 
@@ -33,6 +34,11 @@ def _finite(tree: Any) -> Any:
     if isinstance(tree, list | tuple):
         return [_finite(value) for value in tree]
     return None if isinstance(tree, float) and not isfinite(tree) else tree
+
+
+def few(items: Sequence[object] | Index, most: int = 5) -> str:
+    """The first of some numbers or names, as text; dots stand for the others."""
+    return ", ".join(map(str, items[:most])) + (", ..." if len(items) > most else "")
 
 
 MERGED = re.compile(r" {4}-1[^\d\s.,eEdD+-]")  # a mark with something else in place of the end of the line

@@ -49,6 +49,15 @@ def seeds(tmp_path_factory):
     return {path.name: path for _, path in written(tmp_path_factory.mktemp("stray"))}
 
 
+def spoilt(path, begins, change, after=0):
+    """The file with one line replaced: the first that begins so, or one `after` it."""
+    lines = path.read_text().splitlines()
+    at = next(k for k, line in enumerate(lines) if line.startswith(begins)) + after
+    other = path.with_name(f"spoilt-{path.name}")
+    other.write_text("\n".join([*lines[:at], *change(lines[at]), *lines[at + 1 :]]) + "\n")
+    return other
+
+
 @pytest.mark.parametrize(
     ("name", "line", "says"),
     [
@@ -65,10 +74,7 @@ def seeds(tmp_path_factory):
 )
 def test_a_file_without_one_of_its_lines_is_refused(seeds, name, line, says):
     path: Path = seeds[name]
-    lines = path.read_text().splitlines(keepends=True)
-    at = next(k for k, text in enumerate(lines) if text.startswith(line))
-    cut = path.with_name(f"cut-{at}-{name}")
-    cut.write_text("".join(lines[:at] + lines[at + 1 :]))
+    cut = spoilt(path, line, lambda found: [])
     read = faying.read_uff if name.endswith("uff") else lambda file: faying.read_mesh(file, unit="mm")
     read(path)
     with pytest.raises(faying.ReadError, match=says):
@@ -84,11 +90,7 @@ def test_a_file_without_one_of_its_lines_is_refused(seeds, name, line, says):
     ],
 )
 def test_a_count_that_stands_twice_is_refused(seeds, name, section, says):
-    path: Path = seeds[name]
-    lines = path.read_text().splitlines(keepends=True)
-    at = next(k for k, text in enumerate(lines) if text.startswith(section)) + 1
-    twice = path.with_name(f"twice-{at}-{name}")
-    twice.write_text("".join([*lines[: at + 1], *lines[at:]]))
+    twice = spoilt(seeds[name], section, lambda count: [count, count], after=1)
     with pytest.raises(faying.ReadError, match=says):
         faying.read_mesh(twice, unit="mm")
 
@@ -103,11 +105,7 @@ def test_a_physical_volume_without_elements_is_said(seeds):
 
 
 def test_a_line_too_many_in_a_component_is_refused(seeds):
-    path: Path = seeds["a.cdb"]
-    lines = path.read_text().splitlines(keepends=True)
-    at = next(k for k, text in enumerate(lines) if text.startswith("CMBLOCK")) + 2
-    twice = path.with_name("twice.cdb")
-    twice.write_text("".join([*lines[: at + 1], *lines[at:]]))
+    twice = spoilt(seeds["a.cdb"], "CMBLOCK", lambda numbers: [numbers, numbers], after=2)
     with pytest.raises(faying.ReadError, match="stands in no block"):
         faying.read_mesh(twice, unit="mm")
 
@@ -177,24 +175,15 @@ def test_a_point_of_a_form_that_nothing_has_is_refused(tmp_path):
 
 
 def test_an_frf_whose_point_cannot_be_read_is_refused(seeds):
-    path: Path = seeds["frf.uff"]
-    text = path.read_text()
-    lines = [line.rstrip() for line in text.splitlines()]
-    at = next(k for k, line in enumerate(lines) if line.startswith("    4 ") and line.endswith("NONE         1   3"))
-    lines[at] = lines[at].removesuffix("1   3") + "x   3"
-    other = path.with_name("spoilt.uff")
-    other.write_text("\n".join(lines) + "\n")
+    first = "    4         0    0         0       NONE         1   1       NONE         1   3"
+    other = spoilt(seeds["frf.uff"], first, lambda header: [first.removesuffix("1   3") + "x   3"])
     with pytest.raises(faying.ReadError, match="an FRF without a reference point, where other FRFs"):
         faying.read_uff(other)
 
 
 def test_a_point_in_a_system_that_is_not_there_is_refused(seeds):
-    path: Path = seeds["systems.uff"]
-    lines = path.read_text().splitlines()
-    at = next(k for k, line in enumerate(lines) if line.startswith("         2         1         1         8  2.0"))
-    lines[at] = lines[at].replace("         2         1", "         2        -1", 1)
-    other = path.with_name("nowhere.uff")
-    other.write_text("\n".join(lines) + "\n")
+    point = "         2         1"
+    other = spoilt(seeds["systems.uff"], point, lambda line: [line.replace(point, "         2        -1", 1)])
     with pytest.raises(faying.ReadError, match="point 2 is given in the system -1, which the file does not define"):
         faying.read_uff(other)
 
@@ -209,20 +198,13 @@ def test_an_option_that_is_not_known_is_said(seeds):
 
 
 def test_a_data_set_without_its_number_is_refused(seeds):
-    lines = seeds["systems.uff"].read_text().splitlines()
-    at = next(k for k, line in enumerate(lines) if line.strip() == "18")
-    other = seeds["systems.uff"].with_name("unnumbered.uff")
-    other.write_text("\n".join(lines[:at] + lines[at + 1 :]) + "\n")
+    other = spoilt(seeds["systems.uff"], "    18", lambda number: [])
     with pytest.raises(faying.ReadError, match="is not the number of a data set"):
         faying.read_uff(other)
 
 
 def test_a_response_over_time_has_no_frequencies(seeds):
-    lines = seeds["frf.uff"].read_text().splitlines()
-    at = next(k for k, line in enumerate(lines) if line.startswith("    4   "))
-    lines[at] = "    1" + lines[at][5:]
-    other = seeds["frf.uff"].with_name("time.uff")
-    other.write_text("\n".join(lines) + "\n")
+    other = spoilt(seeds["frf.uff"], "    4   ", lambda header: ["    1" + header[5:]])
     with pytest.raises(faying.ReadError, match="a time response over frequency"):
         faying.read_uff(other)
 
@@ -239,11 +221,7 @@ def test_a_group_of_elements_that_are_not_there_is_said(seeds):
 
 
 def test_a_group_with_a_wrong_count_is_refused(seeds):
-    lines = seeds["u.unv"].read_text().splitlines()
-    at = next(k for k, line in enumerate(lines) if line == "p1.right") - 1
-    lines[at] = lines[at][:-1] + "0"
-    other = seeds["u.unv"].with_name("count.unv")
-    other.write_text("\n".join(lines) + "\n")
+    other = spoilt(seeds["u.unv"], "p1.right", lambda head: [head[:-1] + "0"], after=-1)
     with pytest.raises(faying.ReadError, match="stands where a group has its name|names .* things and holds"):
         faying.read_mesh(other, unit="mm")
 

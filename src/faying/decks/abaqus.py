@@ -23,6 +23,7 @@ from faying.decks.scope import Items, NumberSpan, Scope, placed, take
 from faying.decks.vocabulary import left_out
 from faying.errors import ReadError
 from faying.fe.elements import SOLIDS
+from faying.text import few
 from faying.typing import Array, Index
 
 
@@ -148,11 +149,6 @@ def _numbered(what: str, shifts: Mapping[str, int]) -> int | None:
     return int(number) + shifts[same] if same is not None and number.isdecimal() else None
 
 
-def _few(numbers: Index) -> str:
-    """The first of some numbers, as text."""
-    return ", ".join(map(str, numbers[:5].tolist())) + (", ..." if len(numbers) > 5 else "")
-
-
 def _resolved(
     sets: Mapping[str, Items], instances: Mapping[str, tuple[int, Index]], notes: list[str]
 ) -> dict[str, Index]:
@@ -199,7 +195,7 @@ def _resolved(
                 found.append(what + shifts[instance])
                 absent = np.setdiff1d(found[-1], everything) - shifts[instance]
                 if absent.size:
-                    notes.append(f"the set {written[name]!r} names numbers that the file does not hold: {_few(absent)}")
+                    notes.append(f"the set {written[name]!r} names numbers that the file does not hold: {few(absent)}")
         done[name] = np.unique(np.concatenate(found))
         return done[name]
 

@@ -17,6 +17,7 @@ from faying.fe.mesh import Mesh, least_jacobian
 from faying.fe.sides import Blocks, nodes_of, side_key, skin
 from faying.misuse import checked_call
 from faying.notes import Note
+from faying.text import few
 from faying.typing import Array, Index
 
 STEP = (".step", ".stp")
@@ -216,7 +217,7 @@ class _Builder:
             wrong = numbers[least_jacobian(points, block) <= 0]
             if len(wrong):
                 raise InputError(
-                    f"{self.name}: {len(wrong)} elements have no or negative volume: {_some(wrong)}; repair the "
+                    f"{self.name}: {len(wrong)} elements have no or negative volume: {few(wrong)}; repair the "
                     "mesh or its node order"
                 )
         used = np.zeros(len(points), dtype=bool)
@@ -229,15 +230,15 @@ class _Builder:
         lost = loose[~np.isin(loose, points_of_reference)]
         if len(lost) > max(FEW_NODES, MOST_LOST * len(points)) and not self.raw.counted:
             raise InputError(
-                f"{self.name}: {len(lost)} of {len(points)} nodes belong to no element: {_some(lost)}; delete them, or "
+                f"{self.name}: {len(lost)} of {len(points)} nodes belong to no element: {few(lost)}; delete them, or "
                 "is the file cut short?"
             )
         if len(loose) > len(lost):
             text = f"{len(loose) - len(lost)} reference points are left out, with the couplings that name them: "
-            text += _some(loose[np.isin(loose, points_of_reference)])
+            text += few(loose[np.isin(loose, points_of_reference)])
             self.notes.append(Note(code="reference-points", text=text))
         if len(lost):
-            text = f"{len(lost)} nodes belong to no element and are left out: {_some(lost)}"
+            text = f"{len(lost)} nodes belong to no element and are left out: {few(lost)}"
             self.notes.append(Note(code="left-out", text=text))
 
     def _parts(
@@ -500,10 +501,6 @@ def _several(name: str) -> str | list[str]:
     """The sets that a name such as "steel + alu" joins; the name where there is no plus sign."""
     some = [one.strip() for one in name.split("+")]
     return some if len(some) > 1 and all(some) else name
-
-
-def _some(numbers: Index) -> str:
-    return ", ".join(map(str, numbers[:5])) + (", ..." if len(numbers) > 5 else "")
 
 
 def _dividing(numbers: Index, sets: Mapping[str, Index]) -> Index | None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from faying.decks.raw import RawMesh, face_blocks, gathered, index, read_text
 from faying.errors import ReadError
-from faying.text import check_data_sets
+from faying.text import check_data_sets, few
 
 _NODES, _ELEMENTS, _GROUPS = ("2411", "781"), ("2412", "780"), ("2467", "2477", "2452", "2435")
 # code of a finite element: kind, and the places of its nodes, which run round: corner, middle, corner, ...
@@ -77,8 +77,7 @@ def read(path: Path) -> RawMesh:
     for name, (elements, _) in groups.items():
         absent = sorted({*elements} - held)
         if absent:
-            shown = ", ".join(map(str, absent[:5])) + (", ..." if len(absent) > 5 else "")
-            notes.append(f"the group {name!r} names elements that the file does not hold: {shown}")
+            notes.append(f"the group {name!r} names elements that the file does not hold: {few(absent)}")
         on = [shells[e] for e in elements if e in shells]
         if on:
             faces[name] = on

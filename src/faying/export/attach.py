@@ -26,6 +26,7 @@ from faying.study.keys.geometry import GeometryChoice, mesh_of
 from faying.study.keys.joint import JointChoice
 from faying.study.pressure import read_pressure
 from faying.study.study import Study
+from faying.text import few
 from faying.typing import Array
 
 SMALLEST, LARGEST = 1e-7, 10.0  # areas of a joint [m2] beyond which the unit is doubted
@@ -213,7 +214,7 @@ def _apart(mesh: Mesh, faces: tuple[str, str], interface: Interface) -> list[str
         every = mesh.face_nodes(name)
         lost = mesh.numbers[np.setdiff1d(every, nodes[values != 0])]
         if len(lost):
-            some = ", ".join(map(str, lost[:5])) + (", ..." if len(lost) > 5 else "")
+            some = few(lost)
             notes.append(f"{len(lost)} of {len(every)} nodes of {name!r} have no partner within the tolerance: {some}")
     gap = float(np.abs(interface.gap).max())
     if gap > TOUCHING * mesh.size:

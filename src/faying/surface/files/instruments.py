@@ -11,6 +11,7 @@ import numpy as np
 
 from faying.errors import FayingError, InputError, ReadError
 from faying.surface.scan import Instrument, Profile, Scan, check_points
+from faying.text import few
 from faying.units import scale
 
 ROUNDED = 0.1  # of a step: how far the positions of a line may be off an even grid
@@ -141,7 +142,7 @@ def _packed(file: Path) -> str:
             names = archive.namelist()
     except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError):
         return ""
-    shown = ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")
+    shown = few(names, 3)
     return f"; it is a zip archive of {len(names)} files ({shown}): unpack it and give one of them"
 
 
