@@ -71,6 +71,7 @@ async function read() {
   if (project.text !== null && project.text !== state.saved && $("text").value === state.saved) {
     $("text").value = state.saved = project.text;
     draw();
+    explain();
     check();
     glance();
   }
