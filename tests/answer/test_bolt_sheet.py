@@ -219,7 +219,7 @@ def test_the_preload_is_chosen(made):
     (small,) = bolt_sheet(made(bolt_sheet=SAID), "2 kN").sheets
     assert small.row("F_Mmin").inputs[0].value == pytest.approx(2e3)
     assert small.row("F_Mreq").verdict == "exceeded"  # embedding of 2 um costs most of it
-    with pytest.raises(faying.InputError, match="no preload of 5 kN; it has 2 kN, 6 kN"):
+    with pytest.raises(faying.InputError, match="preload = 5 kN: the study has no such preload; it has 2 kN, 6 kN"):
         bolt_sheet(made(), "5 kN")
 
 

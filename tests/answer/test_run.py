@@ -17,6 +17,7 @@ from faying.study import Study
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import SurfaceChoice
 from tests.helpers.loads import bolt_load
+from tests.helpers.preloads import pulled
 from tests.helpers.studies import write
 
 
@@ -146,8 +147,7 @@ def test_a_preload_that_the_law_covers_has_one_answer(result):
 
 def test_a_preload_that_the_law_does_not_cover_has_two_answers(study):
     """Held below, bonded above; what goes on rising beyond the law lies between them."""
-    pulled = replace(study, bolts=(replace(study.bolts[0], preload=(1e3, 5e5)),))
-    found = run(pulled)
+    found = run(pulled(study, 1e3, 5e5))
     assert found.beyond_frequencies[0] == pytest.approx(found.frequencies[0], rel=1e-12)  # inside the law
     assert np.all(found.beyond_frequencies[1] >= found.frequencies[1])
     assert np.all(found.beyond_frequencies[1] <= found.bonded * (1 + found.beyond_loss_factors[1] ** 2) * (1 + 1e-4))
@@ -222,7 +222,7 @@ def test_any_continuation_beyond_the_law_lies_in_the_bracket(study, factor):
     from faying.case.solve import solve
     from faying.numerics.modes import lowest_modes
 
-    small = replace(study, bolts=(replace(study.bolts[0], preload=(5e5,)),), modes=ModesChoice(count=4))
+    small = replace(pulled(study, 5e5), modes=ModesChoice(count=4))
     case = Case.of(small)
     structure = case.structure
     state = solve(case, 0, Reanalysis(case), Progress(0))

@@ -226,7 +226,7 @@ def test_faults_are_named(study, monkeypatch):
         faying.backbone(study, friction=0.2, harmonics=0)
     with pytest.raises(InputError, match="elastic modes count from 1"):
         faying.backbone(study, friction=0.2, mode=0)
-    with pytest.raises(InputError, match="no preload of 2 kN in the study; it has 1 kN, 3 kN"):
+    with pytest.raises(InputError, match="preload = 2 kN: the study has no such preload; it has 1 kN, 3 kN"):
         faying.backbone(study, friction=0.2, load=2000.0)
     with pytest.raises(InputError, match="rest_damping = 2"):
         faying.backbone(study, friction=0.2, rest_damping=2.0)

@@ -142,7 +142,7 @@ def test_levels_are_those_of_the_backbone_on_lapped_plates(mode):
     plan = replace(
         study,
         geometry=replace(study.geometry, size=1.6 * study.geometry.size, face_size=sizes),
-        bolts=tuple(replace(bolt, preload=bolt.preload[-1:]) for bolt in study.bolts),
+        preloads=study.preloads[-1:],
         joints=tuple(replace(joint, friction=0.2, form=Form()) for joint in study.joints),
         modes=replace(study.modes, count=5, intervals=False),
     )

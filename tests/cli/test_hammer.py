@@ -136,7 +136,7 @@ def test_frfs_alone_are_identified_on_the_way(result, test_file, frame, capsys):
     ("more", "match"),
     [
         ((), "give the frame"),
-        (("--load", "5 kN"), "no preload of 5 kN; it holds 2 kN, 8 kN"),
+        (("--load", "5 kN"), "result.nc has no such preload; it has 2 kN, 8 kN"),
         (("--tolerance", "5"), "no unit"),
         (("--points", "absent.csv"), "cannot be read"),
     ],

@@ -12,6 +12,7 @@ from faying.fe.faces import face_centre
 from faying.joint.modal import ModesChoice
 from faying.joint.tighten import tighten
 from faying.study import Study
+from tests.helpers.preloads import pulled
 
 STUDY = Path(__file__).parents[2] / "examples/solid-bolt/study.toml"
 
@@ -76,5 +77,5 @@ def test_a_sweep_over_its_preload(study, tmp_path):
     plan = replace(study, geometry=coarse, modes=ModesChoice(count=4))
     swept = sweep(plan, (axis_of("bolt.preload=1 kN:3 kN:3"),), tmp_path / "out.nc")
     for place, force in ((1, 2e3), (2, 3e3)):
-        full = run(replace(plan, bolts=(replace(plan.bolts[0], preload=(force,)),)))
+        full = run(pulled(plan, force))
         assert swept.frequencies[place] == pytest.approx(full.frequencies[0], rel=1e-5)

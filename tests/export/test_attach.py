@@ -1,7 +1,6 @@
 """A law on two faces of a user's model: pressures from everywhere, modes from matrices, and every fault told."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,6 +17,7 @@ from faying.study import Study
 from tests.helpers import meshfiles
 from tests.helpers.boxes import row
 from tests.helpers.models import two
+from tests.helpers.preloads import pulled
 
 FACES = ("p0.right", "p1.left")
 TEXT = meshfiles.STUDY
@@ -124,7 +124,7 @@ def test_pressure_from_our_preload(tmp_path):
     assert "bolts at 3 kN" in " ".join(found.deck.facts)
     with pytest.raises(faying.InputError, match="the study has the preloads 1 kN, 3 kN; say which with --preload"):
         attached(tmp_path, "solve")
-    with pytest.raises(faying.InputError, match="--preload 2 kN: the study has 1 kN, 3 kN"):
+    with pytest.raises(faying.InputError, match="preload = 2 kN: the study has no such preload; it has 1 kN, 3 kN"):
         attached(tmp_path, "solve", preload="2 kN")
 
 
@@ -132,7 +132,7 @@ def test_frequencies_are_those_of_a_study(tmp_path):
     """Springs per area of `attach` on the bare matrices give the modes of `run`, loss factors too."""
     mesh = two(("hex8", "hex8"), ((2, 2), (2, 2)), counts=(2, 2))
     file, study = model(tmp_path, mesh)
-    wanted = run(replace(study, bolts=tuple(replace(b, preload=(3000.0,)) for b in study.bolts)))
+    wanted = run(pulled(study, 3e3))
     K, M = assemble(mesh, dict.fromkeys(mesh.parts, faying.CATALOGUE["45 steel"]))
     mmwrite(tmp_path / "K.mtx", K * 1e-3)
     mmwrite(tmp_path / "M.mtx", M * 1e-3)

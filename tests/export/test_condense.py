@@ -91,7 +91,7 @@ def test_the_command_writes_a_deck(file, tmp_path, capsys):
     ("given", "text"),
     [
         (["--joint", "lid"], r"no joint 'lid'; the study has 'joint'"),
-        (["--preload", "3 kN"], "the study has 2 kN, 6 kN"),
+        (["--preload", "3 kN"], "preload = .* no such preload; it has 2 kN, 6 kN"),
         (["--to", "mapdl"], "--to needs --unit"),
         (["--point-a", "1 mm, 2 mm, 3 mm"], "three lengths with semicolons"),
     ],

@@ -27,6 +27,7 @@ from faying.output.report_predicted import predicted
 from faying.progress import silent
 from faying.study import Study
 from faying.sweeps.trainer import Trainer
+from tests.helpers.preloads import pulled
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "two-blocks"
 LAW = """
@@ -84,11 +85,10 @@ def test_a_sample_has_the_curve_of_the_study_with_its_numbers(plan, found):
     for sample in (0, 5):
         drawn = dict(zip(names, found.values[sample], strict=True))
         steel = replace(plan.materials["45 steel"], E=drawn["material.45 steel.E"])
-        (bolt,), (joint,) = plan.bolts, plan.joints
+        (joint,) = plan.joints
         mine = replace(
-            plan,
+            pulled(plan, 3000.0 * drawn["bolt.bolt 1.factor"]),
             materials={**plan.materials, "45 steel": steel},
-            bolts=(replace(bolt, preload=(3000.0 * drawn["bolt.bolt 1.factor"],)),),
             joints=(replace(joint, friction=drawn["joint.friction"]),),
             backbone=replace(plan.backbone, friction=()),
             uncertain=None,

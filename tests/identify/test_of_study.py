@@ -226,7 +226,7 @@ def test_preloads_are_left_out_by_their_value(tmp_path, given, expected):
 
 def test_questions_without_an_answer_are_refused(tmp_path):
     plan = study_of(tmp_path)
-    with pytest.raises(InputError, match="no preload of 7 kN in the study; it has 2 kN, 6 kN"):
+    with pytest.raises(InputError, match="leave_out = 7 kN: the study has no such preload; it has 2 kN, 6 kN"):
         left_out(plan, "7 kN")
     with pytest.raises(InputError, match="names every preload"):
         left_out(plan, ["2 kN", "6 kN"])

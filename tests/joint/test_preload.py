@@ -8,7 +8,7 @@ from faying.joint import preload as module
 from faying.joint.equilibrium import Equilibrium
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
-from faying.joint.loads import preload_index
+from faying.joint.preload_case import preload_index
 from faying.joint.structure import Structure
 from faying.numerics.modes import lowest_modes
 from tests.helpers.boxes import stack
@@ -203,9 +203,13 @@ def test_per_area_springs_do_not_depend_on_the_mesh_and_per_node_springs_do():
 def test_a_preload_is_found_by_the_digits_that_messages_print():
     loads = (1e3, 10e3 / 3, 12e3)
     assert [preload_index(loads, float(f"{load:.4g}")) for load in loads] == [0, 1, 2]
-    assert preload_index(loads, 2e3) is None
-    assert preload_index(loads, -1e3) is None
-    assert preload_index((), 1e3) is None
+    assert preload_index(loads, None) == 2
+    assert preload_index(loads, f"{loads[1] / 1e3:.4g} kN") == 1
+    for wanted, fault in ((2e3, "no such preload"), (-1e3, "must be positive"), ("1 mm", "not in a unit like N")):
+        with pytest.raises(faying.InputError, match=fault):
+            preload_index(loads, wanted)
+    with pytest.raises(faying.InputError, match="it has none"):
+        preload_index((), 1e3)
     assert preload_index((1e3, 1.0005e3), 1.0004e3) == 1
 
 

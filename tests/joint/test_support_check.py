@@ -11,6 +11,7 @@ from faying.fe.interface import join
 from faying.joint.attachments import Support
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
+from faying.joint.preload_case import PreloadCase
 from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions, checked_preload, open_joints
 from faying.numerics.modes import lowest_modes
@@ -47,12 +48,12 @@ def test_a_gap_that_the_preload_does_not_close():
     with pytest.raises(
         faying.InputError, match=r"part 'p2' is free to move .* joint 'b' \(.* um apart .* gap map and its unit"
     ):
-        checked_preload(structure, structure.assembly(), [2e3])
+        checked_preload(structure, structure.assembly(), PreloadCase((2e3,)))
 
 
 def test_an_open_joint_between_parts_that_are_held_otherwise():
     structure = three(50e-6, supports=(Support(face="p0.left"), Support(face="p2.right")))
-    found = checked_preload(structure, structure.assembly(), [2e3])
+    found = checked_preload(structure, structure.assembly(), PreloadCase((2e3,)))
     assert open_joints(structure, found.pressures) == ["b"]
     assert found.openings[1].min() == pytest.approx(50e-6, rel=0.1)
     assert not np.any(found.pressures[1])
@@ -94,7 +95,7 @@ def clamped_pair(*supports):
 
 
 def modes_of(structure):
-    found = checked_preload(structure, structure.assembly(), [2e3])
+    found = checked_preload(structure, structure.assembly(), PreloadCase((2e3,)))
     K, _ = structure.joined(structure.springs(found.pressures))
     return lowest_modes(K, structure.vibrating[1], 8, shift_frequency=structure.shift_frequency)
 

@@ -92,7 +92,7 @@ def test_preloads_are_those_that_both_have():
     apart = compare_runs(FIRST, two_boxes(loads=np.array([3e3, 12e3])))
     assert apart.loads == (1, 1)
     assert apart.notes == ("the preloads differ: 8 kN in the first run, 12 kN in the second",)
-    with pytest.raises(InputError, match=r"the first run has no preload of 5 kN; it has 2 kN, 8 kN"):
+    with pytest.raises(InputError, match=r"preload = 5 kN: the first run has no such preload; it has 2 kN, 8 kN"):
         compare_runs(FIRST, FIRST, 5e3)
 
 

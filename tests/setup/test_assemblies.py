@@ -121,7 +121,7 @@ def test_run_carries_the_preload_between_free_and_bonded(made, name):
     density = faying.CATALOGUE["S355"].density
     expected = [volumes[part] * density for part in found.parts]
     assert found.part_masses == pytest.approx(expected, rel=2e-3)
-    force = sum(bolt.preload[0] for bolt in study.bolts)
+    force = sum(study.preloads[0].forces)
     assert found.pressure[0] @ found.weights == pytest.approx(kind.rows * force, rel=1e-6)
     for number, joint in enumerate(found.joints):
         here = found.joint_of_point == number

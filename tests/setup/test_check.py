@@ -28,6 +28,7 @@ from tests.helpers import studies
 from tests.helpers.boxes import row
 from tests.helpers.laps import lapped
 from tests.helpers.meshfiles import STUDY, abaqus
+from tests.helpers.preloads import pulled
 
 JOINED = 'faces = ["lower.joint", "upper.joint"]'
 
@@ -309,9 +310,9 @@ ASSEMBLIES = {
 def test_time_and_memory_are_those_of_commands(folder, unknowns, loads, seconds, memory):
     """Each within 1.5."""
     study = Study.read(folder / "study.toml")
-    study = replace(study, bolts=tuple(replaced(bolt, loads) for bolt in study.bolts))
+    study = pulled(study, *[1e3] * loads)
     if unknowns == SOLID_BOLT:
-        study = replace(study, bolts=(SolidBolt(name="M8", part="bolt", faces=("a", "b"), preload=(1e3, 2e3)),))
+        study = replace(study, bolts=(SolidBolt(name="M8", part="bolt", faces=("a", "b")),))
     expected = Expected.of(study, unknowns)
     assert 1 / 1.5 < expected.memory / (memory * 1e9) < 1.5
     assert 1 / 1.5 < expected.seconds / seconds < 1.5
@@ -327,15 +328,11 @@ def test_time_and_memory_are_those_of_assemblies(folder, name):
     assert 1 / 1.5 < expected.seconds / seconds < 1.5
 
 
-def replaced(bolt, loads):
-    return replace(bolt, preload=(1e3,) * loads)
-
-
 def test_more_laws_loads_and_damping_take_longer(folder):
     study = Study.read(folder / "study.toml")
     base = Expected.of(study, 100_000).seconds
     assert Expected.of(replace(study, modes=replace(study.modes, levels=())), 100_000).seconds < base
-    twice = replace(study, bolts=tuple(replaced(bolt, 2) for bolt in study.bolts))
+    twice = pulled(study, 1e3, 1e3)
     assert Expected.of(twice, 100_000).seconds > base
     assert Expected.of(study, 200_000).seconds > 2 * base
 

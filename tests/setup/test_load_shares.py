@@ -25,7 +25,7 @@ def strips(*edges):
 
 
 def shared(mesh, count, depths=None, ring=(HOLE, SEAT)):
-    bolt = faying.Bolt("bolt", ("up 0", "down 0"), preload=10e3, seat=ring)
+    bolt = faying.Bolt("bolt", ("up 0", "down 0"), seat=ring)
     axis = np.array([0.0, 0.0, -1.0])
     place = BoltPlace(bolt=bolt, point=np.array([0, 0, DEPTH]), axis=axis, length=LENGTH, ring=ring)
     names = [f"joint {k}" for k in range(count)]

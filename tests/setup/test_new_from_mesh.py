@@ -55,7 +55,7 @@ def test_a_section_becomes_a_bolt_with_the_force_of_its_node(tmp_path, mesh):
     assert bolt.part == "bolt0"
     assert bolt.faces == ("bolt0.head", "bolt0.nut")
     assert bolt.at == pytest.approx((0.02, 0.02, 0.01))
-    assert bolt.preload == (5000.0,)
+    assert study.loads == (5000.0,)
     assert {frozenset(joint.faces) for joint in study.joints} == {
         frozenset(("lower.joint", "upper.joint")),
         frozenset(("bolt0.head", "upper.seat0")),
@@ -95,7 +95,7 @@ def test_a_section_that_is_held_has_no_force(tmp_path, mesh):
 
 def test_the_force_counts_by_the_set_of_its_node_and_the_last_step(tmp_path, mesh):
     load = "*NSET, NSET=pull\n9001\n*STEP\n*STATIC\n*CLOAD\npull, 1, 1000.\n*END STEP\n*STEP\n*CLOAD\nPULL, 1, 2500.\n"
-    assert proposed(tmp_path, deck(mesh, load=load))[0].bolts[0].preload == (2500.0,)
+    assert proposed(tmp_path, deck(mesh, load=load))[0].loads == (2500.0,)
 
 
 def test_a_bolt_without_named_seats_and_a_beam_are_said_and_not_proposed(tmp_path, mesh):

@@ -51,8 +51,9 @@ def test_a_bolt_with_everything(folder):
             "nut_mass": "4 g",
         }
     )
-    bolt = study(folder, bolt=[given]).bolts[0]
-    assert bolt.preload == pytest.approx((10 / (0.2 * 8e-3), 20 / (0.2 * 8e-3)))
+    made = study(folder, bolt=[given])
+    bolt = made.bolts[0]
+    assert made.loads == pytest.approx((10 / (0.2 * 8e-3), 20 / (0.2 * 8e-3)))
     assert bolt.at == pytest.approx((0.0, 1e-3, 2e-3))
     assert bolt.seat == pytest.approx((8.4e-3, 16e-3))
     assert len(bolt.washers) == 2
@@ -65,7 +66,7 @@ def test_a_solid_bolt(folder):
     bolt = study(folder, bolt=[given | {"preload": "2 kN"}]).bolts[0]
     assert (bolt.part, bolt.faces) == ("bolt", ("bolt.head", "bolt.nut"))
     by_torque = {"torque": "20 N m", "diameter": "8 mm", "nut_factor": 0.2}
-    assert study(folder, bolt=[given | by_torque]).bolts[0].preload == pytest.approx((12.5e3,))
+    assert study(folder, bolt=[given | by_torque]).loads == pytest.approx((12.5e3,))
     with pytest.raises(faying.InputError, match=r"the part 'bolt', whose mesh has shank.*; leave out material, seat$"):
         study(folder, bolt=[given | {"torque": "20 N m", "nut_factor": 0.2} | SHANK | {"seat": ["9 mm", "16 mm"]}])
     with pytest.raises(faying.InputError, match=r"1 fault\n.*leave out material$"):
@@ -184,7 +185,7 @@ def test_laws_that_a_scan_gives_are_read_with_what_changes_them(folder):
 def test_torque_with_friction(folder):
     given = BOLT | SHANK | {"torque": "20 N m", "pitch": "1.25 mm", "thread_friction": 0.12, "head_friction": 0.14}
     exact = torque_to_preload(20.0, 8e-3, pitch=1.25e-3, thread_friction=0.12, head_friction=0.14)
-    assert study(folder, bolt=[given]).bolts[0].preload == pytest.approx((exact,))
+    assert study(folder, bolt=[given]).loads == pytest.approx((exact,))
 
 
 @pytest.mark.parametrize(
@@ -254,8 +255,8 @@ def test_other_faults(folder, text, fault):
 
 def test_order_and_passes(folder):
     two = [BOLT | {"preload": "1 kN"}, BOLT | {"name": "b2", "preload": "1 kN"}]
-    assert study(folder, '[tightening]\norder = ["b2", "b1"]\npasses = 2', bolt=two).order == (1, 0, 1, 0)
-    assert study(folder).order is None
+    assert study(folder, '[tightening]\norder = ["b2", "b1"]\npasses = 2', bolt=two).preloads[0].order == (1, 0, 1, 0)
+    assert study(folder).preloads[0].order is None
 
 
 def joint(**more):

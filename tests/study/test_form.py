@@ -13,6 +13,7 @@ from faying.form.form import Form
 from faying.form.machining import ASSUMED, GAUSSIAN, PROCESSES
 from faying.joint.modal import ModesChoice
 from faying.study import Study
+from tests.helpers.preloads import pulled
 from tests.helpers.studies import write
 
 
@@ -168,7 +169,7 @@ def test_a_form_that_is_given_has_no_waves(coarse, form):
 
 
 def test_one_load_has_a_band_without_slopes(coarse):
-    result = run(replace(coarse, bolts=(replace(coarse.bolts[0], preload=(2e3,)),)))
+    result = run(pulled(coarse, 2e3))
     assert result.wave_slopes is None
     assert result.wave_frequencies.shape == (4, 1, 4)
     assert np.all(np.ptp(result.wave_frequencies[:, 0], axis=0) > 0)

@@ -74,7 +74,7 @@ def test_the_thread_pulls_evenly_over_the_length_that_it_engages(fitted):
 
 def test_the_screwed_joint_carries_its_preload_and_lies_between_free_and_bonded(screwed):
     found = run(replace(screwed, modes=replace(screwed.modes, intervals=False)))
-    force = sum(bolt.preload[0] for bolt in screwed.bolts)
+    force = sum(screwed.preloads[0].forces)
     assert found.pressure[0] @ found.weights == pytest.approx(force, rel=1e-6)
     assert np.all(found.free <= found.frequencies[0])
     assert np.all(found.frequencies[0] <= found.bonded)

@@ -31,7 +31,7 @@ def study(folder, **changes):
 
 def test_the_template_is_a_study(folder):
     s = study(folder)
-    assert s.bolts[0].preload == (2000.0, 6000.0)
+    assert s.loads == (2000.0, 6000.0)
     assert s.geometry.size == pytest.approx(8e-3)
     assert s.geometry.face_size == {"upper.joint": pytest.approx(4e-3)}
     assert s.surface.G == pytest.approx(1.53e-10)
@@ -149,7 +149,7 @@ def test_a_test_in_a_file(folder, uff):
     [
         ({"file": "none.uff"}, "test.file: no file"),
         ({"frequencies": [["400 Hz"]]}, "both file and frequencies; give one"),
-        ({"load": "5 kN"}, "test.load = 5 kN is no preload of the study; its first bolt has 2 kN, 6 kN"),
+        ({"load": "5 kN"}, "test.load = 5 kN: the study has no such preload; it has 2 kN, 6 kN"),
         ({"load": "5 mm"}, "not in a unit like N"),
         ({"least_mac": 1.2}, "above 0 and at most 1"),
         ({"greatest_shift": 0}, "plain number above 0"),

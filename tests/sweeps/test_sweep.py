@@ -12,6 +12,7 @@ from faying.answer.run import run
 from faying.case.case import surfaces_of
 from faying.form.form import Form
 from faying.joint.modal import ModesChoice
+from faying.joint.preload_case import PreloadCase
 from faying.reduction.reduce import Reduction
 from faying.study import Study, part_folder
 from faying.study.keys.law import LawChoice
@@ -20,6 +21,7 @@ from faying.sweeps.axes import Grid, axis_of
 from faying.sweeps.recipe import Recipe
 from faying.sweeps.sweep import sweep
 from tests.helpers.cluster import cluster_of
+from tests.helpers.preloads import pulled
 from tests.helpers.studies import write
 
 
@@ -28,10 +30,9 @@ def plan(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "study.toml"
     write(path)
     study = Study.read(path)
-    bolts = tuple(replace(bolt, preload=bolt.preload[-1:]) for bolt in study.bolts)
     sizes = {name: 1.6 * size for name, size in study.geometry.face_size.items()}
     geometry = replace(study.geometry, size=1.6 * study.geometry.size, face_size=sizes)
-    return replace(study, bolts=bolts, geometry=geometry, modes=ModesChoice(count=5), test=None)
+    return replace(study, preloads=study.preloads[-1:], geometry=geometry, modes=ModesChoice(count=5), test=None)
 
 
 AXES = ("surface.D=2.3:2.42:4", "bolt.preload=1 kN:3 kN:3")
@@ -52,9 +53,7 @@ def done(plan, tmp_path_factory):
 )
 def test_points_are_those_of_full_runs(plan, done, place):
     D, force = (axis.values[i] for axis, i in zip(done.axes, place, strict=True))
-    full = run(
-        replace(plan, surface=replace(plan.surface, D=D), bolts=tuple(replace(b, preload=(force,)) for b in plan.bolts))
-    )
+    full = run(replace(pulled(plan, force), surface=replace(plan.surface, D=D)))
     assert done.frequencies[place] == pytest.approx(full.frequencies[0], rel=1e-5)
     assert done.loss_factors[place] == pytest.approx(full.loss_factors[0], rel=1e-2)
     assert done.greatest_pressure[place] == pytest.approx(full.pressure.max(), rel=0.02)
@@ -293,7 +292,7 @@ def test_parameters_of_a_law_given_in_full(plan, tmp_path):
     swept = sweep(given, axes("law.sigma=0.3 um:0.8 um:3", "bolt.preload=1 kN,3 kN"), tmp_path / "out.nc")
     assert swept.axes[0].values == pytest.approx((0.3e-6, 0.55e-6, 0.8e-6))
     law = replace(given.law, given={**given.law.given, "sigma": 0.55e-6})
-    full = run(replace(given, law=law, bolts=tuple(replace(b, preload=(3e3,)) for b in given.bolts)))
+    full = run(replace(pulled(given, 3e3), law=law))
     assert swept.frequencies[1, 1] == pytest.approx(full.frequencies[0], rel=1e-5)
 
 
@@ -312,7 +311,7 @@ def test_laws_take_their_own_parameters_alone(plan):
 def test_what_a_sweep_cannot_do(plan, tmp_path):
     for changes, message in (
         ({"modes": ModesChoice(damping="viscous")}, "hysteretic loss"),
-        ({"order": (0, 1)}, "pulls all bolts at once"),
+        ({"preloads": (PreloadCase((2e3,), order=(0, 1)),)}, "pulls all bolts at once"),
     ):
         with pytest.raises(faying.InputError, match=message):
             sweep(replace(plan, **changes), axes(), tmp_path / "out.nc")

@@ -116,7 +116,7 @@ def linear(name, size, folder):
     made = build(study)
     joints = [replace(joint, law=even(K_N, K_T)) for joint in made.joints]
     structure = Structure(made.mesh, made.materials, joints, made.bolts)
-    return structure, {bolt.name: bolt.preload[0] for bolt in study.bolts}
+    return structure, {name: forces[0] for name, forces in study.bolt_forces.items()}
 
 
 def test_the_pressure_below_screws_in_tapped_holes_is_that_of_contact_in_calculix(tmp_path):

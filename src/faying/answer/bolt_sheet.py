@@ -21,14 +21,14 @@ from faying.case.engine import engine_of
 from faying.case.solve import solve
 from faying.errors import InputError
 from faying.joint.clamping import seat_ring, stack_of
-from faying.joint.loads import preload_index
+from faying.joint.preload_case import preload_index
 from faying.joint.strength import seat_limit
 from faying.misuse import checked_call
 from faying.progress import Report
 from faying.result.bolts import BoltNumbers
 from faying.study.keys.bolt_sheet import BoltSheetChoice, choice_of
 from faying.study.study import Study
-from faying.units import positive, show
+from faying.units import show
 
 DEFAULT_WAY = "torque wrench, friction estimated"
 DEFAULT_FRICTION = 0.12  # the middle of class B, 0.08 to 0.16: metal, oiled or coated (VDI 2230 Part 1:2015, Table A5)
@@ -111,11 +111,7 @@ def bolt_sheet(
         VDI 2230 Part 1:2015, section 4, for concentric clamping and loading.
     """
     plan = Study.read(study)
-    wanted = None if preload is None else positive(preload, "N", "preload")
-    number = len(plan.loads) - 1 if wanted is None else preload_index(plan.loads, wanted)
-    if number is None:
-        known = ", ".join(show(load, "N") for load in plan.loads)
-        raise InputError(f"the study has no preload of {show(wanted or 0.0, 'N')}; it has {known}")
+    number = preload_index(plan.loads, preload)
     bare = replace(
         plan,
         response=None,

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from faying.answer.run import run
-from faying.backbones.choice import chosen, friction_of, load_index
+from faying.backbones.choice import chosen, friction_of
 from faying.errors import InputError
 from faying.files import write_text
+from faying.joint.preload_case import preload_index
 from faying.misuse import checked_call
 from faying.progress import Report
 from faying.result import Result
@@ -167,7 +168,7 @@ def level_curves(
     friction: float | None = None,
     amplitude: tuple[float, float] | None = None,
     *,
-    load: float | None = None,
+    load: float | str | None = None,
     rest_damping: float | None = None,
     report: Report | None = None,
 ) -> LevelCurves:
@@ -179,7 +180,7 @@ def level_curves(
         study: A Study or the path of its TOML file.
         friction: Coefficient [-] of all joints, 0 to 10; that of each joint in the study where left out.
         amplitude: First and last acceleration amplitude [m/s2] of the point that moves most.
-        load: Preload of the first bolt [N], one of the study's; the greatest by default.
+        load: Preload of the first bolt [N], or text with a unit, one of the study's; the greatest by default.
         rest_damping: Ratio to critical [-] that is added to that of slip.
         report: Called with a stage, the stages done, and how many there are.
 
@@ -203,7 +204,7 @@ def level_curves(
     (mu,) = friction_of(study, replace(choice, friction=choice.friction[:1]))
     first, last = choice.amplitude
     levels = np.geomspace(first, last, max(2, round(EACH_DECADE * np.log10(last / first)) + 1))
-    index = len(study.loads) - 1 if load is None else load_index(study, load)
+    index = preload_index(study.loads, load)
     found = _bare(study, index, mu, tuple(levels.tolist()), report)
     if found.level_slip is None or found.level_frequencies is None or found.level_error is None:
         raise InputError("no joint can slip: its law has no tangential stiffness, or its springs are per node")
@@ -223,12 +224,11 @@ def _bare(
     study: Study, index: int, friction: tuple[float, ...], levels: tuple[float, ...], report: Report | None
 ) -> Result:
     """The run of one load with the damping at levels, and without what it does not ask for."""
-    bolts = tuple(replace(bolt, preload=bolt.preload[index : index + 1]) for bolt in study.bolts)
     joints = tuple(replace(joint, friction=mu) for joint, mu in zip(study.joints, friction, strict=True))
     modes = replace(study.modes, levels=levels, intervals=False)
     bare = replace(
         study,
-        bolts=bolts,
+        preloads=study.preloads[index : index + 1],
         joints=joints,
         modes=modes,
         alternatives=(),

@@ -33,7 +33,6 @@ from faying.result.provenance import Provenance
 from faying.study.keys.bolt_sheet import choice_of
 from faying.study.study import Study
 from faying.typing import Array
-from faying.units import show
 
 NOT_FROM_FILES = Provenance(study="", files={}, versions={}, date="")
 STAGES = 5  # that are reported, beside the modes of each case
@@ -78,7 +77,7 @@ def preloaded(study: Study, number: int, progress: Progress, *, modes: bool) -> 
     )
     case = Case.of(bare, progress)
     engine = engine_of("reanalysis", case)
-    progress.begin(f"preload {show(study.loads[number], 'N')}")
+    progress.begin(f"preload {study.preloads[number].name}")
     state = engine.preload(number)
     springs = case.structure.springs(state.pressures)
     return preloaded_case(case, state, springs, engine, modes=modes)

@@ -7,14 +7,13 @@ from faying.answer.load_answers import answers, of_state, preloaded
 from faying.answer.load_intervals import intervals_of
 from faying.case.case import Progress
 from faying.errors import InputError
-from faying.joint.loads import preload_index
+from faying.joint.preload_case import preload_index
 from faying.joint.state import State
 from faying.loads.load import Load, in_order
 from faying.misuse import checked_call
 from faying.progress import Report
 from faying.result.load_cases import LoadCases
 from faying.study.study import Study
-from faying.units import positive, show
 
 STAGES = 5  # that are reported, beside the modes of each case
 
@@ -60,7 +59,7 @@ def load_cases(
         return answers(of_state(what, modes), tuple(loads), progress)
     plan = Study.read(what)
     found = plan.load_cases if loads is None else tuple(loads)
-    number = _number(plan, preload)
+    number = preload_index(plan.loads, preload)
     if not found:
         raise InputError("the study has no load case; add [[load]], or give loads=[Load(...)]")
     in_order(found)  # names its faults before anything is solved
@@ -69,15 +68,3 @@ def load_cases(
     base = preloaded(plan, number, progress, modes=modes)
     out = answers(base, found, progress)
     return intervals_of(plan, number, base, found, out, progress) if intervals else out
-
-
-def _number(study: Study, preload: float | str | None) -> int:
-    """Index of a preload of a study; its greatest where None. Raises InputError where there is none such."""
-    if preload is None:
-        return len(study.loads) - 1
-    wanted = positive(preload, "N", "preload")
-    number = preload_index(study.loads, wanted)
-    if number is None:
-        known = ", ".join(show(load, "N") for load in study.loads)
-        raise InputError(f"the study has no preload of {show(wanted, 'N')}; it has {known}")
-    return number

@@ -120,7 +120,7 @@ def _moved(
     study: Study, number: int, base: Preloaded, loads: tuple[Load, ...], inputs: Sequence[LoadScatter], share: float
 ) -> list[Array]:
     """The same answers with inputs moved by a share of the way to their ends."""
-    forces, joints = np.array(study.forces(number)), list(base.structure.joints)
+    forces, joints = np.array(study.preloads[number].forces), list(base.structure.joints)
     for one in inputs:
         factor = 1 + share * (one.end - 1)
         if one.bolt is not None:
@@ -132,7 +132,7 @@ def _moved(
     structure = replace(base.structure, joints=tuple(joints))
     problem = structure.assembly(solver=study.modes.solver)
     problem.take(base.factor, 0.0)
-    preload = checked_preload(structure, problem, list(forces), order=study.order)
+    preload = checked_preload(structure, problem, replace(study.preloads[number], forces=tuple(forces.tolist())))
     springs = structure.springs(preload.pressures)
     moved = replace(base, structure=structure, preload=preload, springs=springs, rest=None, notes=())
     return _answers(answers(moved, loads, Progress(0)))

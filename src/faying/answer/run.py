@@ -33,7 +33,6 @@ from faying.progress import Report
 from faying.result import BoltNumbers, MeasuredComparison, Receptance, Result
 from faying.study.study import Study
 from faying.typing import Array
-from faying.units import load_text
 
 LEVEL_FIELDS = ("frequencies", "damping", "low", "high", "slip", "error")
 NOT_ZERO = 1e-3  # of the first frequency: a rigid motion above it has cost 1e-6 of that mode's eigenvalue, and is noted
@@ -109,7 +108,7 @@ def findings(case: Case, states: Sequence[LoadedCase]) -> list[Note]:
 
 def stages(study: Study) -> list[str]:
     """The stages that `run` reports for a study, in their order."""
-    loads = [load_text(load) for load in study.loads]
+    loads = [one.name for one in study.preloads]
     out = [] if study.hammer is None else ["hammer test"]
     out += ["surface", "mesh"]
     for number, load in enumerate(loads):
@@ -176,7 +175,7 @@ def collect(
         solver=way if isinstance(way, str) else way.key,
         factor_memory=max(s.modes.factorisation.memory for s in states),
         damping=study.modes.damping,
-        tightening=() if study.order is None else tuple(study.bolts[i].name for i in study.order),
+        tightening=tuple(study.bolts[i].name for i in study.preloads[0].order or ()),
         surfaces=tuple(surface.facts() for surface in case.surfaces),
         laws=tuple(joint.law.model.facts() for joint in structure.joints),
         sources=_sources(case),

@@ -7,7 +7,7 @@ from typing import Any, Literal, overload
 
 import numpy as np
 
-from faying.backbones.choice import chosen, friction_of, load_index, names
+from faying.backbones.choice import chosen, friction_of, names
 from faying.backbones.result import BackboneCurve, collected
 from faying.backbones.store import CurveStore
 from faying.case.alternative import changed, study_with
@@ -16,6 +16,7 @@ from faying.case.preloads import settled
 from faying.errors import InputError
 from faying.fe.interface import Interface
 from faying.joint.attachments import nearest_node
+from faying.joint.preload_case import preload_index
 from faying.joint.shared_modes import modes_of
 from faying.joint.springs import Springs
 from faying.joint.support_check import check_motions
@@ -35,7 +36,6 @@ from faying.study.keys.law import LawChoice
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
 from faying.typing import Array
-from faying.units import load_text
 
 EXTRA_MODES = 14  # real modes beyond the one that is followed, in its basis
 SPRINGS = 32  # of the law's curve at a point
@@ -58,7 +58,7 @@ def backbone(
     at: Point | None = ...,
     harmonics: int | None = ...,
     *,
-    load: float | None = ...,
+    load: float | str | None = ...,
     rest_damping: float | Literal["law"] | None = ...,
     slip: Literal["microslip", "coulomb"] | None = ...,
     law: str | None = ...,
@@ -76,7 +76,7 @@ def backbone(
     at: Point | None = ...,
     harmonics: int | None = ...,
     *,
-    load: float | None = ...,
+    load: float | str | None = ...,
     rest_damping: float | Literal["law"] | None = ...,
     slip: Literal["microslip", "coulomb"] | None = ...,
     law: str | Sequence[str] | None = ...,
@@ -94,7 +94,7 @@ def backbone(
     at: Point | None = None,
     harmonics: int | None = None,
     *,
-    load: float | None = None,
+    load: float | str | None = None,
     rest_damping: float | Literal["law"] | None = None,
     slip: Literal["microslip", "coulomb"] | None = None,
     law: str | Sequence[str] | None = None,
@@ -113,7 +113,7 @@ def backbone(
         amplitude: First and last acceleration amplitude [m/s2]; (0.1, 100) by default. The curve may end before.
         at: Point [m] whose acceleration that is; where the mode moves most by default.
         harmonics: Highest harmonic of the motion, 3 by default; 1 is quick.
-        load: Preload of the first bolt [N], one of the study's; the greatest by default.
+        load: Preload of the first bolt [N], or text with a unit, one of the study's; the greatest by default.
         rest_damping: Ratio to critical [-] that is added to that of slip, or "law": what the laws lose without slip.
         slip: "microslip" (default) cuts the law's curve into springs with sliders; "coulomb" takes one slider a point.
         law: Contact law of all joints, such as "jk", in place of the study's. A list gives a tuple of curves, from one
@@ -145,9 +145,7 @@ def backbone(
     if not many and len(choice.laws) > 1:
         given = ", ".join(one.model for one in choice.laws)
         raise InputError(f"[backbone] lists the laws {given}: give one of them, or the list for a tuple of curves")
-    curves = backbones(
-        study, choice, loads=[len(study.loads) - 1 if load is None else load_index(study, load)], out=out, report=report
-    )
+    curves = backbones(study, choice, loads=[preload_index(study.loads, load)], out=out, report=report)
     return curves if many else curves[0]
 
 
@@ -315,7 +313,7 @@ def _bases(places: Sequence[tuple[Case, int]], choice: BackboneChoice, progress:
         study, structure = case.study, case.structure
         if case is not before:
             problem, before = structure.assembly(solver=study.modes.solver), case
-        progress.stage(f"preload {load_text(study.loads[index])}", 0.2)
+        progress.stage(f"preload {study.preloads[index].name}", 0.2)
         preload = settled(case, index, problem)
         springs = structure.springs(preload.pressures)
         for joint, own in zip(structure.joints, springs, strict=True):

@@ -6,10 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from faying.errors import InputError
-from faying.joint.loads import preload_index
 from faying.study.keys.backbone import BackboneChoice, check_friction
 from faying.study.study import Study
-from faying.units import load_text
 
 
 def chosen(study: Study, friction: float | Sequence[float] | None, asked: dict[str, Any]) -> BackboneChoice:
@@ -18,15 +16,6 @@ def chosen(study: Study, friction: float | Sequence[float] | None, asked: dict[s
     if friction is not None:
         given["friction"] = tuple(friction) if isinstance(friction, Sequence) else (friction,)
     return replace(study.backbone or BackboneChoice(), **given)
-
-
-def load_index(study: Study, load: float) -> int:
-    """Index of a preload [N] of the study. Raises InputError where it has none such."""
-    index = preload_index(study.loads, load)
-    if index is None:
-        known = ", ".join(load_text(value) for value in study.loads)
-        raise InputError(f"no preload of {load_text(load)} in the study; it has {known}")
-    return index
 
 
 def names(out: Path, count: int) -> list[Path]:

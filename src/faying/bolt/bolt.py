@@ -115,7 +115,7 @@ class Washer:
 @checked_call
 @dataclass(frozen=True, init=False)
 class Bolt:
-    """A bolt between two seats that look away from each other; lengths, masses and forces also as text with a unit.
+    """A bolt between two seats that look away from each other; lengths and masses also as text with a unit.
 
     Without a diameter it is a pair of forces on its seats: it has no stiffness and no mass.
 
@@ -131,7 +131,6 @@ class Bolt:
         washers: Washers under head and nut together.
         head_mass: Mass of the head [kg]; that of a hexagon head where None.
         nut_mass: Mass of the nut [kg]; that of a hexagon nut where None.
-        preload: Forces [N] that it is tightened to, one load after another.
         fastener: Thread and property class, from which its proof load follows; None where they are not known.
         engaged: Length [m] of the thread in a tapped hole; 1.5 diameters, or its depth if that is less, where None.
         thread: Metric thread, or its name, such as "M8x1"; that of the fastener, or else the coarse one of the
@@ -159,7 +158,6 @@ class Bolt:
     washers: tuple[Washer, ...]
     head_mass: float | None
     nut_mass: float | None
-    preload: tuple[float, ...]
     fastener: Fastener | None
     engaged: float | None
     thread: Thread | None
@@ -180,7 +178,6 @@ class Bolt:
         washers: Sequence[Washer] = (),
         head_mass: float | str | None = None,
         nut_mass: float | str | None = None,
-        preload: float | str | Sequence[float | str] = (),
         fastener: Fastener | None = None,
         engaged: float | str | None = None,
         thread: Thread | str | None = None,
@@ -195,7 +192,6 @@ class Bolt:
             raise InputError(f"{what}: both faces are {faces[0]!r}; name the seats of its head and of its nut")
         if at is not None and len(at) != 3:
             raise InputError(f"{what}: at = {shortened(at)}; give the three coordinates of a point on its axis")
-        forces = preload if isinstance(preload, Sequence) and not isinstance(preload, str) else (preload,)
         values = {
             "name": name,
             "faces": (faces[0], faces[1]),
@@ -206,7 +202,6 @@ class Bolt:
             "washers": tuple(washers),
             "head_mass": None if head_mass is None else _mass(head_mass, f"{what}: head_mass"),
             "nut_mass": None if nut_mass is None else _mass(nut_mass, f"{what}: nut_mass"),
-            "preload": tuple(positive(force, "N", f"{what}: preload") for force in forces),
             "fastener": fastener,
             "engaged": None if engaged is None else positive(engaged, "m", f"{what}: engaged"),
             "thread": Thread.parse(thread) if isinstance(thread, str) else thread,

@@ -27,7 +27,6 @@ class SolidBolt:
         part: Name of the part.
         faces: Faces of the bolt itself under its head and under its nut, or round its thread.
         at: A point (3,) [m] of the plane in which the shank is drawn in; half-way between the faces where None.
-        preload: Forces [N] that it is tightened to, one load after another.
         fastener: Thread and property class, from which its proof load follows; None where they are not known.
     """
 
@@ -35,7 +34,6 @@ class SolidBolt:
     part: str
     faces: tuple[str, str]
     at: tuple[float, float, float] | None = None
-    preload: tuple[float, ...] = ()
     fastener: Fastener | None = None
     diameter: ClassVar[None] = None  # it has no shank but that of the mesh
 

@@ -99,7 +99,7 @@ class Case:
             )
             notes.append(Note(code="size", text=text))
         notes += (*law_reasons(structure, surfaces), *structure.notes)
-        notes += (*material_notes(structure), *bolt_notes(structure))
+        notes += (*material_notes(structure), *bolt_notes(structure, study.bolt_forces))
         return cls(
             study=study,
             structure=structure,

@@ -32,7 +32,7 @@ class ChangedCase:
 
 def can_change(case: Case) -> bool:
     """Whether small bases hold the case: no bolts tightened in order, viscous dampers, springs per node."""
-    ordered, viscous = case.study.order is not None, case.study.modes.damping == "viscous"
+    ordered, viscous = case.study.in_order, case.study.modes.damping == "viscous"
     return not (ordered or viscous or any(joint.per_node for joint in case.structure.joints))
 
 
@@ -53,7 +53,7 @@ def frequencies_of(case: Case, states: Sequence[LoadedCase], changes: Sequence[C
         count=case.study.modes.count,
     )
     friction = [joint.friction for joint in structure.joints]
-    forces = [np.array(case.study.forces(k)) for k in range(len(case.loads))]
+    forces = [np.array(one.forces) for one in case.study.preloads]
     every = [
         [Gapped(laws=one.laws, forces=one.factor * force, friction=friction, gaps=one.gaps) for force in forces]
         for one in changes

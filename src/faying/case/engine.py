@@ -67,8 +67,7 @@ class Direct:
 
     def preload(self, number: int) -> PreloadState:
         """See `Engine`."""
-        study = self.case.study
-        return checked_preload(self.case.structure, self._problem, study.forces(number), order=study.order)
+        return checked_preload(self.case.structure, self._problem, self.case.study.preloads[number])
 
     def vibrate(self, springs: Sequence[Springs[Interface]]) -> Vibration:
         """See `Engine`."""

@@ -11,7 +11,7 @@ AT_ONCE = 8_000_000  # unknowns of all loads whose preload is found at once
 
 def settled(case: Case, number: int, problem: PreloadProblem) -> PreloadState:
     """The preload of a case at one of its loads, counted from 0."""
-    return checked_preload(case.structure, problem, case.study.forces(number), order=case.study.order)
+    return checked_preload(case.structure, problem, case.study.preloads[number])
 
 
 class Preloads:
@@ -38,8 +38,8 @@ class Preloads:
     def _together(self) -> list[PreloadState | None]:
         """The states at all loads; None for those that are to be found one by one, each from the one before."""
         study, structure = self.case.study, self.case.structure
-        count = len(study.loads)
+        count = len(study.preloads)
         fits = 1 < count <= AT_ONCE // structure.mesh.unknowns
-        if not fits or study.order is not None or not self.problem.can_go_together:
+        if not fits or study.in_order or not self.problem.can_go_together:
             return [None] * count
-        return tighten_together(structure, self.problem, [study.forces(k) for k in range(count)])
+        return tighten_together(structure, self.problem, [one.forces for one in study.preloads])

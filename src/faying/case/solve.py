@@ -20,7 +20,6 @@ from faying.notes import Note
 from faying.numerics.damped import DampedModes
 from faying.numerics.modes import Modes
 from faying.typing import Array, Mask
-from faying.units import load_text
 
 SOFTENED = (0.3, 0.1)  # of k_t: joints that slip
 SHAPE_ERROR = 1e-5  # of squared frequencies: shapes are then right to its root, and damping by slip to twice that
@@ -76,11 +75,12 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
     nothing, NotConverged where the preload stops short.
     """
     study, structure = case.study, case.structure
-    load = study.loads[number]
-    progress.begin(f"preload {load_text(load)}")
+    asked = study.preloads[number]
+    load = asked.preload
+    progress.begin(f"preload {asked.name}")
     preload = engine.preload(number)
     springs = structure.springs(preload.pressures)
-    progress.begin(f"modes at {load_text(load)}")
+    progress.begin(f"modes at {asked.name}")
     found = engine.vibrate(springs)
     modes, damped = found.modes, found.damped
     loaded = LoadedStructure(
@@ -135,7 +135,7 @@ def _responses(
     response = test_response = None
     notes: list[Note] = []
     if study.response is not None:
-        progress.begin(f"frequency response at {load_text(study.loads[number])}")
+        progress.begin(f"frequency response at {study.preloads[number].name}")
         response, more = loaded.response(study.response)
         notes += more
     if hammer is not None and case.test_points is not None and number == hammer.choice.load and hammer.has_frf:

@@ -124,9 +124,9 @@ def _quick(plan: Any, choice: Any, loads: list[int], options: dict[str, Any]) ->
 
 def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
     """The choice of the study with the options in place of it, and the indices of its loads."""
-    from faying import units
-    from faying.backbones.choice import chosen, load_index
+    from faying.backbones.choice import chosen
     from faying.errors import InputError
+    from faying.joint.preload_case import preload_index
     from faying.study.keys.backbone import accelerations, laws
 
     given: dict[str, Any] = {"mode": options["mode"], "harmonics": options["harmonics"]}
@@ -150,7 +150,7 @@ def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
             raise InputError("--preload all takes every preload of the study; leave out the others")
         loads = list(range(len(plan.loads)))
     elif preloads:
-        loads = [load_index(plan, units.parse(value, "N", name="--preload")) for value in preloads]
+        loads = [preload_index(plan.loads, value, name="--preload") for value in preloads]
     else:
         loads = [len(plan.loads) - 1]
     return chosen(plan, friction, given), loads

@@ -36,7 +36,7 @@ class Assembled:
         """Assemble a study with the springs of its joints at its first preload."""
         structure = build(study)
         assembly = structure.assembly(solver=study.modes.solver)
-        found = checked_preload(structure, assembly, study.forces(0), order=study.order)
+        found = checked_preload(structure, assembly, study.preloads[0])
         stiffness, _ = structure.joined(structure.springs(found.pressures))
         numbers = structure.mesh.numbers
         dofs = np.column_stack([np.repeat(numbers, 3), np.tile([1, 2, 3], len(numbers))])

@@ -17,8 +17,8 @@ from faying.fe.faces import face_centre
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.joint.joint_law import JointLaw
-from faying.joint.loads import preload_index
 from faying.joint.pairs import NodePairs, consistent, lumped
+from faying.joint.preload_case import preload_index
 from faying.materials import Material
 from faying.misuse import checked_call
 from faying.notes import percent
@@ -255,21 +255,15 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
     from faying.joint.support_check import checked_preload
 
     loads = study.loads
-    number = 0
-    if preload is not None:
-        wanted = units.parse(preload, "N", name="--preload")
-        found = preload_index(loads, wanted)
-        if found is None:
-            raise InputError(f"--preload {preload}: the study has {_kilo(loads)}")
-        number = found
-    elif len(loads) > 1:
-        raise InputError(f"the study has the preloads {_kilo(loads)}; say which with --preload")
+    if preload is None and len(loads) > 1:
+        known = ", ".join(one.name for one in study.preloads)
+        raise InputError(f"the study has the preloads {known}; say which with --preload")
+    number = preload_index(loads, preload)
     structure = structure_of(study, mesh, surfaces_of(study))
     settled = checked_preload(
         structure,
         structure.assembly(solver=study.modes.solver),
-        study.forces(number),
-        order=study.order,
+        study.preloads[number],
     )
     place = next(i for i, joint in enumerate(structure.joints) if joint.faces == faces)
     return (
@@ -277,10 +271,6 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
         settled.pressures[place],
         f"of the study's bolts at {units.show(loads[number], 'N')}",
     )
-
-
-def _kilo(loads: tuple[float, ...]) -> str:
-    return ", ".join(units.show(load, "N") for load in loads)
 
 
 def _pairs(interface: Interface, law: JointLaw, pressure: Array, coupling: str) -> tuple[NodePairs, Array]:

@@ -6,14 +6,13 @@ from typing import Any, Literal
 
 import numpy as np
 
-from faying import units
 from faying.case.case import Case, Progress
 from faying.case.preloads import settled
 from faying.decks.deck import CondensedDeck
 from faying.decks.system import UnitSystem
 from faying.errors import InputError
 from faying.export.condensed import CondensedJoint, condensed_modes
-from faying.joint.loads import preload_index
+from faying.joint.preload_case import preload_index
 from faying.joint.shared_modes import modes_of
 from faying.joint.support_check import check_motions
 from faying.measured.mac import mac
@@ -150,13 +149,13 @@ def condense(
         InputError, ReadError: what the study gives cannot be used, no such joint or preload, an open joint.
         NotConverged: an iteration stops short.
     """
-    number, index = _joint(study, joint), _load(study, preload)
+    number, index = _joint(study, joint), preload_index(study.loads, preload)
     progress = Progress(STAGES + index, report)
     case = Case.of(study, progress)
     structure = case.structure
     problem = structure.assembly(solver=study.modes.solver)
     for k in range(index + 1):
-        progress.begin(f"preload {load_text(study.loads[k])}")
+        progress.begin(f"preload {study.preloads[k].name}")
         state = settled(case, k, problem)
     springs = structure.springs(state.pressures)
     progress.begin("modes")
@@ -199,17 +198,6 @@ def _joint(study: Study, name: str | None) -> int:
     if name is not None and name not in names:
         raise InputError(f"no joint {name!r}; the study has {', '.join(map(repr, names))}")
     return 0 if name is None else names.index(name)
-
-
-def _load(study: Study, preload: str | None) -> int:
-    if preload is None:
-        return len(study.loads) - 1
-    wanted = units.parse(preload, "N", name="--preload")
-    index = preload_index(study.loads, wanted)
-    if index is None:
-        loads = ", ".join(load_text(load) for load in study.loads)
-        raise InputError(f"--preload {preload}: the study has {loads}")
-    return index
 
 
 def _partners(shapes: Array, others: Array, mass: Any) -> Array:

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from faying import units
 from faying.case.case import mates_notes
 from faying.errors import InputError
 from faying.identify.identification import Identification, mixed
@@ -18,7 +17,7 @@ from faying.identify.predict import check, cut_notes, of_bases
 from faying.identify.sampling.ensemble import Ensemble, scattering
 from faying.identify.sampling.evaluate import LIMIT, Reduced
 from faying.identify.sampling.store import SampleStore
-from faying.joint.loads import preload_index
+from faying.joint.preload_case import preload_index
 from faying.misuse import checked_call
 from faying.progress import Report, silent
 from faying.study.keys.test import TestChoice
@@ -29,7 +28,6 @@ from faying.study.study import Study
 from faying.sweeps.parallel import Rows
 from faying.sweeps.variation import check_key
 from faying.typing import Array, Index
-from faying.units import load_text
 
 COUNT = 1000  # samples of the posterior
 
@@ -150,17 +148,10 @@ def identify(
 def left_out(study: Study, wanted: str | float | Sequence[str | float] | None) -> tuple[int, ...]:
     """Indices of preloads that are left out. Raises InputError for one that the study has not, and for all of them."""
     given = [] if wanted is None else [wanted] if isinstance(wanted, str | float | int) else list(wanted)
-    out = []
-    for one in given:
-        load = units.parse(one, "N", name="leave_out") if isinstance(one, str) else float(one)
-        index = preload_index(study.loads, load)
-        if index is None:
-            known = ", ".join(load_text(value) for value in study.loads)
-            raise InputError(f"leave_out: no preload of {load_text(load)} in the study; it has {known}")
-        out.append(index)
-    if len(set(out)) == len(study.loads):
+    out = {preload_index(study.loads, one, name="leave_out") for one in given}
+    if len(out) == len(study.loads):
         raise InputError("leave_out names every preload of the study; keep one or more to identify from")
-    return tuple(sorted(set(out)))
+    return tuple(sorted(out))
 
 
 def _identified(

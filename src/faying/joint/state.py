@@ -12,9 +12,10 @@ from faying.fe.interface import Interface
 from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import MOST_MODES, SOLVERS, ModalProblem, ModesChoice
 from faying.joint.preload import PreloadProblem
+from faying.joint.preload_case import PreloadCase
 from faying.joint.shared_modes import EXACT, SharedModes
 from faying.joint.springs import Springs
-from faying.joint.strength import pressure_notes
+from faying.joint.strength import bolt_notes, material_notes, pressure_notes
 from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions, checked_preload, open_joints
 from faying.misuse import checked_call, shortened
@@ -227,7 +228,7 @@ class State(Summary):
 
 def solve_structure(
     structure: Structure,
-    preload: float | str | Mapping[str, float | str] | None,
+    preload: float | str | Mapping[str, float | str],
     *,
     modes: int,
     damping: Literal["hysteretic", "viscous"],
@@ -236,22 +237,24 @@ def solve_structure(
 ) -> State:
     """Solve a structure under one preload; see `Structure.solve`."""
     choice = ModesChoice(count=_count(modes), damping=damping, solver=_solver(solver))
-    forces = bolt_forces(structure, preload)
+    case = preload_case(structure, preload, order)
     problem = ModalProblem(structure=structure, choice=choice)
     assembly = structure.assembly(solver=solver)
-    found = checked_preload(structure, assembly, forces, order=_order(structure, order))
+    found = checked_preload(structure, assembly, case)
     springs = structure.springs(found.pressures)
     vibration = vibrate(problem, springs, assembly, SharedModes())
     notes = [
         *structure.notes,
         *(note for joint in structure.joints for note in joint.assumptions),
-        *law_notes(structure, found, forces[0]),
-        *end_notes(structure, springs, forces[0]),
-        *pressure_notes(structure, found.pressures, forces[0]),
+        *material_notes(structure),
+        *bolt_notes(structure, {bolt.name: (force,) for bolt, force in zip(structure.bolts, case.forces, strict=True)}),
+        *law_notes(structure, found, case.preload),
+        *end_notes(structure, springs, case.preload),
+        *pressure_notes(structure, found.pressures, case.preload),
     ]
     return State(
         structure=structure,
-        forces=forces,
+        forces=case.forces,
         preload=found,
         springs=springs,
         vibration=vibration,
@@ -259,20 +262,18 @@ def solve_structure(
     )
 
 
-def bolt_forces(structure: Structure, preload: float | str | Mapping[str, float | str] | None) -> tuple[float, ...]:
+def preload_case(
+    structure: Structure, preload: float | str | Mapping[str, float | str], order: Sequence[str] | None
+) -> PreloadCase:
+    """One preload of a structure, from what a user gives. Raises InputError where it is incomplete."""
+    return PreloadCase(forces=bolt_forces(structure, preload), order=_order(structure, order))
+
+
+def bolt_forces(structure: Structure, preload: float | str | Mapping[str, float | str]) -> tuple[float, ...]:
     """Force of each bolt [N]. Raises InputError where one is missing, unknown or not positive."""
     names = [bolt.name for bolt in structure.bolts]
     if not names:
         raise InputError("the structure has no bolts, so nothing pulls its joints together; give it bolts=[Bolt(...)]")
-    if preload is None:
-        own = {bolt.name: bolt.preload for bolt in structure.bolts}
-        unclear = [name for name, forces in own.items() if len(forces) != 1]
-        if unclear:
-            raise InputError(
-                f"bolt {unclear[0]!r} names {len(own[unclear[0]])} preloads of its own; give solve one, for example "
-                'preload = "8 kN"'
-            )
-        return tuple(forces[0] for forces in own.values())
     if not isinstance(preload, Mapping):
         return (positive(preload, "N", "preload"),) * len(names)
     unknown = [name for name in preload if name not in names]
@@ -295,13 +296,13 @@ def _solver(solver: str | None) -> str | None:
     return solver
 
 
-def _order(structure: Structure, order: Sequence[str] | None) -> list[int] | None:
+def _order(structure: Structure, order: Sequence[str] | None) -> tuple[int, ...] | None:
     if order is None:
         return None
     names = [bolt.name for bolt in structure.bolts]
     if isinstance(order, str) or set(order) != set(names):
         raise InputError(f"order = {shortened(order)} should name every bolt: {', '.join(map(repr, names))}")
-    return [names.index(name) for name in order]
+    return tuple(names.index(name) for name in order)
 
 
 def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[Note]:

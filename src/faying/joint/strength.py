@@ -67,20 +67,22 @@ class Bolted(Protocol):
         ...
 
 
-def bolt_notes(structure: Bolted) -> list[Note]:
+def bolt_notes(structure: Bolted, forces: Mapping[str, Sequence[float]]) -> list[Note]:
     """Say which preloads are beyond what bolt or seat bears, or less than the structure weighs.
 
     A bolt whose grade is known is measured by its proof load. Else the stress over the full section of its shank is
     set beside the yield strength of its material: that of a thread is smaller, so that yield comes sooner. A seat is
     measured by the bearing limit of its part, or by the part's yield strength where no such limit is known.
+
+    forces: of each bolt [N] at each preload, by its name; a bolt that is not among them is not judged.
     """
     out = []
     weight = GRAVITY * structure.mass
     for fitted in structure.fitted_bolts:
         bolt = fitted.bolt
-        if not bolt.preload:
+        if not forces.get(bolt.name):
             continue
-        least, greatest = bolt.preload[0], bolt.preload[-1]
+        least, greatest = min(forces[bolt.name]), max(forces[bolt.name])
         if least < weight:
             text = (
                 f"bolt {bolt.name!r}: a preload of {show(least, 'N')} is less than the {show(weight, 'N')} that the "

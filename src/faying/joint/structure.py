@@ -269,7 +269,7 @@ class Structure(Summary):
     @checked_call
     def solve(
         self,
-        preload: float | str | Mapping[str, float | str] | None = None,
+        preload: float | str | Mapping[str, float | str],
         *,
         modes: int = 10,
         damping: Literal["hysteretic", "viscous"] = "hysteretic",
@@ -279,8 +279,7 @@ class Structure(Summary):
         """Tighten the bolts and find the modes, as a study does.
 
         Args:
-            preload: Force of each bolt [N], or text with a unit such as "8 kN"; bolt -> force where they differ. None
-                takes the one that each bolt names itself.
+            preload: Force of each bolt [N], or text with a unit such as "8 kN"; bolt -> force where they differ.
             modes: How many elastic modes, 1 to 10,000.
             damping: Kind of loss of the joints.
             order: Names of the bolts in the order of tightening, any of them more than once; None pulls all at once.

@@ -8,6 +8,7 @@ import numpy as np
 from faying.errors import InputError, NotConverged
 from faying.fe.elasticity import rigid_motions
 from faying.joint.equilibrium import Equilibrium, PreloadState
+from faying.joint.preload_case import PreloadCase
 from faying.joint.structure import Structure
 from faying.joint.tighten import tighten
 from faying.numerics.modes import Modes
@@ -18,16 +19,14 @@ BENT = 0.01  # share of the energy of a motion above which it is not one of the 
 NOTHING = 1e-6  # of the greatest pressure
 
 
-def checked_preload(
-    structure: Structure, assembly: Equilibrium, forces: Sequence[float], order: Sequence[int] | None = None
-) -> PreloadState:
-    """`tighten`, and check that no part is left free to move.
+def checked_preload(structure: Structure, assembly: Equilibrium, case: PreloadCase) -> PreloadState:
+    """`tighten` for one preload, and check that no part is left free to move.
 
     Raises InputError where a part is not, also in place of the NotConverged that this leads to, and what `tighten`
     raises.
     """
     try:
-        found = tighten(structure, assembly, forces, order=order)
+        found = tighten(structure, assembly, case.forces, order=case.order)
     except NotConverged:
         if assembly.nearest is not None:
             openings, pressures = assembly.contact(assembly.nearest)

@@ -17,6 +17,7 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.joint.equilibrium import PreloadState, StickSlip
 from faying.joint.joint_law import JointLaw
+from faying.joint.preload_case import PreloadCase
 from faying.joint.springs import Springs, stacked, unstacked
 from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions, checked_preload
@@ -219,7 +220,7 @@ class Reduction:
         """
         joints = tuple(replace(joint, law=law) for joint, law in zip(structure.joints, laws, strict=True))
         structure = replace(structure, joints=joints)
-        found = checked_preload(structure, structure.assembly(solver=solver), [float(f) for f in forces])
+        found = checked_preload(structure, structure.assembly(solver=solver), PreloadCase(tuple(map(float, forces))))
         shift = shift_frequency or structure.shift_frequency
         _, mass = structure.vibrating
         springs = structure.springs(found.pressures)

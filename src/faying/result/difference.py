@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.errors import InputError
-from faying.joint.loads import preload_index
+from faying.joint.preload_case import preload_index
 from faying.measured.mac import mac
 from faying.result.result import Result
 from faying.typing import Array, Index
@@ -147,7 +146,10 @@ def compare_runs(first: Result, second: Result, preload: float | None = None) ->
     """
     notes = []
     if preload is not None:
-        loads = _at(first, preload, "first"), _at(second, preload, "second")
+        loads = (
+            preload_index(first.loads, preload, of="the first run"),
+            preload_index(second.loads, preload, of="the second run"),
+        )
     else:
         loads = _shared(first.loads, second.loads) or (len(first.loads) - 1, len(second.loads) - 1)
     at = first.loads[loads[0]], second.loads[loads[1]]
@@ -165,14 +167,6 @@ def compare_runs(first: Result, second: Result, preload: float | None = None) ->
             listed = ", ".join(f"{k + 1} ({one.frequencies[loads[side], k]:.0f} Hz)" for k in left)
             notes.append(f"modes of the {which} run without a partner: {listed}")
     return RunDifference(first=first, second=second, loads=loads, modes=modes, mac=alike, notes=tuple(notes))
-
-
-def _at(result: Result, preload: float, which: str) -> int:
-    index = preload_index(result.loads, preload)
-    if index is None:
-        there = ", ".join(load_text(load) for load in result.loads)
-        raise InputError(f"the {which} run has no preload of {load_text(preload)}; it has {there}")
-    return index
 
 
 def _or_dash(value: float, form: str) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 from faying.errors import InputError, ReadError
 from faying.files import write_text
 from faying.joint.attachments import PointMass, Support
-from faying.joint.loads import preload_index
+from faying.joint.preload_case import preload_index
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse, ModelModes
 from faying.misuse import checked_call, shortened
@@ -23,7 +23,6 @@ from faying.result.interval import Interval
 from faying.result.provenance import Provenance
 from faying.text import listed
 from faying.typing import Array, Complex, Index
-from faying.units import load_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -633,18 +632,12 @@ class Result(Recorded):
                 raise ReadError(f"its {name} run from {indices.min()} to {indices.max()}, past what the file holds")
 
     @checked_call
-    def modes_at(self, load: float | None = None, source: str = "this study") -> ModelModes:
+    def modes_at(self, load: float | str | None = None, source: str = "this study") -> ModelModes:
         """The modes at a preload [N], by default the greatest, for a comparison with a test.
 
         Raises InputError where there is no such load.
         """
-        index = len(self.loads) - 1 if load is None else preload_index(self.loads, load)
-        if index is None:
-            assert load is not None
-            raise InputError(
-                f"{source}: no preload of {load_text(load)}; it holds "
-                f"{', '.join(f'{load_text(v)}' for v in self.loads)}"
-            )
+        index = preload_index(self.loads, load, name="load", of=source)
         return ModelModes(
             frequencies=self.frequencies[index],
             loss_factors=self.loss_factors[index],

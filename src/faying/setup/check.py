@@ -364,7 +364,7 @@ def _bolts(sketch: Sketch, found: _Findings, shared: set[str]) -> Sketch:
     sketch = replace(sketch, fitted_bolts=tuple(places))
     keys = {bolt.name: f"bolt[{k}].preload" for k, bolt in enumerate(sketch.study.bolts, 1)}
     _notes(found, tuple(material_notes(sketch)), "part")
-    for note in bolt_notes(sketch):
+    for note in bolt_notes(sketch, sketch.study.bolt_forces):
         key = next((key for name, key in keys.items() if note.text.startswith(f"bolt {name!r}")), "bolt")
         found.add("note", note.code, note.text, key)
     return sketch

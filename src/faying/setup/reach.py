@@ -104,11 +104,11 @@ def _beside(
     if not area:
         return
     seated = sum(
-        place.bolt.preload[-1]
+        _greatest(sketch, place)
         for place in sketch.fitted_bolts
-        if isinstance(place, SolidPlace) and place.bolt.preload and {*place.bolt.faces} & {*joint.faces}
+        if isinstance(place, SolidPlace) and {*place.bolt.faces} & {*joint.faces}
     )
-    force = seated + sum(one.share * one.place.bolt.preload[-1] for one in bolts)
+    force = seated + sum(one.share * _greatest(sketch, one.place) for one in bolts)
     if not force:
         text = f"joint {joint.name!r}: no bolt runs through it; only the parts' bending can press it together"
         yield "note", "unclamped", text, key
@@ -144,12 +144,17 @@ def _beside(
         yield "ok", "pressure", f"{text}; {name} reaches {show(reach, 'Pa', digits=3)}", key
 
 
+def _greatest(sketch: Sketch, place: BoltPlace | SolidPlace) -> float:
+    """The greatest force [N] of a bolt."""
+    return max(sketch.study.bolt_forces[place.bolt.name])
+
+
 def _through(sketch: Sketch, joint: JointChoice) -> list[tuple[BoltPlace | SolidPlace, float]]:
     """The bolts that clamp a joint, with the depth [m] of the joint below the head: within 1.5 seats of their axes."""
     corners = _corners(sketch, joint)
     out: list[tuple[BoltPlace | SolidPlace, float]] = []
     for place in sketch.fitted_bolts:
-        if not place.bolt.preload or (isinstance(place, SolidPlace) and {*place.bolt.faces} & {*joint.faces}):
+        if isinstance(place, SolidPlace) and {*place.bolt.faces} & {*joint.faces}:
             continue  # its own seats carry all of its force
         arm = corners - place.point
         depth = arm @ place.axis
@@ -189,6 +194,7 @@ def _rim(sketch: Sketch, one: Share, mine: float) -> tuple[float, float] | None:
     near = min(one.depth, place.length - one.depth)
     outer = max(2 * float(np.sqrt(mine / pi + (hole / 2) ** 2)), seat) if one.share == 1 else WIDE * seat
     try:
-        return cone_pressure(place.bolt.preload[-1], depth=near, length=place.length, seat=seat, hole=hole, outer=outer)
+        force = _greatest(sketch, place)
+        return cone_pressure(force, depth=near, length=place.length, seat=seat, hole=hole, outer=outer)
     except FayingError:
         return None

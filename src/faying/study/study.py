@@ -11,6 +11,7 @@ from faying.bolt.solid_bolt import SolidBolt
 from faying.errors import ReadError
 from faying.joint.attachments import PointMass, Support
 from faying.joint.modal import ModesChoice
+from faying.joint.preload_case import PreloadCase
 from faying.loads.load import Load
 from faying.materials import Material
 from faying.misuse import checked_call
@@ -65,10 +66,10 @@ class Study(Summary):
     law: LawChoice
     joints: tuple[JointChoice, ...]
     bolts: tuple[Bolt | SolidBolt, ...]
+    preloads: tuple[PreloadCase, ...]
     supports: tuple[Support, ...] = ()
     masses: tuple[PointMass, ...] = ()
     modes: ModesChoice = field(default_factory=ModesChoice)
-    order: tuple[int, ...] | None = None
     response: ResponseChoice | None = None
     test: TestChoice | None = None
     hammer: HammerChoice | None = None
@@ -121,12 +122,18 @@ class Study(Summary):
 
     @property
     def loads(self) -> tuple[float, ...]:
-        """Preloads of the first bolt [N], which name the loads."""
-        return self.bolts[0].preload
+        """Preloads of the first bolt [N], by which results know them."""
+        return tuple(case.preload for case in self.preloads)
 
-    def forces(self, load: int) -> list[float]:
-        """Preload of every bolt [N] at one load."""
-        return [bolt.preload[load] for bolt in self.bolts]
+    @property
+    def in_order(self) -> bool:
+        """Whether the bolts are tightened one after another."""
+        return any(case.order is not None for case in self.preloads)
+
+    @property
+    def bolt_forces(self) -> dict[str, tuple[float, ...]]:
+        """Force [N] of each bolt at each preload, by its name."""
+        return {bolt.name: tuple(case.forces[k] for case in self.preloads) for k, bolt in enumerate(self.bolts)}
 
     def law_of(self, joint: JointChoice) -> LawChoice:
         """The law of a joint: its own, or that of the study."""
@@ -192,7 +199,7 @@ class Study(Summary):
         _note_lacking_alternatives(
             faults, joints, (law, surface), alternatives, () if backbone is None else backbone.laws
         )
-        bolts = _bolts(top, materials)
+        bolts, forces = _bolts(top, materials)
         cases = read_loads(top.tables("load"))
         named = [bolt.name for bolt in bolts], [load.name for load in cases]
         sheets = read_bolt_sheets(top.tables("bolt_sheet"), *named)
@@ -201,9 +208,10 @@ class Study(Summary):
         modes = read_modes(top.table("modes"))
         order = read_order(top.table("tightening"), [bolt.name for bolt in bolts])
         response = ResponseChoice.of(top.table("response"))
-        test, hammer = read_test(top, max((b.preload for b in bolts if b.preload), key=len, default=()))
+        test, hammer = read_test(top, max(forces, key=len, default=()))
         geometry = _with_selectors(geometry, faults)
-        uncertain = _uncertain(top, inside, joints, bolts, materials, parts)
+        known = Known.of(joints, bolts, forces, materials, parts)
+        uncertain = _uncertain(top, inside, known)
         top.close()
         faults.raise_if_any(where)
         return cls(
@@ -217,10 +225,10 @@ class Study(Summary):
             joints=joints,
             bonds=bonds,
             bolts=bolts,
+            preloads=tuple(PreloadCase(forces=one, order=order) for one in zip(*forces, strict=True)),
             supports=tuple(s for s in supports if s is not None),
             masses=tuple(m for m in masses if m is not None),
             modes=modes,
-            order=order,
             response=response,
             test=test,
             hammer=hammer,
@@ -235,15 +243,16 @@ class Study(Summary):
         )
 
 
-def _bolts(top: Table, materials: dict[str, Material]) -> tuple[Bolt | SolidBolt, ...]:
-    """Read [[bolt]]; a fault is noted where they have different numbers of preloads."""
+def _bolts(
+    top: Table, materials: dict[str, Material]
+) -> tuple[tuple[Bolt | SolidBolt, ...], tuple[tuple[float, ...], ...]]:
+    """Read [[bolt]], with the forces [N] of each; a fault is noted where they have different numbers of preloads."""
     read = [read_bolt(t, i, materials) for i, t in enumerate(top.tables("bolt"))]
-    bolts = tuple(bolt for bolt in read if bolt is not None)
-    counts = {len(b.preload) for b in bolts if b.preload}
+    counts = {len(forces) for _, forces in read if forces}
     if len(counts) > 1:
         many = " and ".join(map(str, sorted(counts)))
         top.faults.add(f"the bolts have {many} preloads; give each bolt the same number")
-    return bolts
+    return tuple(bolt for bolt, _ in read if bolt is not None), tuple(forces for _, forces in read if forces)
 
 
 def _with_selectors(geometry: GeometryChoice, faults: Faults) -> GeometryChoice:
@@ -254,23 +263,9 @@ def _with_selectors(geometry: GeometryChoice, faults: Faults) -> GeometryChoice:
     return replace(geometry, face={**geometry.face, **faults.selectors})
 
 
-def _uncertain(
-    top: Table,
-    inside: dict[str, str],
-    joints: tuple[JointChoice, ...],
-    bolts: tuple[Bolt | SolidBolt, ...],
-    materials: dict[str, Material],
-    parts: dict[str, str],
-) -> UncertainChoice | None:
+def _uncertain(top: Table, inside: dict[str, str], known: Known) -> UncertainChoice | None:
     """Read [uncertain], with the texts that stood in the places of numbers."""
     table = top.table("uncertain")
-    known = Known(
-        joints=joints,
-        bolts=[bolt.name for bolt in bolts],
-        loads=max((len(bolt.preload) for bolt in bolts), default=1),
-        materials=materials,
-        parts=parts,
-    )
     return read_uncertain(None if table is None else table.data, inside, known, top.faults)
 
 

@@ -114,7 +114,7 @@ class Grid:
             raise InputError(f"the axes have {self.size:,} combinations; a sweep takes up to {MOST:,}")
         for key in keys:
             check_key(self.study, key, models=MODEL in keys, where=f"--set {key}")
-        if self.study.order is not None:
+        if self.study.in_order:
             raise InputError("a sweep pulls all bolts at once; leave out [tightening], or run studies one by one")
         self.point(0)
         self.point(self.size - 1)
@@ -148,7 +148,7 @@ class Grid:
     def point(self, index: int) -> Point:
         """Return the study at one place of the grid."""
         place = np.unravel_index(index, self.shape)
-        forces = np.array([bolt.preload[-1] for bolt in self.study.bolts])
+        forces = np.array(self.study.preloads[-1].forces)
         point = Point(study=self.study, surfaces=self.surfaces, forces=forces)
         for axis, i in zip(self.axes, place, strict=True):
             point = point.with_value(axis.key, axis.values[i])

@@ -11,6 +11,7 @@ from faying.form.face_axes import FaceAxes
 from faying.form.form import Form
 from faying.form.waviness import ScanWaves
 from faying.joint.joint_law import JointLaw
+from faying.joint.preload_case import PreloadCase
 from faying.joint.structure import Structure
 from faying.materials import Material
 from faying.reduction.part_shares import Scales
@@ -182,7 +183,6 @@ class Recipe:
             for part, (stiffness, mass) in point.scales.items():
                 solid = materials[part]
                 materials[part] = replace(solid, E=solid.E * stiffness, density=(solid.density or 0.0) * mass)
-        pulled = zip(point.study.bolts, forces.tolist(), strict=True)
-        study = replace(point.study, bolts=tuple(replace(bolt, preload=(force,)) for bolt, force in pulled))
+        study = replace(point.study, preloads=(PreloadCase(tuple(forces.tolist())),))
         structure = replace(structure, joints=tuple(joints), materials=materials)
         return Case(study=study, structure=structure, surfaces=point.surfaces)

@@ -209,7 +209,7 @@ class Ensemble:
     @classmethod
     def of(cls, study: Study, count: int, seed: int) -> "Ensemble":
         """Draw samples by Sobol's sequence, scrambled. Raises InputError where the study cannot be varied so."""
-        if study.order is not None:
+        if study.in_order:
             raise InputError("a prediction pulls all bolts at once; leave out [tightening]")
         surfaces = surfaces_of(study)
         inputs = Inputs.of(study, surfaces)
@@ -289,7 +289,7 @@ class Ensemble:
 
     def _at(self, sample: int) -> Point:
         """The study at one sample, with the forces [N] of all loads (loads, b)."""
-        forces = np.array([self.study.forces(load) for load in range(self.loads)])
+        forces = np.array([one.forces for one in self.study.preloads])
         try:
             point = Point(study=self.study, surfaces=self.surfaces, forces=forces)
             return self.inputs.put(point, self.values[sample], self.study)

@@ -39,8 +39,10 @@ OF_THE_MESH = (
 )  # what a meshed bolt has already
 
 
-def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bolt | SolidBolt | None:
-    """Read one [[bolt]]; None where its faults leave no bolt."""
+def read_bolt(
+    table: Table, index: int, materials: Mapping[str, Material]
+) -> tuple[Bolt | SolidBolt | None, tuple[float, ...]]:
+    """Read one [[bolt]] and its forces [N] at each preload; no bolt where its faults leave none."""
     name = table.get("name", f"bolt {index + 1}")
     faces = face_names(table, "faces", name)
     at = table.get("at")
@@ -48,12 +50,12 @@ def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bo
     diameter = table.get("diameter")
     pitch = table.get("pitch")
     friction = (table.get("thread_friction"), table.get("head_friction"))
-    preload = _preload(table, diameter, pitch, friction)
+    forces = _forces(table, diameter, pitch, friction)
     thread, fastener = _thread(table, diameter, pitch, meshed=part is not None)
     bolt: Bolt | SolidBolt | None
     if part is not None:
         _note_solid(table, part)
-        bolt = SolidBolt(name=name, part=part, faces=faces, at=at, preload=preload, fastener=fastener)
+        bolt = SolidBolt(name=name, part=part, faces=faces, at=at, fastener=fastener)
     else:
         material = _material(table, name, materials)
         washers = tuple(_washer(t, name, materials) for t in table.tables("washer"))
@@ -71,7 +73,7 @@ def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bo
             table.faults.add(
                 f"bolt {name!r} has a material but no diameter; give both, or neither for a bolt without stiffness"
             )
-            return None
+            return None, forces
         bolt = table.made(
             lambda: Bolt(
                 name=name,
@@ -80,13 +82,12 @@ def read_bolt(table: Table, index: int, materials: Mapping[str, Material]) -> Bo
                 diameter=None if material is None else diameter,  # it may be given for a torque alone
                 material=material,
                 washers=tuple(w for w in washers if w is not None),
-                preload=preload,
                 fastener=fastener,
                 **given,
             )
         )
     table.close()
-    return bolt
+    return bolt, forces
 
 
 def _thread(
@@ -161,7 +162,7 @@ def _ring(value: Any, name: str) -> tuple[float, float]:
     return inner, outer
 
 
-def _preload(
+def _forces(
     table: Table, diameter: float | None, pitch: float | None, friction: tuple[float | None, float | None]
 ) -> tuple[float, ...]:
     """Forces [N], given as such or as torques with what turns them into forces."""

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from faying.errors import InputError
-from faying.joint.loads import preload_index
+from faying.joint.preload_case import preload_index
 from faying.study.declaration.declared import (
     QUANTITY,
     REQUIRED,
@@ -28,7 +28,6 @@ from faying.study.declaration.values import point as read_point
 from faying.study.declaration.values import quantity as read_quantity
 from faying.study.declaration.values import text as read_text
 from faying.typing import Array, Index
-from faying.units import load_text
 
 QUANTITIES = ("receptance", "mobility", "accelerance")
 
@@ -152,12 +151,7 @@ def _share(value: Any, name: str) -> float:
 
 def _file(table: Table, loads: tuple[float, ...]) -> HammerChoice:
     def load(value: Any, name: str) -> int:
-        wanted = read_quantity(value, "N", name)
-        index = preload_index(loads, wanted)
-        if index is None:
-            known = ", ".join(load_text(v) for v in loads)
-            raise InputError(f"{name} = {load_text(wanted)} is no preload of the study; its first bolt has {known}")
-        return index
+        return preload_index(loads, read_quantity(value, "N", name), name=name)
 
     table.take("frequencies", lambda _value, _name: None, None)
     return HammerChoice(
