@@ -64,6 +64,8 @@ from .output.scene.notebook import view as view
 from .result import Result as Result
 from .result import read_model_modes as read_model_modes
 from .result.backbone import Backbone as Backbone
+from .result.difference import RunDifference as RunDifference
+from .result.difference import compare_runs as compare_runs
 from .result.load_cases import LoadCases as LoadCases
 from .study import Study as Study
 from .surface import synthesize as synthesize

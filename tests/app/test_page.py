@@ -312,8 +312,7 @@ def test_the_page_does_what_the_command_line_does(server, example, tmp_path):
 
 def test_the_first_screen_leads_and_the_example_opens_in_one_click(browser, server, tmp_path):
     with page_at(browser, server) as page:
-        page.wait_for_selector("#steps:not([hidden])")
-        assert "Missing: a scan" in page.inner_text("#step-surface")
+        until(page, "document.querySelector('#step-surface').textContent.includes('Missing: a scan')")
         assert "Missing: a STEP file or a mesh" in page.inner_text("#step-structure")
         assert page.inner_text("#next") == "Next: add a scan, or open the small example."
         page.click("#try")

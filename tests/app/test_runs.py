@@ -101,6 +101,11 @@ def test_the_server_compares_two_runs(server, tmp_path):
     assert found["changes"] == [["law.model", "jk", "gw"], ["surface.x3p", "file", "other content"]]
     assert found["modes"][1][:4] == ["1", "110.00", "110.00", "+0.00"]
     assert "fault" in json.loads(ask(server, "api/compare?first=x&second=y")[1])
+    pair = f"api/compare?first={old['id']}&second={new['id']}"
+    at = json.loads(ask(server, f"{pair}&preload=2%20kN")[1])
+    assert (found["preloads"], at["preloads"]) == (["8 kN", "8 kN"], ["2 kN", "2 kN"])
+    assert at["shared"] == ["2 kN", "8 kN"]
+    assert "no such preload" in json.loads(ask(server, f"{pair}&preload=3%20kN")[1])["fault"]
 
 
 def test_two_runs_stand_next_to_each_other_in_the_page(browser, server, tmp_path):
@@ -120,6 +125,8 @@ def test_two_runs_stand_next_to_each_other_in_the_page(browser, server, tmp_path
         assert "flange" in rows[2]
         assert page.evaluate("document.querySelector('#two-found img').naturalWidth") > 400
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+        page.select_option("#run-load", "2 kN")
+        until(page, "document.querySelector('#two-found figcaption')?.textContent.includes('Preload 2 kN')")
         page.select_option("#run-second", index=1)
         until(page, "document.querySelector('#two-found').textContent.includes('The studies say the same')")
         page.unroute_all(behavior="ignoreErrors")

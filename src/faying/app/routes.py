@@ -213,7 +213,7 @@ class Session:
 
     def compare(self, request: Request) -> dict[str, Any]:
         """Two of the last results compared."""
-        return self.runs.compared(request.given("first"), request.given("second"))
+        return self.runs.compared(request.given("first"), request.given("second"), request.query.get("preload", ""))
 
     def scene(self, request: Request) -> str:
         """The scene of a file of the folder, or of the study, as `faying view` shows it."""

@@ -77,17 +77,19 @@ class Runs:
             one["changes"] = changes(studies[k + 1], studies[k]) if k + 1 < len(runs) else []
         return runs
 
-    def compared(self, first: str, second: str) -> dict[str, Any]:
+    def compared(self, first: str, second: str, preload: str = "") -> dict[str, Any]:
         """Compare two runs: what differs in their studies, modes and joints, a figure, notes.
 
+        preload: at which, as text; "" for the greatest that both have.
+
         Raises:
-            InputError: there is no such run, or it cannot be read.
+            InputError: there is no such run or preload, or a run cannot be read.
         """
-        from faying.result.difference import compare_runs
+        from faying.result.difference import compare_runs, shared_preloads
         from faying.result.difference_figure import differences
 
         results = self._load(first), self._load(second)
-        found = compare_runs(*results)
+        found = compare_runs(*results, preload or None)
         with BytesIO() as picture:
             differences(found).savefig(picture, format="svg")
             drawn = b64encode(picture.getvalue()).decode()
@@ -95,7 +97,8 @@ class Runs:
         files = [one.provenance.files for one in results]
         other = sorted(name for name in files[0] if name in files[1] and files[0][name] != files[1][name])
         return {
-            "preloads": [load_text(one.loads[at]) for one, at in zip(results, found.loads, strict=True)],
+            "preloads": list(map(load_text, found.preloads)),
+            "shared": [load_text(results[0].loads[at]) for at, _ in shared_preloads(*results)],
             "changes": [*changes(*texts), *([name, "file", "other content"] for name in other)],
             "modes": found.mode_rows(),
             "joints": found.joint_rows(),

@@ -1,13 +1,18 @@
 """Two results of one structure compared: which mode is which, and how frequencies, losses and pressures differ."""
 
-from dataclasses import dataclass
+import csv
+import io
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
 from faying.joint.preload_case import preload_index
 from faying.measured.mac import mac
+from faying.misuse import checked_call
 from faying.result.result import Result
+from faying.style import Summary
+from faying.text import few
 from faying.typing import Array, Index
 from faying.units import load_text
 
@@ -18,8 +23,8 @@ SAME_LOAD = 1e-6  # relative difference of preloads that count as one
 Rows = list[list[str]]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class RunDifference:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class RunDifference(Summary):
     """How the second of two results differs from the first.
 
     Args:
@@ -54,6 +59,60 @@ class RunDifference:
         return self._of_modes("loss_factors")
 
     @property
+    def preloads(self) -> tuple[float, float]:
+        """Preload of the first bolt in both [N]."""
+        return float(self.first.loads[self.loads[0]]), float(self.second.loads[self.loads[1]])
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading and the changes of the modes."""
+        change = [
+            f"mode {i + 1}: {100 * one:+.2f} %" for (i, _), one in zip(self.modes, self.frequency_change, strict=True)
+        ]
+        rows = {
+            "first": f"{self.first.title}, {load_text(self.preloads[0])}",
+            "second": f"{self.second.title}, {load_text(self.preloads[1])}",
+            "frequency": few(change, 8) or "no modes alike",
+        }
+        return "Difference of two runs", rows | {f"note {k}": text for k, text in enumerate(self.notes[:8], start=1)}
+
+    def to_dict(self) -> dict[str, Any]:
+        """The comparison as plain lists in SI units: preloads, pairs of modes, numbers of the joints, notes."""
+        f, loss = self.frequencies, self.loss_factors
+        return {
+            "preloads": list(self.preloads),
+            "modes": [
+                {
+                    "first": int(i) + 1,
+                    "second": int(j) + 1,
+                    "frequencies": [float(one[k]) for one in f],
+                    "loss_factors": [float(one[k]) for one in loss],
+                    "mac": float(self.mac[k]),
+                }
+                for k, (i, j) in enumerate(self.modes)
+            ],
+            "joints": {name: [asdict(one) for one in self.of_joint(name)] for name in self.joints},
+            "notes": list(self.notes),
+        }
+
+    def csv_text(self) -> str:
+        """The pairs of modes as CSV, SI, units in the heading."""
+        out = io.StringIO()
+        rows = csv.writer(out, lineterminator="\n")
+        sides = [f"{which} {what}" for what in ("frequency [Hz]", "loss factor [-]") for which in ("first", "second")]
+        rows.writerow(["first mode", "second mode", *sides, "MAC [-]"])
+        columns = zip(self.modes + 1, *self.frequencies, *self.loss_factors, self.mac, strict=True)
+        rows.writerows([*pair, *map(float, numbers)] for pair, *numbers in columns)
+        return out.getvalue()
+
+    def of_joint(self, name: str) -> "tuple[JointNumbers, JointNumbers]":
+        """Numbers of a joint in both."""
+        first, second = (
+            of_joint(one, load, one.joints.index(name))
+            for one, load in zip((self.first, self.second), self.loads, strict=True)
+        )
+        return first, second
+
+    @property
     def joints(self) -> tuple[str, ...]:
         """Names of the joints that both have."""
         return tuple(name for name in self.first.joints if name in self.second.joints)
@@ -67,9 +126,7 @@ class RunDifference:
 
     def mode_rows(self) -> Rows:
         """One row for each pair of modes, with a head."""
-        rows = [
-            ["mode", "first f [Hz]", "second f [Hz]", "change [%]", "first loss", "second loss", "change [%]", "MAC"]
-        ]
+        rows = [["mode", "first [Hz]", "second [Hz]", "by [%]", "first loss", "second loss", "by [%]", "MAC"]]
         f, loss = self.frequencies, self.loss_factors
         for k, (i, j) in enumerate(self.modes):
             rows.append(
@@ -88,10 +145,7 @@ class RunDifference:
         """Rows for each joint that both have, with a head: mean and greatest pressure, open share, stiffness."""
         rows = [["joint", "what", "first", "second", "change"]]
         for name in self.joints:
-            first, second = (
-                of_joint(one, load, one.joints.index(name))
-                for one, load in zip((self.first, self.second), self.loads, strict=True)
-            )
+            first, second = self.of_joint(name)
             for what, unit, scale, form in (
                 ("mean", "mean pressure [MPa]", 1e-6, ".3g"),
                 ("greatest", "greatest pressure [MPa]", 1e-6, ".3g"),
@@ -128,7 +182,8 @@ def of_joint(result: Result, load: int, joint: int) -> JointNumbers:
     )
 
 
-def compare_runs(first: Result, second: Result, preload: float | None = None) -> RunDifference:
+@checked_call
+def compare_runs(first: Result, second: Result, preload: float | str | None = None) -> RunDifference:
     """Compare two results of one structure, which may differ in law, surface, bolts, materials and mesh.
 
     Modes are paired by the likeness of their shapes over the area of the outer surface. At the nodes of the first mesh
@@ -139,7 +194,10 @@ def compare_runs(first: Result, second: Result, preload: float | None = None) ->
     Args:
         first: the result that differences are counted from.
         second: the other.
-        preload: of both [N]; the greatest that both have where None, else the greatest of each.
+        preload: of both [N], or text with a unit; the greatest that both have where None, else the greatest of each.
+
+    Returns:
+        The comparison; `shared_preloads` says at which others the two may be compared.
 
     Raises:
         InputError: a result has no such preload.
@@ -151,7 +209,8 @@ def compare_runs(first: Result, second: Result, preload: float | None = None) ->
             preload_index(second.loads, preload, of="the second run"),
         )
     else:
-        loads = _shared(first.loads, second.loads) or (len(first.loads) - 1, len(second.loads) - 1)
+        shared = shared_preloads(first, second)
+        loads = shared[-1] if shared else (len(first.loads) - 1, len(second.loads) - 1)
     at = first.loads[loads[0]], second.loads[loads[1]]
     if abs(at[1] / at[0] - 1) > SAME_LOAD:
         notes.append(f"the preloads differ: {load_text(at[0])} in the first run, {load_text(at[1])} in the second")
@@ -173,10 +232,10 @@ def _or_dash(value: float, form: str) -> str:
     return f"{value:{form}}" if np.isfinite(value) else "-"
 
 
-def _shared(first: Array, second: Array) -> tuple[int, int] | None:
-    """Where the greatest preload stands that both have."""
-    same = np.argwhere(np.isclose(first[:, None], second[None], rtol=SAME_LOAD, atol=0))
-    return (int(same[-1][0]), int(same[-1][1])) if len(same) else None
+def shared_preloads(first: Result, second: Result) -> list[tuple[int, int]]:
+    """Where the preloads stand that both results have, from the least: index in the first and in the second."""
+    same = np.argwhere(np.isclose(first.loads[:, None], second.loads[None], rtol=SAME_LOAD, atol=0))
+    return [(int(i), int(j)) for i, j in same]
 
 
 def _areas(result: Result) -> Array:

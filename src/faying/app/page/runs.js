@@ -33,6 +33,7 @@ export async function showRuns() {
 
 async function compare() {
   const pair = { first: $("run-first").value, second: $("run-second").value };
+  if ($("run-load").value) pair.preload = $("run-load").value;
   $("two-found").replaceChildren(made("p", "comparing …", { className: "hint" }));
   let found;
   try {
@@ -43,6 +44,8 @@ async function compare() {
     return said("two-fault", fault);
   }
   if (pair.first !== $("run-first").value || pair.second !== $("run-second").value) return; // a later one is under way
+  $("run-load").replaceChildren(...found.shared.map((load) => new Option(load, load, false, load === found.preloads[0])));
+  $("run-load").parentElement.hidden = found.shared.length < 2;
   const part = (title, ...inner) => [made("h3", title), ...inner];
   const scrolled = (rows) => {
     const out = made("div", "", { className: "scroll" });
@@ -60,5 +63,6 @@ async function compare() {
     ...part("Modes", scrolled(found.modes)), ...part("Joints", scrolled(found.joints)), figure);
 }
 
-for (const name of ["run-first", "run-second"]) $(name).addEventListener("change", compare);
+for (const name of ["run-first", "run-second"]) $(name).addEventListener("change", () => { $("run-load").replaceChildren(); compare(); });
+$("run-load").addEventListener("change", compare);
 $("two").addEventListener("toggle", () => { if ($("two").open && !$("two-found").childElementCount) compare(); });

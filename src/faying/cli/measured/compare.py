@@ -1,17 +1,20 @@
-"""`faying compare RESULT.nc TEST.uff`: a hammer test against the result of a study."""
+"""`faying compare RESULT.nc OTHER`: the result of a study next to a hammer test, or to another result."""
 
 from pathlib import Path
 
 import click
 
+from faying.cli.measured.two_runs import show_two_runs
 from faying.text import json_text
 from faying.units import load_text
+
+FOR_BOTH = ("result", "other", "load", "out", "as_json")
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("result", type=click.Path(path_type=Path))
-@click.argument("test", type=click.Path(path_type=Path))
-@click.option("--load", help='Preload of the result to compare with, for example "8 kN". Default: the greatest.')
+@click.argument("other", type=click.Path(path_type=Path))
+@click.option("--load", help='Preload to compare at, for example "8 kN". Default: the greatest; of two results, each.')
 @click.option(
     "--points", type=click.Path(path_type=Path), help="CSV table of the test's positions: point,x [mm],y [mm],z [mm]."
 )
@@ -48,7 +51,7 @@ from faying.units import load_text
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 def command(
     result: Path,
-    test: Path,
+    other: Path,
     load: str | None,
     points: Path | None,
     frame: Path | None,
@@ -61,10 +64,15 @@ def command(
     out: Path | None,
     as_json: bool,
 ) -> None:
-    """Compare the hammer test in TEST (a universal file) with RESULT (result.nc of `faying run`).
+    """Compare RESULT (result.nc of `faying run`) with the hammer test in OTHER, or with another result.
 
-    The mode shapes of TEST are taken where it holds some; otherwise they are identified from its FRFs.
+    A test is a universal file. Its mode shapes are taken where it holds some; otherwise they are identified from its
+    FRFs. Another result ends in .nc: modes are paired by their shapes, at each preload that both results have.
     """
+    if other.suffix.lower() == ".nc":
+        _check_no_test(click.get_current_context())
+        show_two_runs((result, other), load, out, as_json=as_json)
+        return
     from faying import units
     from faying.files import together
     from faying.measured.compare import compare_modes
@@ -75,9 +83,9 @@ def command(
     wanted = units.parse(load, "N", name="--load") if load else None
     model = Result.load(result).modes_at(wanted, source=str(result))
     distance = units.parse(tolerance, "m", name="--tolerance") if tolerance else None
-    tested = read_test(test, points=points, length_unit=length_unit, direction=direction, quantity=quantity)
+    tested = read_test(other, points=points, length_unit=length_unit, direction=direction, quantity=quantity)
     if tested.identified:
-        click.echo(f"{test}: no mode shapes; modes are identified from its FRFs", err=True)
+        click.echo(f"{other}: no mode shapes; modes are identified from its FRFs", err=True)
     comparison = compare_modes(
         tested.modes,
         model,
@@ -105,3 +113,19 @@ def command(
         click.echo(f"note: {line}")
     if files:
         click.echo(f"\nwritten to {out}: {', '.join(f.name for f in files)}")
+
+
+def _check_no_test(context: click.Context) -> None:
+    """Raise InputError for an option that two results have no use for."""
+    from click.core import ParameterSource
+
+    from faying.errors import InputError
+
+    given = [
+        parameter.opts[0]
+        for parameter in context.command.params
+        if parameter.name not in FOR_BOTH
+        and context.get_parameter_source(str(parameter.name)) is ParameterSource.COMMANDLINE
+    ]
+    if given:
+        raise InputError(f"{', '.join(given)}: for a hammer test alone; leave it out where two results are compared")
