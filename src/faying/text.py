@@ -42,7 +42,7 @@ def few(items: Sequence[object] | Index, most: int = 5) -> str:
 
 
 MERGED = re.compile(r" {4}-1[^\d\s.,eEdD+-]")  # a mark with something else in place of the end of the line
-LINES_OF_HEADER = 7
+MOST_LINES = {"151": (7, "a header"), "164": (3, "units")}  # of data sets that all have the same
 NUMBERS = (15, 18, 55, 56, 58, 82, 151, 164, 780, 781, 1858, 2411, 2412, 2414, 2420, 2429, 2430, 2432, 2435, 2452, 2467)
 
 
@@ -57,30 +57,32 @@ def check_data_sets(lines: Sequence[str], where: str) -> None:
     A mark that is missing, or is there twice, would hide the data sets on both sides of it.
     """
     inside, begun = False, False
-    header = 0  # lines of a header (151) that have been passed
+    held, left = "", 0  # a data set whose number of lines is known, and how many it may still have
     for number, line in enumerate(lines, 1):
         text = line.strip(" \t\r\n\x00\x1a")
         if text == "-1" and not begun:
             inside, begun = not inside, not inside
         elif begun:
-            begun, header = False, 1 if text == "151" else 0
+            begun, held = False, text
+            left = MOST_LINES.get(text, (0, ""))[0]
             if not line[:6].strip().isdigit():  # the number stands in six columns
                 raise ReadError(
                     f"{where}, line {number}: {text[:40]!r} is not the number of a data set, which follows on -1; is "
                     "the file damaged, or a line -1 too much or too few?"
                 )
-        elif inside and header > LINES_OF_HEADER:
+        elif inside and held in MOST_LINES and left == 0:
+            most, what = MOST_LINES[held]
             raise ReadError(
-                f"{where}, line {number}: {text[:40]!r} is one line too many for a header (data set 151), which has "
-                f"{LINES_OF_HEADER}; are marks of the next data set missing?"
+                f"{where}, line {number}: {text[:40]!r} is one line too many for {what} (data set {held}), which has "
+                f"{most}; are marks of the next data set missing?"
             )
         elif inside and (MERGED.match(line) or _begins(line)):
             raise ReadError(
                 f"{where}, line {number}: {text[:40]!r} stands inside a data set and looks like the beginning of "
                 "another; is a line -1 missing or damaged before it?"
             )
-        elif inside and header:
-            header += 1
+        elif inside and held in MOST_LINES:
+            left -= 1
         elif text and not inside:
             raise ReadError(
                 f"{where}, line {number}: {text[:40]!r} is between two data sets; is a line -1 missing before it?"

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import faying
+from faying.measured.text import read_frf_text
 from faying.text import check_data_sets
 from tests.fuzz.seeds import written
 
@@ -38,6 +39,14 @@ def test_a_header_has_seven_lines():
     check_data_sets(header, "f")
     with pytest.raises(faying.ReadError, match="line 10: '1.0 2.0' is one line too many for a header"):
         check_data_sets([*header[:-1], "1.0 2.0", "    -1"], "f")
+
+
+def test_units_have_three_lines():
+    units = ["    -1", "   164", "         1SI", "1.0 1.0 1.0", "273.15", "    -1"]
+    check_data_sets(units, "f")
+    check_data_sets([*units[:4], *units[5:]], "f")
+    with pytest.raises(faying.ReadError, match=r"line 6: '273.15' is one line too many for units \(data set 164\)"):
+        check_data_sets([*units[:5], *units[4:]], "f")
 
 
 def test_numbers_inside_a_data_set_are_no_beginning():
@@ -231,3 +240,40 @@ def test_a_set_of_numbers_that_are_not_there_is_said(seeds):
     other.write_text(seeds["flat.inp"].read_text() + "*ELSET, ELSET=mine\n17, 1939\n")
     notes = [note.text for note in faying.read_mesh(other, unit="mm").notes]
     assert "the set 'mine' names numbers that the file does not hold: 1939" in notes
+
+
+@pytest.mark.parametrize(
+    ("name", "begins", "change", "match"),
+    [
+        ("u.unv", "       103", lambda line: [line.replace("1         1", "1         x")], "should be 4 whole numbers"),
+        ("u.unv", "       103", lambda line: [f"{line}        77"], "should be 4 whole numbers"),
+        ("a.cdb", "      103", lambda line: [line.replace("0        0", "0        x", 1)], "should be 3 whole numbers"),
+        ("a.cdb", "      103", lambda line: [line.ljust(27 + 6 * 21) + "7"], "should be 3 whole numbers and up to 6"),
+        ("two.msh", "2.2 0 8", lambda line: [line, "2.2 0 8"], "stands in .MeshFormat, which holds one line"),
+    ],
+)
+def test_a_line_with_more_than_it_holds_is_refused(seeds, name, begins, change, match):
+    with pytest.raises(faying.ReadError, match=match):
+        faying.read_mesh(spoilt(seeds[name], begins, change), unit="mm")
+
+
+def test_nodes_in_columns_of_several_widths_are_read(seeds):
+    path: Path = seeds["a.cdb"]
+    other = path.with_name("widths.cdb")
+    text = path.read_text().replace("(3i9,6e21.13e3)", "(1i7,2i9,6e21.13e3)")
+    other.write_text(re.sub(r"^  (.{7}(?: {8}0){2}.*)$", r"\1", text, flags=re.M))
+    assert other.read_text() != text
+    one, same = (faying.read_mesh(file, unit="mm") for file in (path, other))
+    assert (one.points == same.points).all()
+
+
+def test_a_load_on_an_element_that_is_not_there_is_said(seeds):
+    other = spoilt(seeds["small.bdf"], "PLOAD4  3       25 ", lambda card: [card.replace("25   ", "99925", 1)])
+    notes = [note.text for note in faying.read_mesh(other, unit="mm").notes]
+    assert notes == ["PLOAD4 names elements that the file does not hold: 99925"]
+
+
+def test_a_phase_without_digits_is_refused(seeds):
+    other = spoilt(seeds["polar.csv"], "0.017,", lambda line: [line.replace(",30", ",1e20")])
+    with pytest.raises(faying.ReadError, match="a phase of 1.75e\\+18 rad has lost its digits"):
+        read_frf_text([other], quantity="accelerance", frequency_step=1.0)

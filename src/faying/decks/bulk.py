@@ -156,6 +156,7 @@ class Bulk:
     solid: dict[int, tuple[str, list[int]]] = field(default_factory=dict)
     bodies: dict[str, list[int]] = field(default_factory=dict)
     skins: dict[str, list[list[int]]] = field(default_factory=dict)
+    others: set[int] = field(default_factory=set)  # numbers of skins, and of elements that are left out
     loads: list[tuple[list[str], str]] = field(default_factory=list)
     sets: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
     left_out: dict[str, int] = field(default_factory=dict)
@@ -182,6 +183,7 @@ class Bulk:
             nodes = [int(word) for word in fields[2 : 2 + many] if word]
             if not all(fields[2 : 2 + few]) or len(fields) < 2 + few:
                 raise ReadError(f"{where}: {name} {fields[0]} has no {few} corners; is the file complete?")
+            self.others.add(int(fields[0]))
             self.skins.setdefault(f"face{fields[1] or fields[0]}", []).append(
                 nodes if len(nodes) == many else nodes[:few]
             )
@@ -191,6 +193,7 @@ class Bulk:
             self.sets[f"SET{fields[0]}"] = listed([word for word in fields[1:] if word])
         elif name in _LEFT_OUT:
             self.left_out[name] = self.left_out.get(name, 0) + 1
+            self.others |= {int(word) for word in fields[:1] if word.isdigit()}
             self.references += [int(fields[k]) for k in _LEFT_OUT[name] if k < len(fields) and fields[k].isdigit()]
         elif name == "ENDDATA":
             self.ended = True

@@ -57,7 +57,7 @@ def read(path: Path) -> RawMesh:
             if name in _CONSTRAINTS:
                 commands.append(name)
             elif name == "CMBLOCK":
-                width = _widths(lines[k + 1])[0]
+                width = _width(lines[k + 1])
                 count = int(words[3].split("!")[0])
                 k, values = _block(lines, k + 2, count, width)
                 sets[words[2].upper()[:4]][words[1]] = _unrolled(values)
@@ -176,7 +176,7 @@ def _types(lines: list[str], k: int, words: list[str], kinds: dict[int, str]) ->
         if len(words) > 2:
             kinds[int(words[1])] = re.sub(r"\D", "", words[2])
         return k + 1
-    width = _widths(lines[k + 1])[0]
+    width = _width(lines[k + 1])
     wide = re.search(r",\s*\d*a(\d+)", lines[k + 1].lower())
     start, k = k, k + 2
     while int(lines[k][:width]) != -1:
@@ -189,12 +189,23 @@ def _types(lines: list[str], k: int, words: list[str], kinds: dict[int, str]) ->
     return k + 1
 
 
-def _widths(form: str) -> tuple[int, int, int]:
-    """Width of an integer, how many come first, and width of a real, from a Fortran format such as (3i9,6e21.13e3)."""
-    found = re.search(r"\((\d+)i(\d+)(?:,\d+e(\d+))?", form.lower())
-    if not found:
+def _columns(form: str) -> tuple[list[slice], list[slice]]:
+    """Where integers and reals stand in a line, from a Fortran format such as (3i9,6e21.13e3) or (1i7,2i9,6e21.13)."""
+    found = re.findall(r"(\d+)([ie])(\d+)(?:\.\d+(?:e\d+)?)?", form.lower())
+    if not form.lstrip().startswith("(") or not found or found[0][1] != "i":
         raise ValueError(f"{form.strip()!r} is not a format")
-    return int(found.group(2)), int(found.group(1)), int(found.group(3) or 0)
+    out: dict[str, list[slice]] = {"i": [], "e": []}
+    start = 0
+    for count, kind, width in found:
+        for _ in range(int(count)):
+            out[kind].append(slice(start, start + int(width)))
+            start += int(width)
+    return out["i"], out["e"]
+
+
+def _width(form: str) -> int:
+    """Width of the integers that a format such as (19i9) consists of."""
+    return int(_columns(form)[0][0].stop)
 
 
 def _nodes(
@@ -206,15 +217,19 @@ def _nodes(
     turned: list[int],
 ) -> int:
     """Numbers, places and, where their directions are turned, names of the nodes of an NBLOCK."""
-    width, count, real = _widths(lines[k + 1])
+    whole, real = _columns(lines[k + 1])
     head, k = k, k + 2
     before = len(numbers)
     while not re.match(r"\s*(-1|N,)", lines[k], re.I):
         line = lines[k]
-        start = width * count
-        cells = [line[start + i * real : start + (i + 1) * real].strip() for i in range(6)]
+        heads, cells = ([line[at].strip() for at in some] for some in (whole, real))
+        if not all(re.fullmatch(r"[-+]?\d+", cell) for cell in heads if cell) or line[real[-1].stop :].strip():
+            raise ReadError(
+                f"line {k + 1}: {line.strip()[:60]!r} should be {len(whole)} whole numbers and up to {len(real)} "
+                f"others in {lines[head + 1].strip()}; is it damaged?"
+            )
         values = [float(cell.replace("D", "E")) if cell else 0.0 for cell in cells]
-        numbers.append(int(line[:width]))
+        numbers.append(int(heads[0]))
         points.append(values[:3])
         if any(values[3:]):
             turned.append(numbers[-1])
@@ -243,7 +258,7 @@ def _elements(
 ) -> int:
     if len(words) < 3 or words[2].upper() != "SOLID":
         raise ReadError(f"line {k + 1}: EBLOCK without the key SOLID is not known; write the archive with CDWRITE,DB")
-    width, _, _ = _widths(lines[k + 1])
+    width = _width(lines[k + 1])
     begin, found = k, 0
     k += 2
     while True:

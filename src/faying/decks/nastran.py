@@ -20,6 +20,7 @@ from faying.decks.raw import Matrices, RawMesh, both_triangles, face_blocks, gat
 from faying.decks.vocabulary import left_out
 from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS
+from faying.text import few
 from faying.typing import Array, Index
 
 # commands of the case control whose sets are of elements
@@ -62,6 +63,7 @@ def read(path: Path) -> RawMesh:
             raise ReadError(f"{path} ends without ENDDATA; the file is cut short")
         notes.append(f"{path.name} has no ENDDATA: it may be cut short")
     numbers = index(bulk.grids)
+    notes += _absent(bulk)
     turned = [n for n, (_, _, cd) in bulk.grids.items() if (bulk.default[1] if cd is None else cd) != 0]
     return RawMesh(
         numbers=numbers,
@@ -107,6 +109,13 @@ def _case_sets(path: Path) -> tuple[dict[str, list[tuple[int, int]]], list[str]]
         if sets.pop(name, None) is not None
     ]
     return sets, notes
+
+
+def _absent(bulk: Bulk) -> list[str]:
+    """A note on elements that PLOAD4 cards name and the file does not hold."""
+    named = {int(fields[1]) for fields, _ in bulk.loads if fields[6].upper() != "THRU" and fields[1].isdigit()}
+    absent = sorted(named - bulk.solid.keys() - bulk.others)
+    return [f"PLOAD4 names elements that the file does not hold: {few(absent)}"] if absent else []
 
 
 def _loaded(loads: list[tuple[list[str], str]], where_of: dict[int, tuple[str, list[int]]]) -> dict[str, Index]:

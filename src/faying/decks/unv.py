@@ -62,8 +62,9 @@ def read(path: Path) -> RawMesh:
             )
         elif number in _NODES:
             for head, place in zip(lines[::2], lines[1::2], strict=True):
-                exported |= {int(head.split()[1])} & moved
-                points[int(head.split()[0])] = [float(word.replace("D", "E")) for word in place.split()]
+                label, system, _, _ = _whole_numbers(path, head, 4)
+                exported |= {system} & moved
+                points[label] = [float(word.replace("D", "E")) for word in place.split()]
         elif number in _ELEMENTS:
             extra += _elements(path, lines, solids, shells, held)
         elif number in _GROUPS:
@@ -95,6 +96,16 @@ def read(path: Path) -> RawMesh:
         extra=index([*extra, *(n for nodes in shells.values() for n in nodes)]),
         notes=tuple(notes),
     )
+
+
+def _whole_numbers(path: Path, line: str, count: int) -> list[int]:
+    """The numbers of a line that holds so many whole ones. Raises ReadError for another line."""
+    words = line.split()
+    if len(words) != count or not all(re.fullmatch(r"[-+]?\d+", word) for word in words):
+        raise ReadError(
+            f"{path}: {line.strip()[:60]!r} heads a node and should be {count} whole numbers; is it damaged?"
+        )
+    return [int(word) for word in words]
 
 
 def _moved(lines: list[str]) -> list[int]:

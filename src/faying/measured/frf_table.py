@@ -22,6 +22,7 @@ ROLES = {
     "magnitude": {"magnitude", "mag", "amplitude", "amp", "abs", "modulus"},
     "phase": {"phase", "angle", "arg"},
 }
+MOST_PHASE = 1e6  # rad
 PAIRS = {("real", "imaginary"): "parts", ("magnitude", "phase"): "polar"}
 FORM = "a table of FRFs looks like: frequency [Hz],real [m/s^2/N],imaginary [m/s^2/N] or frequency [Hz],magnitude [dB],"
 FORM += "phase [deg]"
@@ -43,10 +44,13 @@ class Pair:
     turn: float = 1.0
 
     def values(self, table: Array) -> Complex:
-        """Complex values (f,) in SI."""
+        """Complex values (f,) in SI. Raises ReadError for a phase of so many turns that its digits are lost."""
         a, b = table[:, self.first], table[:, self.second]
         if not self.polar:
             return np.asarray(self.scales[0] * a + 1j * self.scales[1] * b)
+        most = float(np.abs(self.turn * b).max(initial=0.0))
+        if most > MOST_PHASE:
+            raise ReadError(f"a phase of {most:.3g} rad has lost its digits; is the column a phase?")
         size = 10 ** (a / 20) if self.decibels else a
         return np.asarray(self.scales[0] * size * np.exp(1j * self.turn * b))
 

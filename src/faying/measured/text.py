@@ -94,7 +94,10 @@ def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex
             + (f", {width} numbers as in the heading" if layout.named else "")
         )
     data = np.array(table)
-    functions = np.array([pair.values(data) for pair in layout.pairs])
+    try:
+        functions = np.array([pair.values(data) for pair in layout.pairs])
+    except ReadError as fault:
+        raise ReadError(f"{path}: {fault}") from None
     frequency = layout.hertz * data[:, layout.frequency]
     return frequency, functions, (*layout.notes, *_gaps(frequency, path))
 
