@@ -34,6 +34,14 @@ def test_missing_points_are_bridged_and_the_rim_takes_the_nearest():
     assert found == pytest.approx([2e-6] * 3)
 
 
+def test_a_place_that_was_measured_twice_has_the_mean_of_both():
+    gaps = np.linspace(0.0, 1e-5, len(GRID))
+    twice = GapMap(places=np.concatenate([GRID, GRID[:3]]), gaps=np.concatenate([gaps, gaps[:3] + 2e-6]))
+    at = np.column_stack([GRID, np.zeros(len(GRID))])
+    shift = np.where(np.arange(len(GRID)) < 3, 1e-6, 0.0)
+    np.testing.assert_allclose(twice.at(at), gaps + shift, rtol=1e-12, atol=1e-18)
+
+
 def test_the_gap_adds_to_that_of_the_geometry():
     structure = plates(stacked(gap=1e-6))
     joint = structure.joints[0]

@@ -34,7 +34,7 @@ class GapMap(Summary):
 
     Args:
         places: (n, 2) [m], in the plane of the map.
-        gaps: (n,) [m]; NaN are left out.
+        gaps: (n,) [m]; NaN are left out, and of several at one place the mean is taken.
         origin: (3,) [m], where x = y = 0 lies in the structure.
         x_axis, y_axis: directions (3,) of the map's axes.
 
@@ -61,8 +61,9 @@ class GapMap(Summary):
         spread = np.linalg.svd(self.places[good] - self.places[good].mean(axis=0), compute_uv=False)
         if spread[1] < 1e-9 * spread[0]:
             raise InputError("the points of the map are on one line; a map covers an area, with x and y both varying")
-        object.__setattr__(self, "places", self.places[good])
-        object.__setattr__(self, "gaps", self.gaps[good])
+        places, gaps = _means(self.places[good], self.gaps[good])
+        object.__setattr__(self, "places", places)
+        object.__setattr__(self, "gaps", gaps)
 
     def at(self, positions: Array) -> Array:
         """Gap [m] at positions (q, 3) [m]: linear between the points of the map, the nearest point's outside them."""
@@ -81,6 +82,12 @@ class GapMap(Summary):
             )
         inside = LinearNDInterpolator(self.places, self.gaps)(local)
         return np.asarray(np.where(np.isfinite(inside), inside, NearestNDInterpolator(self.places, self.gaps)(local)))
+
+
+def _means(places: Array, values: Array) -> tuple[Array, Array]:
+    """Each place once, with the mean of its values; as they are where none is there twice."""
+    found, where, counts = np.unique(places, axis=0, return_inverse=True, return_counts=True)
+    return (places, values) if len(found) == len(places) else (found, np.bincount(where.ravel(), values) / counts)
 
 
 def _box(low: Array, high: Array) -> str:
