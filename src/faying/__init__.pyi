@@ -9,6 +9,7 @@ from .asperity_fe import solve_asperity as solve_asperity
 from .backbones.backbone import backbone as backbone
 from .bolt.bolt import Bolt as Bolt
 from .bolt.bolt import Washer as Washer
+from .bolt.dowel import Dowel as Dowel
 from .bolt.solid_bolt import SolidBolt as SolidBolt
 from .contact.compare import Comparison as Comparison
 from .contact.law import ContactLaw as ContactLaw

@@ -33,8 +33,8 @@ def bracket(path, tapped=8.5, depth=25.0):
     return _write(path, bracket=plate, base=base)
 
 
-def flanges(path, raised=0.0, pipe=0.0):
-    """Two rings of 150 mm with six holes of 11 mm on 114 mm; raised: height of the faces that meet; pipe: length."""
+def flanges(path, raised=0.0, pipe=0.0, hole=11.0):
+    """Two rings of 150 mm with six holes on 114 mm; raised: height of the faces that meet; pipe: length."""
     _, cylinder = _shapes()
 
     def one(up):
@@ -46,7 +46,7 @@ def flanges(path, raised=0.0, pipe=0.0):
             shape = shape + cylinder(0, 0, *((high, high + pipe) if up else (low - pipe, low)), 30)
         shape = shape - cylinder(0, 0, -200, 200, 26)
         for k in range(6):
-            shape = shape - cylinder(57 * cos(k * pi / 3), 57 * sin(k * pi / 3), low, high, 5.5)
+            shape = shape - cylinder(57 * cos(k * pi / 3), 57 * sin(k * pi / 3), low, high, hole / 2)
         return shape
 
     return _write(path, upper=one(True), lower=one(False))

@@ -14,6 +14,7 @@ from faying.answer.run import run
 from faying.cli.main import cli
 from faying.geometry.cad import read_parts
 from faying.setup import new
+from faying.setup.check import check
 from faying.study import Study
 from faying.units import si
 from tests.helpers import assemblies
@@ -26,7 +27,7 @@ class Kind:
 
     left_out: parts that are not meshed; bolts: how many, and of which size [mm]; seats: outer diameter of the seat
     [mm]; rows: of joints, one behind the other, that carry the force of all bolts; pair: the first of two modes that
-    differ by a turn alone, from 0; says: what the study says of it.
+    differ by a turn alone, from 0; dowels: how many; says: what the study says of it.
     """
 
     parts: int
@@ -36,6 +37,7 @@ class Kind:
     left_out: int = 0
     rows: int = 1
     pair: int | None = None
+    dowels: int = 0
     says: tuple[str, ...] = ()
 
 
@@ -48,7 +50,7 @@ KINDS = {
     "spacers": Kind(parts=6, joints=6, bolts=(2, 10), seat=20, rows=3),
     "stepped_lap": Kind(parts=2, joints=1, bolts=(2, 10), seat=20, says=("(shoulders, registers)",)),
     "segments": Kind(parts=5, joints=4, bolts=(8, 10), seat=20, pair=2, says=("up to 1 mm apart",)),
-    "cover": Kind(parts=2, joints=1, bolts=(4, 6), seat=12, says=("A dowel is no bolt",)),
+    "cover": Kind(parts=2, joints=1, bolts=(4, 6), seat=12, dowels=2, says=("6 mm (ISO 2338)",)),
     "channel": Kind(parts=2, joints=1, bolts=(2, 8), seat=16, says=("for a slot 9 mm wide",)),
 }
 
@@ -87,17 +89,30 @@ def test_new_finds_parts_joints_and_bolts(made, name):
     count, size = kind.bolts
     assert [bolt.diameter for bolt in study.bolts] == pytest.approx([size * 1e-3] * count)
     assert [bolt.seat[1] for bolt in study.bolts] == pytest.approx([kind.seat * 1e-3] * count)
+    assert len(study.dowels) == kind.dowels
     written = made(name)[1].read_text()
     for words in kind.says:
         assert words in written
 
 
 def test_pins_as_parts_are_dowels(folder):
-    found = new.find(assemblies.cover(folder / "pins.step", pins_drawn=True))
-    assert found.left_out == ("pin 1", "pin 2")
-    assert len(found.bolts) == 4
-    (line,) = [remark for remark in found.remarks if "dowel" in remark]
-    assert line.startswith("'pin 1', 'pin 2': dowels. A dowel is no bolt")
+    path = assemblies.cover(folder / "pins.step", pins_drawn=True)
+    study = Study.read(proposed(path, "8 mm"))
+    assert study.geometry.leave_out == ("pin 1", "pin 2")
+    assert (len(study.bolts), len(study.dowels)) == (4, 2)
+    assert np.array(study.dowels[0].ends) == pytest.approx(np.array([(60, 10, 18), (60, 10, 40)]) * 1e-3)
+    assert "'pin 1', 'pin 2': dowels, which carry shear alone" in path.with_suffix(".toml").read_text()
+    said = [one.text for one in check(path.with_suffix(".toml")).findings if one.code == "dowel"]
+    assert said == [f"dowel 'dowel {k}': 6 mm thick, 12 mm in 'frame', 10 mm in 'cover'" for k in (1, 2)]
+
+
+def test_open_holes_of_a_clearance_size_are_bolts_although_a_pin_would_fit(folder):
+    """10 mm is the coarse clearance hole of M8 and the diameter of a pin: the study says so."""
+    path = assemblies.flanges(folder / "ten.step", hole=10.0)
+    found = new.find(path)
+    assert (len(found.bolts), len(found.dowels)) == (6, 0)
+    words = "if the holes are those of a dowel, give a [[dowel]] in its place"
+    assert all(words in bolt.remark for bolt in found.bolts)
 
 
 def checked(toml):

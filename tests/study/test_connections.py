@@ -391,3 +391,46 @@ def test_response_faults(folder, old, new, text):
 def test_a_damping_that_is_none(folder):
     with pytest.raises(faying.InputError, match="should be one of hysteretic, viscous"):
         study(folder, modes={"damping": "oil"})
+
+
+DOWEL = {"walls": ["upper.pin", "lower.pin"], "material": "45 steel"}
+
+
+def test_a_dowel_with_everything(folder):
+    given = DOWEL | {"name": "d", "diameter": "6 mm", "ends": [["0 mm", "1 mm", "2 mm"], ["0 mm", "1 mm", "22 mm"]]}
+    (dowel,) = study(folder, dowel=[given]).dowels
+    assert (dowel.name, dowel.walls) == ("d", ("upper.pin", "lower.pin"))
+    assert dowel.diameter == pytest.approx(6e-3)
+    assert dowel.ends == (pytest.approx((0.0, 1e-3, 2e-3)), pytest.approx((0.0, 1e-3, 22e-3)))
+    assert dowel.material.E == pytest.approx(faying.CATALOGUE["45 steel"].E)
+
+
+def test_walls_of_a_dowel_may_be_selectors(folder):
+    walls = [{"part": part, "number": 3} for part in ("upper", "lower")] + ["lower.pin"]
+    found = study(folder, dowel=[DOWEL | {"walls": walls}])
+    assert found.dowels[0].walls == ("dowel 1 first", "dowel 1 second", "lower.pin")
+    assert found.geometry.face["dowel 1 second"].number == 3
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"walls": ["upper.pin"]}, "should be a list of 2 names or more"),
+        ({"walls": ["upper.pin", "upper.pin"]}, "names the wall 'upper.pin' twice"),
+        ({"material": "cheese"}, 'material "cheese" is unknown; known are "45 steel"'),
+        ({"material": None}, "material is missing"),
+        ({"diameter": "-6 mm"}, "diameter"),
+        ({"ends": [["0 mm", "0 mm", "0 mm"]]}, "should be a list of two points"),
+        ({"ends": [["0 mm", "0 mm", "0 mm"]] * 2}, "both ends are one point"),
+        ({"preload": "1 kN"}, "preload is not a key"),
+    ],
+)
+def test_faults_of_a_dowel_are_said(folder, change, words):
+    given = {key: value for key, value in (DOWEL | change).items() if value is not None}
+    with pytest.raises(faying.InputError, match=re.escape(words)):
+        study(folder, dowel=[given])
+
+
+def test_dowels_of_one_name_are_refused(folder):
+    with pytest.raises(faying.InputError, match="two dowels are called 'd'"):
+        study(folder, dowel=[DOWEL | {"name": "d"}] * 2)

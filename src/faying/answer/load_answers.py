@@ -230,6 +230,7 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
         rest_pressure=np.concatenate([one.pressure for one in contacts]),
         pressure=np.array([np.concatenate(one) for one in pressures]),
         shear=np.array(shears),
+        **_dowels(structure, motions),
         notes=(*base.notes, *load_notes(structure, contacts, [load.name for load in loads], pressures, bolts, joints)),
         provenance=base.provenance,
         **vars(bolts),
@@ -250,6 +251,18 @@ def _departure(motions: Sequence[Array], straight: Sequence[Array], bolts: BoltA
         by_force = float(np.abs(here - there).max(initial=0.0)) / force if force > 0 else 0.0
         out.append(max(apart, by_force))
     return np.array(out)
+
+
+def _dowels(structure: Structure, motions: Sequence[Array]) -> dict[str, Any]:
+    """What the dowels carry under the displacement [m] of each case; nothing where there are none."""
+    fitted = structure.fitted_dowels
+    if not fitted:
+        return {}
+    return {
+        "dowels": tuple(one.dowel.name for one in fitted),
+        "dowel_shear": np.array([[one.shear(motion) for one in fitted] for motion in motions]),
+        "dowel_bearing": np.array([[one.bearing(motion) for one in fitted] for motion in motions]),
+    }
 
 
 def _greatest(motion: Array) -> float:

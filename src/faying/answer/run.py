@@ -168,6 +168,7 @@ def collect(
         **_on_faces(structure, states),
         **_outline(structure, shapes, states),
         **_made_of(structure),
+        **_dowels(structure, states),
         **alternative_fields(alternatives, len(states), len(bounds[0])),
         joints=tuple(j.name for j in structure.joints),
         bolts=tuple(bolt.name for bolt in study.bolts),
@@ -273,6 +274,19 @@ def _made_of(structure: Structure) -> dict[str, Any]:
         "bolt_extents": np.array(
             [bolt.extent if isinstance(bolt, FittedBolt) else (np.nan, np.nan) for bolt in bolts]
         ).reshape(-1, 2),
+    }
+
+
+def _dowels(structure: Structure, states: Sequence[LoadedCase]) -> dict[str, Any]:
+    """Fields of the result that say of the dowels where they are and what they carry; nothing where there are none."""
+    fitted = structure.fitted_dowels
+    if not fitted:
+        return {}
+    return {
+        "dowels": tuple(one.dowel.name for one in fitted),
+        "dowel_ends": np.array([one.seats for one in fitted]),
+        "dowel_diameters": np.array([one.place.diameter for one in fitted]),
+        "dowel_shear": np.array([[one.shear(s.preload.displacement) for one in fitted] for s in states]),
     }
 
 

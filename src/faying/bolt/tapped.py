@@ -12,7 +12,8 @@ from faying.units import show
 
 ENGAGED = 1.5  # nominal diameters that a bolt engages where the study does not say, or the depth of the hole if less
 INSIDE = 0.5  # nominal diameters of the bolt inside its thread that stretch with the shank (VDI 2230, l_G)
-ACROSS = 0.2  # of a normal along the axis, up to which a face counts as the wall of a hole
+ACROSS = 0.2  # of a normal along the axis, up to which a place counts as on the wall of a hole
+ASTRAY = 0.02  # share of the area that may not, as on an element that was straightened, for the face to be one
 TURNED = 0.2  # share of the normals across their main direction, above which a face is bent round an axis
 
 
@@ -53,7 +54,7 @@ def round_hole(points: Array, blocks: Blocks) -> RoundHole | None:
     place, normal, share = np.concatenate(places), np.concatenate(normals), np.concatenate(shares)
     spread, directions = np.linalg.eigh(np.einsum("q,qi,qj->ij", share, normal, normal) / share.sum())
     axis = directions[:, 0]
-    if spread[1] < TURNED or np.abs(normal @ axis).max() > ACROSS:
+    if spread[1] < TURNED or share @ (np.abs(normal @ axis) > ACROSS) > ASTRAY * share.sum():
         return None
     # the axis is nearest to the lines through all places along their normals
     flat = np.eye(3)[None] - normal[:, :, None] * normal[:, None, :]

@@ -291,6 +291,11 @@ def named_faces(study: Study) -> list[tuple[str, str, str, str]]:
     named += [
         (f"bolt[{k}].faces", "bolt", bolt.name, face) for k, bolt in enumerate(study.bolts, 1) for face in bolt.faces
     ]
+    named += [
+        (f"dowel[{k}].walls", "dowel", dowel.name, wall)
+        for k, dowel in enumerate(study.dowels, 1)
+        for wall in dowel.walls
+    ]
     named += [(f"support[{k}].face", "support", one.face, one.face) for k, one in enumerate(study.supports, 1)]
     masses = [(k, one.face) for k, one in enumerate(study.masses, 1) if one.face is not None]
     named += [(f"mass[{k}].face", "mass", face, face) for k, face in masses]
@@ -355,6 +360,7 @@ def structure_of(
         bolts=study.bolts,
         supports=study.supports,
         masses=study.masses,
+        dowels=study.dowels,
     )
 
 

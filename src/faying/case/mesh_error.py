@@ -65,10 +65,11 @@ def mesh_error(case: Case, states: Sequence[LoadedCase]) -> MeshError | None:
 
 
 def loaded_nodes(structure: Structure) -> Mask:
-    """Nodes (n,) on which joints, bolts, supports and masses act."""
+    """Nodes (n,) on which joints, bolts, dowels, supports and masses act."""
     mesh = structure.mesh
     faces = [face for joint in structure.joints for face in joint.faces]
     faces += [face for bolt in structure.bolts for face in bolt.faces]
+    faces += [wall for dowel in structure.dowels for wall in dowel.walls]
     faces += [support.face for support in structure.supports]
     faces += [mass.face for mass in structure.masses if mass.face is not None]
     out = np.zeros(len(mesh.points), dtype=bool)

@@ -55,6 +55,8 @@ def asked(proposal: Any, scan: Path | None) -> Any:
         alike.setdefault(bolt.remark, []).append(bolt.name)
     for remark, names in alike.items():
         click.echo(f"  {grouped(names)}: {remark}")
+    for dowel in proposal.dowels:
+        click.echo(f"  {dowel.name}: {dowel.remark}")
     for remark in proposal.remarks:
         click.echo(f"  {remark}")
     choice = click.Choice(list(CATALOGUE))
@@ -96,6 +98,7 @@ def to_dict(written: Any) -> dict[str, Any]:
             }
             for b in found.bolts
         ],
+        "dowels": [{"name": d.name, "walls": list(d.walls)} for d in found.dowels],
         "size": {"unit": "m", "values": found.size},
         "unknowns": found.unknowns,
         "assumed": list(written.assumed),

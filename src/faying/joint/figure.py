@@ -157,7 +157,7 @@ def mode_axes(modes: VibrationModes, mode: int, ax: "Axes | None" = None) -> "Ax
 
 @drawing
 def structure_axes(structure: Structure, ax: "Axes | None" = None) -> "Axes":
-    """Draw the parts, with the faces of joints, seats of bolts and supports in colours of their own."""
+    """Draw the parts, with the faces of joints, seats of bolts, dowels and supports in colours of their own."""
     target: Any = axes_in_space(ax)
     outer = structure.surface()
     colours: dict[int, str] = {}
@@ -173,11 +173,13 @@ def structure_axes(structure: Structure, ax: "Axes | None" = None) -> "Axes":
     for joint in structure.joints:
         paint("joint", joint.name, joint.faces)
     of_bolt = [paint("bolt", bolt.name, bolt.faces) for bolt in structure.bolts]
+    of_dowel = [paint("dowel", dowel.name, dowel.walls) for dowel in structure.dowels]
     for support in structure.supports:
         paint("support", support.face, (support.face,))
     points = structure.mesh.points[outer.nodes]
     draw_faces(target, points, outer.triangles, outer.face_of_triangle, colours, alpha=0.4)
-    for fitted, shade in zip(structure.fitted_bolts, of_bolt, strict=True):
+    fastened = (*structure.fitted_bolts, *structure.fitted_dowels)
+    for fitted, shade in zip(fastened, (*of_bolt, *of_dowel), strict=True):
         start, end = fitted.seats
         out = BOLT_ENDS * (end - start)
         line = np.stack([start - out, end + out]) * 1e3

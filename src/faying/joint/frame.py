@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from faying.bolt.bolt import Bolt, FittedBolt, each_in_its_place
+from faying.bolt.dowel import Dowel, FittedDowel
 from faying.bolt.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.fe.corners import Corners
 from faying.fe.elasticity import Solid, assemble, rigid_motions
@@ -27,7 +28,7 @@ STILL = 1e-12  # of the greatest stiffness of an unknown: what a motion may ask 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Frame:
-    """Parts, bolts, supports and masses of a structure, and the faces that its joints join; see `Structure`."""
+    """Parts, bolts, dowels, supports and masses of a structure, and the faces that its joints join; see `Structure`."""
 
     mesh: Mesh
     materials: Mapping[str, Solid]
@@ -35,11 +36,12 @@ class Frame:
     bolts: tuple[Bolt | SolidBolt, ...]
     supports: tuple[Support, ...]
     masses: tuple[PointMass, ...]
+    dowels: tuple[Dowel, ...] = ()
 
     def same(self, other: "Frame") -> bool:
         """Whether two frames are made of the same things."""
-        mine = (self.mesh, self.materials, self.bolts, self.supports, self.masses)
-        others = (other.mesh, other.materials, other.bolts, other.supports, other.masses)
+        mine = (self.mesh, self.materials, self.bolts, self.supports, self.masses, self.dowels)
+        others = (other.mesh, other.materials, other.bolts, other.supports, other.masses, other.dowels)
         return self.joined == other.joined and all(a is b for a, b in zip(mine, others, strict=True))
 
     @cached_property
@@ -78,6 +80,11 @@ class Frame:
         return fitted
 
     @cached_property
+    def fitted_dowels(self) -> tuple[FittedDowel, ...]:
+        """The dowels in their places."""
+        return tuple(dowel.fitted(self.mesh) for dowel in self.dowels)
+
+    @cached_property
     def loads(self) -> Array:
         """Nodal forces [N] (unknowns, bolts) of 1 N in each bolt."""
         if not self.bolts:
@@ -86,41 +93,44 @@ class Frame:
 
     @cached_property
     def _upheld(self) -> Any:
-        """Stiffness [N/m] of the parts and of elastic supports."""
-        return added(self.matrices[0], [support.springs(self.mesh) for support in self.supports])
+        """Stiffness [N/m] of the parts, of dowels and of elastic supports."""
+        K = added(self.matrices[0], [dowel.stiffness for dowel in self.fitted_dowels])
+        return added(K, [support.springs(self.mesh) for support in self.supports])
 
     @cached_property
     def standing(self) -> Any:
-        """Stiffness [N/m] of the parts and of elastic supports, before any bolt is tight."""
+        """Stiffness [N/m] of the parts, of dowels and of elastic supports, before any bolt is tight."""
         return added(self._upheld, [-bolt.released for bolt in self.fitted_bolts if bolt.released is not None])
 
     @cached_property
     def vibrating(self) -> tuple[Any, Any]:
         """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; fixed ones cleared."""
         K = added(self._upheld, [bolt.stiffness for bolt in self.fitted_bolts if bolt.released is None])
-        M = added(self.matrices[1], [bolt.mass for bolt in self.fitted_bolts])
+        M = added(self.matrices[1], [one.mass for one in (*self.fitted_bolts, *self.fitted_dowels)])
         M = added(M, [mass.matrix(self.mesh) for mass in self.masses])
         return constrain(K, self.fixed), constrain(M, self.fixed, 0.0)
 
     def held_back(self, displacement: Array) -> Array:
-        """Forces [N] (unknowns,) with which parts, elastic supports and tight bolts resist a displacement [m]."""
+        """Forces [N] (unknowns,) with which parts, dowels, springs and tight bolts resist a displacement [m]."""
         tight = [bolt.stiffness for bolt in self.fitted_bolts if bolt.released is None and bolt.stiffness is not None]
         return np.asarray(sum((one @ displacement for one in tight), self._upheld @ displacement))
 
     def inertia(self, acceleration: Array) -> Array:
-        """Mass of parts, bolts and point masses times an acceleration [m/s2] (unknowns,), unknowns that are fixed too.
+        """Mass of all that moves times an acceleration [m/s2] (unknowns,), unknowns that are fixed too.
 
         The matrix of the modes has those cleared, and with them what their nodes share of the mass of their elements.
         """
-        more = [bolt.mass for bolt in self.fitted_bolts] + [mass.matrix(self.mesh) for mass in self.masses]
+        more = [one.mass for one in (*self.fitted_bolts, *self.fitted_dowels)]
+        more += [mass.matrix(self.mesh) for mass in self.masses]
         given = [one @ acceleration for one in more if one is not None]
         return np.asarray(sum(given, self.matrices[1] @ acceleration))
 
     @property
     def is_bare(self) -> bool:
-        """Whether parts and supports are all that vibrates: no bolt has a stiffness or a mass, no mass is added."""
-        bolts = self.fitted_bolts
-        return not self.masses and all(b.stiffness is None and b.released is None and b.mass is None for b in bolts)
+        """Whether parts and supports are all that vibrates: bolts, dowels and masses add nothing."""
+        if self.masses or self.dowels:
+            return False
+        return all(b.stiffness is None and b.released is None and b.mass is None for b in self.fitted_bolts)
 
     @cached_property
     def rigid(self) -> Array:
@@ -154,6 +164,7 @@ class Frame:
         mesh = self.mesh
         faces = {*self.joined, *(support.face for support in self.supports)}
         faces |= {face for bolt in self.bolts for face in bolt.faces}
+        faces |= {wall for dowel in self.dowels for wall in dowel.walls}
         faces |= {mass.face for mass in self.masses if mass.face is not None}
         nodes = np.unique(np.concatenate([nodes_of(mesh.face(face)) for face in sorted(faces)]))
         pulled = np.flatnonzero(np.any(self.loads != 0, axis=1))

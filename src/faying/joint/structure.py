@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 import numpy as np
 
 from faying.bolt.bolt import Bolt, FittedBolt, solid_of
+from faying.bolt.dowel import Dowel, FittedDowel
 from faying.bolt.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.errors import FayingError, InputError
 from faying.fe.bonded import CLOSE, matched
@@ -55,10 +56,11 @@ class Structure(Summary):
         bolts: Bolts as beams, forces or meshed parts.
         supports: Faces that are fixed or on springs.
         masses: Point masses.
+        dowels: Dowels, which carry shear alone.
 
     Raises:
         InputError: A part has neither material, joint nor support, or is two solid bolts; a solid bolt's face is in no
-            joint; a face does not exist; two joints or bolts share a name.
+            joint; a face does not exist; two joints, bolts or dowels share a name.
     """
 
     mesh: Mesh
@@ -67,6 +69,7 @@ class Structure(Summary):
     bolts: tuple[Bolt | SolidBolt, ...]
     supports: tuple[Support, ...]
     masses: tuple[PointMass, ...]
+    dowels: tuple[Dowel, ...]
     frame: Frame | None = field(repr=False, compare=False)
 
     def __init__(
@@ -78,12 +81,16 @@ class Structure(Summary):
         *,
         supports: Sequence[Support] = (),
         masses: Sequence[PointMass] = (),
+        dowels: Sequence[Dowel] = (),
         frame: Frame | None = None,
     ) -> None:
         of_parts = materials_of_parts(mesh, materials)
         for bolt in bolts:
             for face in bolt.faces:
                 known_face(mesh, face, f"bolt {bolt.name!r}")
+        for dowel in dowels:
+            for wall in dowel.walls:
+                known_face(mesh, wall, f"dowel {dowel.name!r}")
         for support in supports:
             known_face(mesh, support.face, "support")
         placed = tuple(
@@ -97,6 +104,7 @@ class Structure(Summary):
             "bolts": tuple(bolts),
             "supports": tuple(supports),
             "masses": tuple(masses),
+            "dowels": tuple(dowels),
             "frame": frame,
         }
         for name, value in values.items():
@@ -126,6 +134,7 @@ class Structure(Summary):
         for what, names in (
             ("joints", [joint.name for joint in self.joints]),
             ("bolts", [bolt.name for bolt in self.bolts]),
+            ("dowels", [dowel.name for dowel in self.dowels]),
         ):
             again = sorted({name for name in names if names.count(name) > 1})
             if again:
@@ -138,6 +147,7 @@ class Structure(Summary):
             bolts=self.bolts,
             supports=self.supports,
             masses=self.masses,
+            dowels=self.dowels,
         )
         if self.frame is None or not self.frame.same(frame):
             object.__setattr__(self, "frame", frame)
@@ -168,6 +178,11 @@ class Structure(Summary):
         return self._frame.fitted_bolts
 
     @property
+    def fitted_dowels(self) -> tuple[FittedDowel, ...]:
+        """The dowels in their places."""
+        return self._frame.fitted_dowels
+
+    @property
     def pulls(self) -> Array:
         """What a displacement adds to the force of each bolt (bolts, unknowns) [N/m]; 0 for a bolt without a shank."""
         return np.array([bolt.pull for bolt in self.fitted_bolts]).reshape(-1, self.mesh.unknowns)
@@ -184,16 +199,16 @@ class Structure(Summary):
 
     @property
     def standing(self) -> Any:
-        """Stiffness [N/m] of the parts and of elastic supports, before any bolt is tight."""
+        """Stiffness [N/m] of the parts, of dowels and of elastic supports, before any bolt is tight."""
         return self._frame.standing
 
     @property
     def vibrating(self) -> tuple[Any, Any]:
-        """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; fixed ones cleared."""
+        """Stiffness [N/m] and mass [kg] of all but the joints, dowels and masses included; fixed ones cleared."""
         return self._frame.vibrating
 
     def held_back(self, displacement: Array) -> Array:
-        """Forces [N] (unknowns,) with which parts, elastic supports and tight bolts resist a displacement [m]."""
+        """Forces [N] (unknowns,) with which parts, dowels, springs and tight bolts resist a displacement [m]."""
         return self._frame.held_back(displacement)
 
     def inertia(self, acceleration: Array) -> Array:
@@ -202,7 +217,7 @@ class Structure(Summary):
 
     @property
     def is_bare(self) -> bool:
-        """Whether the parts under preload are all that vibrates: no bolt adds a stiffness or a mass."""
+        """Whether the parts under preload are all that vibrates: no bolt or dowel adds a stiffness or a mass."""
         return self._frame.is_bare
 
     @property
@@ -363,7 +378,8 @@ class Structure(Summary):
     def surface(self) -> Outline:
         """The outer surface with parts and faces; a triangle on several faces belongs to that of a joint."""
         used = [face for joint in self.joints for face in joint.faces]
-        used += [face for bolt in self.bolts for face in bolt.faces] + [support.face for support in self.supports]
+        used += [face for bolt in self.bolts for face in bolt.faces]
+        used += [wall for dowel in self.dowels for wall in dowel.walls] + [support.face for support in self.supports]
         return outline(self.mesh, used)
 
     @property
@@ -493,6 +509,8 @@ def structure_rows(structure: Structure) -> tuple[str, dict[str, str]]:
         kinds = {"without stiffness": len(structure.bolts) - stiff - meshed, "with a shank": stiff, "meshed": meshed}
         said = ", ".join(f"{count} {kind}" for kind, count in kinds.items() if count)
         rows["bolts"] = f"{listed(bolt.name for bolt in structure.bolts)} ({said})"
+    if structure.dowels:
+        rows["dowels"] = listed(dowel.name for dowel in structure.dowels)
     if structure.supports:
         rows["supports"] = listed(support.face for support in structure.supports)
     if structure.masses:

@@ -28,6 +28,8 @@ def terminal(found: LoadCases) -> str:
     for k in range(len(found.cases)):
         lines += [*_wrapped(heading(found, k)), text(bolt_rows(found, k), left=(0,)), ""]
         lines += [text(joint_rows(found, k), left=(0,)), ""]
+        dowels = dowel_rows(found, k)
+        lines += [text(dowels, left=(0,)), ""] if dowels else []
     for first in range(0, len(found.cases), CASES_IN_TABLE):
         modes = mode_rows(found, slice(first, first + CASES_IN_TABLE))
         lines += ["frequency under each load [Hz], and its change", text(modes), ""] if modes else []
@@ -88,6 +90,16 @@ def joint_rows(found: LoadCases, k: int) -> Rows:
                 margin(found.slip_margin_worst[k, j]),
             ]
         )
+    return rows
+
+
+def dowel_rows(found: LoadCases, k: int) -> Rows:
+    """Return one row for each dowel under a case; empty where there are none."""
+    if found.dowel_shear is None or found.dowel_bearing is None:
+        return []
+    rows: Rows = [["dowel", "shear force [N]", "pressure on its hole [MPa]"]]
+    for d, name in enumerate(found.dowels):
+        rows.append([_cut(name, 18), _short(found.dowel_shear[k, d]), _short(found.dowel_bearing[k, d] / 1e6)])
     return rows
 
 

@@ -187,7 +187,7 @@ def _contact(result: Result) -> list[str]:
 
 # chapter -> what stands in it, in order: names of tables, of figures, of what draws itself
 CHAPTERS = {
-    "Structure": ("parts", "bolts", "bolting"),
+    "Structure": ("parts", "bolts", "bolting", "dowels"),
     "Joints": ("joints", "pressure", "slip", "law", "surfaces", "conductance"),
     "Modes": (
         *("modes", "frequencies", "damping", "figure of damping", "laws", "beyond", "mac", "response", "backbones"),

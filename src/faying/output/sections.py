@@ -142,6 +142,14 @@ def _joints(result: Result) -> tuple[ReportSection, ...]:
             below=f"Tightened in the order {order}." if order else "All pulled at once.",
         ),
         ReportSection(
+            name="dowels",
+            rows=table.dowels(result),
+            keys=1,
+            title="Dowels",
+            line="shear force of each dowel when all bolts are tight",
+            below="The greatest shear force of each pin between two parts, when all bolts are tight.",
+        ),
+        ReportSection(
             name="bolting",
             rows=table.bolting(result),
             keys=2,

@@ -236,6 +236,16 @@ def bolts(result: Result) -> Rows:
     return rows
 
 
+def dowels(result: Result) -> Rows:
+    """One row per preload: the shear force in each dowel when all bolts are tight; empty without dowels."""
+    if result.dowel_shear is None:
+        return []
+    rows: Rows = [["preload", *(f"{name} [N]" for name in result.dowels)]]
+    for load, forces in zip(result.loads, result.dowel_shear, strict=True):
+        rows.append([load_text(load), *(f"{force:.4g}" for force in forces)])
+    return rows
+
+
 def _bounded(bounds: Array) -> str:
     low, high = bounds
     return "-" if np.isnan(low) else f"{low:.2g} .. {high:.2g}"

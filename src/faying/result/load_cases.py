@@ -55,8 +55,8 @@ class LoadIntervals:
 class LoadCases(Recorded):
     """Answers of a preloaded structure to load cases; NaN stands for what is not known.
 
-    title: of the study; preload [N]: of the first bolt; cases, bolts, joints: names; after: the case from whose state
-    each one starts, "" for the preload; friction: of each joint, NaN where it sticks; notes: what is to be said.
+    title: of the study; preload [N]: of the first bolt; cases, bolts, joints, dowels: names; after: the case from whose
+    state each one starts, "" for the preload; friction: of each joint, NaN where it sticks; notes: what is to be said.
     """
 
     KIND: ClassVar[str] = "load cases"
@@ -106,6 +106,23 @@ class LoadCases(Recorded):
     )
     head_friction_needed: Array = variable(
         "case", "bolt", unit="1", long_name="force across the bolt over its force", group="bolts", gaps=True
+    )
+    dowels: tuple[str, ...] = ()
+    dowel_shear: Array | None = variable(
+        "case",
+        "dowel",
+        unit="N",
+        long_name="greatest shear force of the dowel by the load",
+        group="dowels",
+        default=None,
+    )
+    dowel_bearing: Array | None = variable(
+        "case",
+        "dowel",
+        unit="Pa",
+        long_name="greatest force on a wall by the load over diameter and depth of its hole",
+        group="dowels",
+        default=None,
     )
     normal_force: Array = variable("case", "joint", unit="N", long_name="normal force on the joint", group="joints")
     normal_preload: Array = variable(
@@ -194,7 +211,15 @@ class LoadCases(Recorded):
     def labels(self) -> dict[str, Any]:
         """Labels of the dimensions."""
         modes = {} if self.rest_frequency is None else {"mode": np.arange(1, len(self.rest_frequency) + 1)}
-        return {"case": self.cases, "bolt": self.bolts, "joint": self.joints, "axis": ("x", "y", "z"), **modes}
+        dowels = {"dowel": self.dowels} if self.dowels else {}
+        return {
+            "case": self.cases,
+            "bolt": self.bolts,
+            "joint": self.joints,
+            "axis": ("x", "y", "z"),
+            **dowels,
+            **modes,
+        }
 
     def index(self, case: str) -> int:
         """Return the number of a case, from 0. Raises InputError that lists the cases."""
@@ -226,6 +251,7 @@ class LoadCases(Recorded):
             "after": [one or None for one in self.after],
             "bolts": list(self.bolts),
             "joints": list(self.joints),
+            "dowels": list(self.dowels),
             **in_units(self, without=MAPS),
             **{name: {"unit": "1", "values": listed(one)} for name, one in finite.items()},
             "intervals": None

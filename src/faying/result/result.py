@@ -290,6 +290,28 @@ class Result(Recorded):
         group="bolts",
         name="seat_diameter",
     )
+    dowel_ends: Array | None = variable(
+        "dowel",
+        "end",
+        "axis",
+        unit="m",
+        long_name="where each dowel begins and ends",
+        default=None,
+        group="dowels",
+        name="ends",
+    )
+    dowel_diameters: Array | None = variable(
+        "dowel", unit="m", long_name="diameter of each dowel", default=None, group="dowels", name="diameter"
+    )
+    dowel_shear: Array | None = variable(
+        "load",
+        "dowel",
+        unit="N",
+        long_name="greatest shear force of the dowel when all bolts are tight",
+        default=None,
+        group="dowels",
+        name="shear",
+    )
     outside_share: Array = variable(
         "load",
         unit="1",
@@ -531,6 +553,7 @@ class Result(Recorded):
     alternatives: tuple[str, ...] = ()
     joints: tuple[str, ...]
     bolts: tuple[str, ...]
+    dowels: tuple[str, ...] = ()
     parts: tuple[str, ...] = ()
     faces: tuple[str, ...] = ()
     joint_faces: tuple[tuple[str, str], ...] = ()
@@ -560,6 +583,7 @@ class Result(Recorded):
         laws = dict.fromkeys(str(law.get("law", law.get("name", ""))) for law in self.laws)
         rows = {"joints": listed(self.joints) + (f" ({listed(filter(None, laws))})" if any(laws) else "")}
         rows["bolts"] = listed(self.bolts)
+        rows |= {"dowels": listed(self.dowels)} if self.dowels else {}
         few = list(range(len(self.loads))) if len(self.loads) <= MOST_LOADS else [0, len(self.loads) // 2, -1]
         words = load_texts(self.loads)
         rows["frequencies"] = f"[Hz] free | {' | '.join(words[k] for k in few)} | bonded"
@@ -659,6 +683,7 @@ class Result(Recorded):
         out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
         out["interval_sources"], out["alternatives"] = list(self.interval_sources), list(self.alternatives)
         out["parts"] = list(self.parts)
+        out["dowels"] = list(self.dowels)
         out |= {"joints": list(self.joints), "bolts": list(self.bolts), "tightening": list(self.tightening)}
         out |= {"damping": self.damping, "surfaces": list(self.surfaces), "laws": list(self.laws)}
         if self.comparison is not None:
@@ -680,6 +705,7 @@ class Result(Recorded):
         out: dict[str, Any] = {"load": load_texts(self.loads), "mode": np.arange(1, len(self.free) + 1)}
         out |= {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
         out |= {"part": self.parts} if self.parts else {}
+        out |= {"dowel": self.dowels} if self.dowels else {}
         out |= {"source": self.interval_sources} if self.interval_sources else {}
         return out | ({"law": self.alternatives} if self.alternatives else {})
 

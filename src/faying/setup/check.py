@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from faying.bolt.bolt import Bolt, BoltPlace, each_in_its_place
+from faying.bolt.dowel import Dowel, DowelPlace
 from faying.bolt.solid_bolt import SolidBolt
 from faying.case.case import SIZES, name_faults
 from faying.case.places import named_points, on_structure
@@ -30,6 +31,7 @@ from faying.setup.lines import key_of, line_of, line_of_fault, lines_of
 from faying.setup.reach import law_findings
 from faying.setup.sketch import Sketch
 from faying.study.declaration.reader import StudyFaults
+from faying.study.keys.face import place_name
 from faying.study.keys.geometry import mesh_of
 from faying.study.study import Study
 from faying.units import show, show_area
@@ -140,6 +142,7 @@ def check(path: str | Path, *, mesh: bool = False) -> Checked:
         if text := nothing_moves(joint.name, [face for face in joint.faces if face in shared]):
             found.add("fault", "contact", text, f"joint[{joint.number}].faces")
     sketch = _bolts(sketch, found, shared)
+    _dowels(sketch, found)
     for level, code, words, key in law_findings(sketch):
         found.add(level, code, words, key)
     made = _meshed(study, facts, named, found) if mesh and ready is None else ready
@@ -224,9 +227,12 @@ def _named(study: Study, facts: GeometryFacts, found: _Findings) -> dict[str, tu
 
 def _selector_key(study: Study, label: str) -> str:
     """Where a selector stands: under [geometry.face], or in place of a name."""
-    named = [(f"joint[{joint.number}].faces", joint) for joint in (*study.joints, *study.bonds)]
-    for key, item in (*named, *((f"bolt[{k}].faces", bolt) for k, bolt in enumerate(study.bolts, 1))):
-        if label in item.faces and label in (f"{item.name} first", f"{item.name} second"):
+    named: list[tuple[str, str, tuple[str, ...]]]
+    named = [(f"joint[{joint.number}].faces", joint.name, joint.faces) for joint in (*study.joints, *study.bonds)]
+    named += [(f"bolt[{k}].faces", bolt.name, bolt.faces) for k, bolt in enumerate(study.bolts, 1)]
+    named += [(f"dowel[{k}].walls", dowel.name, dowel.walls) for k, dowel in enumerate(study.dowels, 1)]
+    for key, name, faces in named:
+        if label in [place_name(name, k) for k, face in enumerate(faces) if face == label]:
             return key
     if label.endswith("]") and label.split("[")[0] in ("support", "mass"):
         return f"{label}.face"
@@ -368,6 +374,24 @@ def _bolts(sketch: Sketch, found: _Findings, shared: set[str]) -> Sketch:
         key = next((key for name, key in keys.items() if note.text.startswith(f"bolt {name!r}")), "bolt")
         found.add("note", note.code, note.text, key)
     return sketch
+
+
+def _dowels(sketch: Sketch, found: _Findings) -> None:
+    """Dowels in their places: holes of one diameter on one axis, one behind the other."""
+    for k, dowel in enumerate(sketch.study.dowels, 1):
+        key = f"dowel[{k}].walls"
+        places: list[DowelPlace] = []
+
+        def place(dowel: Dowel = dowel, places: list[DowelPlace] = places) -> None:
+            places.append(dowel.placed(sketch.mesh))
+
+        if found.tried("dowel", key, place):
+            made = places[0]
+            depths = ", ".join(
+                f"{show(float(high - low), 'm')} in {sketch.mesh.face_part[wall]!r}"
+                for wall, (low, high) in zip(made.walls, made.depths, strict=True)
+            )
+            found.add("ok", "dowel", f"dowel {dowel.name!r}: {show(made.diameter, 'm')} thick, {depths}", key)
 
 
 def by_level(checked: Checked) -> Iterator[Finding]:

@@ -13,6 +13,7 @@ NUT = 1.25, 2.5  # shank diameters: the farthest that a nut reaches from the axi
 TIGHT = 1e-2  # of the radius: gap between shank and hole below which they fit without play
 
 Side = tuple[str, int]
+Point = tuple[float, float, float]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,24 +27,35 @@ class MeshedBolt:
 
 
 @dataclass(frozen=True, kw_only=True)
+class DrawnPin:
+    """A part that is a dowel: the part, its shank, the faces of the holes that it fits, and its two ends [m]."""
+
+    part: str
+    shank: FaceFacts
+    holes: tuple[FaceFacts, ...]
+    ends: tuple[Point, Point]
+
+
+@dataclass(frozen=True, kw_only=True)
 class Fasteners:
     """What parts of a geometry are fasteners.
 
     Args:
         meshed: bolts that can be meshed.
-        dowels, others: parts that are left out: dowels; bolts, studs and nuts that beams stand for.
+        dowels: parts that are dowels, which are left out, too: pins without a mesh stand for them.
+        others: parts that are left out: bolts, studs and nuts that beams stand for.
         shanks: part and number of the faces of holes in which a meshed bolt or a dowel runs.
     """
 
     meshed: tuple[MeshedBolt, ...] = ()
-    dowels: tuple[str, ...] = ()
+    dowels: tuple[DrawnPin, ...] = ()
     others: tuple[str, ...] = ()
     shanks: frozenset[Side] = field(default_factory=frozenset)
 
     @property
     def left_out(self) -> tuple[str, ...]:
         """Parts that the mesh leaves out."""
-        return (*self.dowels, *self.others)
+        return (*(pin.part for pin in self.dowels), *self.others)
 
     @property
     def remarks(self) -> list[str]:
@@ -51,9 +63,8 @@ class Fasteners:
         out = []
         if self.dowels:
             out.append(
-                f"{listed(self.dowels)}: dowels. A dowel is no bolt: it has no preload and carries shear alone. Left "
-                "out of the mesh (geometry.leave_out); to count its stiffness take it out of that list and give its "
-                "wall a [[joint]] with bonded = true for each hole, which holds it along its axis, too"
+                f"{listed(pin.part for pin in self.dowels)}: dowels, which carry shear alone. Left out of the mesh "
+                "(geometry.leave_out); a [[dowel]] stands for each"
             )
         if self.others:
             out.append(
@@ -97,12 +108,13 @@ def find_fasteners(facts: GeometryFacts, joints: Sequence[TouchingFaces]) -> Fas
             continue
         tight = {hole.part for _, hole, gap in mine if gap <= TIGHT * (shank.radius or 0.0)}
         if not low and not high and len(tight) > 1 and not _nuts(facts, mine):
-            dowels.append(part.name)
+            holes = tuple(hole for _, hole, gap in mine if gap <= TIGHT * (shank.radius or 0.0))
+            dowels.append(DrawnPin(part=part.name, shank=shank, holes=holes, ends=_ends(facts, part.name, shank)))
         else:
             others.append(part.name)
             shafts.append(shank)
     nuts = [hole.part for shank, hole, gap in pairs if shank in shafts and _is_nut(facts, shank, hole, gap)]
-    owners = {*(bolt.part for bolt in meshed), *dowels}
+    owners = {*(bolt.part for bolt in meshed), *(pin.part for pin in dowels)}
     return Fasteners(
         meshed=tuple(meshed),
         dowels=tuple(dowels),
@@ -154,3 +166,17 @@ def _reach(facts: GeometryFacts, part: str, shank: FaceFacts) -> tuple[float, fl
     arm = points - np.array(shank.start)
     depth = arm @ axis
     return float(np.linalg.norm(arm - np.outer(depth, axis), axis=1).max()), float(np.ptp(depth))
+
+
+def _ends(facts: GeometryFacts, part: str, shank: FaceFacts) -> tuple[Point, Point]:
+    """Points of the axis of a shank [m] where its part begins and ends."""
+    numbers = [k for k, face in enumerate(facts.faces) if face.part == part]
+    axis, start = np.array(shank.axis), np.array(shank.start)
+    depth = (facts.corners[np.isin(facts.face_of, numbers)].reshape(-1, 3) - start) @ axis
+    low, high = (start + z * axis for z in (depth.min(), depth.max()))
+    return _point(low), _point(high)
+
+
+def _point(place: Array) -> Point:
+    x, y, z = (round(float(value), 9) + 0.0 for value in place)
+    return x, y, z

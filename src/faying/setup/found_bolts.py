@@ -5,18 +5,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from faying.bolt.threads import CLEARANCE_HOLES, HEADS, PINS, WASHERS, is_tapped, size_for_hole
+from faying.bolt.threads import CLEARANCE_HOLES, HEADS, WASHERS, size_for_hole
 from faying.geometry.bores import Bore, Stack, bores, room_around, rows, seat
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.seats import Countersink, countersink, lips
 from faying.setup.fasteners import Fasteners, listed
+from faying.setup.found_dowels import like_dowel, size_of, takes_dowel
 from faying.typing import Array
 from faying.units import show
 
 CHORDS = 1.02  # by so much a round edge is wider than its chords
 WIDEST = 1.1e-3 * CLEARANCE_HOLES[max(CLEARANCE_HOLES)][2]  # m: wider holes are for no bolt that is known here
 SUNK = 1.6  # nominal diameters from which a cone at the mouth of a hole is a countersink, and no chamfer
-ALIKE = 1e-3  # of a radius: holes that differ by less have one diameter
 PLACES = 3  # rows of holes whose places a remark says
 
 
@@ -88,6 +88,8 @@ def found_bolts(
         taken = any((bore.part, number) in fasteners.shanks for bore in stack.bores for number in bore.faces)
         if taken or 2 * min(bore.radius for bore in stack.bores) > WIDEST:
             continue  # a meshed bolt or a dowel is there, or it is a pipe, a bearing
+        if takes_dowel(facts, stack):
+            continue
         bolt = _in_slot(facts, stack) or (_in_row(facts, stack, out) if len(stack.bores) > 1 else None)
         if bolt is not None:
             found.append(bolt)
@@ -162,12 +164,11 @@ def _in_slot(facts: GeometryFacts, stack: Stack) -> FoundBolt | None:
 
 def _in_row(facts: GeometryFacts, stack: Stack, out: LeftOut) -> FoundBolt | None:
     """The bolt of a row of holes through several parts; None, noted in `out`, where none fits."""
-    found = _size(stack)
+    found = size_of(stack)
     low, high = stack.bores[0], stack.bores[-1]
-    dowel = _like_dowels(stack)
     ends = seat(facts, low, top=False), seat(facts, high, top=True)
-    if found is None or (dowel and None in ends):
-        out.add(stack, DOWELS if dowel else "are clearance holes of no common bolt (M3 to M24, ISO 273): left out")
+    if found is None:
+        out.add(stack, "are clearance holes of no common bolt (M3 to M24, ISO 273): left out")
         return None
     size, tapped = found
     sunk: dict[bool, Countersink] = {}
@@ -192,31 +193,6 @@ def _in_row(facts: GeometryFacts, stack: Stack, out: LeftOut) -> FoundBolt | Non
         out.add(stack, "have no flat face for head or nut at an end (a blind hole?): left out")
         return None
     return _through(facts, stack, (ends[0], ends[1]), size)
-
-
-DOWELS = (
-    "have one diameter, as those of dowels. A dowel is no bolt: it has no preload and carries shear alone. Left out; "
-    "to count its stiffness draw the pin as a part and give its wall a [[joint]] with bonded = true for each hole, "
-    "which holds it along its axis, too"
-)
-
-
-def _like_dowels(stack: Stack) -> bool:
-    """Whether holes have one diameter, which is that of a pin (ISO 2338)."""
-    wide = [2e3 * bore.radius for bore in stack.bores]
-    return max(wide) - min(wide) <= ALIKE * wide[0] and any(abs(wide[0] - pin) <= ALIKE * pin for pin in PINS)
-
-
-def _size(stack: Stack) -> tuple[int, Bore | None] | None:
-    """Nominal diameter [mm] of the bolt of a row of holes, and the hole that is its thread; None where none fits."""
-    sizes = [size_for_hole(2 * bore.radius) for bore in stack.bores]
-    ends = [(stack.bores[-1], sizes[:-1]), (stack.bores[0], sizes[1:])]
-    if sizes[0] is not None and len(set(sizes)) == 1:
-        return sizes[0], None
-    for end, others in ends:
-        if others[0] is not None and len(set(others)) == 1 and is_tapped(2 * end.radius, others[0]):
-            return others[0], end
-    return None
 
 
 def _outer(size: int, room: float) -> tuple[float, str]:
@@ -280,7 +256,7 @@ def _through(facts: GeometryFacts, stack: Stack, ends: tuple[FaceFacts, FaceFact
     widest = max(last, key=lambda bore: (bore.slot is not None, bore.radius))
     room = 2 * CHORDS * min(room_around(facts, end, bore) for end, bore in zip(ends, last, strict=True))
     outer, why = _outer(size, room)
-    pin = "" if not _like_dowels(stack) else "; take the bolt out if the holes are those of a dowel"
+    pin = "" if not like_dowel(stack) else "; if the holes are those of a dowel, give a [[dowel]] in its place"
     return FoundBolt(
         axis=stack.axis,
         parts=stack.parts,

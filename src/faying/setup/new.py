@@ -14,7 +14,7 @@ from faying.geometry.selectors import AXES, Selector
 from faying.materials import CATALOGUE
 from faying.setup.bolt_names import grouped
 from faying.setup.mesh_proposal import propose_mesh
-from faying.setup.proposal import GRADE, SHARE, BoltProposal, Proposal, propose
+from faying.setup.proposal import GRADE, SHARE, BoltProposal, DowelProposal, Proposal, propose
 from faying.setup.template import SCHEMA, surface
 from faying.units import show, show_area
 
@@ -103,10 +103,12 @@ def study_text(proposal: Proposal, step: Path, out: Path, answers: Answers) -> t
         _joints(proposal) or NO_JOINT,
         *(_bolt(bolt, answers) for bolt in proposal.bolts),
         "" if proposal.bolts else NO_BOLT,
+        *map(_dowel, proposal.dowels),
         SUPPORT,
         "[modes]\ncount = 10                     # elastic modes\n",
     ]
     assumed += _assumed_of_bolts(proposal.bolts, answers)
+    assumed += _alike({dowel.name: f"{dowel.remark}; without play, {STEEL}" for dowel in proposal.dowels})
     assumed.append("no support: the structure is free")
     return "\n".join(block for block in blocks if block), [*assumed, *proposal.remarks]
 
@@ -260,6 +262,15 @@ def _bolt(bolt: BoltProposal, answers: Answers) -> str:
     return "\n".join([*lines, ""])
 
 
+def _dowel(dowel: DowelProposal) -> str:
+    lines = [f"[[dowel]]  # {_plain(dowel.remark)}", f"name = {_quoted(dowel.name)}"]
+    lines.append(f"walls = [{', '.join(map(_quoted, dowel.walls))}]  # ASSUMED: it fits them without play")
+    if dowel.ends is not None:
+        ends = (f"[{', '.join(_quoted(_mm(x)) for x in end)}]" for end in dowel.ends)
+        lines.append(f"ends = [{', '.join(ends)}]")
+    return "\n".join([*lines, f"material = {_quoted(STEEL)}  # ASSUMED", ""])
+
+
 def _share() -> str:
     return f"{SHARE:.0%} of the proof load of class {GRADE}, ISO 898-1"
 
@@ -276,6 +287,14 @@ def _assumed_of_bolts(bolts: Sequence[BoltProposal], answers: Answers) -> list[s
             groups.setdefault(f"{show(bolt.preload, 'N')}, {_share()}", []).append(bolt.name)
         elif answers.preload is None:
             groups.setdefault("no preload; its thread is not known: give one", []).append(bolt.name)
+    return [f"{grouped(names)}: {words}" for words, names in groups.items()]
+
+
+def _alike(said: Mapping[str, str]) -> list[str]:
+    """What is said of each name; names of which one thing is said have one line."""
+    groups: dict[str, list[str]] = {}
+    for name, words in said.items():
+        groups.setdefault(words, []).append(name)
     return [f"{grouped(names)}: {words}" for words, names in groups.items()]
 
 
@@ -303,9 +322,11 @@ def summary(written: Written, study: Path) -> Sequence[str]:
     found = written.proposal
     plural = "s" * (len(found.bolts) != 1)
     parts = f"{len(found.facts.parts)} parts"
+    bolts = f"{len(found.bolts)} bolt{plural}"
+    dowels = f", {len(found.dowels)} dowel{'s' * (len(found.dowels) != 1)}" if found.dowels else ""
     parts += f" and {len(found.left_out)} more that are not meshed" if found.left_out else ""
     return [
-        f"found: {parts}, {len(found.joints)} joint{'s' * (len(found.joints) != 1)}, {len(found.bolts)} bolt{plural}",
+        f"found: {parts}, {len(found.joints)} joint{'s' * (len(found.joints) != 1)}, {bolts}{dowels}",
         *(f"assumed: {line}" for line in written.assumed),
         f"written: {', '.join(str(file) for file in written.files)}",
         f"next: faying check {study}, then faying run {study}",

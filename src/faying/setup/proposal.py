@@ -17,6 +17,7 @@ from faying.setup.expected import unknowns_of
 from faying.setup.face_names import FaceNames
 from faying.setup.fasteners import find_fasteners, listed
 from faying.setup.found_bolts import FoundBolt, LeftOut, clamped_along, found_bolts, shoulder_remark, shoulders
+from faying.setup.found_dowels import FoundDowel, found_dowels
 from faying.units import show
 
 GRADE, SHARE = "8.8", 0.7  # of the bolts, and the share of the proof load that they are tightened to
@@ -69,13 +70,23 @@ class BoltProposal:
 
 
 @dataclass(frozen=True, kw_only=True)
+class DowelProposal:
+    """A dowel: what tables call it, names of its walls, its ends [m] where no hole says them, where it is from."""
+
+    name: str
+    walls: tuple[str, ...]
+    ends: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
+    remark: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Proposal:
     """What a study of a geometry may be.
 
     Args:
         facts: of the geometry.
         faces: name -> selector, of faces that the file does not name.
-        joints, bolts: what was found.
+        joints, bolts, dowels: what was found.
         size: largest element [m].
         snap: gap up to which faces count as touching [m]; 0 where all touch.
         left_out: parts of the file that the mesh leaves out; `facts` does not hold them.
@@ -96,6 +107,7 @@ class Proposal:
     unit: str = ""
     sets: dict[str, str] = field(default_factory=dict)
     counted: int = 0
+    dowels: tuple[DowelProposal, ...] = ()
 
     @property
     def unknowns(self) -> int:
@@ -122,6 +134,7 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
     contacts = touching(facts)
     left = LeftOut()
     bolts = found_bolts(facts, fasteners, contacts, left)
+    dowels = found_dowels(facts, fasteners)
     apart = _apart(facts, contacts, bolts)
     aside = shoulders(facts, contacts, bolts)
     contacts = [contact for contact in contacts if contact not in aside and contact not in apart]
@@ -149,6 +162,7 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
         faces=names.selectors,
         joints=joints,
         bolts=tuple(_named(bolt, k, names) for k, bolt in enumerate(bolts, 1)),
+        dowels=tuple(_named_dowel(dowel, k, names) for k, dowel in enumerate(dowels, 1)),
         size=size,
         snap=snap,
         left_out=(*fasteners.left_out, *alone),
@@ -178,6 +192,11 @@ def _named(bolt: FoundBolt, number: int, names: FaceNames) -> BoltProposal:
         part=bolt.part,
         remark=bolt.remark,
     )
+
+
+def _named_dowel(dowel: FoundDowel, number: int, names: FaceNames) -> DowelProposal:
+    walls = tuple(names.of_several(wall, "dowel") for wall in dowel.walls)
+    return DowelProposal(name=f"dowel {number}", walls=walls, ends=dowel.ends, remark=dowel.remark)
 
 
 def rounded(value: float, digits: int, *, up: bool = False) -> float:

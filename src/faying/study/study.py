@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from faying.bolt.bolt import Bolt
+from faying.bolt.dowel import Dowel
 from faying.bolt.solid_bolt import SolidBolt
 from faying.errors import ReadError
 from faying.joint.attachments import PointMass, Support
@@ -21,6 +22,7 @@ from faying.study.keys.alternative import AlternativeChoice
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.keys.bolt import read_bolt
 from faying.study.keys.bolt_sheet import BoltSheetChoice, read_bolt_sheets
+from faying.study.keys.dowel import read_dowels
 from faying.study.keys.geometry import GeometryChoice, read_geometry
 from faying.study.keys.joint import JointChoice, read_joints
 from faying.study.keys.law import LAW, LawChoice
@@ -47,7 +49,8 @@ class Study(Summary):
         text, data: the study file as it was read, and its tables.
         files: all files that it names, so that a result depends on them.
         materials, parts: materials by name; name of the material of each part.
-        geometry, surface, law, joints, bolts, supports, masses, modes, response, test, hammer: the tables of the file.
+        geometry, surface, law, joints, bolts, dowels: tables of the file.
+        supports, masses, modes, response, test, hammer: others.
         bonds: joints whose faces are welded or glued; `joints` are the others.
         backbone: which curve over amplitude is asked for; None where the file does not say.
         alternatives: other laws and surfaces whose modes stand beside those of the study.
@@ -69,6 +72,7 @@ class Study(Summary):
     preloads: tuple[PreloadCase, ...]
     supports: tuple[Support, ...] = ()
     masses: tuple[PointMass, ...] = ()
+    dowels: tuple[Dowel, ...] = ()
     modes: ModesChoice = field(default_factory=ModesChoice)
     response: ResponseChoice | None = None
     test: TestChoice | None = None
@@ -93,6 +97,7 @@ class Study(Summary):
             "parts": ", ".join(f"{part} ({material})" for part, material in self.parts.items()),
             "joints": f"{', '.join(joint.name for joint in self.joints)} ({law})",
             "bolts": f"{', '.join(bolt.name for bolt in self.bolts)}, {preloads} kN",
+            **({"dowels": ", ".join(dowel.name for dowel in self.dowels)} if self.dowels else {}),
             "supports": str(len(self.supports)) if self.supports else "none: free",
             "modes": str(self.modes.count),
             "asks for": ", ".join(self._asked) or "modes",
@@ -203,8 +208,7 @@ class Study(Summary):
         cases = read_loads(top.tables("load"))
         named = [bolt.name for bolt in bolts], [load.name for load in cases]
         sheets = read_bolt_sheets(top.tables("bolt_sheet"), *named)
-        supports = [read_support(t) for t in top.tables("support")]
-        masses = [read_mass(t) for t in top.tables("mass")]
+        attached = _attached(top, materials)
         modes = read_modes(top.table("modes"))
         order = read_order(top.table("tightening"), [bolt.name for bolt in bolts])
         response = ResponseChoice.of(top.table("response"))
@@ -226,8 +230,6 @@ class Study(Summary):
             bonds=bonds,
             bolts=bolts,
             preloads=tuple(PreloadCase(forces=one, order=order) for one in zip(*forces, strict=True)),
-            supports=tuple(s for s in supports if s is not None),
-            masses=tuple(m for m in masses if m is not None),
             modes=modes,
             response=response,
             test=test,
@@ -237,6 +239,7 @@ class Study(Summary):
             uncertain=uncertain,
             bolt_sheets=sheets,
             load_cases=cases,
+            **attached,
             text=text,
             data=written,
             files=tuple(dict.fromkeys(faults.files)),
@@ -255,8 +258,19 @@ def _bolts(
     return tuple(bolt for bolt, _ in read if bolt is not None), tuple(forces for _, forces in read if forces)
 
 
+def _attached(top: Table, materials: dict[str, Material]) -> dict[str, Any]:
+    """Read [[dowel]], [[support]] and [[mass]]."""
+    supports = [read_support(t) for t in top.tables("support")]
+    masses = [read_mass(t) for t in top.tables("mass")]
+    return {
+        "dowels": read_dowels(top.tables("dowel"), materials),
+        "supports": tuple(one for one in supports if one is not None),
+        "masses": tuple(one for one in masses if one is not None),
+    }
+
+
 def _with_selectors(geometry: GeometryChoice, faults: Faults) -> GeometryChoice:
-    """The geometry with the selectors that stand in joints, bolts, supports and masses."""
+    """The geometry with the selectors that stand in joints, bolts, dowels, supports and masses."""
     both = [name for name in faults.selectors if name in geometry.face]
     if both:
         faults.add(f"geometry.face.{both[0]!r} is the name that a selector elsewhere gets; choose another name")

@@ -47,7 +47,7 @@ def of_result(result: Result) -> Scene:
         face_of_triangle=of_triangle,
         edges=feature_edges(result.outline, result.triangles, of_triangle),
         joints=tuple(joints),
-        bolts=_bolts(result),
+        bolts=(*_bolts(result), *_dowels(result)),
         supports=_supports(result.supports, by_name),
         masses=_masses(result.masses, faces, by_name),
         loads=result.loads,
@@ -68,7 +68,8 @@ def of_mesh(mesh: Mesh, study: "Study | None" = None, *, title: str = "") -> Sce
     """
     joined = () if study is None else tuple(face for joint in study.joints for face in joint.faces)
     seats = () if study is None else tuple(face for bolt in study.bolts for face in bolt.faces)
-    outer = outline(mesh, (*joined, *seats))
+    walls = () if study is None else tuple(wall for dowel in study.dowels for wall in dowel.walls)
+    outer = outline(mesh, (*joined, *seats, *walls))
     points = mesh.points[outer.nodes]
     faces, of_triangle = faces_of(points, outer.triangles, outer.part_of_triangle, outer.face_of_triangle, outer.faces)
     by_name = {face.name: k for k, face in enumerate(faces) if face.name}
@@ -79,7 +80,7 @@ def of_mesh(mesh: Mesh, study: "Study | None" = None, *, title: str = "") -> Sce
                 SceneJoint(name=joint.name, faces=tuple(by_name[face] for face in joint.faces if face in by_name))
                 for joint in study.joints
             ),
-            "bolts": _planned_bolts(study, mesh),
+            "bolts": (*_planned_bolts(study, mesh), *_planned_dowels(study, mesh)),
             "supports": _supports(study.supports, by_name),
             "masses": _masses(study.masses, faces, by_name, mesh),
         }
@@ -184,6 +185,20 @@ def _planned_bolts(study: "Study", mesh: Mesh) -> tuple[SceneBolt, ...]:
             seats = np.stack([face_centre(mesh.points, mesh.face(face))[0] for face in bolt.faces])
             out.append(SceneBolt(name=bolt.name, seats=seats, diameter=0.0, head=0.0, meshed=True))
     return tuple(out)
+
+
+def _dowels(result: Result) -> tuple[SceneBolt, ...]:
+    """The dowels of a result, drawn without a head."""
+    if result.dowel_ends is None or result.dowel_diameters is None:
+        return ()
+    rows = zip(result.dowels, result.dowel_ends, result.dowel_diameters, strict=True)
+    return tuple(SceneBolt(name=name, seats=ends, diameter=float(d), head=0.0) for name, ends, d in rows)
+
+
+def _planned_dowels(study: "Study", mesh: Mesh) -> tuple[SceneBolt, ...]:
+    """The dowels of a study on its mesh."""
+    places = [dowel.placed(mesh) for dowel in study.dowels]
+    return tuple(SceneBolt(name=p.dowel.name, seats=p.seats, diameter=p.diameter, head=0.0) for p in places)
 
 
 def _supports(supports: Sequence[Support], by_name: dict[str, int]) -> tuple[SceneSupport, ...]:

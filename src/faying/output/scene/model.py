@@ -45,6 +45,8 @@ class SceneJoint:
 class SceneBolt:
     """A bolt as it is drawn: where its axis meets its seats (2, 3) [m], diameters of shank and head [m].
 
+    A dowel has its ends for seats, and a head of 0.
+
     meshed: whether it is one of the parts, and so not drawn once more.
     """
 

@@ -72,20 +72,46 @@ def face_names(table: Table, key: str, label: str) -> tuple[str, str]:
                 f"{where} = {value!r} should be a list of 2 names, for example "
                 f'["upper.joint", "lower.joint"], or of selectors such as {{part = "upper", touching = "lower"}}'
             )
-        names = []
-        for place, one in enumerate(value):
-            if isinstance(one, str):
-                names.append(one)
-                continue
-            name = f"{label} {('first', 'second')[place]}"
-            selector = read_selector(Table(one, f"{where}[{place + 1}]", table.faults, SELECTOR))
-            if selector is not None:
-                table.faults.selectors[name] = selector
-            names.append(name)
-        return names[0], names[1]
+        first, second = _each_named(table, value, where, label)
+        return first, second
 
     found: tuple[str, str] | None = table.take(key, named)
     return found or ("", "")
+
+
+def several_names(table: Table, key: str, label: str) -> tuple[str, ...]:
+    """Take two faces or more, as `face_names` does; none where there is a fault."""
+
+    def named(value: Any, where: str) -> tuple[str, ...]:
+        if not isinstance(value, list) or len(value) < 2 or not all(isinstance(v, str | Mapping) for v in value):
+            raise InputError(
+                f"{where} = {value!r} should be a list of 2 names or more, for example "
+                f'["cover.pin", "frame.pin"], or of selectors such as {{part = "cover", number = 7}}'
+            )
+        return _each_named(table, value, where, label)
+
+    found: tuple[str, ...] | None = table.take(key, named)
+    return found or ()
+
+
+def _each_named(table: Table, value: list[str | Mapping[str, Any]], where: str, label: str) -> tuple[str, ...]:
+    """The name of each face of a list; the face of a selector gets the name `label` with its place behind it."""
+    names = []
+    for place, one in enumerate(value):
+        if isinstance(one, str):
+            names.append(one)
+            continue
+        name = place_name(label, place)
+        selector = read_selector(Table(one, f"{where}[{place + 1}]", table.faults, SELECTOR))
+        if selector is not None:
+            table.faults.selectors[name] = selector
+        names.append(name)
+    return tuple(names)
+
+
+def place_name(label: str, place: int) -> str:
+    """The name of the face of a selector at a place, from 0, in the list of what is called `label`."""
+    return f"{label} {('first', 'second')[place] if place < 2 else place + 1}"
 
 
 def _normal(value: Any, name: str) -> Point:
@@ -148,4 +174,14 @@ def two_faces(says: str) -> Key:
         listed(FACE, 2, 2),
         says,
         REQUIRED,
+    )
+
+
+def several_faces(says: str, default: Any = None) -> Key:
+    """Two faces or more, each by its name or by a selector; `several_names` reads them."""
+    return own(
+        'a list of names, for example ["cover.pin", "frame.pin"], or of selectors such as {part = "cover", number = 7}',
+        listed(FACE, 2),
+        says,
+        default,
     )

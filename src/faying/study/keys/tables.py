@@ -5,6 +5,7 @@ from faying.study.keys.alternative import ALTERNATIVE
 from faying.study.keys.backbone import BACKBONE
 from faying.study.keys.bolt import BOLT
 from faying.study.keys.bolt_sheet import BOLT_SHEET
+from faying.study.keys.dowel import DOWEL
 from faying.study.keys.geometry import GEOMETRY
 from faying.study.keys.joint import JOINT
 from faying.study.keys.law import LAW
@@ -39,6 +40,7 @@ STUDY: Declared = {
     ),
     "backbone": Inner(says="Frequency and damping of a mode against its amplitude.", keys=BACKBONE),
     "bolt": Inner(says="A bolt and what tightens it.", keys=BOLT, many=True, required=True),
+    "dowel": Inner(says="A pin in holes of several parts, which carries shear alone.", keys=DOWEL, many=True),
     "bolt_sheet": Inner(
         says="What the sheet of a bolt needs beyond the rest of the study.", keys=BOLT_SHEET, many=True
     ),

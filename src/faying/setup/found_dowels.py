@@ -1,0 +1,87 @@
+"""Dowels of a geometry: pins that are drawn as parts, and rows of holes of one diameter that take a pin."""
+
+from dataclasses import dataclass
+
+from faying.bolt.threads import PINS, is_tapped, size_for_hole
+from faying.geometry.bores import Bore, Stack, bores, rows, seat
+from faying.geometry.face_facts import FaceFacts, GeometryFacts
+from faying.setup.fasteners import Fasteners, Point
+from faying.units import show
+
+ALIKE = 1e-3  # of a diameter: holes that differ by less have one
+
+
+@dataclass(frozen=True, kw_only=True)
+class FoundDowel:
+    """A dowel, before faces have names.
+
+    Args:
+        walls: of each part, the faces of the wall of its hole.
+        ends: points of the axis [m] where a pin that is drawn begins and ends; None where the holes say it.
+        remark: where it is from.
+    """
+
+    walls: tuple[tuple[FaceFacts, ...], ...]
+    ends: tuple[Point, Point] | None = None
+    remark: str = ""
+
+
+def found_dowels(facts: GeometryFacts, fasteners: Fasteners) -> list[FoundDowel]:
+    """The dowels of a geometry.
+
+    Args:
+        facts: of the parts that are not left out.
+        fasteners: pins that are drawn, and parts that are bolts.
+    """
+    parts = {part.name for part in facts.parts}
+    found = []
+    for pin in fasteners.dowels:
+        walls: dict[str, list[FaceFacts]] = {}
+        for hole in pin.holes:
+            if hole.part in parts:
+                walls.setdefault(hole.part, []).append(hole)
+        if len(walls) > 1:
+            remark = f"{show(2 * (pin.shank.radius or 0.0), 'm')}, a pin of the file"
+            found.append(FoundDowel(walls=tuple(map(tuple, walls.values())), ends=pin.ends, remark=remark))
+    solid = {bolt.part for bolt in fasteners.meshed}
+    for stack in rows([bore for bore in bores(facts) if bore.part not in solid], reach=0.01 * facts.size):
+        taken = any((bore.part, number) in fasteners.shanks for bore in stack.bores for number in bore.faces)
+        if not taken and takes_dowel(facts, stack):
+            found.append(_in_row(facts, stack))
+    return found
+
+
+def takes_dowel(facts: GeometryFacts, stack: Stack) -> bool:
+    """Whether a row of holes is one for a dowel: of one diameter of ISO 2338, blind or of no clearance size."""
+    if len(stack.bores) < 2 or not like_dowel(stack):
+        return False
+    low, high = stack.bores[0], stack.bores[-1]
+    return size_of(stack) is None or None in (seat(facts, low, top=False), seat(facts, high, top=True))
+
+
+def like_dowel(stack: Stack) -> bool:
+    """Whether round holes have one diameter, which is that of a pin (ISO 2338)."""
+    wide = [2e3 * bore.radius for bore in stack.bores]
+    one = max(wide) - min(wide) <= ALIKE * wide[0] and all(bore.slot is None for bore in stack.bores)
+    return one and any(abs(wide[0] - pin) <= ALIKE * pin for pin in PINS)
+
+
+def size_of(stack: Stack) -> tuple[int, Bore | None] | None:
+    """Nominal diameter [mm] of the bolt of a row of holes, and the hole that is its thread; None where none fits."""
+    sizes = [size_for_hole(2 * bore.radius) for bore in stack.bores]
+    ends = [(stack.bores[-1], sizes[:-1]), (stack.bores[0], sizes[1:])]
+    if sizes[0] is not None and len(set(sizes)) == 1:
+        return sizes[0], None
+    for end, others in ends:
+        if others[0] is not None and len(set(others)) == 1 and is_tapped(2 * end.radius, others[0]):
+            return others[0], end
+    return None
+
+
+def _in_row(facts: GeometryFacts, stack: Stack) -> FoundDowel:
+    """The dowel of a row of holes, as long as these."""
+    walls = [tuple(facts.face(bore.part, number) for number in bore.faces) for bore in stack.bores]
+    wide = show(2 * stack.bores[0].radius, "m")
+    return FoundDowel(
+        walls=tuple(walls), remark=f"{wide} (ISO 2338), as long as its holes; take it out if there is none"
+    )
