@@ -5,7 +5,7 @@
 Frequencies: the T-specimen (five modes of a hammer test at three preloads) and, where its measured interface lies in
 examples/brake-reuss-beam/data (make_data.py writes it), the Brake-Reuss beam: two modes, at both ends of the published
 plots of its measured curves. Damping: the same curves, and structures of which a damping at rest was published. k_n:
-the measured stiffnesses of docs/theory/measured-stiffness.csv.
+the measured stiffnesses of docs/theory/measured-over-laws.csv, in the range of the default law.
 
 Nobody published the dimensions of the T-specimen. "As fitted" has those of the study, fitted to what all five modes
 have in the mean over the loads. "From all modes" lets them scatter over the bounds of identify.py, as far as these
@@ -20,13 +20,14 @@ from itertools import combinations_with_replacement
 from pathlib import Path
 
 import numpy as np
-from measured_conductance import measured, predicted
+from law_range import specimens
 from scipy.linalg import block_diag
 from scipy.stats import binom, norm, qmc
 
 import faying
+from faying.case.law_range import law_range
 from faying.case.level_damping import FRICTION, REST
-from faying.case.scatter import SCORE, default
+from faying.case.scatter import SCORE
 from faying.study import Study
 from faying.style import COLOURS, COLUMN, drawing, legend_above, new_figure, save
 
@@ -262,19 +263,17 @@ def beam() -> tuple[Measured, list[tuple[str, bool]]] | None:
 
 
 def stiffnesses() -> list[Measured]:
-    """k_n of joints and of specimens of ultrasound and conductance, in the factor of the default law."""
-    half = SCORE * default("law").spread
-    groups: dict[str, list[float]] = {}
-    for one in measured():
-        if one.kind == "range":
-            continue
-        pair, k = f"{one.pair.first.name} on {one.pair.second.name}", predicted("auto", one)
-        if np.isfinite(k):
-            for name in (pair, "all"):
-                groups.setdefault(name, []).append(float(np.log(one.k_n / k)))
+    """k_n of joints and of specimens of ultrasound and conductance, in the range of the default law."""
+    groups: dict[str, list[tuple[float, float]]] = {}
+    for one in specimens("half-space"):
+        own = law_range("half-space").of(soft=one.soft)
+        metal = "soft metals" if one.soft else "steel"
+        for name in (f"{one.source.split(',')[0].split(' (')[0]}, {metal}", metal, "all"):
+            scores = [(float(own.standardised(np.exp(value))), 2 * SCORE * own.spread) for value in one.values]
+            groups.setdefault(name, []).extend(scores)
     return [
-        Measured(name=f"k_n, {name}", scores=np.array(away) / half * SCORE, widths=np.full(len(away), 2 * half))
-        for name, away in groups.items()
+        Measured(name=f"k_n, {name}", scores=np.array(rows)[:, 0], widths=np.array(rows)[:, 1])
+        for name, rows in groups.items()
     ]
 
 

@@ -40,6 +40,7 @@ LIMITS = frozenset(
         "window",
         "falls",
         "far-from-exact",
+        "law-off",
         "slight-preload",
         "near-proof",
         "size",

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import faying
-from faying.case.scatter import SCATTER, assumed
+from faying.case.law_range import LAW_RANGES
+from faying.case.scatter import assumed
 from faying.errors import InputError
 from faying.result.interval_figure import intervals
 from faying.study import Study
@@ -54,7 +55,8 @@ def test_one_at_a_time_gives_the_interval_of_samples_of_the_whole(plain, tmp_pat
 @pytest.mark.parametrize(
     ("source", "left", "lines"),
     [
-        ("law", 0.3, "stiffness = { distribution = 'lognormal', median = 1, sd_ln = 0.18 }"),
+        # JK: a factor of 4.2 about a median of 0.26, 5 to 95 %
+        ("law", 0.15, f"stiffness = {{ distribution = 'lognormal', median = 0.26, factor = {4.2**0.15:.6g} }}"),
         # 0.55 +- 0.389, as 0.2 to 0.9 from 5 to 95 %
         pytest.param("k_t/k_n", 0.2, 'joint.joint.tangential = "0.4722 to 0.6278"', marks=pytest.mark.slow),
         pytest.param("preload", 5 / 28, 'preload = { tightening = "elongation" }', marks=pytest.mark.slow),
@@ -82,6 +84,16 @@ def test_what_the_study_says_replaces_the_table(plain, tmp_path):
     assert now["structure"] == pytest.approx(2 * 1.6449 * 0.5 / 206 * np.ones_like(now["structure"]), rel=0.01)
     assert now["mode"] == pytest.approx(2 * 1.6449 * 0.004 * np.ones_like(now["mode"]))
     assert np.all(np.abs(now["k_t/k_n"]) < 0.1 * np.abs(spread["k_t/k_n"]).max())
+
+
+def test_a_law_far_from_measured_joints_is_noted_unless_the_study_says_better(plain, tmp_path):
+    """JK on steel: a median of 0.26, so that every frequency is above the middle of its interval."""
+    (note,) = [note for note in plain.notes if note.code == "law-off"]
+    assert note.severity == "limit"
+    assert "0.26 times the stiffness of JK in the median, 0.062 to 1.1 times from 5 to 95 %" in note.text
+    assert np.all(np.log(plain.frequencies) > np.log([plain.interval_low, plain.interval_high]).mean(axis=0))
+    known = faying.run(study(tmp_path, "stiffness = { distribution = 'lognormal', median = 0.4, factor = 1.3 }"))
+    assert not [note for note in known.notes if note.code == "law-off"]
 
 
 def test_one_load_has_a_share_of_the_preload_as_well(plain, tmp_path):
@@ -127,7 +139,7 @@ def test_a_prediction_takes_the_same_table_where_the_study_says_nothing(tmp_path
     found = Study.read(study(tmp_path))
     keys = {one.key: one.distribution for one in assumed(found).inputs}
     assert set(keys) == {"joint.stiffness", "joint.tangential", *(f"bolt.{bolt.name}.factor" for bolt in found.bolts)}
-    assert keys["joint.stiffness"] == SCATTER["law"].distribution
+    assert keys["joint.stiffness"] == LAW_RANGES["JK"].of(soft=False)
     # faces of which nothing is said have waves, with a draw of their own in each sample
     silent = replace(found, joints=tuple(replace(joint, form=None) for joint in found.joints))
     more = {one.key for one in assumed(silent).inputs} - set(keys)

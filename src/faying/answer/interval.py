@@ -9,6 +9,7 @@ from faying.answer.wave_band import Draws, WaveBand
 from faying.case.case import Case
 from faying.case.changed import ChangedCase, can_change, frequencies_of
 from faying.case.ends import Pair, at_median_ratio, quantiles
+from faying.case.law_range import of_joint
 from faying.case.mesh_error import MeshError
 from faying.case.scatter import ENDS, SCATTER, SCORE, default, mode_sd, stated, structure_sd
 from faying.case.solve import LoadedCase
@@ -16,6 +17,8 @@ from faying.errors import FayingError
 from faying.notes import Note
 from faying.result.interval import Interval
 from faying.typing import Array
+
+FAR = 2.0  # factor between measured stiffness and a law that is noted
 
 
 def intervals(
@@ -39,7 +42,7 @@ def intervals(
         changes["waves"] = [replace(plain, gaps=draws.gaps(case, seed)) for seed in draws.drawn]
         # about the median of k_t/k_n: where Mindlin's ratio holds the faces, the law would hardly matter
         laws = [at_median_ratio(case, joint) for joint in case.structure.joints]
-        factors = [quantiles(case, f"joint.{j.name}.stiffness", "joint.stiffness", "law") for j in case.study.joints]
+        factors = law_factors(case)
         changes["middle"] = [replace(plain, laws=laws)]
         changes["law"] = [
             replace(plain, laws=[law.scaled(three[k]) for law, three in zip(laws, factors, strict=True)])
@@ -56,7 +59,36 @@ def intervals(
     band = draws.band(states, by_name.pop("waves", []))
     middle = by_name.pop("middle")[0] if "middle" in by_name else None
     pairs = {name: (one, other) for name, (one, other) in by_name.items()}
-    return band, _combined(case, states, pairs, mesh, middle, band), draws.notes(case)
+    return band, _combined(case, states, pairs, mesh, middle, band), [*draws.notes(case), *law_notes(case)]
+
+
+def law_factors(case: Case) -> list[tuple[float, float, float]]:
+    """5, 50 and 95 % of the factor on the stiffness of each joint."""
+    study, mesh = case.study, case.structure.mesh
+    return [
+        quantiles(case, f"joint.{joint.name}.stiffness", "joint.stiffness", of_joint(study, mesh, joint, surface))
+        for joint, surface in zip(study.joints, case.surfaces, strict=True)
+    ]
+
+
+def law_notes(case: Case) -> list[Note]:
+    """Say where measured joints have less than half or more than twice the stiffness of the law in the median."""
+    found: dict[tuple[str, tuple[float, float, float]], list[str]] = {}
+    known = stated(case.study.uncertain)
+    laws = [joint.law for joint in case.structure.joints]
+    for joint, law, factors in zip(case.study.joints, laws, law_factors(case), strict=True):
+        given = f"joint.{joint.name}.stiffness" in known or "joint.stiffness" in known
+        if not (given or 1 / FAR <= factors[1] <= FAR):
+            found.setdefault((law.model.name, factors), []).append(joint.name)
+    out = []
+    for (name, (low, middle, high)), names in found.items():
+        text = (
+            f"{', '.join(names)}: measured joints of such metals have {middle:.2g} times the stiffness of {name} in "
+            f"the median, {low:.2g} to {high:.2g} times from 5 to 95 %; the intervals contain this, the frequencies do "
+            "not"
+        )
+        out.append(Note(code="law-off", joint=names[0] if len(names) == 1 else "", text=text))
+    return out
 
 
 def _combined(

@@ -8,6 +8,7 @@ import numpy as np
 from faying.case.case import Case
 from faying.case.engine import Engine
 from faying.case.scatter import LEVELS, default, stated
+from faying.distribution import Distribution
 from faying.fe.interface import Interface
 from faying.joint.equilibrium import PreloadState
 from faying.joint.joint import FittedJoint
@@ -60,10 +61,10 @@ def half_of(springs: Springs[Interface], which: int) -> Springs[Interface]:
     return replace(springs, k_n=twice * springs.k_n, k_t=twice * springs.k_t)
 
 
-def quantiles(case: Case, own: str, common: str, name: str) -> tuple[float, float, float]:
-    """5, 50 and 95 % of a number: as the study says of it or of all such numbers, else from the table."""
+def quantiles(case: Case, own: str, common: str, table: Distribution) -> tuple[float, float, float]:
+    """5, 50 and 95 % of a number: as the study says of it or of all such numbers, else from a table."""
     known = stated(case.study.uncertain)
-    low, middle, high = (known.get(own) or known.get(common) or default(name)).quantile(LEVELS)
+    low, middle, high = (known.get(own) or known.get(common) or table).quantile(LEVELS)
     return float(low), float(middle), float(high)
 
 
@@ -73,7 +74,7 @@ def ratios_of(case: Case, joint: FittedJoint) -> tuple[float, float, float]:
     own, common = f"joint.{joint.name}.tangential", "joint.tangential"
     if isinstance(given, int | float) and own not in known and common not in known:
         return float(given), float(given), float(given)
-    return quantiles(case, own, common, "k_t/k_n")
+    return quantiles(case, own, common, default("k_t/k_n"))
 
 
 def at_median_ratio(case: Case, joint: FittedJoint) -> JointLaw:

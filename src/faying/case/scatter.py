@@ -8,6 +8,7 @@ from typing import final
 import numpy as np
 
 from faying.bolt.tightening import TIGHTENING
+from faying.case.law_range import of_joints
 from faying.distribution import Distribution
 from faying.form.machining import ASSUMED
 from faying.study.keys.uncertain import DRAWS, Input, UncertainChoice
@@ -48,11 +49,10 @@ SCATTER = {
         left=0.5,
     ),
     "law": Scatter(
-        distribution=Distribution(kind="lognormal", centre=1.0, spread=0.6),
-        source="a factor of 2.7 either way, as eight pairs of ground S45C faces of one roughness scatter (Ito, Modular "
-        "Design for Machine Tools, table 6-5); within a factor of 2.4 of ultrasound on hard ground steel",
-        remedy="measured stiffness of such faces",
-        left=0.3,
+        source="measured stiffness over that of the law, of 20 pairs of faces by four sources, with a median for steel "
+        "and one for soft metals (benchmarks/law_range.py)",
+        remedy="stiffness measured on this joint",
+        left=0.15,
     ),
     "k_t/k_n": Scatter(
         distribution=Distribution(kind="uniform", centre=0.55, spread=0.389),
@@ -128,7 +128,10 @@ def discrepancy(choice: UncertainChoice) -> float:
 
 def assumed(study: Study) -> UncertainChoice:
     """What scatters in a study that says nothing of it: stiffness of the joints, k_t/k_n, preloads, and waves."""
-    found = {"joint.stiffness": default("law")}
+    laws = of_joints(study)
+    alike = len(set(laws)) == 1
+    keys = ["joint.stiffness"] if alike else [f"joint.{joint.name}.stiffness" for joint in study.joints]
+    found = dict(zip(keys, laws, strict=not alike))
     if not any(isinstance(joint.tangential, int | float) for joint in study.joints):
         found["joint.tangential"] = default("k_t/k_n").within(0.01, 2.0, "()")[0]
     for bolt in study.bolts:
