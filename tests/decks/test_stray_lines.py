@@ -277,3 +277,67 @@ def test_a_phase_without_digits_is_refused(seeds):
     other = spoilt(seeds["polar.csv"], "0.017,", lambda line: [line.replace(",30", ",1e20")])
     with pytest.raises(faying.ReadError, match="a phase of 1.75e\\+18 rad has lost its digits"):
         read_frf_text([other], quantity="accelerance", frequency_step=1.0)
+
+
+NODE = "   0.0000000000000000D+00   0.0000000000000000D+00   1.0000000000000000D+01"
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "match"),
+    [
+        ("a.cdb", "      244      217", "      244      217      219", "has 11 nodes in place of 10|and has 11"),
+        ("a.cdb", "(3i9,6e21.13e3)", "(2147483648i9,6e21.13e3)", "is not a format"),
+        ("two.msh", "2.2 0 8", "2.2 0 1.7", "has format '2.2 0 1.7'"),
+        ("u.unv", NODE, f"{NODE}\n       103         1         1        11\n{NODE[:-1]}2", "103 is given twice"),
+    ],
+)
+def test_a_mesh_with_more_than_its_form_is_refused(seeds, name, old, new, match):
+    other = seeds[name].with_name(f"more-{name}")
+    text = seeds[name].read_text()
+    assert old in text
+    other.write_text(text.replace(old, new, 1))
+    with pytest.raises(faying.ReadError, match=match):
+        faying.read_mesh(other, unit="mm")
+
+
+def test_a_continuation_that_is_there_twice_is_refused(seeds):
+    other = spoilt(seeds["small.bdf"], "+       205     208", lambda line: [line, line])
+    with pytest.raises(faying.ReadError, match=r"CTETRA \d+ has more than 10 nodes"):
+        faying.read_mesh(other, unit="mm")
+
+
+@pytest.mark.parametrize(
+    ("name", "begins", "change", "says"),
+    [
+        ("a.cdb", "FINISH", lambda line: [], "has no FINISH: it may be cut short"),
+        ("a.cdb", "         9        11", lambda line: [line.replace("13", "97")], "'P0' names elements that .*: 97"),
+        (
+            "two.msh",
+            "37 11 2 51 51",
+            lambda line: [line.replace("2 51", "2 0")],
+            "1 of 16 solids, 37 for one, are in none",
+        ),
+    ],
+)
+def test_parts_that_lose_their_name_are_said(seeds, name, begins, change, says):
+    assert not faying.read_mesh(seeds[name], unit="mm").notes
+    notes = [note.text for note in faying.read_mesh(spoilt(seeds[name], begins, change), unit="mm").notes]
+    assert any(re.search(says, text) for text in notes), notes
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "match"),
+    [
+        ("real.uff", "   1.0000000000000000D+00   1.0", "   1.0000000000000000D-20   1.0", "between 1e-12 and 1e"),
+        ("frf.uff", "         1   3", "         1   1.7", "is longer than the 80 columns"),
+        ("frf.uff", "         1   3", "         1   0", "an FRF without a reference direction"),
+        ("systems.uff", "         2\n  0.00000e+00  0.0", "         1\n  0.00000e+00  0.0", "two motions of point 1"),
+    ],
+)
+def test_a_test_whose_numbers_lost_their_place_is_refused(seeds, name, old, new, match):
+    other = seeds[name].with_name(f"place-{name}")
+    text = seeds[name].read_text()
+    assert old in text
+    other.write_text(text.replace(old, new, 1))
+    with pytest.raises(faying.ReadError, match=match):
+        faying.read_uff(other)

@@ -215,6 +215,8 @@ class Bulk:
     def _solid(self, name: str, fields: list[str], where: str) -> None:
         few, many = COUNTS[name]
         given = [int(word) for word in fields[2 : 2 + many] if word]
+        if any(fields[2 + many :]):
+            raise ReadError(f"{where}: {name} {fields[0]} has more than {many} nodes; is a line there twice?")
         if len(given) not in (few, many):
             raise ReadError(f"{where}: {name} {fields[0]} has {len(given)} nodes; {few} or {many} are known")
         ordered = [given[i] for i in ORDER.get(len(given), range(len(given)))]

@@ -99,7 +99,7 @@ def _sections(path: Path) -> tuple[str, dict[str, _Words | _Bytes]]:
     after = rest.partition(b"$")[0].strip() if words[1:2] == [b"0"] else b""
     if after:
         raise ReadError(f"{path}: {after[:40].decode(errors='replace')!r} stands in $MeshFormat, which holds one line")
-    if len(words) != 3 or words[0] not in (b"2.2", b"4.1") or words[1] not in (b"0", b"1"):
+    if len(words) != 3 or words[0] not in (b"2.2", b"4.1") or words[1] not in (b"0", b"1") or not words[2].isdigit():
         kind = head.decode("utf-8", errors="replace")[:40]
         raise ReadError(f"{path} has format {kind!r}; save it in 4.1 or 2.2 (Mesh.MshFileVersion)")
     order = "<"

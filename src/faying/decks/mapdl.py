@@ -18,6 +18,7 @@ from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real
 from faying.decks.raw import Pretension, RawMesh, gathered, index, ranged, undoubled
 from faying.decks.vocabulary import ANSYS_LEFT_OUT, ANSYS_SURFACES, BOLT, CONSTRAINT, left_out
 from faying.errors import ReadError
+from faying.text import few
 from faying.typing import Array, Index
 
 _SOLIDS = {"185": 8, "186": 20, "187": 10, "285": 4, "45": 8, "95": 20, "92": 10}
@@ -36,7 +37,7 @@ def read(path: Path) -> RawMesh:
     sets: dict[str, dict[str, np.ndarray]] = {"NODE": {}, "ELEM": {}}
     extra: list[int] = []
     turned: list[int] = []
-    dropped: list[str] = []
+    dropped: dict[int, str] = {}  # numbers and types of elements that are no solids
     commands: list[str] = []
     bolts, others = _Bolts(), _Others(path)
     k = 0
@@ -46,23 +47,17 @@ def read(path: Path) -> RawMesh:
             name = words[0].upper()
             if name in ("ET", "ETBLOCK"):
                 k = _types(lines, k, words, kinds)
-                continue
-            if name == "NBLOCK":
+            elif name == "NBLOCK":
                 k = _nodes(lines, k, words, numbers, points, turned)
-                continue
-            if name == "EBLOCK":
+            elif name == "EBLOCK":
                 k = _elements(lines, k, words, kinds, rows, extra, dropped, bolts)
-                continue
-            bolts.take(name, words)
-            if name in _CONSTRAINTS:
-                commands.append(name)
             elif name == "CMBLOCK":
-                width = _width(lines[k + 1])
-                count = int(words[3].split("!")[0])
-                k, values = _block(lines, k + 2, count, width)
-                sets[words[2].upper()[:4]][words[1]] = _unrolled(values)
-                continue
-            k = others.passed(lines, k)
+                k, sets[words[2].upper()[:4]][words[1]] = _component(lines, k, words)
+            else:
+                bolts.take(name, words)
+                if name in _CONSTRAINTS:
+                    commands.append(name)
+                k = others.passed(lines, k)
     except ReadError:
         raise
     except (ValueError, IndexError, KeyError) as fault:
@@ -76,6 +71,7 @@ def read(path: Path) -> RawMesh:
             f"{path} holds {len(numbers)} nodes in NBLOCK and {sum(map(len, rows.values()))} solids in EBLOCK; "
             "write the archive with CDWRITE,DB in blocked format"
         )
+    elements = {*dropped, *(number for some in rows.values() for number, _ in some)}
     return RawMesh(
         numbers=index(numbers),
         points=np.array(points),
@@ -84,7 +80,10 @@ def read(path: Path) -> RawMesh:
         node_sets=sets["NODE"],
         extra=index(extra),
         turned=index(turned),
-        notes=tuple(_left_out(dropped, commands)),
+        notes=(
+            *_left_out([kind for kind in dropped.values() if kind in _LEFT_OUT], commands),
+            *_lacking(lines, path, sets, elements, {*numbers}),
+        ),
         pretensions=bolts.sections(),
         counted=_says_counts(lines),
     )
@@ -121,6 +120,21 @@ def _says_counts(lines: list[str]) -> bool:
     """Whether every block of nodes and elements says how many it holds, which was then compared."""
     heads = [line.split(",") for line in lines if line.upper().startswith(("NBLOCK", "EBLOCK"))]
     return all(len(words) > 4 and words[4].strip().isdigit() and int(words[4]) > 0 for words in heads)
+
+
+def _lacking(
+    lines: list[str], path: Path, sets: dict[str, dict[str, np.ndarray]], elements: set[int], nodes: set[int]
+) -> list[str]:
+    """Sentences on an end that is not there, and on components of things that are not."""
+    out = []
+    if not any(line.strip().upper() == "FINISH" for line in lines):
+        out.append(f"{path.name} has no FINISH: it may be cut short")
+    for kind, what, there in (("ELEM", "elements", elements), ("NODE", "nodes", nodes)):
+        for name, some in sets[kind].items():
+            absent = sorted({*some.tolist()} - there)
+            if absent:
+                out.append(f"the component {name!r} names {what} that the file does not hold: {few(absent)}")
+    return out
 
 
 def _left_out(elements: list[str], commands: list[str]) -> list[str]:
@@ -191,10 +205,11 @@ def _types(lines: list[str], k: int, words: list[str], kinds: dict[int, str]) ->
 
 def _columns(form: str) -> tuple[list[slice], list[slice]]:
     """Where integers and reals stand in a line, from a Fortran format such as (3i9,6e21.13e3) or (1i7,2i9,6e21.13)."""
-    found = re.findall(r"(\d+)([ie])(\d+)(?:\.\d+(?:e\d+)?)?", form.lower())
-    if not form.lstrip().startswith("(") or not found or found[0][1] != "i":
+    group = r"(\d{1,2})([iea])(\d{1,2})(?:\.\d+(?:e\d+)?)?"
+    if not re.fullmatch(rf"\(\d{{1,2}}i\d{{1,2}}(?:,{group})*\)", form.strip().lower()):
         raise ValueError(f"{form.strip()!r} is not a format")
-    out: dict[str, list[slice]] = {"i": [], "e": []}
+    found = re.findall(group, form.lower())
+    out: dict[str, list[slice]] = {"i": [], "e": [], "a": []}
     start = 0
     for count, kind, width in found:
         for _ in range(int(count)):
@@ -253,7 +268,7 @@ def _elements(
     kinds: dict[int, str],
     rows: dict[str, list[tuple[int, list[int]]]],
     extra: list[int],
-    dropped: list[str],
+    dropped: dict[int, str],
     bolts: "_Bolts",
 ) -> int:
     if len(words) < 3 or words[2].upper() != "SOLID":
@@ -272,12 +287,16 @@ def _elements(
         while len(nodes) < count:
             nodes += _cut(lines[k], width)
             k += 1
+        if len(nodes) > count:
+            raise ReadError(
+                f"line {k}: element {number} should have {count} nodes and has {len(nodes)}; is it damaged?"
+            )
         which = kinds[head[1]]
         if which == "179" and len(nodes) >= 2:
             bolts.pairs.setdefault(head[3], []).append((nodes[0], nodes[1]))
         if which in _SURFACE or which in _LEFT_OUT:
             extra += nodes
-            dropped += [which] if which in _LEFT_OUT else []
+            dropped[number] = which
             continue
         if which not in _SOLIDS:
             raise ReadError(f"element {number} is of type {which}; known are SOLID185, 186, 187 and 285")
@@ -292,12 +311,15 @@ def _cut(line: str, width: int) -> list[int]:
     return [int(cell) for cell in cells]
 
 
-def _block(lines: list[str], k: int, count: int, width: int) -> tuple[int, list[int]]:
+def _component(lines: list[str], k: int, words: list[str]) -> tuple[int, np.ndarray]:
+    """The line behind a CMBLOCK, and its numbers."""
+    width, count = _width(lines[k + 1]), int(words[3].split("!")[0])
     values: list[int] = []
+    k += 2
     while len(values) < count:
         values += _cut(lines[k], width)
         k += 1
-    return k, values
+    return k, _unrolled(values)
 
 
 def _unrolled(values: list[int]) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 from faying import units
 from faying.decks.conforming import bodies, check_apart
 from faying.decks.programs import MESHES, reader_of
-from faying.decks.raw import Pretension, RawMesh
+from faying.decks.raw import Pretension, RawMesh, index
 from faying.errors import InputError, ReadError
 from faying.fe.elements import FACES, SOLIDS
 from faying.fe.mesh import Mesh, least_jacobian
@@ -282,6 +282,7 @@ class _Builder:
             if divided is not None:
                 bodies, owner = subsets, divided
         if owner is None:
+            self._say_undivided(numbers, bodies)
             bodies, owner = {}, np.full(len(numbers), -1, dtype=np.int64)
         # a body of several pieces that do not hang together is as many parts
         pairs, place = np.unique(np.column_stack([owner, piece]), axis=0, return_inverse=True)
@@ -296,6 +297,16 @@ class _Builder:
                 called = f"{given[body]}_{alike.index(one) + 1}"
             names.append(called or f"part{len(names) + 1}")
         return names, np.asarray(place, dtype=np.int64).ravel()
+
+    def _say_undivided(self, numbers: Index, bodies: Mapping[str, Index]) -> None:
+        """A note where the parts that the file makes leave out some of its solids, and so name none."""
+        lacking = ~np.isin(numbers, np.concatenate([index([]), *bodies.values()]))
+        if bodies and lacking.any():
+            text = (
+                f"{np.count_nonzero(lacking)} of {len(numbers)} solids, {numbers[lacking][0]} for one, are in none of "
+                f"{', '.join(map(repr, bodies))}; the parts are named by what hangs together"
+            )
+            self.notes.append(Note(code="undivided", text=text))
 
     def _welded(self, points: Array, cells: list[Index], owner: Index) -> list[Index]:
         """The elements with one node for each pair that a section of a bolt cuts in two within one part."""

@@ -64,7 +64,11 @@ def read(path: Path) -> RawMesh:
             for head, place in zip(lines[::2], lines[1::2], strict=True):
                 label, system, _, _ = _whole_numbers(path, head, 4)
                 exported |= {system} & moved
-                points[label] = [float(word.replace("D", "E")) for word in place.split()]
+                at = [float(word.replace("D", "E")) for word in place.split()]
+                if len(at) != 3:
+                    raise ReadError(f"{path}: node {label} has no three coordinates; is the file complete?")
+                if points.setdefault(label, at) != at:
+                    raise ReadError(f"{path}: node {label} is given twice, at different places")
         elif number in _ELEMENTS:
             extra += _elements(path, lines, solids, shells, held)
         elif number in _GROUPS:
@@ -83,8 +87,6 @@ def read(path: Path) -> RawMesh:
         if on:
             faces[name] = on
     where = [points[n] for n in points]
-    if any(len(place) != 3 for place in where):
-        raise ReadError(f"{path}: a node has no three coordinates; is the file complete?")
     bodies = {name: index(e for e in elements if e not in shells) for name, (elements, _) in groups.items()}
     return RawMesh(
         numbers=index(points),

@@ -46,6 +46,7 @@ FRF_TYPE, OVER_TIME = 4, (1, 7, 8, 22)
 GLOBAL = (0, 1)  # systems that a file need not define
 LINE = 6  # numbers in a line of data set 58
 OWN = (18, 2414)  # data sets that Faying reads itself
+OF_POINTS, COLUMNS = 6, 80  # lines from the number of a data set 58 to its points, and columns that these have
 TAKEN = {*OWN, 15, 55, 58, 82, 151, 164, 2411, 2412, 2420}  # and all that it takes from a file
 DIRECTION_CODES = {0: "", 1: "x", 2: "y", 3: "z", 4: "rx", 5: "ry", 6: "rz"}
 
@@ -107,14 +108,31 @@ def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFi
 
 
 def _check_numbered(frfs: Sequence[dict[str, Any]], file: Path) -> None:
-    """Raise ReadError where some FRFs have a point and others have none: what cannot be read comes as 0."""
-    for name, what in (("rsp_node", "response"), ("ref_node", "reference")):
+    """Raise ReadError where some FRFs have a point or direction and others none: what cannot be read comes as 0."""
+    for name, what in (
+        ("rsp_node", "response point"),
+        ("ref_node", "reference point"),
+        ("rsp_dir", "response direction"),
+        ("ref_dir", "reference direction"),
+    ):
         without = [s["number"] for s in frfs if s[name] == 0]
         if without and len(without) < len(frfs):
             raise ReadError(
-                f"{file}, data set {without[0]}: an FRF without a {what} point, where other FRFs of the file have one; "
+                f"{file}, data set {without[0]}: an FRF without a {what}, where other FRFs of the file have one; "
                 "its header is damaged"
             )
+
+
+def _check_headers(lines: Sequence[str], file: Path) -> None:
+    """Raise ReadError where the points of a function (data set 58) do not stand in the columns of the format."""
+    for k, line in enumerate(lines[: -OF_POINTS or None]):
+        if line.strip() == "58" and lines[k - 1].strip() == "-1":
+            points = lines[k + OF_POINTS].rstrip("\x00 \t\r")
+            if len(points) > COLUMNS:
+                raise ReadError(
+                    f"{file}, line {k + OF_POINTS + 1}: {points.strip()!r} is longer than the {COLUMNS} columns in "
+                    "which the points of a function stand; its header is damaged"
+                )
 
 
 def _about_others(file: Path, sets: Sequence[dict[str, Any]]) -> tuple[str, ...]:
@@ -164,7 +182,9 @@ def _sets(file: Path) -> list[dict[str, Any]]:
             f"{file}: it ends in the middle of data set {len(kinds) + 1}; it was cut short, export or copy it again"
         )
     if not any(b"58b" in line[:9] for line in content.splitlines()):  # binary data may hold anything
-        check_data_sets(content.decode("latin-1").splitlines(), str(file))
+        lines = content.decode("latin-1").splitlines()
+        check_data_sets(lines, str(file))
+        _check_headers(lines, file)
     out = []
     for number, kind in enumerate(kinds):
         if kind in OWN:
@@ -268,6 +288,10 @@ def _mode(frequency: float, loss: float, points: Index, values: Array, where: st
             f"{where}: a mode of {frequency:g} Hz, loss factor {loss:g}, with NaN or infinite motion or a negative "
             "frequency; export it again"
         )
+    once, first = np.unique(points, return_index=True)
+    if len(once) < len(points) and not np.array_equal(values, values[first[np.searchsorted(once, points)]]):
+        twice = points[np.setdiff1d(np.arange(len(points)), first)]
+        raise ReadError(f"{where}: the mode has two motions of point {twice[0]}; export it again")
     return {"frequency": frequency, "loss": loss, "points": points, "values": values}
 
 

@@ -3,7 +3,7 @@
 import re
 from contextlib import suppress
 from dataclasses import dataclass
-from math import inf, pi
+from math import pi
 from typing import Any
 
 from faying.errors import InputError, ReadError
@@ -16,6 +16,9 @@ FORCE = 13
 DIMENSIONS = {"receptance": "m", "mobility": "m/s", "accelerance": "m/s^2"}
 FREQUENCY = 18
 NONE = ("", "NONE", "-", "1", "UNKNOWN", "UNDEFINED", "N/A")
+
+
+MOST_FACTOR = 1e12  # of a unit: nanometres are 1e9 a metre
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,9 +36,10 @@ class FileUnits:
         if not found:
             return None
         units = cls(length=found[0]["length"], force=found[0]["force"], words=found[0]["units_description"])
-        if not (0 < units.length < inf and 0 < units.force < inf):
+        if not all(1 / MOST_FACTOR <= factor <= MOST_FACTOR for factor in (units.length, units.force)):
             raise ReadError(
-                f"{where}: data set 164 gives the factors {units.length} and {units.force}; they must be positive. "
+                f"{where}: data set 164 gives the factors {units.length} and {units.force}; they must be between "
+                f"{1 / MOST_FACTOR:g} and {MOST_FACTOR:g}. "
                 "Export the file again with its units"
             )
         return units
