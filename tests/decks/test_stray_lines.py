@@ -332,6 +332,10 @@ def test_parts_that_lose_their_name_are_said(seeds, name, begins, change, says):
         ("frf.uff", "         1   3", "         1   1.7", "is longer than the 80 columns"),
         ("frf.uff", "         1   3", "         1   0", "an FRF without a reference direction"),
         ("systems.uff", "         2\n  0.00000e+00  0.0", "         1\n  0.00000e+00  0.0", "two motions of point 1"),
+        ("systems.uff", "         2\n  0.00000e+00  0.0", "         0\n  0.00000e+00  0.0", "the mode moves point 0"),
+        ("systems.uff", "  1.00000e-02  0.0", "  10  1.00000e-02  0.0", "should have two lines of six numbers"),
+        ("systems.uff", "         2         1         1", "         2         1        -1", "moves in the system -1"),
+        ("real.uff", "    -1\n", "    -1\x0b\n", "is between two data sets|is not the number|is no universal file"),
     ],
 )
 def test_a_test_whose_numbers_lost_their_place_is_refused(seeds, name, old, new, match):

@@ -32,7 +32,7 @@ _BEAMS = (11, 21, 22, 23, 24)  # with a line of their own between head and nodes
 
 def _datasets(path: Path) -> list[tuple[str, list[str]]]:
     """Number and lines of every data set."""
-    lines = read_text(path, "universal file").splitlines()
+    lines = [line.rstrip("\r") for line in read_text(path, "universal file").split("\n")]
     marks = [k for k, line in enumerate(lines) if line.strip() == "-1"]
     if not marks:
         raise ReadError(f"{path} is no universal file (no line -1)")

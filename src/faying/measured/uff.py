@@ -182,7 +182,7 @@ def _sets(file: Path) -> list[dict[str, Any]]:
             f"{file}: it ends in the middle of data set {len(kinds) + 1}; it was cut short, export or copy it again"
         )
     if not any(b"58b" in line[:9] for line in content.splitlines()):  # binary data may hold anything
-        lines = content.decode("latin-1").splitlines()
+        lines = content.decode("latin-1").split("\n")  # as pyuff does; splitlines knows more ends of lines
         check_data_sets(lines, str(file))
         _check_headers(lines, file)
     out = []
@@ -288,6 +288,8 @@ def _mode(frequency: float, loss: float, points: Index, values: Array, where: st
             f"{where}: a mode of {frequency:g} Hz, loss factor {loss:g}, with NaN or infinite motion or a negative "
             "frequency; export it again"
         )
+    if len(points) and points.min() < 1:
+        raise ReadError(f"{where}: the mode moves point {points.min()}; numbers of points begin at 1")
     once, first = np.unique(points, return_index=True)
     if len(once) < len(points) and not np.array_equal(values, values[first[np.searchsorted(once, points)]]):
         twice = points[np.setdiff1d(np.arange(len(points)), first)]
@@ -326,6 +328,11 @@ def _points(
             if s["type"] == 15 and known and own not in (*known, *GLOBAL):
                 raise ReadError(
                     f"{where}: point {label} is given in the system {own}, which the file does not define; it defines "
+                    f"{', '.join(map(str, known))}"
+                )
+            if known and motion not in (*known, *GLOBAL):
+                raise ReadError(
+                    f"{where}: point {label} moves in the system {motion}, which the file does not define; it defines "
                     f"{', '.join(map(str, known))}"
                 )
             if any(system is not None and system.kind != 0 for system in (moved, known.get(motion))):

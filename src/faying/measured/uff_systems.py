@@ -175,8 +175,8 @@ def shapes_2414(file: Path) -> tuple[list[NodalShape], list[str]]:
             found.append(_shape(lines, head))
         except (ValueError, IndexError):
             raise ReadError(
-                f'{file}: the mode "{title}" of data set 2414 has not {head[5]} numbers at each point; the '
-                "file is damaged, export it again"
+                f'{file}: the mode "{title}" of data set 2414 should have two lines of six numbers, then {head[5]} at '
+                "each point; the file is damaged, export it again"
             ) from None
     return found, notes
 
@@ -192,7 +192,7 @@ def _numbers(line: str) -> list[float]:
 def _shape(lines: list[str], head: list[int]) -> NodalShape:
     times, poles = _numbers(lines[11]), _numbers(lines[12])
     count = head[5] * (2 if COMPLEX[head[4]] else 1) if head[4] in COMPLEX else -1
-    if head[5] not in (3, 6):
+    if head[5] not in (3, 6) or len(times) != 6 or len(poles) != 6:
         raise ValueError
     points, values = [], []
     body = [line for line in lines[13:] if line.strip()]
