@@ -65,7 +65,7 @@ def check_data_sets(lines: Sequence[str], where: str) -> None:
         elif begun:
             begun, held = False, text
             left = MOST_LINES.get(text, (0, ""))[0]
-            if not line[:6].strip().isdigit():  # the number stands in six columns
+            if not re.match(r"\s*\d{1,6}b?(?:\s|$)", text) or not line[:6].strip().isdigit():  # in six columns
                 raise ReadError(
                     f"{where}, line {number}: {text[:40]!r} is not the number of a data set, which follows on -1; is "
                     "the file damaged, or a line -1 too much or too few?"

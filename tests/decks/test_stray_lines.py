@@ -28,6 +28,12 @@ def test_a_mark_that_is_missing_or_twice_is_found(missing):
         check_data_sets(SETS[:missing] + SETS[missing : missing + 1] + SETS[missing:], "f")
 
 
+@pytest.mark.parametrize("line", ["    5500000", "   58x", "    x"])
+def test_a_number_of_a_data_set_stands_alone(line):
+    with pytest.raises(faying.ReadError, match="line 2: .* is not the number of a data set"):
+        check_data_sets(["    -1", line, "data", "    -1"], "f")
+
+
 @pytest.mark.parametrize("line", ["    -1*    -1", "    58", "  2411  "])
 def test_a_data_set_that_begins_inside_another_is_found(line):
     with pytest.raises(faying.ReadError, match="line 3: .* looks like the beginning of another"):
@@ -288,6 +294,8 @@ NODE = "   0.0000000000000000D+00   0.0000000000000000D+00   1.0000000000000000D
         ("a.cdb", "      244      217", "      244      217      219", "has 11 nodes in place of 10|and has 11"),
         ("a.cdb", "(3i9,6e21.13e3)", "(2147483648i9,6e21.13e3)", "is not a format"),
         ("two.msh", "2.2 0 8", "2.2 0 1.7", "has format '2.2 0 1.7'"),
+        ("small.bdf", "PLOAD4  3       31 ", "PLOAD4  3\0      31 ", "which are not load set, element and nodes"),
+        ("u.unv", "         2\np0.left", "         0         2\np0.left", "heads a group and should be 8"),
         ("u.unv", NODE, f"{NODE}\n       103         1         1        11\n{NODE[:-1]}2", "103 is given twice"),
     ],
 )

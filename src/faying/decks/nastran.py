@@ -129,8 +129,9 @@ def _loaded(loads: list[tuple[list[str], str]], where_of: dict[int, tuple[str, l
             raise ReadError(
                 f"{where}: PLOAD4 with THRU, which is for shells, names the solid {solid}; write a card with G1 for it"
             )
-        if not all(word.isdigit() for word in (fields[1], *filter(None, fields[6:8]))):
-            raise ReadError(f"{where}: PLOAD4 names {', '.join(fields[1:8:3])}, which are no elements and nodes")
+        if not all(word.isdigit() for word in (*fields[:2], *filter(None, fields[6:8]))):
+            given = ", ".join((*fields[:2], *fields[6:8]))
+            raise ReadError(f"{where}: PLOAD4 names {given}, which are not load set, element and nodes")
         element = int(fields[1])
         if element not in where_of:
             continue  # a load on a shell

@@ -100,12 +100,12 @@ def read(path: Path) -> RawMesh:
     )
 
 
-def _whole_numbers(path: Path, line: str, count: int) -> list[int]:
+def _whole_numbers(path: Path, line: str, count: int, what: str = "a node") -> list[int]:
     """The numbers of a line that holds so many whole ones. Raises ReadError for another line."""
     words = line.split()
     if len(words) != count or not all(re.fullmatch(r"[-+]?\d+", word) for word in words):
         raise ReadError(
-            f"{path}: {line.strip()[:60]!r} heads a node and should be {count} whole numbers; is it damaged?"
+            f"{path}: {line.strip()[:60]!r} heads {what} and should be {count} whole numbers; is it damaged?"
         )
     return [int(word) for word in words]
 
@@ -165,7 +165,7 @@ def _groups(path: Path, lines: list[str]) -> dict[str, tuple[list[int], list[int
         if not lines[k].strip():  # SALOME writes an empty line after a group of no members
             k += 1
             continue
-        count, name = int(lines[k].split()[-1]), lines[k + 1].strip()
+        count, name = _whole_numbers(path, lines[k], 8, "a group")[-1], lines[k + 1].strip()
         if re.fullmatch(r"(\d+\s+){3,}\d+", name):
             raise ReadError(f"{path}: {name[:60]!r} stands where a group has its name; is the count of one wrong?")
         words: list[int] = []
