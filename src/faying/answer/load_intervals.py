@@ -120,16 +120,15 @@ def _moved(
     study: Study, number: int, base: Preloaded, loads: tuple[Load, ...], inputs: Sequence[LoadScatter], share: float
 ) -> list[Array]:
     """The same answers with inputs moved by a share of the way to their ends."""
-    forces, joints = np.array(study.preloads[number].forces), list(base.structure.joints)
+    forces, friction = np.array(study.preloads[number].forces), [joint.friction for joint in base.structure.joints]
     for one in inputs:
         factor = 1 + share * (one.end - 1)
         if one.bolt is not None:
             forces[one.bolt] *= factor
         else:
             assert one.joint is not None
-            joint = joints[one.joint]
-            joints[one.joint] = replace(joint, friction=(joint.friction or 0.0) * factor)
-    structure = replace(base.structure, joints=tuple(joints))
+            friction[one.joint] = (friction[one.joint] or 0.0) * factor
+    structure = base.structure.with_joints(friction=friction)
     problem = structure.assembly(solver=study.modes.solver)
     problem.take(base.factor, 0.0)
     preload = checked_preload(structure, problem, replace(study.preloads[number], forces=tuple(forces.tolist())))

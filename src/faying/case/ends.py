@@ -29,8 +29,8 @@ def ends_of(case: Case, preload: PreloadState, engine: Engine) -> dict[str, Pair
     def pair(laws: Sequence[tuple[JointLaw, JointLaw]]) -> Pair:
         both = []
         for k in (0, 1):
-            changed = tuple(replace(joint, law=pair[k]) for joint, pair in zip(joints, laws, strict=True))
-            both.append(engine.frequencies(replace(case.structure, joints=changed).springs(preload.pressures)))
+            changed = case.structure.with_joints(laws=[pair[k] for pair in laws])
+            both.append(engine.frequencies(changed.springs(preload.pressures)))
         return both[0], both[1]
 
     laws = [joint.law for joint in joints]

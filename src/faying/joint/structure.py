@@ -1,7 +1,7 @@
 """A bolted structure: meshed parts, the joints between them, the bolts that pull them together, what supports them."""
 
 from collections.abc import Container, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf
 from typing import TYPE_CHECKING, Any, Literal, cast
 
@@ -20,6 +20,7 @@ from faying.fe.quality import quality
 from faying.joint.attachments import PointMass, Support
 from faying.joint.frame import Frame, added
 from faying.joint.joint import FittedJoint, Joint, each_pair_once, known_face
+from faying.joint.joint_law import JointLaw
 from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
 from faying.materials import STIFFEST, Material, material_of
@@ -310,6 +311,30 @@ class Structure(Summary):
         from faying.joint.state import solve_structure
 
         return solve_structure(self, preload, modes=modes, damping=damping, order=order, solver=solver)
+
+    def with_joints(
+        self,
+        *,
+        laws: Sequence[JointLaw] | None = None,
+        friction: Sequence[float | None] | None = None,
+        gaps: Sequence[Array] | None = None,
+    ) -> "Structure":
+        """Return the structure with other numbers of its joints; what is assembled of the parts serves it, too.
+
+        Args:
+            laws: Law of each joint; as they are where None.
+            friction: Coefficient of each joint [-].
+            gaps: Gap of each joint [m] (q,) before any load.
+        """
+        joints = list(self.joints)
+        for k, joint in enumerate(joints):
+            joints[k] = replace(
+                joint,
+                law=joint.law if laws is None else laws[k],
+                friction=joint.friction if friction is None else friction[k],
+                interface=joint.interface if gaps is None else replace(joint.interface, gap=gaps[k]),
+            )
+        return replace(self, joints=tuple(joints))
 
     def assembly(self, *, solver: str | None = None) -> PreloadProblem:
         """Return the preload problem of this structure."""

@@ -218,8 +218,7 @@ class Reduction:
         laws: the law of each joint; forces [N] (bolts,); count: elastic modes wanted; shares: of the parts that
         variants may scale, which this one does not. Raises InputError where a part is held by nothing.
         """
-        joints = tuple(replace(joint, law=law) for joint, law in zip(structure.joints, laws, strict=True))
-        structure = replace(structure, joints=joints)
+        structure = structure.with_joints(laws=laws)
         found = checked_preload(structure, structure.assembly(solver=solver), PreloadCase(tuple(map(float, forces))))
         shift = shift_frequency or structure.shift_frequency
         _, mass = structure.vibrating

@@ -171,12 +171,7 @@ class Recipe:
         """
         point = self._point(index)
         laws, forces, friction = self.laws(index)
-        joints = [
-            replace(joint, law=replace(law, few=JointLaw.few), friction=mu)  # inverted as a run inverts it
-            for joint, law, mu in zip(structure.joints, laws, friction, strict=True)
-        ]
-        for k, gap in enumerate(self.gaps(index) or ()):
-            joints[k] = replace(joints[k], interface=replace(joints[k].interface, gap=gap))
+        laws = [replace(law, few=JointLaw.few) for law in laws]  # inverted as a run inverts them
         materials = structure.materials
         if point.scales:
             materials = materials_of(point.study, structure.mesh)
@@ -184,5 +179,6 @@ class Recipe:
                 solid = materials[part]
                 materials[part] = replace(solid, E=solid.E * stiffness, density=(solid.density or 0.0) * mass)
         study = replace(point.study, preloads=(PreloadCase(tuple(forces.tolist())),))
-        structure = replace(structure, joints=tuple(joints), materials=materials)
+        structure = structure.with_joints(laws=laws, friction=friction, gaps=self.gaps(index))
+        structure = replace(structure, materials=materials)
         return Case(study=study, structure=structure, surfaces=point.surfaces)

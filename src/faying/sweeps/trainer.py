@@ -91,7 +91,7 @@ class Trainer:
             try:
                 laws, forces, _ = self.recipe.laws(index)
                 return Reduction.of(
-                    with_gaps(self.structure, self.recipe.gaps(index)),
+                    self.structure.with_joints(gaps=self.recipe.gaps(index)),
                     laws,
                     forces,
                     count=self.study.modes.count + SPARE_MODES,
@@ -168,13 +168,3 @@ class Trainer:
             if error.max() > 4 * self.tolerance or balance > 4 * STATIC_SHARE * self.tolerance:
                 poor.append(index)
         self._train(reduction, poor, "training")
-
-
-def with_gaps(structure: Structure, gaps: Sequence[Array] | None) -> Structure:
-    """The structure with other gaps [m] (q,) of its joints before any load; itself where None."""
-    if gaps is None:
-        return structure
-    pairs = zip(structure.joints, gaps, strict=True)
-    return replace(
-        structure, joints=tuple(replace(joint, interface=replace(joint.interface, gap=gap)) for joint, gap in pairs)
-    )
