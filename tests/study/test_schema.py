@@ -86,6 +86,12 @@ def test_what_the_substrate_takes(folder, share):
     assert study(folder, law__substrate=share).law.given["substrate"] == share
 
 
+def test_faces_that_are_missing_are_one_fault(folder):
+    with pytest.raises(faying.InputError) as caught:
+        study(folder, bolt__0__faces=None)
+    assert str(caught.value).splitlines()[1:] == ["  - bolt[1].faces is missing"]
+
+
 def test_all_faults_are_reported_in_one_go(folder):
     with pytest.raises(faying.InputError) as caught:
         study(folder, geometry__sice="3 mm", law__modle="jk", joint__0__name=3, surface__D=1.0, bolt__0__preload="4")

@@ -52,7 +52,7 @@ def read_bolt(
     friction = (table.get("thread_friction"), table.get("head_friction"))
     forces = _forces(table, diameter, pitch, friction)
     thread, fastener = _thread(table, diameter, pitch, meshed=part is not None)
-    bolt: Bolt | SolidBolt | None
+    bolt: Bolt | SolidBolt | None = None
     if part is not None:
         _note_solid(table, part)
         bolt = SolidBolt(name=name, part=part, faces=faces, at=at, fastener=fastener)
@@ -73,19 +73,19 @@ def read_bolt(
             table.faults.add(
                 f"bolt {name!r} has a material but no diameter; give both, or neither for a bolt without stiffness"
             )
-            return None, forces
-        bolt = table.made(
-            lambda: Bolt(
-                name=name,
-                faces=faces,
-                at=at,
-                diameter=None if material is None else diameter,  # it may be given for a torque alone
-                material=material,
-                washers=tuple(w for w in washers if w is not None),
-                fastener=fastener,
-                **given,
+        elif all(faces):  # else there is a fault already
+            bolt = table.made(
+                lambda: Bolt(
+                    name=name,
+                    faces=faces,
+                    at=at,
+                    diameter=None if material is None else diameter,  # it may be given for a torque alone
+                    material=material,
+                    washers=tuple(w for w in washers if w is not None),
+                    fastener=fastener,
+                    **given,
+                )
             )
-        )
     table.close()
     return bolt, forces
 
