@@ -106,17 +106,19 @@ def preloaded(folder, mesh, materials, pairs, *, k_n, k_t, held, force, modes):
 
 
 def read(folder, nodes):
-    """Displacements [m] at the end of each step."""
-    out, rows = [], {}
-    for line in [*(folder / "job.dat").read_text().splitlines(), "displacements end"]:
+    """Displacements [m] at the end of each step; lines behind the last node, such as eigenvalues, do not count."""
+    out, rows = [], None
+    for line in (folder / "job.dat").read_text().splitlines():
         words = line.split()
         if "displacements" in line:
-            if rows:
-                assert len(rows) == nodes
-                out.append(np.array([rows[k + 1] for k in range(nodes)]).ravel() * 1e-3)
+            assert rows is None
             rows = {}
-        elif len(words) == 4 and words[0].isdigit():
+        elif rows is not None and len(words) == 4 and words[0].isdigit():
             rows[int(words[0])] = [float(word) for word in words[1:]]
+            if len(rows) == nodes:
+                out.append(np.array([rows[k + 1] for k in range(nodes)]).ravel() * 1e-3)
+                rows = None
+    assert rows is None
     return out
 
 
