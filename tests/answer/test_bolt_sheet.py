@@ -10,6 +10,7 @@ import pytest
 
 import faying
 from faying import units
+from faying.answer.bolt_loads import BoltLoad
 from faying.answer.bolt_sheet import DEFAULT_WAY, bolt_sheet, choice_for
 from faying.answer.run import run
 from faying.cli.main import main
@@ -376,3 +377,27 @@ def test_another_case_never_takes_stress_from_a_bolt(made):
 def test_faults_of_a_load_in_the_table(made, table, text):
     with pytest.raises(faying.InputError, match=text):
         made(bolt_sheet=table, support=[HELD], load=[PULL])
+
+
+def test_a_load_factor_below_0_is_explained_and_taken_as_it_is(made, monkeypatch):
+    """A load that relieves the joint round a bolt may take force from the bolt as well, where parts bend."""
+    found = BoltLoad(
+        axial=(0.0, 400.0),
+        transverse=0.0,
+        additional=(-4.0, 0.0),
+        taken=404.0,
+        introduction=-0.05,
+        thermal_loss=None,
+        thermal_gain=0.0,
+    )
+    monkeypatch.setattr("faying.answer.bolt_sheet.bolt_loads", lambda *_: {0: found})
+    sheets = bolt_sheet(made())
+    (sheet,) = sheets.sheets
+    share = sheet.row("Phi").result.value
+    assert share == pytest.approx(HAND["Phi"]({one.symbol: one.value for one in sheet.row("Phi").inputs}), rel=1e-12)
+    assert share < 0
+    assert sheet.row("F_SAu").result.value == pytest.approx(-4.0)
+    assert sheet.row("F_PA").result.value == pytest.approx(404.0)
+    (factor,) = [one.name for one in sheet.row("Phi").inputs if one.symbol == "n"]
+    assert "below 0: where this load relieves the joint round the bolt, the bolt loses force too" in factor
+    assert "below 0: where this load" in shown.terminal(sheets)

@@ -15,6 +15,7 @@ PROGRAM = (
     "worked examples A and B, calculated by hand, in the tests of the public TypeScript program analyseBoltedJoint"
 )
 PYFLANGE = "pyFlange (KCI The Engineers, Siemens Gamesa, TNO), tests/bolts_test.py, test_axial_stiffness"
+PYFLANGE_PARTS = "pyFlange, src/pyflange/flangesegments.py, stiffness of the flange in compression, from its inputs"
 ROUNDED = "digits that are printed"
 UM_KN = "um/kN"
 
@@ -99,3 +100,24 @@ def test_a_flange_bolt_with_a_reduced_shank(published):
     thread = Thread(diameter=80e-3, pitch=6e-3)
     stiff = 1e-6 / delta(thread, free=0.4, E=210e9, diameter=76.1e-3, shank=0.27)
     published("1/delta_S, M80 over 400 mm", 1831, stiff, source=PYFLANGE, unit="MN/m", rel=5e-4, why=ROUNDED)
+
+
+def test_load_factor_of_a_flange_bolt(published):
+    """120 bolts M80 in a flange of 7.5 m: parts of 2 x 200 mm, washers of 140 mm, holes of 86 mm.
+
+    The source takes the parts for a sleeve as wide as the washer and a tenth of the clamped length; the cone of the
+    guideline is cut at the width of a segment, 2 pi/120 (7.5/2 - 0.072/2 - 0.1665) m.
+    """
+    length, washer, hole, E = 0.4, 0.14, 0.086, 210e9
+    screw = delta(Thread(diameter=80e-3, pitch=6e-3), free=length, E=E, diameter=76.1e-3, shank=0.27)
+    sleeve = length / (E * pi / 4 * ((washer + length / 10) ** 2 - hole**2))
+    segment = 2 * pi / 120 * (7.5 / 2 - 0.072 / 2 - 0.1665)
+    cone = cone_compliance([(length, E)], seat=washer, hole=hole, outer=segment)
+    published(
+        "load factor Phi, M80 over 400 mm",
+        sleeve / (1e-6 / 1831 + sleeve),
+        cone / (screw + cone),
+        source=PYFLANGE_PARTS,
+        rel=0.05,
+        why="another model of the parts: a sleeve, with the numbers of the source",
+    )

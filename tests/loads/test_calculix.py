@@ -1,5 +1,7 @@
 """Load cases on three structures against CalculiX: contact of the same stiffness per area, friction, opening, heat."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -99,6 +101,24 @@ def test_a_stub_whose_flange_is_heated(stub, tmp_path, published):
     found = compare(published, tmp_path, "T-stub", *stub, loads, change=0.01, moved=0.01)
     assert found.sliding[0, 0] > 0.9
     assert found.bolt_force[0, 0] > 1.1 * PRELOAD
+
+
+def test_shear_that_no_friction_bears_is_named_where_a_face_opens():
+    """The same on hex20, heads and nuts sticking by a law with stiffness across at no pressure.
+
+    Where such a point opens its shear ends at once, and no state between is in equilibrium. CalculiX has friction 9.
+    """
+    strip = (0.04, 6.1e-3)
+    mesh = bolted(places=((0.02, 0.02), (0.06, 0.02)), length=0.08, kind="hex20")
+    ends = {"lower.web": ("lower", at(2, 0.0, strip)), "upper.web": ("upper", at(2, 0.02, strip))}
+    made, _ = ccx_contact.structure(mesh, ends, held="lower.web", friction=0.3)
+    warm = [faying.Load("warm", temperature={"upper": 50.0}, increments=8)]
+    with pytest.raises(faying.NotConverged, match=r"joint \d sticks under a shear of .* times its pressure"):
+        faying.load_cases(made.solve(PRELOAD, modes=2), warm, modes=False)
+    slides = [replace(joint, friction=joint.friction or ccx_contact.STICKS) for joint in made.joints]
+    found = faying.load_cases(replace(made, joints=tuple(slides)).solve(PRELOAD, modes=2), warm, modes=False)
+    assert found.error[0] < 1e-6
+    assert found.bolt_force[0].min() > 1.1 * PRELOAD
 
 
 def test_a_lap_that_slides(tmp_path, published):

@@ -30,6 +30,10 @@ from faying.study.keys.bolt_sheet import BoltSheetChoice, choice_of
 from faying.study.study import Study
 from faying.units import show
 
+NEGATIVE = (
+    "; below 0: where this load relieves the joint round the bolt, the bolt loses force too, as parts do that bend "
+    "between bolts. Phi and all rows take it as found, not as 0"
+)
 DEFAULT_WAY = "torque wrench, friction estimated"
 DEFAULT_FRICTION = 0.12  # the middle of class B, 0.08 to 0.16: metal, oiled or coated (VDI 2230 Part 1:2015, Table A5)
 TWO_SIGMA = 0.02275  # probability below two standard deviations
@@ -273,6 +277,7 @@ def _loads(case: Case, index: int, choice: BoltSheetChoice, gain: float) -> list
     thermal = choice.thermal_loss
     gain = max(gain, -(thermal or 0.0))
     under = f", of load {' and '.join(map(repr, choice.loads))}" if choice.loads else ""
+    introduced = "load introduction factor" + under + NEGATIVE * (choice.introduction < 0)
     return [
         _quantity("mu_T", "friction of the joint", "", friction, "joint.friction or bolt_sheet.slip_friction"),
         _quantity(
@@ -287,7 +292,7 @@ def _loads(case: Case, index: int, choice: BoltSheetChoice, gain: float) -> list
         ),
         _quantity("F_Au", "least working load" + under, "N", low, "bolt_sheet.axial"),
         _quantity("F_Ao", "greatest working load" + under, "N", high, "bolt_sheet.axial"),
-        _quantity("n", "load introduction factor" + under, "", choice.introduction, ""),
+        _quantity("n", introduced, "", choice.introduction, ""),
         _quantity("F_th", "loss by temperature" + under, "N", thermal, "bolt_sheet.thermal_loss"),
         _quantity("F_thg", "gain by temperature" + under * (gain > 0), "N", gain, ""),
         _quantity("F_thd", "loss by temperature" + " (not given: none)" * (thermal is None), "N", thermal or 0.0, ""),

@@ -39,6 +39,7 @@ NEWTON_STEPS = 30
 HALVINGS = 6
 ROUNDS_AHEAD = 1  # whose vectors are found before joints are balanced again
 AHEAD = 40  # times the vectors of the linear answers' first round, for which there is room from the beginning
+BORNE = 2.0  # shear over pressure that no friction bears
 KEPT = 0.01  # relative change of a tangent from which a Newton step counts it
 
 
@@ -445,10 +446,35 @@ class LoadStatics:
             if not np.any(contact.normal(motion)[0] > 0)
         ]
         where = f"; joint {apart[0] + 1} is wholly open, and nothing holds its parts together" if apart else ""
+        where = where or self._sheared(state)
         return NotConverged(
             f"load {task.name!r}: no equilibrium is found, an error of {task.error:.1e} is left{where}; give more "
             "increments, a smaller load or a greater preload"
         )
+
+    def _sheared(self, state: LoadedState) -> str:
+        """What to say of a joint that sticks under a shear which no friction bears; "" where there is none.
+
+        Where such a face opens, its shear ends at once unless k_t falls to 0 with pressure, and no state between is in
+        equilibrium.
+        """
+        ratios = [
+            _greatest_ratio(traction) if contact.friction is None else 0.0
+            for traction, (_, contact) in zip(state.tractions, self.joints, strict=True)
+        ]
+        if max(ratios) < BORNE:
+            return ""
+        k = int(np.argmax(ratios))
+        return (
+            f"; joint {k + 1} sticks under a shear of {ratios[k]:.3g} times its pressure, which no friction bears, and "
+            "loses it at once where it opens: give it joint.friction"
+        )
+
+
+def _greatest_ratio(traction: Array) -> float:
+    """The greatest shear over pressure of points (q, 3) that touch [-]; 0 where none does."""
+    shut = traction[:, 0] < 0
+    return float((np.linalg.norm(traction[shut, 1:], axis=1) / -traction[shut, 0]).max(initial=0.0))
 
 
 def _stands(errors: Sequence[float]) -> bool:
