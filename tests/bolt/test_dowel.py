@@ -17,6 +17,7 @@ from faying.joint.attachments import Support
 from faying.joint.joint import FittedJoint
 from faying.numerics.modes import lowest_modes
 from faying.numerics.solve import factorise
+from faying.output.load_cases import terminal
 from tests.geometry.test_geometry import at, named, step
 from tests.helpers.bars import even
 
@@ -215,6 +216,7 @@ def test_slide_of_two_plates_has_the_frequency_of_their_masses_on_two_pins(mesh)
     assert found == pytest.approx(np.sort([slides, slides, turns]), rel=2e-3)
 
 
+@pytest.mark.slow
 def test_pins_share_a_force_evenly_and_carry_it_from_part_to_part(mesh):
     """1 kN along x on the upper plate, the lower one held; nothing but the pins holds it along x."""
     structure = doweled(mesh, supports=HELD)
@@ -323,3 +325,16 @@ def test_ends_cut_the_holes_to_what_holds_the_pin(mesh):
 def test_two_dowels_of_one_name_are_refused(mesh):
     with pytest.raises(faying.InputError, match="two dowels are called 'dowel 1'"):
         faying.Structure(mesh, STEEL, [joint(mesh)], dowels=[dowels()[0], dowels()[0]])
+
+
+@pytest.mark.slow
+def test_a_load_case_says_what_each_dowel_carries(mesh, tmp_path):
+    """All of 1 kN along x, which the joint does not hold across."""
+    structure = doweled(mesh, supports=[Support(face="lower.seat")])
+    push = faying.Load("push", forces=[faying.Force("upper.end", force=(1e3, 0, 0))])
+    found = faying.load_cases(structure.solve("5 kN", modes=1), [push], modes=False)
+    assert found.dowels == ("dowel 1", "dowel 2")
+    assert found.dowel_shear.sum() == pytest.approx(1e3, rel=1e-4)
+    assert found.dowel_bearing == pytest.approx(found.dowel_shear / (D * DEEP), rel=1e-4)
+    assert faying.load(found.save(tmp_path / "loads.nc")) == found
+    assert "shear force by the load [N]" in terminal(found)

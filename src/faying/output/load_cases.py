@@ -97,7 +97,7 @@ def dowel_rows(found: LoadCases, k: int) -> Rows:
     """Return one row for each dowel under a case; empty where there are none."""
     if found.dowel_shear is None or found.dowel_bearing is None:
         return []
-    rows: Rows = [["dowel", "shear force [N]", "pressure on its hole [MPa]"]]
+    rows: Rows = [["dowel", "shear force by the load [N]", "pressure on its hole [MPa]"]]
     for d, name in enumerate(found.dowels):
         rows.append([_cut(name, 18), _short(found.dowel_shear[k, d]), _short(found.dowel_bearing[k, d] / 1e6)])
     return rows
